@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: MIT
+"""The one home of what a design is: its screen, its size, its arithmetic, and the row budget that they must meet."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import Any, Literal
+
+from pydantic import ConfigDict, Field, ValidationError, model_validator
+from pydantic.dataclasses import dataclass as validated_dataclass
+
+from raycaster.errors import UserError
+
+COORDINATE_BITS = 9
+"""World coordinates are unsigned: 0..511."""
+
+WORLD_SIZE = 1 << COORDINATE_BITS
+VIEW_DISTANCE = 100
+"""Slope along x of every primary ray: the distance of the viewing rectangle, in world units."""
+
+CHANNEL_BITS = 8
+"""Bits a colour channel has until it leaves for the monitor."""
+
+CLOCKS_PER_PIXEL = 2
+"""System clocks a VGA pixel: 50 MHz over 25 MHz."""
+
+CLOCK_HZ = 50_000_000
+
+RESULT_LATENCY = 6
+"""Cycles from the end of the last division's slot of a pass to the first cycle of the next pass: slope and plane
+latched, product, divider loaded, hit point, depth compared, ray stored (see `rtl/ray_control.py`)."""
+
+GROUP_OVERHEAD = 5
+"""Cycles a group pays once: ray generation, blending, the write to the line buffer and the seed's two-cycle reset."""
+
+
+class ConfigurationError(UserError):
+    """A configuration that cannot be built, with one line that says what, where and what to do."""
+
+
+@dataclass(frozen=True)
+class Span:
+    """One direction of a video timing, in pixels or lines, in the order in which a monitor sees it."""
+
+    visible: int
+    front: int
+    sync: int
+    back: int
+    active_high: bool
+
+    @property
+    def blank(self) -> int:
+        """Front porch, sync and back porch together."""
+        return self.front + self.sync + self.back
+
+    @property
+    def total(self) -> int:
+        return self.visible + self.blank
+
+
+@dataclass(frozen=True)
+class Screen:
+    """What is looked through (columns x rows of rays) and how it is shown (each `doubling` x `doubling` pixels)."""
+
+    columns: int
+    rows: int
+    horizon_row: int
+    """The row whose rays have no z slope."""
+    doubling: int
+    horizontal: Span
+    vertical: Span
+
+    @property
+    def centre_column(self) -> int:
+        """The column whose rays have no y slope."""
+        return self.columns // 2
+
+    @property
+    def row_cycles(self) -> int:
+        """System cycles in which one row of rays is shown, and the next must be ready."""
+        return self.doubling * self.horizontal.total * CLOCKS_PER_PIXEL
+
+    @property
+    def frame_cycles(self) -> int:
+        return self.horizontal.total * self.vertical.total * CLOCKS_PER_PIXEL
+
+
+_VGA_LINE = Span(visible=640, front=16, sync=96, back=48, active_high=False)
+SCREENS: Mapping[tuple[str, int], Screen] = {
+    ("vga", 240): Screen(320, 240, 190, 2, _VGA_LINE, Span(480, 10, 2, 33, active_high=False)),
+    ("vga", 200): Screen(320, 200, 150, 2, _VGA_LINE, Span(400, 12, 2, 35, active_high=True)),
+    # The line is just long enough for 32 units to have the same 320 cycles a group as on the full screen.
+    ("tiny", 48): Screen(64, 48, 38, 2, Span(128, 8, 16, 8, active_high=False), Span(96, 2, 2, 4, active_high=False)),
+}
+"""By screen name and rows."""
+
+
+@validated_dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid"))
+class Configuration:
+    """Everything that distinguishes one generated design from another.
+
+    `rows` and `divider_bits` may be left to the default (`None`, `"auto"`); a constructed configuration holds
+    the numbers that were chosen, so that equal designs compare equal.
+
+    Raises `ConfigurationError` through `configure`; constructed directly, pydantic's `ValidationError`.
+    """
+
+    engine: Literal["seed"] = Field("seed", description="what computes the rays")
+    units: int = Field(32, ge=1, description="ray units in parallel, a divisor of the columns")
+    rectangles: int = Field(12, ge=1, le=32, description="rectangles that the scene memory holds")
+    reflections: int = Field(1, ge=0, le=2, description="reflections a ray may have")
+    rows: int | None = Field(None, description="rows of rays: 240 (640x480@60) or 200 (640x400@70)")
+    fraction_bits: int = Field(0, ge=0, le=8, description="fraction bits of origins, planes and quotients")
+    rounding: Literal["truncate", "nearest"] = Field("truncate", description="of quotients")
+    divider_bits: int | Literal["auto"] = Field("auto", description="quotient bits a cycle: auto, 1, 2 or 3")
+    colour_bits: int = Field(8, ge=1, le=CHANNEL_BITS, description="bits a colour channel on the VGA output")
+    screen: Literal["vga", "tiny"] = Field("vga", description="vga, or tiny (64x48) for slow simulators")
+    allow_underrun: bool = Field(False, description="accept a design that cannot meet the row budget")
+
+    @model_validator(mode="after")
+    def _complete(self) -> Configuration:
+        self._choose_rows()
+        if self.screen_geometry.columns % self.units:
+            columns = self.screen_geometry.columns
+            divisors = ", ".join(str(n) for n in range(1, columns + 1) if columns % n == 0)
+            raise ValueError(f"units: {self.units} does not divide the {columns} columns; choose one of {divisors}")
+        self._choose_divider_bits()
+        return self
+
+    def _choose_rows(self) -> None:
+        allowed = [rows for screen, rows in SCREENS if screen == self.screen]
+        if self.rows is None:
+            object.__setattr__(self, "rows", allowed[0])
+        elif self.rows not in allowed:
+            choices = " or ".join(map(str, allowed))
+            beam = "; 180 rows need the beam engine" if self.rows == 180 else ""
+            raise ValueError(f"rows: the {self.screen} screen has {choices} rows, not {self.rows}{beam}")
+
+    def _choose_divider_bits(self) -> None:
+        if self.divider_bits == "auto":
+            costs = {bits: self._group_cycles(bits) for bits in (1, 2, 3)}
+            chosen = next((bits for bits, cycles in costs.items() if cycles <= self.group_budget), 3)
+            object.__setattr__(self, "divider_bits", chosen)
+        elif self.divider_bits not in (1, 2, 3):
+            raise ValueError(f"divider_bits: must be auto, 1, 2 or 3, not {self.divider_bits}")
+        if self.group_cycles > self.group_budget and not self.allow_underrun:
+            raise ValueError(
+                f"row budget: a group of {self.units} columns takes {self.group_cycles} cycles with {self.rectangles} "
+                f"rectangles, {self.reflections} reflections and {self.divider_steps} divider steps, but a row leaves "
+                f"it {self.group_budget} ({self.screen_geometry.row_cycles} cycles over {self.groups} groups); "
+                "take more units or divider bits, fewer rectangles, reflections or fraction bits, or ALLOW_UNDERRUN=1"
+            )
+
+    @cached_property
+    def screen_geometry(self) -> Screen:
+        return SCREENS[self.screen, self.rows]
+
+    @property
+    def groups(self) -> int:
+        """Groups of `units` columns that make a row; the seed's Max."""
+        return self.screen_geometry.columns // self.units
+
+    @property
+    def quotient_bits(self) -> int:
+        """Bits of a quotient, and steps of the divider at one bit a cycle."""
+        return COORDINATE_BITS + self.fraction_bits
+
+    @property
+    def divider_steps(self) -> int:
+        """Cycles of one division, and from one rectangle to the next."""
+        return self._divider_steps(self.divider_bits)
+
+    def _divider_steps(self, bits: int) -> int:
+        return -(-self.quotient_bits // bits)
+
+    def _group_cycles(self, bits: int) -> int:
+        passes = self.reflections + 1
+        return passes * (self.rectangles * self._divider_steps(bits) + RESULT_LATENCY) + GROUP_OVERHEAD
+
+    @property
+    def group_cycles(self) -> int:
+        """Cycles from one group's start to the next one's with all rectangles enabled: the worst case."""
+        return self._group_cycles(self.divider_bits)
+
+    @property
+    def group_budget(self) -> int:
+        """Cycles that a group may take for a row to be ready while the row above it is shown."""
+        return self.screen_geometry.row_cycles // self.groups
+
+    @property
+    def name(self) -> str:
+        """A short file name that differs wherever the generated hardware does."""
+        rounding = "n" if self.rounding == "nearest" else "t"
+        return (
+            f"{self.engine}-{self.screen}{self.rows}-u{self.units}-r{self.rectangles}-m{self.reflections}"
+            f"-f{self.fraction_bits}{rounding}-d{self.divider_bits}-c{self.colour_bits}"
+        )
+
+
+FIELD_NAMES = tuple(field.name for field in fields(Configuration))
+
+
+def configure(**values: Any) -> Configuration:
+    """Make a configuration from options, numbers or their texts.
+
+    Raises:
+        ConfigurationError: one line that names the option, what was given and what was expected.
+    """
+    try:
+        return Configuration(**values)
+    except ValidationError as error:
+        first = error.errors()[0]
+        message = first["msg"].removeprefix("Value error, ")
+        if first["loc"]:
+            message = f"{first['loc'][0]}: {message}, not {first['input']!r}"
+        raise ConfigurationError(message) from None

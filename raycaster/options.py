@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: MIT
+"""The command-line options of a configuration: one home for every command that takes one."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable
+from typing import Any, NoReturn
+
+from pydantic.fields import FieldInfo
+
+from raycaster.configuration import FIELD_NAMES, Configuration
+from raycaster.errors import UserError
+
+
+def add_configuration_options(parser: argparse.ArgumentParser) -> None:
+    """Add `--units`, `--fraction-bits` and the others, each with the configuration's own description."""
+    group = parser.add_argument_group("configuration")
+    fields: dict[str, FieldInfo] = Configuration.__pydantic_fields__
+    for name in FIELD_NAMES:
+        field = fields[name]
+        option = "--" + name.replace("_", "-")
+        shown = "by the screen" if field.default is None else field.default
+        help_text = f"{field.description} (default: {shown})"
+        if field.annotation is bool or field.annotation == "bool":
+            group.add_argument(option, action="store_true", default=None, help=help_text)
+        else:
+            group.add_argument(option, metavar=name.upper(), help=help_text)
+
+
+def given_options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The configuration's options that stood on the command line, by field name."""
+    values = vars(arguments)
+    return {name: values[name] for name in FIELD_NAMES if values.get(name) is not None}
+
+
+def run_command(main: Callable[[], int | None]) -> NoReturn:
+    """Run a command's body; what the user can mend becomes one line on standard error and exit code 2."""
+    try:
+        code = main() or 0
+    except UserError as error:
+        print(f"error: {error}", file=sys.stderr)
+        code = 2
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        code = 130
+    sys.exit(code)

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: MIT
+"""The register map, read from `registers.rdl`: addresses, fields, and words packed from them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+from systemrdl import RDLCompiler
+from systemrdl.node import FieldNode, RegNode
+
+SOURCE = Path(__file__).with_name("registers.rdl")
+
+
+@dataclass(frozen=True)
+class RegisterField:
+    """Bits `lsb + width - 1` to `lsb` of a word."""
+
+    lsb: int
+    width: int
+    reset: int
+
+    @property
+    def mask(self) -> int:
+        return ((1 << self.width) - 1) << self.lsb
+
+
+@dataclass(frozen=True)
+class Register:
+    """A 32-bit word of the map; `address` counts words, as the bus does."""
+
+    name: str
+    address: int
+    fields: dict[str, RegisterField]
+
+    def pack(self, **values: int) -> int:
+        """The word with these fields set and the others 0.
+
+        Raises:
+            KeyError: no such field.
+            ValueError: a value does not fit its field.
+        """
+        word = 0
+        for name, value in values.items():
+            field = self.fields[name]
+            if not 0 <= value < 1 << field.width:
+                raise ValueError(f"{self.name}.{name} has {field.width} bits; {value} does not fit")
+            word |= value << field.lsb
+        return word
+
+    def unpack(self, word: int) -> dict[str, int]:
+        """Every field's value in a word."""
+        return {name: (word & field.mask) >> field.lsb for name, field in self.fields.items()}
+
+
+@lru_cache
+def register_map(rectangles: int) -> dict[str, Register]:
+    """Every register by its path: `"control"`, `"camera"`, `"rectangle[3].corner_0"`, ..."""
+    compiler = RDLCompiler()
+    compiler.compile_file(str(SOURCE))
+    top = compiler.elaborate("ray_caster", parameters={"RECTANGLES": rectangles}).top
+    registers = {}
+    for node in top.descendants(unroll=True):
+        if isinstance(node, RegNode):
+            path = node.get_path().removeprefix("ray_caster.")
+            registers[path] = Register(path, node.absolute_address // 4, dict(map(_field, node.fields())))
+    return registers
+
+
+def _field(node: FieldNode) -> tuple[str, RegisterField]:
+    return node.inst_name, RegisterField(node.low, node.width, node.get_property("reset") or 0)
+
+
+def address_bits(rectangles: int) -> int:
+    """Width of the bus's word address."""
+    last = max(register.address for register in register_map(rectangles).values())
+    return last.bit_length()
