@@ -32,8 +32,8 @@ RESULT_LATENCY = 6
 """Cycles from the end of the last division's slot of a pass to the first cycle of the next pass: slope and plane
 latched, product, divider loaded, hit point, depth compared, ray stored (see `rtl/ray_control.py`)."""
 
-GROUP_OVERHEAD = 5
-"""Cycles a group pays once: ray generation, blending, the write to the line buffer and the seed's two-cycle reset."""
+GROUP_OVERHEAD = 4
+"""Cycles a group pays once: the write to the line buffer with the reset of two cycles, idling, ray generation."""
 
 
 class ConfigurationError(UserError):
@@ -57,6 +57,7 @@ class Span:
 
     @property
     def total(self) -> int:
+        """The whole period."""
         return self.visible + self.blank
 
 
@@ -84,6 +85,7 @@ class Screen:
 
     @property
     def frame_cycles(self) -> int:
+        """System cycles of a frame, blanking included."""
         return self.horizontal.total * self.vertical.total * CLOCKS_PER_PIXEL
 
 
@@ -155,6 +157,7 @@ class Configuration:
 
     @cached_property
     def screen_geometry(self) -> Screen:
+        """The screen of this name and these rows."""
         return SCREENS[self.screen, self.rows]
 
     @property

@@ -23,6 +23,7 @@ class RegisterField:
 
     @property
     def mask(self) -> int:
+        """The field's bits, set."""
         return ((1 << self.width) - 1) << self.lsb
 
 
@@ -33,6 +34,11 @@ class Register:
     name: str
     address: int
     fields: dict[str, RegisterField]
+
+    @property
+    def implemented(self) -> int:
+        """The bits that belong to a field."""
+        return sum(field.mask for field in self.fields.values())
 
     def pack(self, **values: int) -> int:
         """The word with these fields set and the others 0.

@@ -3,22 +3,48 @@
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, ValidationError
+from pydantic_core import ErrorDetails
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.errors import UserError
 
-Coordinate = Annotated[int, Field(strict=True, ge=0, lt=WORLD_SIZE)]
-Point = tuple[Coordinate, Coordinate, Coordinate]
-
 
 class SceneError(UserError):
     """A scene file that is refused: the file, the place in it, and what was expected."""
+
+
+def _whole(lowest: int, highest: int) -> BeforeValidator:
+    def check(value: object) -> object:
+        # A bool is an int to Python, but not to TOML.
+        if type(value) is not int or not lowest <= value <= highest:
+            raise ValueError(f"must be a whole number {lowest}..{highest}")
+        return value
+
+    return BeforeValidator(check)
+
+
+def _items(count: int | None, expected: str) -> BeforeValidator:
+    def check(value: object) -> object:
+        if not isinstance(value, list | tuple) or not value or (count is not None and len(value) != count):
+            raise ValueError(expected)
+        return value
+
+    return BeforeValidator(check)
+
+
+def _check_rows(value: object) -> object:
+    # Literal alone would take 240.0, which equals 240.
+    if type(value) is not int or value not in (240, 200, 180):
+        raise ValueError("must be 240, 200 or 180")
+    return value
 
 
 def _parse_colour(value: object) -> tuple[int, int, int]:
@@ -30,7 +56,18 @@ def _parse_colour(value: object) -> tuple[int, int, int]:
     raise ValueError('must be a colour such as "#c8c8b4"')
 
 
-Channel = Annotated[int, Field(strict=True, ge=0, le=255)]
+def _check_plane(corners: tuple[Point, Point]) -> tuple[Point, Point]:
+    if not any(a == b for a, b in zip(*corners, strict=True)):
+        raise ValueError("must have the same x, y or z in both corners, the rectangle's plane")
+    return corners
+
+
+Coordinate = Annotated[int, _whole(0, WORLD_SIZE - 1)]
+Point = Annotated[tuple[Coordinate, Coordinate, Coordinate], _items(3, "must be a point, [x, y, z]")]
+Corners = Annotated[
+    tuple[Point, Point], _items(2, "must be two opposite corners, [[x, y, z], [x, y, z]]"), AfterValidator(_check_plane)
+]
+Channel = Annotated[int, _whole(0, 255)]
 Colour = Annotated[tuple[Channel, Channel, Channel], BeforeValidator(_parse_colour)]
 
 
@@ -39,24 +76,17 @@ class _Strict(BaseModel):
 
 
 class Camera(_Strict):
+    """Where all rays start; the view is along x."""
+
     position: Point
 
 
 class Rectangle(_Strict):
     """A mirror between two opposite corners, parallel to one of the planes x = 0, y = 0, z = 0."""
 
-    corners: tuple[Point, Point]
+    corners: Corners
     colour: Colour
     name: str = ""
-
-    @model_validator(mode="after")
-    def _has_a_plane(self) -> Rectangle:
-        first, second = self.corners
-        if not any(a == b for a, b in zip(first, second, strict=True)):
-            raise ValueError(
-                f"corners: {list(first)} and {list(second)} must share a coordinate (the rectangle's plane); none is the same"
-            )
-        return self
 
     @property
     def axis(self) -> int:
@@ -68,12 +98,12 @@ class Rectangle(_Strict):
 class Scene(_Strict):
     """A scene file's contents. Rectangles keep the file's order, which settles ties of depth."""
 
-    title: Annotated[str, Field(strict=True)] = ""
-    rows: Literal[240, 200, 180] = 240
-    reflections: Annotated[int, Field(strict=True, ge=0, le=2)] = 1
+    title: str = ""
+    rows: Annotated[Literal[240, 200, 180], BeforeValidator(_check_rows)] = 240
+    reflections: Annotated[int, _whole(0, 2)] = 1
     background: Colour = (0, 0, 0)
     camera: Camera
-    rect: Annotated[tuple[Rectangle, ...], Field(min_length=1)]
+    rect: Annotated[tuple[Rectangle, ...], _items(None, "must be one or more tables, each headed [[rect]]")]
 
 
 def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
@@ -93,7 +123,8 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
         raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise SceneError(f"{path}: is not UTF-8 text; a scene is a TOML file") from None
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:
+        # Beside what tomllib objects to: numbers of thousands of digits, and nesting as deep.
         raise SceneError(f"{path}: is not TOML: {error}") from None
     try:
         scene = Scene.model_validate(contents)
@@ -107,25 +138,55 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
     return scene
 
 
-def _first_complaint(error: ValidationError, contents: dict) -> str:
+def _first_complaint(error: ValidationError, contents: Mapping) -> str:
     """One line for the first thing that is wrong: its place, what was expected, and what stood there."""
-    first = error.errors()[0]
+    errors = error.errors()
+    # A mistyped key leaves the right one missing; the mistake itself is the better thing to tell.
+    first = next((details for details in errors if details["type"] == "extra_forbidden"), errors[0])
+    return f"{_place(first, contents)}: {_expected(first)}"
+
+
+def _place(details: ErrorDetails, contents: Mapping) -> str:
+    """Keys and indices that lead to the mistake, with the rectangle's name: `rect[0] ("floor") corners[1]`."""
     place = ""
-    for key in first["loc"]:
-        place += f"[{key}]" if isinstance(key, int) else f".{key}" if place else key
-    if first["loc"][:1] == ("rect",) and len(first["loc"]) > 1:
-        name = contents["rect"][first["loc"][1]].get("name") if isinstance(contents["rect"][first["loc"][1]], dict) else None
-        if name:
-            place += f' ("{name}")'
-    match first["type"]:
+    separator = ""
+    for depth, key in enumerate(details["loc"]):
+        if isinstance(key, int):
+            place += f"[{key}]"
+        else:
+            # Keys may be quoted in TOML, and hold anything.
+            place += separator + (key if re.fullmatch("[A-Za-z0-9_-]+", key) else json.dumps(key))
+        separator = "."
+        if depth == 1 and details["loc"][0] == "rect":
+            rectangle = contents["rect"][key]
+            if isinstance(rectangle, Mapping) and isinstance(rectangle.get("name"), str):
+                place += f" ({json.dumps(rectangle['name'], ensure_ascii=False)})"
+                separator = " "
+    return place
+
+
+def _expected(details: ErrorDetails) -> str:
+    match details["type"]:
         case "missing":
-            expected = "is missing"
+            return "is missing"
         case "extra_forbidden":
-            expected = "is not a key of scene files here"
+            table = {1: Scene, 2: Camera, 3: Rectangle}[len(details["loc"])]
+            return f"is not a key of scene files; the keys here are {', '.join(table.model_fields)}"
         case "value_error":
-            expected = str(first["ctx"]["error"])
+            expected = str(details["ctx"]["error"])
+        case "model_type":
+            expected = "must be a table"
+        case "string_type":
+            expected = "must be a text in quotes"
         case _:
-            expected = first["msg"][0].lower() + first["msg"][1:]
-    shown = repr(first["input"])
-    given = "" if first["type"] in ("missing", "extra_forbidden") or len(shown) > 60 else f", not {shown}"
-    return f"{place}: {expected}{given}"
+            expected = details["msg"]
+    return expected + _given(details["input"])
+
+
+def _given(value: object) -> str:
+    try:
+        text = json.dumps(value, ensure_ascii=False, default=str)
+    except RecursionError:
+        return ""
+    # A long value does not help to find itself.
+    return f", not {text}" if len(text) <= 60 else ""

@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: MIT
+"""The image over the rationals: no division, no rounding, at any depth of reflection.
+
+Two ideas replace the divisions. Bounds and depths are compared by cross-multiplication (Kensler and Shirley 2006). And
+a ray that was reflected at plane k on axis a is taken as the straight ray from the eye mirrored in that plane,
+E'[a] = 2 k - E[a] and D'[a] = -D[a], with the parameter t = n / e running on (Heckbert and Hanrahan 1984). So no hit
+point is ever formed; what lies between the mirrored eye and the mirror is shut out by t > t of the mirror.
+
+Widths: after r reflections |E| and |n| are at most 511 (r + 1), and |e| and |D| at most the greatest slope, 190 for
+primary rays of the screens at hand. Every product is such a length times a slope, below 2^19 up to r = 2. Arrays are
+int64, so nothing overflows before slopes of 2^50.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from raycaster.configuration import Screen
+from raycaster.golden.colour import blend
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.scene import Scene
+
+
+@dataclass(frozen=True)
+class Bounce:
+    """All that happened to every ray between two mirrors; in world units, seen from the mirrored eye.
+
+    Rows of rectangles that are disabled or have no plane are all 0. Numerator and denominator are those
+    of t = n / e, both negated where the slope along the axis is negative, so that the denominator is never negative.
+    """
+
+    eyes: np.ndarray
+    """int64 (rays, 3): the camera, mirrored in all mirrors so far."""
+
+    slopes: np.ndarray
+    """int64 (rays, 3): slopes of the rays, with the reflections so far."""
+
+    alive: np.ndarray
+    """bool (rays,): has hit something at every bounce before."""
+
+    numerators: np.ndarray
+    """int64 (rectangles, rays): n = plane - eye along the rectangle's axis, times the sign of e; positive is
+    ahead, and 0 also where e is 0."""
+
+    denominators: np.ndarray
+    """int64 (rectangles, rays): |e|, the slope along the rectangle's axis; 0 for a parallel ray."""
+
+    quotients: np.ndarray
+    """int64 (rectangles, rays, 2): slope times n on u and v; divide by the denominator."""
+
+    points: np.ndarray
+    """int64 (rectangles, rays, 3): the point on the rectangle's plane; divide by the denominator."""
+
+    depths: np.ndarray
+    """int64 (rectangles, rays): |slope along x| times n, the way along x from the camera by all mirrors; divide by the
+    denominator."""
+
+    hits: np.ndarray
+    """bool (rectangles, rays): ahead, beyond the last mirror and within the bounds."""
+
+    winners: np.ndarray
+    """int64 (rays,): index of the nearest rectangle hit, -1 for none."""
+
+
+@dataclass(frozen=True)
+class Trace:
+    """What became of rays."""
+
+    colours: np.ndarray
+    """uint8 (rays, 3)."""
+
+    winners: tuple[np.ndarray, ...]
+    """For the primary ray and each reflection, int64 (rays,): index of the rectangle hit, -1 for none."""
+
+    bounces: tuple[Bounce, ...]
+    """For the primary ray and each reflection; empty unless it was to be kept."""
+
+
+def render(scene: Scene, screen: Screen, reflections: int | None = None) -> np.ndarray:
+    """The picture of a scene.
+
+    Args:
+        scene: what is seen; its `rows` are not looked at.
+        screen: what it is looked at through.
+        reflections: instead of the scene's own.
+
+    Returns:
+        uint8 (rows, columns, 3).
+    """
+    slopes = primary_slopes(screen)
+    traced = trace(
+        Rectangles.of_scene(scene),
+        scene.camera.position,
+        scene.background,
+        slopes.reshape(-1, 3),
+        scene.reflections if reflections is None else reflections,
+    )
+    return traced.colours.reshape(slopes.shape)
+
+
+def trace(
+    rectangles: Rectangles,
+    camera: Sequence[int] | np.ndarray,
+    background: Sequence[int],
+    slopes: np.ndarray,
+    reflections: int,
+    *,
+    keep: bool = False,
+) -> Trace:
+    """Follow rays to their last reflection.
+
+    Args:
+        rectangles: the table.
+        camera: (3,) or, one a ray, (rays, 3): where the rays start, in world units.
+        background: red, green, blue.
+        slopes: int (rays, 3); along x none may be 0, for then the contract's depth |P[x] - O[x]| settles nothing.
+        reflections: 0 or more.
+        keep: also return every intermediate value: some 100 bytes a ray, rectangle and bounce.
+
+    Raises:
+        ValueError: a slope along x is 0.
+    """
+    slope = np.array(np.asarray(slopes).T, dtype=np.int64, order="C")
+    if not slope[0].all():
+        raise ValueError("slopes along x must not be 0")
+    eye = np.array(np.broadcast_to(np.asarray(camera), slope.T.shape).T, dtype=np.int64, order="C")
+    mirror_t = np.zeros(slope.shape[1], dtype=np.int64), np.ones(slope.shape[1], dtype=np.int64)
+    alive = np.ones(slope.shape[1], dtype=bool)
+    winners, bounces = [], []
+    for _ in range(reflections + 1):
+        bounce = _empty_bounce(rectangles, eye, slope, alive) if keep else None
+        winner, mirror_t = _nearest(rectangles, eye, slope, mirror_t, bounce=bounce)
+        winners.append(winner)
+        if bounce:
+            bounce.winners[:] = winner
+            bounces.append(bounce)
+        alive = winner >= 0
+        for axis in range(3):
+            mirrored = alive & (rectangles.axes[winner] == axis)
+            eye[axis, mirrored] = 2 * rectangles.low[winner[mirrored], axis] - eye[axis, mirrored]
+            slope[axis, mirrored] *= -1
+    return Trace(blend(rectangles.colours, background, winners), tuple(winners), tuple(bounces))
+
+
+def _nearest(
+    rectangles: Rectangles,
+    eye: np.ndarray,
+    slope: np.ndarray,
+    mirror_t: tuple[np.ndarray, np.ndarray],
+    *,
+    bounce: Bounce | None,
+) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
+    """The nearest rectangle beyond the last mirror and its t, as numerator and denominator; arrays are ([3,] rays)."""
+    mirror_n, mirror_e = mirror_t
+    sign, magnitude = np.sign(slope), np.abs(slope)
+    winner = np.full(eye.shape[1], -1, dtype=np.int64)
+    # 1 / 0 lies beyond every t.
+    best_n, best_e = np.ones_like(winner), np.zeros_like(winner)
+    for index in np.flatnonzero(rectangles.visible):
+        axis = rectangles.axes[index]
+        low, high = rectangles.low[index], rectangles.high[index]
+        n = (low[axis] - eye[axis]) * sign[axis]
+        e = magnitude[axis]
+        # Also false for e = 0, where n is 0 too; for n <= 0, as the first "mirror" stands at t = 0 / 1; and for a ray
+        # that has missed, as its last one stands at 1 / 0. Strict: a ray that starts on a plane does not hit it.
+        hit = n * mirror_e > mirror_n * e
+        for u in OTHER_AXES[axis]:
+            way = slope[u] * n
+            hit &= ((low[u] - eye[u]) * e <= way) & (way <= (high[u] - eye[u]) * e)
+        # Strict, so the lower index wins a tie.
+        nearer = hit & (n * best_e < best_n * e)
+        winner[nearer] = index
+        np.copyto(best_n, n, where=nearer)
+        np.copyto(best_e, e, where=nearer)
+        if bounce:
+            ways = slope * n
+            bounce.numerators[index] = n
+            bounce.denominators[index] = e
+            bounce.quotients[index] = ways[list(OTHER_AXES[axis])].T
+            bounce.points[index] = (eye * e + ways).T
+            bounce.depths[index] = magnitude[0] * n
+            bounce.hits[index] = hit
+    return winner, (best_n, best_e)
+
+
+def _empty_bounce(rectangles: Rectangles, eye: np.ndarray, slope: np.ndarray, alive: np.ndarray) -> Bounce:
+    shape = len(rectangles), len(alive)
+    return Bounce(
+        eyes=eye.T.copy(),
+        slopes=slope.T.copy(),
+        alive=alive.copy(),
+        numerators=np.zeros(shape, dtype=np.int64),
+        denominators=np.zeros(shape, dtype=np.int64),
+        quotients=np.zeros((*shape, 2), dtype=np.int64),
+        points=np.zeros((*shape, 3), dtype=np.int64),
+        depths=np.zeros(shape, dtype=np.int64),
+        hits=np.zeros(shape, dtype=bool),
+        winners=np.empty(len(alive), dtype=np.int64),
+    )

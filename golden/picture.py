@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: MIT
+"""Two pictures held against each other."""
+
+from __future__ import annotations
+
+import numpy as np
+
+WRONG = (255, 20, 120)
+"""A pink that no dimmed grey comes near."""
+
+
+def wrong_pixels(picture: np.ndarray, reference: np.ndarray) -> np.ndarray:
+    """Which pixels differ in any channel.
+
+    Args:
+        picture: uint8 (rows, columns, 3).
+        reference: what the picture should be, in the same shape.
+
+    Returns:
+        bool (rows, columns).
+
+    Raises:
+        ValueError: the shapes differ.
+    """
+    if picture.shape != reference.shape:
+        raise ValueError(f"pictures of different shapes: {picture.shape} and {reference.shape}")
+    return (picture != reference).any(axis=-1)
+
+
+def count_wrong(picture: np.ndarray, reference: np.ndarray) -> int:
+    """How many pixels differ; see `wrong_pixels`."""
+    return int(wrong_pixels(picture, reference).sum())
+
+
+def diff_picture(picture: np.ndarray, reference: np.ndarray) -> np.ndarray:
+    """The reference in dim grey with every wrong pixel in bright pink, for a person to look at.
+
+    Returns:
+        uint8 (rows, columns, 3).
+    """
+    wrong = wrong_pixels(picture, reference)
+    # A third of the mean of the channels: dark enough to show a single wrong pixel, light enough to find the place.
+    grey = (reference.sum(axis=-1, dtype=np.int64) // 9).astype(np.uint8)
+    return np.where(wrong[..., None], np.array(WRONG, dtype=np.uint8), grey[..., None])

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+"""The rectangle table that both engines read, laid out as the hardware's own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from raycaster.scene import Scene
+
+OTHER_AXES = ((1, 2), (0, 2), (0, 1))
+"""u and v, the two axes along which a rectangle extends, by the axis of its plane (0, 1, 2 for x, y, z)."""
+
+
+@dataclass(frozen=True)
+class Rectangles:
+    """Rectangles by index; where two are equally deep, the lower index is seen."""
+
+    corners: np.ndarray
+    """int64 (rectangles, 2, 3): two opposite corners in any order, in world units 0..511."""
+
+    colours: np.ndarray
+    """uint8 (rectangles, 3): red, green, blue."""
+
+    enabled: np.ndarray
+    """bool (rectangles,)."""
+
+    @classmethod
+    def of_scene(cls, scene: Scene) -> Rectangles:
+        """The scene's rectangles in the file's order, all enabled."""
+        return cls(
+            corners=np.array([rectangle.corners for rectangle in scene.rect], dtype=np.int64),
+            colours=np.array([rectangle.colour for rectangle in scene.rect], dtype=np.uint8),
+            enabled=np.ones(len(scene.rect), dtype=bool),
+        )
+
+    def __len__(self) -> int:
+        return len(self.enabled)
+
+    @cached_property
+    def low(self) -> np.ndarray:
+        """int64 (rectangles, 3): the lesser coordinate of the two corners, axis by axis; inclusive."""
+        return self.corners.min(axis=1)
+
+    @cached_property
+    def high(self) -> np.ndarray:
+        """int64 (rectangles, 3): the greater coordinate of the two corners, axis by axis; inclusive."""
+        return self.corners.max(axis=1)
+
+    @cached_property
+    def axes(self) -> np.ndarray:
+        """int64 (rectangles,): the first of x, y, z (0, 1, 2) that is equal in both corners; -1 for no plane."""
+        equal = self.low == self.high
+        return np.where(equal.any(axis=1), equal.argmax(axis=1), -1)
+
+    @cached_property
+    def visible(self) -> np.ndarray:
+        """bool (rectangles,): enabled and with a plane; rays pass through the others."""
+        return self.enabled & (self.axes >= 0)

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: MIT
+"""`python -m raycaster.rtl.convert`: the design as Verilog, one file a module, with a file list."""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import tempfile
+from pathlib import Path
+
+from raycaster.configuration import Configuration, configure
+from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.rtl.hierarchy import convert_hierarchy, quick_elaboration
+from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
+
+FILE_LIST = "ray_caster_module.f"
+
+
+def write_verilog(config: Configuration, directory: Path) -> list[Path]:
+    """Generate the Verilog of a configuration; the same configuration gives the same bytes.
+
+    Args:
+        config: what to generate.
+        directory: replaced as a whole, once everything is generated.
+
+    Returns:
+        The files, each module after those that it instantiates; the top, `ray_caster_module.v`, is the last.
+    """
+    directory.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=directory.parent, prefix=f".{directory.name}-") as scratch:
+        written = Path(scratch) / "verilog"
+        written.mkdir()
+        with quick_elaboration():
+            top = ray_caster_module(**ModulePorts(config).all(), config=config)
+        modules = convert_hierarchy(top, written, _header(config))
+        names = [module.path.name for module in modules]
+        (written / FILE_LIST).write_text("".join(f"{name}\n" for name in names))
+        if directory.exists():
+            shutil.rmtree(directory)
+        written.rename(directory)
+    return [directory / name for name in names]
+
+
+def _header(config: Configuration) -> str:
+    return f"// RayCaster: {{module}}\n// Configuration: {config.name}\n// SPDX-License-Identifier: MIT"
+
+
+def main() -> None:
+    """The command."""
+    parser = argparse.ArgumentParser(prog="python -m raycaster.rtl.convert", description=__doc__)
+    parser.add_argument("--output", type=Path, default=Path("build/verilog"), help="(default: %(default)s)")
+    add_configuration_options(parser)
+    arguments = parser.parse_args()
+    config = configure(**given_options(arguments))
+    files = write_verilog(config, arguments.output)
+    print(f"{len(files)} modules of {config.name} in {arguments.output}/, listed in {arguments.output / FILE_LIST}")
+
+
+if __name__ == "__main__":
+    run_command(main)

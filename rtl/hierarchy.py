@@ -1,0 +1,292 @@
+# SPDX-License-Identifier: MIT
+"""Verilog with its hierarchy kept: one module a file, where MyHDL by itself would flatten the design.
+
+This is the only file that touches MyHDL's internals, which is why its version is pinned; the contract that it relies
+on is tested. Blocks are converted from the leaves up. Each converts as a top level of its own, and in its
+parent's conversion it is replaced by text that instantiates the module. Equal blocks share one module.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+import warnings
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from myhdl import Constant, ToVerilogWarning, intbv
+from myhdl._block import _Block
+from myhdl._extractHierarchy import _UserVerilogCode
+from myhdl._instance import _Instantiator
+from myhdl._ShadowSignal import _SliceSignal
+from myhdl._Signal import _Signal
+from myhdl.conversion._toVerilog import _ToVerilogConvertor, toVerilog
+
+
+class HierarchyError(Exception):
+    """A block that cannot be made a module of its own; the text says which and why."""
+
+
+@dataclass(frozen=True)
+class Port:
+    """A module's port, as its parent and other generators need to know it."""
+
+    name: str
+    width: int
+    signed: bool
+    output: bool
+
+
+@dataclass(frozen=True)
+class Module:
+    """A converted module. `instances` are the modules it instantiates directly, by instance name."""
+
+    name: str
+    path: Path
+    ports: tuple[Port, ...]
+    instances: dict[str, str]
+
+
+class _Instance(_UserVerilogCode):
+    """The text that stands for a block in its parent; names are only known when it is printed."""
+
+    def __init__(self, module: Module, name: str, connections: dict[str, _Signal]):
+        super().__init__("", {}, module.name, None, None, None)
+        self._module, self._name, self._connections = module, name, connections
+
+    def __str__(self) -> str:
+        pins = ",\n".join(
+            f"    .{port}({'' if isinstance(signal, _Unconnected) else signal._name})"
+            for port, signal in self._connections.items()
+        )
+        return f"\n{self._module.name} {self._name} (\n{pins}\n);\n"
+
+
+class _RecordingConvertor(_ToVerilogConvertor):
+    """MyHDL's convertor, which drops the signals of an interface that a block does not use, and remembers the ports."""
+
+    __slots__ = ("ports",)
+
+    def _convert_filter(self, h, intf, siglist, memlist, genlist):
+        for signal in intf.argdict.values():
+            if isinstance(signal, _SliceSignal):
+                signal._driven = None  # MyHDL would have a slice's reader drive it
+        arguments = inspect.signature(intf.func).parameters
+        intf.argnames = [
+            name
+            for name in intf.argnames
+            if name in arguments or intf.argdict[name]._driven or intf.argdict[name]._read
+        ]
+        self.ports = tuple(
+            Port(
+                name, len(intf.argdict[name]) or 1, (intf.argdict[name].min or 0) < 0, bool(intf.argdict[name]._driven)
+            )
+            for name in intf.argnames
+        )
+
+
+@contextmanager
+def quick_elaboration() -> Iterator[None]:
+    """Elaborate without the source text of every frame, which MyHDL asks for at each instance and never looks at.
+
+    Without this a design of 32 units takes ten times as long to elaborate.
+    """
+    with_source = inspect.stack
+    inspect.stack = partial(with_source, 0)
+    try:
+        yield
+    finally:
+        inspect.stack = with_source
+
+
+def convert_hierarchy(top: _Block, directory: Path, header: str) -> list[Module]:
+    """Write one Verilog file for each distinct block below and including `top`.
+
+    Args:
+        top: an elaborated block; it cannot be simulated any more afterwards.
+        directory: where the files go; it exists.
+        header: comment lines for the head of each file; `{module}` stands for the module's name.
+
+    Returns:
+        The modules, each after those that it instantiates; `top` is the last.
+
+    Raises:
+        HierarchyError: two blocks of one name differ in parameters or ports, or a signal has no name in its parent.
+    """
+    return _Converter(directory, header).convert(top)
+
+
+class _Converter:
+    def __init__(self, directory: Path, header: str):
+        self._directory, self._header = directory, header
+        self._modules: dict[str, tuple[Any, Module]] = {}
+
+    def convert(self, top: _Block) -> list[Module]:
+        self._module_of(top)
+        return [module for _, module in self._modules.values()]
+
+    def _module_of(self, block: _Block) -> Module:
+        name = block.func.__name__
+        ports, parameters = _arguments(block)
+        signature = (parameters, tuple((port, len(signal), signal.min) for port, signal in ports.items()))
+        if name in self._modules:
+            known, module = self._modules[name]
+            if known != signature:
+                raise HierarchyError(f"{name} stands in the design with different parameters or port widths")
+            return module
+        module = self._convert_block(block, name, ports)
+        self._modules[name] = signature, module
+        return module
+
+    def _convert_block(self, block: _Block, name: str, ports: dict[str, _Signal]) -> Module:
+        children = [sub for sub in block.subs if isinstance(sub, _Block)]
+        modules = [self._module_of(child) for child in children]
+        instances = {}
+        for child, module in zip(children, modules, strict=True):
+            count = sum(other.func is child.func for other in children)
+            ordinal = sum(used == module.name for used in instances.values())
+            instance = module.name if count == 1 else f"{module.name}_{ordinal}"
+            instances[instance] = module.name
+            _replace_by_instance(child, module, f"{instance}_i")
+        _name_connections(block, children)
+        written_ports = self._write(block, name, ports)
+        return Module(name, self._directory / f"{name}.v", written_ports, instances)
+
+    def _write(self, block: _Block, name: str, ports: dict[str, _Signal]) -> tuple[Port, ...]:
+        _mark_processes(block)
+        for signal in [*block.sigdict.values(), *ports.values()]:
+            signal._name = None  # a child's conversion may have left its own name for it
+        for port, signal in ports.items():
+            if isinstance(signal, _SliceSignal):
+                signal._name = port  # MyHDL names a slice after the vector that the parent cut it from
+        convertor = _RecordingConvertor()
+        convertor.name = toVerilog.name = name
+        convertor.directory = str(self._directory)
+        # The functions that print the module read these from MyHDL's global convertor, not from the one that runs.
+        toVerilog.no_myhdl_header = toVerilog.no_testbench = True
+        toVerilog.header = self._header.format(module=name).replace("$", "$$")
+        toVerilog.initial_values = False
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error", category=ToVerilogWarning)
+                convertor(block)
+        except ToVerilogWarning as warning:
+            raise HierarchyError(f"{name}: {warning}") from None
+        finally:
+            toVerilog.no_myhdl_header = toVerilog.no_testbench = False
+            toVerilog.header, toVerilog.name = "", None
+        if not {port.name for port in convertor.ports} <= set(ports):
+            raise HierarchyError(f"{name}: MyHDL found other ports than its arguments")
+        _polish(self._directory / f"{name}.v", block)
+        return convertor.ports
+
+
+def port_signals(arguments: Mapping[str, Any]) -> dict[str, _Signal]:
+    """The signals among a block's arguments by Verilog port name: `name`, or `interface_attribute`."""
+    return {path: signal for name, value in arguments.items() for path, signal in _signals_in(name, value)}
+
+
+def _arguments(block: _Block) -> tuple[dict[str, _Signal], Any]:
+    """A block's port signals by Verilog name, and its other arguments."""
+    bound = inspect.signature(block.func).bind(*block.args, **block.kwargs)
+    bound.apply_defaults()
+    ports = port_signals(bound.arguments)
+    parameters = ((name, repr(value)) for name, value in bound.arguments.items() if not any(_signals_in(name, value)))
+    return ports, tuple(parameters)
+
+
+def _signals_in(name: str, value: Any) -> Iterator[tuple[str, _Signal]]:
+    """Every signal that a name gives access to: itself, an interface's attributes, a list's elements."""
+    if isinstance(value, _Signal):
+        yield name, value
+    elif isinstance(value, (list, tuple)):
+        for index, element in enumerate(value):
+            yield from _signals_in(f"{name}_{index}", element)
+    elif getattr(value, "is_interface", False):
+        for attribute, element in vars(value).items():
+            yield from _signals_in(f"{name}_{attribute}", element)
+
+
+def _replace_by_instance(child: _Block, module: Module, name: str) -> None:
+    """Make the parent's conversion print an instance where the child's processes would stand."""
+    signals, _ = _arguments(child)
+    connections = {port.name: signals[port.name] for port in module.ports}
+    child.verilog_code = _Instance(module, name, connections)
+    child.subs, child.sigdict, child.memdict = [], {}, {}
+    directions = {port.name: port.output for port in module.ports}
+    for port, signal in connections.items():
+        if isinstance(signal, _Unconnected):
+            continue
+        signal._markUsed()
+        if directions[port]:
+            signal._driven = "wire"
+        else:
+            signal._markRead()
+
+
+def _mark_processes(block: _Block) -> None:
+    """Repeat the marks that elaboration left on signals, and that converting the children wiped off."""
+    for sub in block.subs:
+        if isinstance(sub, _Instantiator):
+            for signal in sub.sigdict.values():
+                signal._markUsed()
+            edges = getattr(sub, "senslist", ())
+            reset = getattr(sub, "reset", None)
+            for signal in [getattr(edge, "sig", edge) for edge in edges] + [reset]:
+                if isinstance(signal, _Signal):
+                    signal._markRead()
+
+
+def _name_connections(block: _Block, children: list[_Block]) -> None:
+    """Give MyHDL a name for every signal that only instances use: it knows those of processes by itself."""
+    named = {id(signal) for signal in block.sigdict.values()}
+    scope: dict[str, Any] = {}
+    for sub in block.subs:
+        scope |= {name: value for name, value in sub.callinfo.symdict.items() if not name.startswith("_")}
+    candidates = {}
+    for name, value in scope.items():
+        for path, signal in _signals_in(name, value):
+            candidates.setdefault(id(signal), path)
+    for child in children:
+        for port, connected in child.verilog_code._connections.items():
+            signal = connected._sig if isinstance(connected, _SliceSignal) else connected
+            if id(signal) in named or isinstance(signal, _Unconnected):
+                continue
+            if id(signal) not in candidates:
+                raise HierarchyError(
+                    f"{block.func.__name__}: what {child.func.__name__}.{port} connects to has no name"
+                )
+            block.sigdict[candidates[id(signal)]] = signal
+            named.add(id(signal))
+
+
+def _polish(path: Path, block: _Block) -> None:
+    """Carry each process's purpose, the comment above it, into the Verilog, and drop MyHDL's stray white space."""
+    text = path.read_text()
+    for sub in block.subs:
+        if isinstance(sub, _Instantiator):
+            comment = inspect.getcomments(sub.funcobj)
+            if comment:
+                purpose = " ".join(line.lstrip("# ").rstrip() for line in comment.splitlines())
+                label = re.escape(sub.funcobj.__name__.lower())
+                text = re.sub(rf"^(always [^\n]*begin: {label}\n)", rf"// {purpose}\n\1", text, flags=re.M | re.I)
+    lines = (line.rstrip() for line in text.splitlines())
+    path.write_text(re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).lstrip("\n").rstrip("\n") + "\n")
+
+
+class _Unconnected(_Signal):
+    """What `unconnected` makes; it prints as an empty connection."""
+
+
+def unconnected(width: int) -> _Signal:
+    """A signal for an instance's output that nobody reads."""
+    return _Unconnected(intbv(0)[width:])
+
+
+def constant(value: int, width: int) -> Constant:
+    """A signal for an instance's input that never changes."""
+    return Constant(intbv(value)[width:])

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: MIT
+"""Groups of signals that travel together. As a port `ray`, the attribute `x` becomes the Verilog port `ray_x`."""
+
+from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, Configuration
+from raycaster.rtl.widths import (
+    AXIS_BITS,
+    COLOUR_BITS,
+    SLOPE_BITS,
+    WORD_BITS,
+    bit,
+    index_bits,
+    position_bits,
+    unsigned,
+)
+
+
+class Interface:
+    """A group of signals; generated Verilog names them group_signal."""
+
+    is_interface = True
+
+
+class Point(Interface):
+    """A camera position, in whole world units."""
+
+    def __init__(self):
+        self.x, self.y, self.z = (unsigned(COORDINATE_BITS) for _ in range(3))
+
+
+class Origin(Interface):
+    """Where a ray starts, or hits, with the configuration's fraction bits."""
+
+    def __init__(self, config: Configuration):
+        self.x, self.y, self.z = (unsigned(position_bits(config)) for _ in range(3))
+
+
+class Signs(Interface):
+    """Which components of a ray's slope are negative. A reflection changes one of them, and nothing else."""
+
+    def __init__(self):
+        self.dx, self.dy, self.dz = (bit() for _ in range(3))
+
+
+class Slope(Interface):
+    """Magnitudes of a ray's slope; they are the same before and after a reflection."""
+
+    def __init__(self):
+        self.dx, self.dy, self.dz = (unsigned(SLOPE_BITS) for _ in range(3))
+
+
+class Plane(Interface):
+    """What starts an intersection: the axis (0, 1, 2 for x, y, z) and the coordinate of the rectangle's plane."""
+
+    def __init__(self):
+        self.axis = unsigned(AXIS_BITS)
+        self.position = unsigned(COORDINATE_BITS)
+
+
+class Rect(Interface):
+    """What ends an intersection: the plane again, the bounds on the two other axes in the order x, y, z, the colour."""
+
+    def __init__(self):
+        self.axis = unsigned(AXIS_BITS)
+        self.position, self.u_low, self.u_high, self.v_low, self.v_high = (unsigned(COORDINATE_BITS) for _ in range(5))
+        self.colour = unsigned(COLOUR_BITS)
+
+
+class Colour(Interface):
+    """A colour's channels at the full width."""
+
+    def __init__(self):
+        self.red, self.green, self.blue = (unsigned(CHANNEL_BITS) for _ in range(3))
+
+
+class Steps(Interface):
+    """The control signals that operate all ray units in step.
+
+    screen_to_ray: load the primary ray; initial_ray: trace it, and not a reflected one; find_intersection: start on the
+    current plane; load_divider, store_quotient: move what was started through the divider; reset_z_buf, write_z_buf:
+    forget, and offer, a hit; reset_color, add_color: forget, and add, what the ray saw; store_ray: keep the reflected
+    ray. All but initial_ray are strobes of a cycle.
+    """
+
+    def __init__(self):
+        self.screen_to_ray, self.initial_ray, self.find_intersection, self.load_divider, self.store_quotient = (
+            bit() for _ in range(5)
+        )
+        self.reset_z_buf, self.write_z_buf, self.reset_color, self.add_color, self.store_ray = (bit() for _ in range(5))
+
+
+class SceneBus(Interface):
+    """What the registers tell the scene memories: a write, or where to read, and when the shadow moves on.
+
+    write: strobe; address: word address, for write and for reading back; data, mask: the word and which of its bits to
+    write; commit: shadow to pending; go_live: pending to live. Both copy at the end of the cycle.
+    """
+
+    def __init__(self, address_bits: int):
+        self.write, self.commit, self.go_live = bit(), bit(), bit()
+        self.address = unsigned(address_bits)
+        self.data, self.mask = unsigned(WORD_BITS), unsigned(WORD_BITS)
+
+
+class SequentialRects(Interface):
+    """One live rectangle at a time: sorted, a cycle after `fetch` with its `index`, held until the next fetch.
+
+    usable: a bit for each rectangle, 1 where it is enabled and has a plane.
+    """
+
+    def __init__(self, config: Configuration):
+        self.usable = unsigned(config.rectangles)
+        self.index = unsigned(index_bits(config))
+        self.fetch = bit()
+        self.rect = Rect()
+
+
+class ParallelRects(Interface):
+    """All live rectangles at once, as they were written; word i of each vector belongs to rectangle i."""
+
+    def __init__(self, config: Configuration):
+        self.usable = unsigned(config.rectangles)
+        self.corner_0, self.corner_1, self.surface = (unsigned(WORD_BITS * config.rectangles) for _ in range(3))

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: MIT
+"""Every width of the hardware, derived from the configuration by name, and signals of those widths."""
+
+from myhdl import Signal, intbv
+
+from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, Configuration
+
+SLOPE_BITS = 9
+"""Magnitude of a slope; the sign is kept beside it."""
+
+AXIS_BITS = 2
+COLOUR_BITS = 3 * CHANNEL_BITS
+WORD_BITS = 32
+CYCLE_BITS = 16
+"""Of the counters that measure the row budget."""
+
+
+def bits_for(count: int) -> int:
+    """Width of a counter with this many values; a signal has at least one bit."""
+    return max(1, (count - 1).bit_length())
+
+
+def position_bits(config: Configuration) -> int:
+    """Origins, planes, distances, quotients and hit points: 9 bits and the fraction."""
+    return COORDINATE_BITS + config.fraction_bits
+
+
+def product_bits(config: Configuration) -> int:
+    """|b * (c - d)|, the dividend."""
+    return SLOPE_BITS + position_bits(config)
+
+
+def unit_bits(config: Configuration) -> int:
+    """The number of a ray unit, and of its line buffer section."""
+    return bits_for(config.units)
+
+
+def offset_bits(config: Configuration) -> int:
+    """The column offset counts the groups of a row, and Max, which is one past the last."""
+    return bits_for(config.groups + 1)
+
+
+def row_bits(config: Configuration) -> int:
+    """The row counter counts the rows, and one past the last."""
+    return bits_for(config.screen_geometry.rows + 1)
+
+
+def index_bits(config: Configuration) -> int:
+    """The number of a rectangle."""
+    return bits_for(config.rectangles)
+
+
+def pixel_bits(config: Configuration) -> int:
+    """A pixel as it is stored for the monitor: red above green above blue."""
+    return 3 * config.colour_bits
+
+
+def unsigned(width: int) -> Signal:
+    """An unsigned signal, 0 at first."""
+    return Signal(intbv(0)[width:])
+
+
+def signed(width: int) -> Signal:
+    """A two's complement signal, 0 at first."""
+    return Signal(intbv(0, min=-(1 << (width - 1)), max=1 << (width - 1)))
+
+
+def bit() -> Signal:
+    """A signal of one bit, low at first."""
+    return Signal(bool(0))

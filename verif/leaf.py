@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: MIT
+"""A bench for one block: the same inputs, cycle by cycle, through MyHDL's simulator and the converted Verilog."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from myhdl import Simulation, StopSimulation, block, delay, instance
+
+from raycaster.rtl.hierarchy import Module, convert_hierarchy, port_signals, quick_elaboration
+
+Cycle = Mapping[str, int]
+
+
+class Leaf:
+    """One block with given parameters and fresh signals at its ports.
+
+    Args:
+        function: the block.
+        arguments: makes its arguments, anew for each elaboration: signals, interfaces, configuration.
+        directory: scratch space for the Verilog.
+    """
+
+    def __init__(self, function: Callable, arguments: Callable[[], dict[str, Any]], directory: Path):
+        self._function, self._arguments, self._directory = function, arguments, directory
+        with quick_elaboration():
+            top = function(**arguments())
+        self.modules: list[Module] = convert_hierarchy(top, directory, "// {module}")
+        ports = self.modules[-1].ports
+        self.inputs = {port.name: port for port in ports if not port.output and port.name != "clk"}
+        self.outputs = {port.name: port for port in ports if port.output}
+        self._clocked = any(port.name == "clk" for port in ports)
+
+    def run_myhdl(self, stimulus: Sequence[Cycle]) -> list[dict[str, int]]:
+        """Outputs of each cycle in MyHDL, as two's complement bit patterns, just before the clock rises."""
+        arguments = self._arguments()
+        signals = port_signals(arguments)
+        recorded: list[dict[str, int]] = []
+
+        @block
+        def bench():
+            dut = self._function(**arguments)
+
+            @instance
+            def drive():
+                for cycle in stimulus:
+                    for name, value in cycle.items():
+                        port = self.inputs[name]
+                        negative = port.signed and value >> (port.width - 1) & 1
+                        signals[name].next = value - (1 << port.width) if negative else value
+                    yield delay(1)
+                    recorded.append(
+                        {name: int(signals[name].val) % (1 << port.width) for name, port in self.outputs.items()}
+                    )
+                    if self._clocked:
+                        signals["clk"].next = True
+                        yield delay(1)
+                        signals["clk"].next = False
+                        yield delay(1)
+                raise StopSimulation
+
+            return dut, drive
+
+        with quick_elaboration():
+            simulation = Simulation(bench())
+        try:
+            simulation.run(quiet=1)
+        finally:
+            simulation.quit()
+        return recorded
+
+    def run_verilog(self, stimulus: Sequence[Cycle]) -> list[dict[str, int | None]]:
+        """The same in the converted Verilog under Icarus; None where an output has an unknown bit."""
+        width = sum(port.width for port in self.inputs.values())
+        held = dict.fromkeys(self.inputs, 0)
+        lines = []
+        for cycle in stimulus:
+            held |= cycle
+            word = 0
+            for name, port in self.inputs.items():
+                word = word << port.width | held[name] % (1 << port.width)
+            lines.append(f"{word:x}\n")
+        (self._directory / "stimulus.hex").write_text("".join(lines))
+        (self._directory / "leaf_bench.v").write_text(self._bench(width, len(stimulus)))
+        sources = [module.path.name for module in self.modules]
+        self._call(
+            "iverilog", "-g2005", "-Wall", "-Wno-timescale", "-s", "leaf_bench", "-o", "leaf", "leaf_bench.v", *sources
+        )
+        self._call("vvp", "-n", "leaf")
+        recorded = []
+        for line in (self._directory / "outputs.txt").read_text().splitlines():
+            values = dict(zip(self.outputs, line.split(), strict=True))
+            recorded.append({name: int(text, 2) if set(text) <= {"0", "1"} else None for name, text in values.items()})
+        return recorded
+
+    def run_both(self, stimulus: Sequence[Cycle], settled: int = 0) -> list[dict[str, int]]:
+        """Run both and insist that they agree.
+
+        Args:
+            stimulus: values for the inputs, by cycle; an input that a cycle does not mention keeps its value, and
+                starts from 0.
+            settled: the first cycle from which Verilog's registers, which start unknown, must have known values.
+
+        Raises:
+            AssertionError: the first difference, with its cycle.
+        """
+        expected, actual = self.run_myhdl(stimulus), self.run_verilog(stimulus)
+        assert len(actual) == len(expected) == len(stimulus)
+        for cycle in range(settled, len(stimulus)):
+            assert actual[cycle] == expected[cycle], (
+                f"{self._function.__name__}, cycle {cycle}: Verilog {actual[cycle]}, MyHDL {expected[cycle]}"
+            )
+        return expected
+
+    def _bench(self, width: int, cycles: int) -> str:
+        declarations = [f"reg [{port.width - 1}:0] {name} = 0;" for name, port in self.inputs.items()]
+        declarations += [f"wire [{port.width - 1}:0] {name};" for name, port in self.outputs.items()]
+        names = ["clk"] * self._clocked + [*self.inputs, *self.outputs]
+        module = self.modules[-1].name
+        tick = "clk = 1; #1; clk = 0; #1;" if self._clocked else ""
+        return f"""module leaf_bench;
+reg clk = 0;
+reg [{width - 1}:0] stimulus [0:{cycles - 1}];
+{chr(10).join(declarations)}
+integer cycle, file;
+{module} dut ({", ".join(f".{name}({name})" for name in names)});
+initial begin
+    $readmemh("stimulus.hex", stimulus);
+    file = $fopen("outputs.txt", "w");
+    for (cycle = 0; cycle < {cycles}; cycle = cycle + 1) begin
+        {{{", ".join(self.inputs)}}} = stimulus[cycle];
+        #1;
+        $fdisplay(file, "{" ".join(["%b"] * len(self.outputs))}", {", ".join(self.outputs)});
+        {tick}
+    end
+    $fclose(file);
+end
+endmodule
+"""
+
+    def _call(self, *command: str) -> None:
+        done = subprocess.run(command, cwd=self._directory, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, f"{' '.join(command)}: {done.stdout}{done.stderr}"

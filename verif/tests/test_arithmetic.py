@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: MIT
+"""The divider and the a + b * (c - d) / e unit: MyHDL's simulator, the converted Verilog and golden on one set of vectors."""
+
+import numpy as np
+import pytest
+from raycaster.configuration import Configuration, configure
+from raycaster.golden import seed_engine
+from raycaster.rtl.divider import divider
+from raycaster.rtl.divider_step import divider_step
+from raycaster.rtl.interfaces import Steps
+from raycaster.rtl.intersection_helper import intersection_helper
+from raycaster.rtl.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
+from raycaster.verif.leaf import Leaf
+from raycaster.verif.seeds import repeat, seed
+
+VECTORS = 300
+SLOPE_CORNERS = (0, 1, 2, 100, 160, 190, 255, 256, 510, 511)
+
+arithmetic = pytest.mark.parametrize(
+    "config",
+    [
+        configure(fraction_bits=bits, rounding=rounding, divider_bits=divider_bits, allow_underrun=True)
+        for bits in (0, 1, 4, 8)
+        for rounding in ("truncate", "nearest")
+        for divider_bits in (1, 2, 3)
+    ],
+    ids=lambda config: f"F{config.fraction_bits}-{config.rounding}-{config.divider_bits}bits",
+)
+
+
+def position_corners(config: Configuration) -> list[int]:
+    one = 1 << config.fraction_bits
+    whole = [0, 1, 2, 255, 256, 510, 511]
+    return sorted({value * one for value in whole} | {value * one + one - 1 for value in whole} | {1, one})
+
+
+def dividends_and_divisors(config: Configuration) -> list[tuple[int, int]]:
+    """Corners and random operands, with every quotient that rounding or overflow could get wrong made often."""
+    random = np.random.default_rng(seed())
+    limit = 1 << position_bits(config)
+    operands = [(n * d, e) for n in position_corners(config) for d in SLOPE_CORNERS for e in SLOPE_CORNERS if n < limit]
+    chosen = [operands[index] for index in random.permutation(len(operands))[: VECTORS // 2]]
+    for _ in range(VECTORS):
+        divisor = int(random.integers(1, 1 << SLOPE_BITS))
+        quotient = int(random.choice([0, 1, limit - 2, limit - 1, limit, random.integers(limit)]))
+        remainder = int(random.choice([0, divisor // 2, (divisor + 1) // 2, divisor - 1]))
+        chosen.append((min(quotient * divisor + remainder, (1 << product_bits(config)) - 1), divisor))
+    return chosen
+
+
+@pytest.mark.parametrize("width", [1, 2, 4, 9])
+def test_divider_step(width, tmp_path):
+    leaf = Leaf(
+        divider_step,
+        lambda: {
+            "remainder": unsigned(width),
+            "digit": bit(),
+            "divisor": unsigned(width),
+            "next_remainder": unsigned(width),
+            "quotient_bit": bit(),
+        },
+        tmp_path,
+    )
+    divisors = range(1, 1 << width) if width < 9 else SLOPE_CORNERS[1:]
+    stimulus = [
+        {"remainder": remainder, "digit": digit, "divisor": divisor}
+        for divisor in divisors
+        for remainder in (range(divisor) if width < 9 else {0, divisor // 2, divisor - 1})
+        for digit in (0, 1)
+    ]
+    for inputs, outputs in zip(stimulus, leaf.run_both(stimulus), strict=True):
+        quotient, remainder = divmod(2 * inputs["remainder"] + inputs["digit"], inputs["divisor"])
+        assert outputs == {"quotient_bit": quotient, "next_remainder": remainder}, inputs
+
+
+@arithmetic
+def test_divider(config, tmp_path):
+    leaf = Leaf(
+        divider,
+        lambda: {
+            "clk": bit(),
+            "load_divider": bit(),
+            "store_quotient": bit(),
+            "dividend": unsigned(product_bits(config)),
+            "divisor": unsigned(SLOPE_BITS),
+            "quotient": unsigned(position_bits(config)),
+            "overflow": bit(),
+            "config": config,
+        },
+        tmp_path,
+    )
+    operands = dividends_and_divisors(config)
+    steps = config.divider_steps
+    stimulus = []
+    for number, (dividend, divisor) in enumerate(operands):
+        # Back to back: a load comes together with the store of the division before.
+        stimulus.append(
+            {"load_divider": 1, "store_quotient": int(number > 0), "dividend": dividend, "divisor": divisor}
+        )
+        stimulus += [{"load_divider": 0, "store_quotient": 0, "dividend": 0, "divisor": 0}] * (steps - 1)
+    stimulus += [{"load_divider": 0, "store_quotient": 1}, {"store_quotient": 0}]
+    outputs = leaf.run_both(stimulus, settled=steps + 1)
+    for number, (dividend, divisor) in enumerate(operands):
+        quotient, overflow = seed_engine.divide(dividend, divisor, config.fraction_bits, config.rounding)
+        result = outputs[(number + 1) * steps + 1]
+        assert bool(result["overflow"]) == bool(overflow), (dividend, divisor, repeat())
+        if not overflow:
+            assert result["quotient"] == quotient, (dividend, divisor, repeat())
+
+
+@arithmetic
+def test_intersection_helper(config, tmp_path):
+    width = position_bits(config)
+    leaf = Leaf(
+        intersection_helper,
+        lambda: {
+            "clk": bit(),
+            "steps": Steps(),
+            "a": unsigned(width),
+            "b": unsigned(SLOPE_BITS),
+            "b_negative": bit(),
+            "c": unsigned(width),
+            "d": unsigned(width),
+            "e": unsigned(SLOPE_BITS),
+            "e_negative": bit(),
+            "value": signed(width + 2),
+            "quotient": unsigned(width),
+            "distance": unsigned(width),
+            "valid": bit(),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    corners = position_corners(config)
+
+    def position() -> int:
+        return int(random.choice(corners) if random.random() < 0.4 else random.integers(1 << width))
+
+    def slope() -> int:
+        magnitude = random.choice(SLOPE_CORNERS) if random.random() < 0.4 else random.integers(1 << SLOPE_BITS)
+        return int(magnitude * random.choice([-1, 1]))
+
+    operands = [(position(), slope(), position(), position(), slope()) for _ in range(VECTORS)]
+    steps = config.divider_steps
+    idle = {"steps_find_intersection": 0, "steps_load_divider": 0, "steps_store_quotient": 0}
+    stimulus = [dict(idle) for _ in range((VECTORS + 2) * steps + 6)]
+    for number, (a, b, c, d, e) in enumerate(operands):
+        start = number * steps
+        stimulus[start] |= {"steps_find_intersection": 1, "b": abs(b), "b_negative": int(b < 0)}
+        stimulus[start] |= {"c": c, "d": d, "e": abs(e), "e_negative": int(e < 0)}
+        stimulus[start + 2]["steps_load_divider"] = 1
+        stimulus[start + 2 + steps]["steps_store_quotient"] = 1
+        stimulus[start + 3 + steps]["a"] = a
+    outputs = leaf.run_both(stimulus, settled=steps + 4)
+    valid_seen = 0
+    for number, (a, b, c, d, e) in enumerate(operands):
+        value, valid = seed_engine.intersect(a, b, c, d, e, config.fraction_bits, config.rounding)
+        stored = outputs[number * steps + steps + 3]
+        added = outputs[number * steps + steps + 4]
+        vector = {"a": a, "b": b, "c": c, "d": d, "e": e}
+        assert bool(stored["valid"]) == bool(valid), (vector, repeat())
+        if valid:
+            valid_seen += 1
+            assert added["value"] == int(value) % (1 << (width + 2)), (vector, repeat())
+            assert stored["quotient"] == abs(int(value) - a), (vector, repeat())
+            assert stored["distance"] == abs(c - d), (vector, repeat())
+    assert valid_seen > VECTORS // 10

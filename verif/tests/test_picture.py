@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: MIT
+"""Comparing pictures."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from raycaster.golden.picture import WRONG, count_wrong, diff_picture, wrong_pixels
+
+REFERENCE = np.array([[(0, 0, 0), (255, 255, 255)], [(200, 100, 0), (9, 9, 9)]], dtype=np.uint8)
+
+
+def with_pixel(row, column, colour):
+    picture = REFERENCE.copy()
+    picture[row, column] = colour
+    return picture
+
+
+def test_equal_pictures_have_no_wrong_pixel():
+    assert count_wrong(REFERENCE.copy(), REFERENCE) == 0
+    assert not wrong_pixels(REFERENCE.copy(), REFERENCE).any()
+
+
+@pytest.mark.parametrize("channel", [0, 1, 2])
+def test_one_channel_is_enough(channel):
+    colour = REFERENCE[1, 0].copy()
+    colour[channel] ^= 1
+    picture = with_pixel(1, 0, colour)
+    assert count_wrong(picture, REFERENCE) == 1
+    assert wrong_pixels(picture, REFERENCE).tolist() == [[False, False], [True, False]]
+
+
+def test_a_pixel_counts_once():
+    assert count_wrong(with_pixel(0, 0, (255, 255, 255)), REFERENCE) == 1
+    assert count_wrong(255 - REFERENCE, REFERENCE) == 4
+
+
+def test_diff_is_dim_grey_but_for_the_wrong_pixels():
+    diff = diff_picture(with_pixel(1, 1, (9, 9, 8)), REFERENCE)
+    assert diff.dtype == np.uint8
+    assert diff.tolist() == [[[0, 0, 0], [85, 85, 85]], [[33, 33, 33], list(WRONG)]]
+
+
+def test_wrong_pixels_stand_out_from_any_grey():
+    assert max(WRONG) - 85 > 128
+    assert len(set(WRONG)) == 3
+
+
+def test_shapes_must_agree():
+    with pytest.raises(ValueError, match=r"different shapes: \(1, 2, 3\) and \(2, 2, 3\)"):
+        count_wrong(REFERENCE[:1], REFERENCE)

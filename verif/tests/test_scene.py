@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: MIT
+"""Scene files: what is accepted, and the one line that each mistake gets."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from raycaster.configuration import Configuration
+from raycaster.errors import UserError
+from raycaster.scene import SceneError, load_scene
+
+SCENES = Path(__file__).parents[2] / "scenes"
+
+GOOD = """\
+title = "A floor"
+rows = 240
+reflections = 1
+background = "#000000"
+[camera]
+position = [20, 256, 100]
+[[rect]]
+name = "floor"
+corners = [[0, 0, 0], [511, 511, 0]]
+colour = "#c8c8b4"
+"""
+CAMERA = "[camera]\nposition = [20, 256, 100]\n"
+RECT = GOOD[GOOD.index("[[rect]]") :]
+CORNERS = "[[0, 0, 0], [511, 511, 0]]"
+TOP_KEYS = "title, rows, reflections, background, camera, rect"
+RECT_KEYS = "corners, colour, name"
+
+
+def write(folder: Path, text: str) -> Path:
+    path = folder / "scene.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def changed(old: str, new: str) -> str:
+    assert GOOD.count(old) == 1
+    return GOOD.replace(old, new)
+
+
+def complaint(path: Path, rectangles: int | None = None) -> str:
+    """What is said about a scene file, without the file; checked to be one line that names the file."""
+    with pytest.raises(SceneError) as raised:
+        load_scene(path, rectangles)
+    message = str(raised.value)
+    assert isinstance(raised.value, UserError)
+    assert message.isprintable()
+    assert message.startswith(f"{path}: ")
+    return message.removeprefix(f"{path}: ")
+
+
+def test_reads_a_scene(tmp_path):
+    scene = load_scene(write(tmp_path, GOOD), rectangles=1)
+    assert (scene.title, scene.rows, scene.reflections, scene.background) == ("A floor", 240, 1, (0, 0, 0))
+    assert scene.camera.position == (20, 256, 100)
+    (floor,) = scene.rect
+    assert (floor.name, floor.corners, floor.colour) == ("floor", ((0, 0, 0), (511, 511, 0)), (0xC8, 0xC8, 0xB4))
+    assert floor.axis == 2
+
+
+def test_fills_in_the_defaults(tmp_path):
+    scene = load_scene(write(tmp_path, CAMERA + "[[rect]]\ncorners = [[0, 0, 0], [0, 0, 0]]\ncolour = '#ABCDEF'\n"))
+    assert (scene.title, scene.rows, scene.reflections, scene.background) == ("", 240, 1, (0, 0, 0))
+    assert scene.rect[0].name == ""
+    assert scene.rect[0].axis == 0
+
+
+@pytest.mark.parametrize("rows", [240, 200, 180])
+def test_rows_that_a_file_may_ask_for(tmp_path, rows):
+    assert load_scene(write(tmp_path, changed("rows = 240", f"rows = {rows}"))).rows == rows
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        # Unknown keys; a mistyped key is told rather than that the right one is missing.
+        ("title", "titel", f"titel: is not a key of scene files; the keys here are {TOP_KEYS}"),
+        ("title", '"ti\\ntle"', f'"ti\\ntle": is not a key of scene files; the keys here are {TOP_KEYS}'),
+        ("[[rect]]", "[[rects]]", f"rects: is not a key of scene files; the keys here are {TOP_KEYS}"),
+        ("position", "angle", "camera.angle: is not a key of scene files; the keys here are position"),
+        ("colour", "color", f'rect[0] ("floor") color: is not a key of scene files; the keys here are {RECT_KEYS}'),
+        ("name", "nam", f"rect[0].nam: is not a key of scene files; the keys here are {RECT_KEYS}"),
+        # Numbers out of range or of another kind.
+        ("256", "512", "camera.position[1]: must be a whole number 0..511, not 512"),
+        ("256", "-1", "camera.position[1]: must be a whole number 0..511, not -1"),
+        ("256", "2.5", "camera.position[1]: must be a whole number 0..511, not 2.5"),
+        ("256", "256.0", "camera.position[1]: must be a whole number 0..511, not 256.0"),
+        ("256", "true", "camera.position[1]: must be a whole number 0..511, not true"),
+        ("256", '"256"', 'camera.position[1]: must be a whole number 0..511, not "256"'),
+        ("511, 0]]", "512, 0]]", 'rect[0] ("floor") corners[1][1]: must be a whole number 0..511, not 512'),
+        ("reflections = 1", "reflections = 3", "reflections: must be a whole number 0..2, not 3"),
+        ("reflections = 1", "reflections = 1.0", "reflections: must be a whole number 0..2, not 1.0"),
+        ("rows = 240", "rows = 239", "rows: must be 240, 200 or 180, not 239"),
+        ("rows = 240", "rows = 240.0", "rows: must be 240, 200 or 180, not 240.0"),
+        ("rows = 240", 'rows = "240"', 'rows: must be 240, 200 or 180, not "240"'),
+        # Wrong types and shapes.
+        ("[20, 256, 100]", "20", "camera.position: must be a point, [x, y, z], not 20"),
+        ("[20, 256, 100]", "[20, 256]", "camera.position: must be a point, [x, y, z], not [20, 256]"),
+        ("[20, 256, 100]", "[1, 2, 3, 4]", "camera.position: must be a point, [x, y, z], not [1, 2, 3, 4]"),
+        (CAMERA, "", "camera: is missing"),
+        (CAMERA, "[camera]\n", "camera.position: is missing"),
+        ("[camera]\nposition = [20, 256, 100]", "[[camera]]", "camera: must be a table, not [{}]"),
+        (
+            CORNERS,
+            "[[0, 0, 0]]",
+            'rect[0] ("floor") corners: must be two opposite corners, [[x, y, z], [x, y, z]], not [[0, 0, 0]]',
+        ),
+        (CORNERS, "[[0, 0, 0], 3]", 'rect[0] ("floor") corners[1]: must be a point, [x, y, z], not 3'),
+        (f"corners = {CORNERS}", "", 'rect[0] ("floor") corners: is missing'),
+        ("[[rect]]", "[rect]", "rect: must be one or more tables, each headed [[rect]]"),
+        (RECT, "", "rect: is missing"),
+        ('"floor"', "7", "rect[0].name: must be a text in quotes, not 7"),
+        ('"A floor"', "2020-01-01", 'title: must be a text in quotes, not "2020-01-01"'),
+        # No plane; a name with a line break keeps the message on one line.
+        (
+            CORNERS,
+            "[[0, 0, 0], [511, 511, 1]]",
+            'rect[0] ("floor") corners: must have the same x, y or z in both corners, the rectangle\'s plane, '
+            "not [[0, 0, 0], [511, 511, 1]]",
+        ),
+        (
+            '"floor"\ncorners',
+            '"fl\\noor"\ncorner',
+            f'rect[0] ("fl\\noor") corner: is not a key of scene files; the keys here are {RECT_KEYS}',
+        ),
+        # Colours.
+        ("#c8c8b4", "#c8c8b", 'rect[0] ("floor") colour: must be a colour such as "#c8c8b4", not "#c8c8b"'),
+        ("#c8c8b4", "beige", 'rect[0] ("floor") colour: must be a colour such as "#c8c8b4", not "beige"'),
+        ('"#c8c8b4"', "[1, 2, 3]", 'rect[0] ("floor") colour: must be a colour such as "#c8c8b4", not [1, 2, 3]'),
+        ('"#000000"', "0", 'background: must be a colour such as "#c8c8b4", not 0'),
+        # Not TOML.
+        ("rows = 240", "rows = ", "is not TOML: Invalid value (at line 2, column 8)"),
+        ("rows = 240", "rows: 240", "is not TOML: Expected '=' after a key in a key/value pair (at line 2, column 5)"),
+    ],
+)
+def test_mistake(tmp_path, old, new, expected):
+    assert complaint(write(tmp_path, changed(old, new))) == expected
+
+
+def test_no_rectangles(tmp_path):
+    path = write(tmp_path, "rect = []\n" + GOOD.replace(RECT, ""))
+    assert complaint(path) == "rect: must be one or more tables, each headed [[rect]], not []"
+
+
+def test_rectangle_that_is_no_table(tmp_path):
+    path = write(tmp_path, "rect = [3]\n" + GOOD.replace(RECT, ""))
+    assert complaint(path) == "rect[0]: must be a table, not 3"
+
+
+def test_second_rectangle_is_named_by_its_index(tmp_path):
+    path = write(tmp_path, GOOD + "[[rect]]\ncorners = [[1, 2, 3], [4, 5, 6]]\ncolour = '#000000'\n")
+    assert complaint(path) == (
+        "rect[1].corners: must have the same x, y or z in both corners, the rectangle's plane, "
+        "not [[1, 2, 3], [4, 5, 6]]"
+    )
+
+
+def test_long_values_are_not_shown(tmp_path):
+    path = write(tmp_path, changed('"#c8c8b4"', f'"{"x" * 100}"'))
+    assert complaint(path) == 'rect[0] ("floor") colour: must be a colour such as "#c8c8b4"'
+
+
+def test_too_many_rectangles(tmp_path):
+    path = write(tmp_path, GOOD + RECT * 2)
+    assert len(load_scene(path, rectangles=3).rect) == 3
+    assert complaint(path, rectangles=2) == (
+        "rect: 3 rectangles, but the hardware holds 2; remove some or build it with RECTANGLES=3"
+    )
+
+
+def test_not_a_file(tmp_path):
+    assert complaint(tmp_path) == "cannot be read: Is a directory"
+    assert complaint(tmp_path / "none.toml") == "cannot be read: No such file or directory"
+
+
+def test_not_text(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_bytes(b"\xff\xfe")
+    assert complaint(path) == "is not UTF-8 text; a scene is a TOML file"
+
+
+@pytest.mark.parametrize("text", ["rows = " + "9" * 5000, "rows = " + "[" * 5000])
+def test_monstrous_toml_is_refused_too(tmp_path, text):
+    assert complaint(write(tmp_path, text)).startswith("is not TOML: ")
+
+
+def test_deep_values_are_refused_too(tmp_path):
+    path = write(tmp_path, GOOD.replace("rows = 240", "rows" + ".a" * 2000 + " = 1"))
+    assert complaint(path) == "rows: must be 240, 200 or 180"
+
+
+@pytest.mark.parametrize("path", sorted(SCENES.glob("*.toml")), ids=lambda path: path.stem)
+def test_scenes_of_the_repository_fit_the_default_hardware(path):
+    scene = load_scene(path, Configuration().rectangles)
+    assert scene.title
+    assert all(rectangle.name for rectangle in scene.rect)
+    assert path.read_text(encoding="utf-8").startswith("# SPDX-License-Identifier: MIT\n# ")
