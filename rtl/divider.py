@@ -17,62 +17,44 @@ def divider(clk, load_divider, store_quotient, dividend, divisor, quotient, over
     load_divider takes the operands. store_quotient comes `config.divider_steps` cycles later, and the quotient
     stands from the cycle after it until the next store_quotient. The next load_divider may coincide with it.
     """
-    digits = config.divider_bits * config.divider_steps
+    width = config.divider_bits * config.divider_steps
     bits_a_cycle = config.divider_bits
     quotient_width = position_bits(config)
     dividend_width = product_bits(config)
     round_to_nearest = config.rounding == "nearest"
 
-    remainder = unsigned(SLOPE_BITS)
-    pending = unsigned(digits)  # dividend digits leave on the left, quotient bits enter on the right
+    remainders = [unsigned(SLOPE_BITS) for _ in range(bits_a_cycle + 1)]
+    digits = [unsigned(width) for _ in range(bits_a_cycle + 1)]
+    remainder, last_remainder = remainders[0], remainders[-1]
+    pending, last_pending = digits[0], digits[-1]
     divisor_held = unsigned(SLOPE_BITS)
     too_large = bit()
-    remainders = [unsigned(SLOPE_BITS) for _ in range(bits_a_cycle + 1)]
-    first_remainder, last_remainder = remainders[0], remainders[-1]
-    digits_down = [bit() for _ in range(bits_a_cycle)]
-    quotient_digits = [bit() for _ in range(bits_a_cycle)]
-    pending_next = unsigned(digits)
     steps = [
-        divider_step(remainders[i], digits_down[i], divisor_held, remainders[i + 1], quotient_digits[i])
+        divider_step(remainders[i], digits[i], divisor_held, remainders[i + 1], digits[i + 1])
         for i in range(bits_a_cycle)
     ]
-
-    # The first step starts from the remainder that the last cycle left.
-    @always_comb
-    def enter_steps():
-        first_remainder.next = remainder
-        for i in range(bits_a_cycle):
-            digits_down[i].next = pending[digits - 1 - i]
-
-    # Dividend digits move out, this cycle's quotient bits move in.
-    @always_comb
-    def shift():
-        pending_next.next = 0
-        pending_next.next[digits:bits_a_cycle] = pending[digits - bits_a_cycle :]
-        for i in range(bits_a_cycle):
-            pending_next.next[bits_a_cycle - 1 - i] = quotient_digits[i]
 
     # Load a dividend, or take the next digits of the one at work.
     @always(clk.posedge)
     def divide():
         if load_divider:
-            remainder.next = dividend[dividend_width:digits]
-            pending.next = dividend[digits:]
+            remainder.next = dividend[dividend_width:width]
+            pending.next = dividend[width:]
             divisor_held.next = divisor
             too_large.next = dividend[dividend_width:quotient_width] >= divisor
         else:
             remainder.next = last_remainder
-            pending.next = pending_next
+            pending.next = last_pending
 
     if not round_to_nearest:
         # The last step's result is the quotient.
         @always(clk.posedge)
         def store():
             if store_quotient:
-                quotient.next = pending_next[quotient_width:]
+                quotient.next = last_pending[quotient_width:]
                 overflow.next = too_large
 
-        return steps, enter_steps, shift, divide, store
+        return steps, divide, store
 
     twice_remainder = unsigned(SLOPE_BITS + 1)
     truncated = unsigned(quotient_width)
@@ -90,7 +72,7 @@ def divider(clk, load_divider, store_quotient, dividend, divisor, quotient, over
     @always(clk.posedge)
     def store_truncated():
         if store_quotient:
-            truncated.next = pending_next[quotient_width:]
+            truncated.next = last_pending[quotient_width:]
             truncated_overflow.next = too_large
             round_up.next = twice_remainder >= divisor_held
 
@@ -105,4 +87,4 @@ def divider(clk, load_divider, store_quotient, dividend, divisor, quotient, over
         quotient.next = rounded[quotient_width:]
         overflow.next = truncated_overflow or rounded[quotient_width]
 
-    return steps, enter_steps, shift, divide, double_remainder, store_truncated, round_quotient, deliver
+    return steps, divide, double_remainder, store_truncated, round_quotient, deliver

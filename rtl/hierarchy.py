@@ -54,14 +54,13 @@ class Module:
 class _Instance(_UserVerilogCode):
     """The text that stands for a block in its parent; names are only known when it is printed."""
 
-    def __init__(self, module: Module, name: str, connections: dict[str, _Signal]):
+    def __init__(self, module: Module, name: str, connections: dict[str, _Signal | None]):
         super().__init__("", {}, module.name, None, None, None)
         self._module, self._name, self._connections = module, name, connections
 
     def __str__(self) -> str:
         pins = ",\n".join(
-            f"    .{port}({'' if isinstance(signal, _Unconnected) else signal._name})"
-            for port, signal in self._connections.items()
+            f"    .{port}({signal._name if signal is not None else ''})" for port, signal in self._connections.items()
         )
         return f"\n{self._module.name} {self._name} (\n{pins}\n);\n"
 
@@ -151,7 +150,7 @@ class _Converter:
             ordinal = sum(used == module.name for used in instances.values())
             instance = module.name if count == 1 else f"{module.name}_{ordinal}"
             instances[instance] = module.name
-            _replace_by_instance(child, module, f"{instance}_i")
+            _replace_by_instance(child, module, f"{instance}_i", ports)
         _name_connections(block, children)
         written_ports = self._write(block, name, ports)
         return Module(name, self._directory / f"{name}.v", written_ports, instances)
@@ -211,15 +210,19 @@ def _signals_in(name: str, value: Any) -> Iterator[tuple[str, _Signal]]:
             yield from _signals_in(f"{name}_{attribute}", element)
 
 
-def _replace_by_instance(child: _Block, module: Module, name: str) -> None:
+def _replace_by_instance(child: _Block, module: Module, name: str, parent_ports: dict[str, _Signal]) -> None:
     """Make the parent's conversion print an instance where the child's processes would stand."""
     signals, _ = _arguments(child)
+    passed_on = {id(signal) for signal in parent_ports.values()}
     connections = {port.name: signals[port.name] for port in module.ports}
+    for port, signal in connections.items():
+        if isinstance(signal, _Unconnected) and id(signal) not in passed_on:
+            connections[port] = None
     child.verilog_code = _Instance(module, name, connections)
     child.subs, child.sigdict, child.memdict = [], {}, {}
     directions = {port.name: port.output for port in module.ports}
     for port, signal in connections.items():
-        if isinstance(signal, _Unconnected):
+        if signal is None:
             continue
         signal._markUsed()
         if directions[port]:
@@ -229,9 +232,14 @@ def _replace_by_instance(child: _Block, module: Module, name: str) -> None:
 
 
 def _mark_processes(block: _Block) -> None:
-    """Repeat the marks that elaboration left on signals, and that converting the children wiped off."""
+    """Repeat the marks that elaboration left on signals, and that converting the children wiped off.
+
+    Registers to reset come in the order of a Python set, which changes from run to run; here they get that of names.
+    """
     for sub in block.subs:
         if isinstance(sub, _Instantiator):
+            names = {id(sub.symdict[name]): name for name in sub.outputs if name in sub.symdict}
+            getattr(sub, "sigregs", []).sort(key=lambda signal, names=names: names.get(id(signal), ""))
             for signal in sub.sigdict.values():
                 signal._markUsed()
             edges = getattr(sub, "senslist", ())
@@ -254,7 +262,7 @@ def _name_connections(block: _Block, children: list[_Block]) -> None:
     for child in children:
         for port, connected in child.verilog_code._connections.items():
             signal = connected._sig if isinstance(connected, _SliceSignal) else connected
-            if id(signal) in named or isinstance(signal, _Unconnected):
+            if signal is None or id(signal) in named:
                 continue
             if id(signal) not in candidates:
                 raise HierarchyError(
@@ -274,8 +282,21 @@ def _polish(path: Path, block: _Block) -> None:
                 purpose = " ".join(line.lstrip("# ").rstrip() for line in comment.splitlines())
                 label = re.escape(sub.funcobj.__name__.lower())
                 text = re.sub(rf"^(always [^\n]*begin: {label}\n)", rf"// {purpose}\n\1", text, flags=re.M | re.I)
+    # A block that declares nothing needs no name, and Icarus pays for one with a thread at each evaluation.
+    text = re.sub(r"^(always [^\n]*begin): \w+\n(?! *(?:integer|reg)\b)", r"\1\n", text, flags=re.M)
+    text = re.sub(r"^always @\(([^)]*)\)", _sensitivity, text, flags=re.M)
     lines = (line.rstrip() for line in text.splitlines())
     path.write_text(re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).lstrip("\n").rstrip("\n") + "\n")
+
+
+def _sensitivity(match: re.Match[str]) -> str:
+    """MyHDL lists what a process reads in the order of a Python set, which changes from run to run."""
+    names = match[1].split(", ")
+    if any(name.startswith(("posedge", "negedge")) for name in names):
+        return match[0]
+    if any("[" in name for name in names):  # words of an array, which not every tool takes @* to cover
+        return f"always @({', '.join(sorted(names))})"
+    return "always @*"
 
 
 class _Unconnected(_Signal):

@@ -48,29 +48,31 @@ def dividends_and_divisors(config: Configuration) -> list[tuple[int, int]]:
     return chosen
 
 
-@pytest.mark.parametrize("width", [1, 2, 4, 9])
-def test_divider_step(width, tmp_path):
+@pytest.mark.parametrize(("width", "count"), [(1, 2), (2, 3), (4, 4), (9, 9), (9, 17)])
+def test_divider_step(width, count, tmp_path):
     leaf = Leaf(
         divider_step,
         lambda: {
             "remainder": unsigned(width),
-            "digit": bit(),
+            "digits": unsigned(count),
             "divisor": unsigned(width),
             "next_remainder": unsigned(width),
-            "quotient_bit": bit(),
+            "next_digits": unsigned(count),
         },
         tmp_path,
     )
+    random = np.random.default_rng(seed())
     divisors = range(1, 1 << width) if width < 9 else SLOPE_CORNERS[1:]
     stimulus = [
-        {"remainder": remainder, "digit": digit, "divisor": divisor}
+        {"remainder": remainder, "digits": digits, "divisor": divisor}
         for divisor in divisors
         for remainder in (range(divisor) if width < 9 else {0, divisor // 2, divisor - 1})
-        for digit in (0, 1)
+        for digits in {0, (1 << count) - 1, 1 << count - 1, int(random.integers(1 << count))}
     ]
     for inputs, outputs in zip(stimulus, leaf.run_both(stimulus), strict=True):
-        quotient, remainder = divmod(2 * inputs["remainder"] + inputs["digit"], inputs["divisor"])
-        assert outputs == {"quotient_bit": quotient, "next_remainder": remainder}, inputs
+        digit, others = divmod(inputs["digits"], 1 << count - 1)
+        quotient, remainder = divmod(2 * inputs["remainder"] + digit, inputs["divisor"])
+        assert outputs == {"next_remainder": remainder, "next_digits": 2 * others + quotient}, (inputs, repeat())
 
 
 @arithmetic
