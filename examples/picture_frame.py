@@ -63,7 +63,18 @@ def scene_writer(clk, reset, address, write, writedata, waitrequest, words):
 
 @block
 def picture_frame(
-    clk, reset, vga_r, vga_g, vga_b, vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_clk, scene: Scene, config: Configuration
+    clk,
+    reset,
+    vga_r,
+    vga_g,
+    vga_b,
+    vga_hs,
+    vga_vs,
+    vga_blank_n,
+    vga_sync_n,
+    vga_clk,
+    scene: Scene,
+    config: Configuration,
 ):
     """Show one scene for ever. The vga signals are those of ray_caster_module."""
     words = tuple(scene_words(scene, config.rectangles, min(scene.reflections, config.reflections)))

@@ -44,4 +44,7 @@ def scene_words(scene: Scene, rectangles: int, reflections: int | None = None) -
     registers = register_map(rectangles)
     bounces = scene.reflections if reflections is None else reflections
     start = ("control", {"run": 1, "commit": 1, "reflections": bounces})
-    return [(registers[name].address, registers[name].pack(**fields)) for name, fields in (*scene_fields(scene, rectangles), start)]
+    return [
+        (registers[name].address, registers[name].pack(**fields))
+        for name, fields in (*scene_fields(scene, rectangles), start)
+    ]

@@ -138,6 +138,29 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
     return scene
 
 
+def dump_scene(scene: Scene) -> str:
+    """The text of a scene file; `load_scene` reads the same scene from it."""
+
+    def colour(channels: Colour) -> str:
+        return f'"#{bytes(channels).hex()}"'
+
+    lines = [
+        f"title = {json.dumps(scene.title)}",
+        f"rows = {scene.rows}",
+        f"reflections = {scene.reflections}",
+        f"background = {colour(scene.background)}",
+        "[camera]",
+        f"position = {list(scene.camera.position)}",
+    ]
+    for rectangle in scene.rect:
+        lines.append("[[rect]]")
+        if rectangle.name:
+            lines.append(f"name = {json.dumps(rectangle.name)}")
+        lines.append(f"corners = {[list(corner) for corner in rectangle.corners]}")
+        lines.append(f"colour = {colour(rectangle.colour)}")
+    return "\n".join(lines) + "\n"
+
+
 def _first_complaint(error: ValidationError, contents: Mapping) -> str:
     """One line for the first thing that is wrong: its place, what was expected, and what stood there."""
     errors = error.errors()

@@ -35,11 +35,15 @@ def ray_control(clk, reset_ray_caster, enable, reflections, rects, steps, finish
     in_flight = unsigned(write_at + 1)  # bit i is set i + 1 cycles after a find_intersection
     dividing_rect = Rect()
 
-    # Two states are followed by a new ray, which wants all rectangles again.
+    # A new ray follows two of the states.
+    @always_comb
+    def see_start():
+        start_ray.next = steps.screen_to_ray or steps.add_color
+
+    # It wants all rectangles again.
     @always_comb
     def choose_candidates():
-        start_ray.next = (state == RayState.GENERATE) or (state == RayState.BLEND)
-        if (state == RayState.GENERATE) or (state == RayState.BLEND):
+        if start_ray:
             candidates.next = rects.usable
         else:
             candidates.next = waiting
@@ -140,5 +144,6 @@ def ray_control(clk, reset_ray_caster, enable, reflections, rects, steps, finish
             finishing_rect.colour.next = dividing_rect.colour
 
     return (
-        choose_candidates, choose_rectangle, fetch, take_slots, advance, operate, follow, operate_stages, carry_rectangle
+        see_start, choose_candidates, choose_rectangle, fetch, take_slots, advance, operate, follow, operate_stages,
+        carry_rectangle,
     )  # fmt: skip

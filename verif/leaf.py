@@ -5,12 +5,16 @@ from __future__ import annotations
 
 import subprocess
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from myhdl import Simulation, StopSimulation, block, delay, instance
+from myhdl import ResetSignal, Simulation, StopSimulation, block, delay, instance
 
+from raycaster.configuration import RESULT_LATENCY, Configuration
+from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.hierarchy import Module, convert_hierarchy, port_signals, quick_elaboration
+from raycaster.rtl.interfaces import Steps
 
 Cycle = Mapping[str, int]
 
@@ -144,3 +148,80 @@ endmodule
     def _call(self, *command: str) -> None:
         done = subprocess.run(command, cwd=self._directory, capture_output=True, text=True, check=False)
         assert done.returncode == 0, f"{' '.join(command)}: {done.stdout}{done.stderr}"
+
+
+def reset_signal() -> ResetSignal:
+    """The reset of every module that has one: synchronous and active high."""
+    return ResetSignal(0, active=1, isasync=False)
+
+
+def sorted_rect(rectangles: Rectangles, index: int, prefix: str) -> dict[str, int]:
+    """What `rect_sorter` must make of a rectangle: values for the ports of a `Rect` that is called `prefix`."""
+    axis = int(rectangles.axes[index])
+    u, v = OTHER_AXES[axis]
+    low, high = rectangles.low[index], rectangles.high[index]
+    fields = {
+        "axis": axis,
+        "position": low[axis],
+        "u_low": low[u],
+        "u_high": high[u],
+        "v_low": low[v],
+        "v_high": high[v],
+        "colour": int.from_bytes(bytes(rectangles.colours[index])),
+    }
+    return {f"{prefix}_{name}": int(value) for name, value in fields.items()}
+
+
+@dataclass
+class TraceCycle:
+    """A cycle of what `ray_control` must do while it traces one group of rays."""
+
+    steps: dict[str, int]
+    """Values for the ports of `steps`."""
+
+    bounce: int
+    """0 in the primary ray's pass, 1 and 2 in its reflections'."""
+
+    current: int | None = None
+    """The rectangle that holds still for the dividers to start on, None where nobody looks."""
+
+    finishing: int | None = None
+    """The rectangle whose quotients were stored last."""
+
+
+def trace_cycles(config: Configuration, usable: Sequence[int], reflections: int) -> list[TraceCycle]:
+    """The cycles from the one that generates a group's rays to the last before `done`, from the timing that the
+    blocks' contracts state.
+
+    Args:
+        config: for its divider.
+        usable: indices of the rectangles that are enabled and have a plane, ascending.
+        reflections: of this scene.
+    """
+    division = config.divider_steps
+    # Where there is nothing to trace, a pass only looks for it and adds the background.
+    pass_length = len(usable) * division + RESULT_LATENCY if usable else 2
+    idle = {f"steps_{name}": 0 for name in vars(Steps())}
+    cycles = [TraceCycle(dict(idle), 0) for _ in range(1 + (reflections + 1) * pass_length)]
+
+    def strobe(cycle: int, *names: str) -> None:
+        cycles[cycle].steps |= {f"steps_{name}": 1 for name in names}
+
+    strobe(0, "screen_to_ray", "reset_color", "reset_z_buf")
+    for bounce in range(reflections + 1):
+        first = 1 + bounce * pass_length
+        for cycle in cycles[first : first + pass_length]:
+            cycle.bounce = bounce
+            cycle.steps["steps_initial_ray"] = int(bounce == 0)
+        for ordinal, index in enumerate(usable):
+            start = first + ordinal * division
+            strobe(start, "find_intersection")
+            strobe(start + 2, "load_divider")
+            strobe(start + 2 + division, "store_quotient")
+            strobe(start + 4 + division, "write_z_buf")
+            for cycle in cycles[start : start + division]:
+                cycle.current = index
+            for cycle in cycles[start + 3 + division :]:
+                cycle.finishing = index
+        strobe(first + pass_length - 1, "add_color", "store_ray", "reset_z_buf")
+    return cycles

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The divider and the a + b * (c - d) / e unit: MyHDL's simulator, the converted Verilog and golden on one set of vectors."""
+"""The divider and the a + b * (c - d) / e unit: MyHDL, the converted Verilog and golden on one set of vectors."""
 
 import numpy as np
 import pytest
+
 from raycaster.configuration import Configuration, configure
 from raycaster.golden import seed_engine
 from raycaster.rtl.divider import divider

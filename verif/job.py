@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: MIT
+"""What is handed from the process that starts a simulation to the bench that runs inside it."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+from typing import Any
+
+from raycaster.configuration import Configuration, configure
+
+JOB_VARIABLE = "RAYCASTER_JOB"
+"""The environment variable that carries a job, as JSON, into a simulation."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Job:
+    """What a simulation is to do."""
+
+    configuration: Configuration
+    scene: str = ""
+    """Path of a scene file, or nothing where a bench has scenes of its own."""
+
+    output: str = ""
+    """Directory for pictures and results."""
+
+    reflections: int | None = None
+    """Instead of the scene's own."""
+
+    progress: str = ""
+    """File that is to hold the number of visible lines, or of scenes, seen so far."""
+
+    seeds: tuple[int, ...] = ()
+    """Of random scenes, for a bench that shows them."""
+
+    def environment(self) -> dict[str, str]:
+        """The environment in which a simulation finds this job."""
+        return {JOB_VARIABLE: json.dumps(dataclasses.asdict(self))}
+
+    @classmethod
+    def from_environment(cls) -> Job:
+        """The job that this simulation was started with."""
+        values: dict[str, Any] = json.loads(os.environ[JOB_VARIABLE])
+        return cls(**values | {"configuration": configure(**values["configuration"])})

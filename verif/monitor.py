@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: MIT
+"""A monitor in Python: takes the bench's lines, holds every sample against the video standard, yields pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import cocotb
+import numpy as np
+from cocotb.handle import HierarchyObject
+from cocotb.queue import Queue
+from cocotb.simtime import get_sim_time
+from cocotb.triggers import SimTimeoutError, with_timeout
+
+from raycaster.configuration import CLOCK_HZ, CLOCKS_PER_PIXEL, Configuration, Screen, Span
+
+CLOCK_NS = 1_000_000_000 // CLOCK_HZ
+_CONTROL_BITS = 4
+"""Bits of a sample before its colour: HS, VS, BLANK_N, SYNC_N."""
+
+
+class VideoError(AssertionError):
+    """A sample that departs from the video standard; says which, and what was expected."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """What the monitor saw from one leading edge of HS to the next."""
+
+    bits: str
+    """One character a bit, the last sample first; a sample is HS, VS, BLANK_N, SYNC_N, red, green, blue."""
+
+    samples: int
+    """Pixel clocks."""
+
+    end_ns: int
+    """Simulation time at which the line ended."""
+
+
+class Monitor:
+    """Collects lines in the background, and makes frames of them."""
+
+    def __init__(self, bench: HierarchyObject, configuration: Configuration):
+        self._bench = bench
+        self._screen = configuration.screen_geometry
+        self._colour_bits = configuration.colour_bits
+        self._lines: Queue[Line] = Queue()
+        self._synchronised = False
+        self.frame_lines: list[Line] = []
+        """The lines of the last frame, from VS's leading edge on."""
+        cocotb.start_soon(self._collect())
+
+    async def _collect(self) -> None:
+        bench = self._bench
+        while True:
+            await bench.line_event.value_change
+            line = Line(str(bench.line.value), int(bench.line_samples.value), int(get_sim_time("ns")))
+            self._lines.put_nowait(line)
+
+    def forget(self) -> None:
+        """Drop what was seen so far and look for VS anew, as after a reset."""
+        while not self._lines.empty():
+            self._lines.get_nowait()
+        self._synchronised = False
+
+    async def line(self) -> Line:
+        """The next line.
+
+        Raises:
+            VideoError: HS did not come in three line times.
+        """
+        wait_ns = 3 * self._screen.horizontal.total * CLOCKS_PER_PIXEL * CLOCK_NS
+        try:
+            return await with_timeout(self._lines.get(), wait_ns, "ns")
+        except SimTimeoutError:
+            raise VideoError(f"no leading edge of HS in three line times ({wait_ns} ns)") from None
+
+    async def frame(self, on_row: Callable[[int], None] | None = None) -> np.ndarray:
+        """The next whole frame, from VS's leading edge on; a frame follows the last one without a gap.
+
+        Args:
+            on_row: called with the number of visible lines seen so far, as each comes.
+
+        Returns:
+            Visible lines x visible pixels x 3, uint8; a channel of fewer bits stands in the top bits.
+
+        Raises:
+            VideoError: a sample of the frame departs from the standard.
+        """
+        lines = [await self.line() if self._synchronised else await self._first_line()]
+        self._synchronised = True
+        vertical = self._screen.vertical
+        while len(lines) < vertical.total:
+            lines.append(await self.line())
+            visible = len(lines) - vertical.sync - vertical.back
+            if on_row is not None and 0 < visible <= vertical.visible:
+                on_row(visible)
+        self.frame_lines = lines
+        return decode_frame(lines, self._screen, self._colour_bits)
+
+    async def _first_line(self) -> Line:
+        """The first line in which VS is active after one in which it was not."""
+        vertical = self._screen.vertical
+        active = str(int(vertical.active_high))
+        was_active = True
+        for _ in range(2 * vertical.total):
+            line = await self.line()
+            is_active = line.bits[-(_CONTROL_BITS + 3 * self._colour_bits) + 1] == active
+            if is_active and not was_active:
+                return line
+            was_active = is_active
+        raise VideoError(f"no leading edge of VS in two frames ({2 * vertical.total} lines)")
+
+    def check_pins(self) -> None:
+        """Check what the bench has watched at every clock.
+
+        Raises:
+            VideoError: data changed at a rising edge of VGA_CLK, or that was not the halved system clock.
+        """
+        unstable = int(self._bench.unstable_samples.value)
+        faults = int(self._bench.clock_faults.value)
+        if unstable:
+            raise VideoError(f"video data changed at {unstable} rising edges of vga_clk")
+        if faults:
+            raise VideoError(f"vga_clk did not change at {faults} clocks; it must be clk halved")
+
+
+def decode_frame(lines: Sequence[Line], screen: Screen, colour_bits: int) -> np.ndarray:
+    """Check every sample of a frame against the standard and return its visible part.
+
+    Args:
+        lines: one frame from VS's leading edge on, `screen.vertical.total` lines.
+        screen: the standard.
+        colour_bits: bits a channel has.
+
+    Returns:
+        Visible lines x visible pixels x 3, uint8; a channel of fewer than 8 bits stands in the top bits, the others 0.
+
+    Raises:
+        VideoError: names the line (from VS's leading edge), the sample (from HS's) and what was expected.
+    """
+    horizontal, vertical = screen.horizontal, screen.vertical
+    for number, line in enumerate(lines):
+        if line.samples != horizontal.total:
+            raise VideoError(
+                f"line {number}: {line.samples} pixel clocks between leading edges of HS, expected {horizontal.total}"
+            )
+    sample_bits = _CONTROL_BITS + 3 * colour_bits
+    characters = np.frombuffer("".join(line.bits for line in lines).encode(), np.uint8)
+    samples = characters.reshape(vertical.total, -1, sample_bits)[:, ::-1][:, : horizontal.total]
+    bits = samples & 1  # "0" and "1" are 0x30 and 0x31
+    if (unknown := ((samples | 1) != ord("1")).any(axis=-1)).any():
+        line, sample = np.argwhere(unknown)[0]
+        raise VideoError(f"line {line}, sample {sample}: an output is neither 0 nor 1; {unknown.sum()} samples are so")
+
+    column = np.arange(horizontal.total)
+    row = np.arange(vertical.total)[:, None]
+    in_picture = _visible(row, vertical) & _visible(column, horizontal)
+    _check("HS", bits[..., 0], (column < horizontal.sync) == horizontal.active_high)
+    _check("VS", bits[..., 1], (row < vertical.sync) == vertical.active_high)
+    _check("BLANK_N", bits[..., 2], in_picture)
+    _check("SYNC_N", bits[..., 3], np.False_)
+    colours = np.packbits(bits[..., _CONTROL_BITS:].reshape(*in_picture.shape, 3, colour_bits), axis=-1)[..., 0]
+    _check("any colour in blanking", np.where(in_picture, False, colours.any(axis=-1)), np.False_)
+    return colours[in_picture].reshape(vertical.visible, horizontal.visible, 3)
+
+
+def _visible(position: np.ndarray, span: Span) -> np.ndarray:
+    """Where a position counted from the sync's leading edge is in the picture."""
+    start = span.sync + span.back
+    return (position >= start) & (position < start + span.visible)
+
+
+def _check(what: str, seen: np.ndarray, expected: np.ndarray) -> None:
+    """Compare lines x samples with what the standard expects of them."""
+    wrong = seen != expected
+    if not wrong.any():
+        return
+    line, sample = np.unravel_index(np.argmax(wrong), wrong.shape)
+    level = int(np.broadcast_to(expected, wrong.shape)[line, sample])
+    raise VideoError(
+        f"line {line}, sample {sample}: {what} is {1 - level}, expected {level}; {wrong.sum()} samples are wrong"
+    )

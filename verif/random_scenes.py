@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: MIT
+"""Random scenes for soaking the whole design, in styles that each strain something else."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from raycaster.configuration import WORLD_SIZE
+from raycaster.golden.random_world import EXTREMES, ROOM, random_camera, random_rectangles
+from raycaster.golden.world import Rectangles
+from raycaster.scene import Camera, Rectangle, Scene
+
+STYLES = ("room", "boxes", "slits", "degenerate", "extreme")
+
+
+def style_of(seed: int) -> str:
+    """The style of a seed's scene; each has its turn."""
+    return STYLES[seed % len(STYLES)]
+
+
+def random_scene(seed: int, rectangles: int, reflections: int) -> Scene:
+    """The scene of a seed; its title says the seed and the style.
+
+    Args:
+        seed: equal seeds make equal scenes.
+        rectangles: at most so many, 1 or more.
+        reflections: at most so many.
+    """
+    rng = np.random.default_rng(seed)
+    style = style_of(seed)
+    corners = _corners(rng, style, rectangles)
+    table = Rectangles(corners, rng.integers(256, size=(len(corners), 3)).astype(np.uint8), np.ones(len(corners), bool))
+    colours = table.colours.tolist()
+    return Scene(
+        title=f"{style} of seed {seed}",
+        reflections=int(rng.integers(reflections + 1)),
+        background=tuple(rng.integers(256, size=3).tolist()),
+        camera=Camera(position=tuple(random_camera(rng, table).tolist())),
+        rect=tuple(
+            Rectangle(corners=tuple(map(tuple, pair)), colour=tuple(colour))
+            for pair, colour in zip(corners.tolist(), colours, strict=True)
+        ),
+    )
+
+
+def _corners(rng: np.random.Generator, style: str, count: int) -> np.ndarray:
+    """int64 (rectangles, 2, 3), each with a plane."""
+    if style == "degenerate":
+        table = random_rectangles(rng, count)
+        corners = table.corners[table.visible]
+    elif style == "extreme":
+        corners = _flatten(rng, rng.choice(EXTREMES, (count, 2, 3)))
+    elif style == "slits":
+        corners = _flatten(rng, rng.integers(WORLD_SIZE, size=(count, 2, 3)))
+        thin = np.arange(count), rng.integers(3, size=count)
+        corners[(thin[0], 1, thin[1])] = np.minimum(corners[(thin[0], 0, thin[1])] + rng.integers(2, size=count), 511)
+        corners = _flatten(rng, corners)
+    elif style == "boxes":
+        corners = np.concatenate([_box(rng) for _ in range(-(-count // 6))])[:count]
+    else:
+        inside = _flatten(rng, rng.integers(WORLD_SIZE, size=(count, 2, 3)))
+        corners = np.concatenate([np.array(ROOM), inside])[:count]
+    return rng.permutation(corners)[:count] if len(corners) else np.zeros((1, 2, 3), np.int64)
+
+
+def _flatten(rng: np.random.Generator, corners: np.ndarray) -> np.ndarray:
+    """Give each pair of corners a plane on a random axis."""
+    flat = rng.integers(3, size=len(corners))
+    index = np.arange(len(corners))
+    corners[index, 1, flat] = corners[index, 0, flat]
+    return corners
+
+
+def _box(rng: np.random.Generator) -> np.ndarray:
+    """The six sides of a box; int64 (6, 2, 3)."""
+    low, high = np.sort(rng.integers(WORLD_SIZE, size=(2, 3)), axis=0)
+    sides = np.broadcast_to([low, high], (6, 2, 3)).copy()
+    for axis in range(3):
+        sides[2 * axis, 1, axis] = low[axis]
+        sides[2 * axis + 1, 0, axis] = high[axis]
+    return sides

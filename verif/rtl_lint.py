@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: MIT
+"""`python -m raycaster.verif.rtl_lint`: what MyHDL converts wrongly, or not at all, in the sources of the hardware.
+
+MyHDL computes with integers of any size, Verilog with the width of the widest operand. So a carry that one keeps the
+other loses where a result is compared, shifted, sliced or added to again; no tool warns. Here each process computes
+one operator at a time, into a signal whose width is declared. What stands for a number at conversion (literals,
+constants, loop variables, and whatever is computed of these alone) is free.
+
+Rules, for functions decorated with always, always_comb, always_seq or instance:
+  arithmetic  the result of an operator on signals is used in any way but assigned; (a + b) % (1 << n) may be assigned
+  call        something is called that Verilog does not have
+  slice       bits are taken of an expression that is no signal
+  return      converts to disable, which synthesis refuses
+  docstring   breaks the conversion on newer Pythons
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import repeat
+from pathlib import Path
+
+import raycaster.rtl
+from raycaster.errors import UserError
+from raycaster.options import run_command
+
+DECORATORS = {"always", "always_comb", "always_seq", "instance"}
+ALLOWED_CALLS = {"intbv", "modbv", "concat", "int", "len", "range", "bool"}
+SIGNAL_MAKERS = {"Signal", "ResetSignal", "ConcatSignal", "unsigned", "signed", "bit", "constant", "unconnected"}
+ARITHMETIC = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.FloorDiv, ast.Mod, ast.Pow, ast.LShift, ast.RShift)
+
+
+@dataclass(frozen=True, order=True)
+class Finding:
+    """A place that breaks a rule, and what to do about it."""
+
+    path: Path
+    line: int
+    rule: str
+    advice: str
+
+    def __str__(self) -> str:
+        return f"{self.path}:{self.line}: {self.rule}: {self.advice}"
+
+
+def check(path: Path) -> list[Finding]:
+    """All findings in a source file, by line.
+
+    Raises:
+        UserError: the file cannot be read or is not Python.
+    """
+    try:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, SyntaxError) as error:
+        raise UserError(f"{path}: {error}") from None
+    findings: set[Finding] = set()
+    _visit(tree.body, _module_constants(tree), path, findings)
+    return sorted(findings)
+
+
+Known = dict[str, bool]
+"""Names, and whether they are constant when the design is converted; the others are signals."""
+
+
+def _visit(body: Sequence[ast.stmt], known: Known, path: Path, findings: set[Finding]) -> None:
+    """Find the processes; names become known on the way down to them."""
+    known = dict(known)
+    for statement in body:
+        if isinstance(statement, ast.FunctionDef):
+            if any(_name(decorator) in DECORATORS for decorator in statement.decorator_list):
+                findings.update(_Process(known, path).check(statement))
+            else:
+                _visit(statement.body, known | _parameters(statement), path, findings)
+        else:
+            _learn(statement, known)
+            for inner in ("body", "orelse", "finalbody"):
+                _visit(getattr(statement, inner, []), known, path, findings)
+
+
+def _module_constants(tree: ast.Module) -> Known:
+    """By the convention of names: what is written in capitals does not change."""
+    return {node.id: True for node in ast.walk(tree) if isinstance(node, ast.Name) and node.id.isupper()}
+
+
+def _parameters(function: ast.FunctionDef) -> Known:
+    """A block's arguments; those with a type or a default are no ports."""
+    arguments = [*function.args.posonlyargs, *function.args.args]
+    defaults = len(function.args.defaults)
+    parameters = {argument.arg: argument.annotation is not None for argument in arguments}
+    parameters |= {argument.arg: True for argument in arguments[len(arguments) - defaults :]}
+    return parameters | {argument.arg: True for argument in function.args.kwonlyargs}
+
+
+def _learn(statement: ast.stmt, known: Known) -> None:
+    """Add the names that a statement gives values."""
+    if not isinstance(statement, ast.Assign):
+        return
+    for target in statement.targets:
+        if isinstance(target, ast.Tuple) and isinstance(statement.value, ast.Tuple):
+            pairs = zip(target.elts, statement.value.elts, strict=True)
+        elif isinstance(target, ast.Tuple):
+            pairs = zip(target.elts, repeat(statement.value))
+        else:
+            pairs = [(target, statement.value)]
+        constant = {name.id: _constant(value, known) for name, value in pairs if isinstance(name, ast.Name)}
+        known.update(constant)
+
+
+def _constant(node: ast.AST, known: Known) -> bool:
+    """Whether an expression is a number, or something else that is no signal, when the design is converted."""
+    match node:
+        case ast.Name():
+            return known.get(node.id, False)
+        case ast.Call():
+            return _constant_call(node, known)
+        case ast.GeneratorExp() | ast.ListComp():
+            inner = dict(known)
+            for generator in node.generators:
+                constant = _constant(generator.iter, inner)
+                inner |= {name.id: constant for name in ast.walk(generator.target) if isinstance(name, ast.Name)}
+            return _constant(node.elt, inner)
+        case _:
+            parts = (part for part in ast.iter_child_nodes(node) if isinstance(part, ast.expr))
+            return all(_constant(part, known) for part in parts)
+
+
+def _constant_call(node: ast.Call, known: Known) -> bool:
+    """A function of constants is constant, but for what makes signals: classes, some functions, and slicing calls."""
+    name = _name(node.func)
+    if name == "len":
+        return True
+    parts = [*node.args, *(keyword.value for keyword in node.keywords)]
+    if isinstance(node.func, ast.Name):
+        makes_signal = name in SIGNAL_MAKERS or name[:1].isupper() or name in known
+    else:
+        makes_signal = isinstance(node.func, ast.Subscript)
+        parts.append(node.func)
+    return not makes_signal and all(_constant(part, known) for part in parts)
+
+
+def _name(node: ast.expr) -> str:
+    """The last part of a name, of what is called where it is a call."""
+    match node:
+        case ast.Call():
+            return _name(node.func)
+        case ast.Attribute():
+            return node.attr
+        case ast.Name():
+            return node.id
+    return ""
+
+
+class _Process:
+    """One function that becomes a process."""
+
+    def __init__(self, known: Known, path: Path):
+        self._known, self._path = dict(known), path
+
+    def check(self, function: ast.FunctionDef) -> Iterator[Finding]:
+        if ast.get_docstring(function) is not None:
+            yield self._finding(function.body[0], "docstring", "make it a comment above the decorator")
+        for node in ast.walk(function):
+            if isinstance(node, ast.For):
+                self._known |= {name.id: True for name in ast.walk(node.target) if isinstance(name, ast.Name)}
+        for statement in function.body:
+            yield from self._statement(statement)
+
+    def _statement(self, node: ast.AST) -> Iterator[Finding]:
+        if isinstance(node, ast.Return):
+            yield self._finding(node, "return", "write if and else around what it skips")
+        elif isinstance(node, (ast.FunctionDef, ast.Lambda)):
+            yield self._finding(node, "call", "write the helper's statements where it is called")
+        elif isinstance(node, ast.AugAssign) and self._on_signals(node.target, node.value):
+            yield from self._expression(node.value)
+        elif isinstance(node, (ast.Assign, ast.AnnAssign)) and node.value is not None:
+            for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
+                yield from self._expression(target)
+            yield from self._assigned(node.value)
+        else:
+            for child in ast.iter_child_nodes(node):
+                if isinstance(child, ast.expr):
+                    yield from self._expression(child)
+                else:
+                    yield from self._statement(child)
+
+    def _assigned(self, node: ast.expr) -> Iterator[Finding]:
+        """The whole right side: one operator may stand here, and the wrap of its result to the target's width."""
+        if self._wraps(node):
+            node = node.left
+        if self._operates(node):
+            for operand in (node.left, node.right) if isinstance(node, ast.BinOp) else (node.operand,):
+                yield from self._expression(operand)
+        else:
+            yield from self._expression(node)
+
+    def _expression(self, node: ast.AST) -> Iterator[Finding]:
+        """Any other place: no operator on signals."""
+        if isinstance(node, ast.expr) and _constant(node, self._known):
+            return
+        if isinstance(node, (ast.Lambda, ast.ListComp, ast.GeneratorExp)):
+            yield self._finding(node, "call", "write a for loop")
+            return
+        if self._operates(node):
+            yield self._finding(
+                node, "arithmetic", "assign it to a signal of declared width by itself, and use that one"
+            )
+        if isinstance(node, ast.Call):
+            yield from self._call(node)
+        if isinstance(node, ast.Subscript) and not isinstance(node.value, (ast.Name, ast.Attribute, ast.Subscript)):
+            yield self._finding(node, "slice", "assign the expression to a signal, and take bits of that one")
+        for child in ast.iter_child_nodes(node):
+            yield from self._expression(child)
+
+    def _call(self, node: ast.Call) -> Iterator[Finding]:
+        name = _name(node.func)
+        if name in ("max", "min", "abs"):
+            yield self._finding(node, "call", f"Verilog has no {name}; write if and else")
+        elif isinstance(node.func, ast.Attribute) and name == "signed":
+            return
+        elif name not in ALLOWED_CALLS:
+            allowed = ", ".join(sorted(ALLOWED_CALLS))
+            yield self._finding(node, "call", f"only {allowed} convert; write {name or 'it'} out, or call it outside")
+
+    def _operates(self, node: ast.AST) -> bool:
+        match node:
+            case ast.BinOp(op=op) if isinstance(op, ARITHMETIC):
+                return self._on_signals(node.left, node.right)
+            case ast.UnaryOp(op=ast.USub()):
+                return self._on_signals(node.operand)
+        return False
+
+    def _wraps(self, node: ast.expr) -> bool:
+        """`(...) % (1 << n)`: the literal makes Verilog compute in 32 bits, and the result is right in as many."""
+        match node:
+            case ast.BinOp(op=ast.Mod(), right=ast.BinOp(left=ast.Constant(value=1), op=ast.LShift(), right=width)):
+                return _constant(width, self._known)
+        return False
+
+    def _on_signals(self, *operands: ast.expr) -> bool:
+        return not all(_constant(operand, self._known) for operand in operands)
+
+    def _finding(self, node: ast.AST, rule: str, advice: str) -> Finding:
+        return Finding(self._path, node.lineno, rule, advice)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command; returns its exit code."""
+    parser = argparse.ArgumentParser(
+        prog="python -m raycaster.verif.rtl_lint",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "paths", nargs="*", type=Path, metavar="PATH", help="files and directories (default: the hardware's)"
+    )
+    arguments = parser.parse_args(argv)
+    files: list[Path] = []
+    for path in arguments.paths or [Path(raycaster.rtl.__path__[0])]:
+        files += sorted(path.rglob("*.py")) if path.is_dir() else [path]
+    findings = [finding for path in files for finding in check(path)]
+    for finding in findings:
+        print(finding)
+    print(f"{len(files)} files, {len(findings)} findings", file=sys.stderr)
+    return int(bool(findings))
+
+
+if __name__ == "__main__":
+    run_command(main)

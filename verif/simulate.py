@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: MIT
+"""Show scenes through the converted hardware, and hold every pixel against golden: `make sim`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Iterable
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from raycaster.configuration import CLOCK_HZ, Configuration, configure
+from raycaster.errors import UserError
+from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.scene import Scene, load_scene
+from raycaster.verif.job import Job
+from raycaster.verif.simulator import BUILD, SIMULATORS, Model, SimulationError, build_model, find_tool, run_bench
+
+SCENES = Path("scenes")
+POLL_SECONDS = 0.1
+LOG_COLUMNS = 120
+
+
+@dataclass(frozen=True)
+class Run:
+    """A scene, and the design that is to show it."""
+
+    path: Path
+    scene: Scene
+    configuration: Configuration
+    reflections: int
+
+    @property
+    def output(self) -> Path:
+        """Directory of its pictures, below `sim/`."""
+        return Path(self.path.stem)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a run: results as in `result.json`, or why there are none to trust."""
+
+    run: Run
+    result: dict[str, Any] | None
+    failure: str = ""
+    waves: Path | None = None
+
+
+def plan_run(path: Path, options: dict[str, Any]) -> Run:
+    """Read a scene and choose its design: rows and reflections are the scene's unless they are given.
+
+    Raises:
+        UserError: the scene or the options are not good; one line.
+    """
+    scene = load_scene(path)
+    chosen = dict(options)
+    if "rows" not in chosen and chosen.get("screen", "vga") == "vga":
+        if scene.rows == 180:
+            raise UserError(f"{path}: rows: 180 rows need the beam engine; give 240 or 200, or ROWS=240")
+        chosen["rows"] = scene.rows
+    chosen.setdefault("reflections", scene.reflections)
+    configuration = configure(**chosen)
+    load_scene(path, configuration.rectangles)  # refuses more rectangles than that
+    return Run(path, scene, configuration, configuration.reflections)
+
+
+def plan_runs(paths: Iterable[Path], options: dict[str, Any]) -> list[Run]:
+    """Plan all before anything is built, so that a mistake costs no time.
+
+    Raises:
+        UserError: as `plan_run`, or two scenes would write into one directory.
+    """
+    runs = [plan_run(path, options) for path in paths]
+    seen: dict[Path, Path] = {}
+    for run in runs:
+        if (other := seen.setdefault(run.output, run.path)) != run.path:
+            raise UserError(f"{run.path}: has the same file name as {other}, so their pictures would share a directory")
+    return runs
+
+
+def simulate(run: Run, model: Model, sim: Path, progress: Path) -> Outcome:
+    """Run one scene; its directory in `sim` appears when all is in it.
+
+    Args:
+        run: the scene.
+        model: a model of its configuration.
+        sim: the directory of all outputs.
+        progress: the file in which the simulation counts visible lines.
+    """
+    target = sim / run.output
+    sim.mkdir(parents=True, exist_ok=True)
+    partial = Path(tempfile.mkdtemp(prefix=f".{run.output}-", dir=sim))
+    job = Job(
+        configuration=run.configuration,
+        scene=str(run.path.resolve()),
+        output=str(partial.resolve()),
+        reflections=run.reflections,
+        progress=str(progress.resolve()),
+    )
+    failure, waves = "", None
+    try:
+        waves = run_bench(model, "raycaster.verif.frame_bench", job, partial)
+    except SimulationError as error:
+        failure = str(error).replace(str(partial.resolve()), str(target))
+    partial.chmod(0o755)
+    shutil.rmtree(target, ignore_errors=True)
+    partial.rename(target)
+    results = target / "result.json"
+    result = json.loads(results.read_text()) if results.exists() else None
+    if failure and (target / "diff.png").exists():
+        failure += f"; the difference is {target / 'diff.png'}"
+    return Outcome(run, result, failure, target / waves.name if waves else None)
+
+
+def build_models(runs: list[Run], simulator: str, waves: bool, build: Path, console: Console) -> dict[str, Model]:
+    """One model for each configuration, by its name."""
+    models: dict[str, Model] = {}
+    for configuration in {run.configuration.name: run.configuration for run in runs}.values():
+        with console.status(f"building {configuration.name} with {simulator}"):
+            started = time.perf_counter()
+            model = build_model(configuration, simulator, waves=waves, build=build)
+        took = f"built in {time.perf_counter() - started:.1f} s" if model.fresh else "was built before"
+        console.print(f"{configuration.name} ({simulator}) {took}", highlight=False)
+        models[configuration.name] = model
+    return models
+
+
+def run_all(runs: list[Run], models: dict[str, Model], sim: Path, jobs: int, console: Console) -> list[Outcome]:
+    """Run scenes in parallel, and show how far each is."""
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed}/{task.total} lines"))
+    with (
+        tempfile.TemporaryDirectory() as directory,
+        ThreadPoolExecutor(jobs) as pool,
+        Progress(*columns, TimeElapsedColumn(), console=console, transient=True) as bars,
+    ):
+        futures: dict[Future[Outcome], tuple[Any, Path]] = {}
+        for run in runs:
+            progress = Path(directory) / run.output
+            bar = bars.add_task(run.path.stem, total=run.configuration.screen_geometry.vertical.visible)
+            futures[pool.submit(simulate, run, models[run.configuration.name], sim, progress)] = (bar, progress)
+        pending = set(futures)
+        while pending:
+            _, pending = wait(pending, timeout=POLL_SECONDS, return_when=FIRST_COMPLETED)
+            for bar, progress in futures.values():
+                text = progress.read_text() if progress.exists() else ""
+                if text:
+                    bars.update(bar, completed=int(text))
+        return [future.result() for future in futures]
+
+
+def show(outcomes: list[Outcome], console: Console) -> None:
+    """Print a table, a line a scene, then what went wrong and where to look."""
+    # As narrow as a terminal of 80 columns wants it.
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+    table.add_column("scene", no_wrap=True)
+    for heading in ("pixels", "wrong", "vs\nexact", "row", "group", "slack", "alone\nHz", "time\ns"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for outcome in outcomes:
+        table.add_row(outcome.run.path.stem, *_cells(outcome))
+    console.print(table)
+    console.print(
+        "wrong: pixels unlike golden. vs exact: pixels unlike the true picture, the engine's own error. row, group: "
+        "system cycles of the slowest, of those it has. alone: frame rate that the renderer alone could hold.",
+        style="dim",
+    )
+    for outcome in outcomes:
+        if outcome.waves:
+            console.print(f"{outcome.run.path.stem}: waveforms are in {outcome.waves}", highlight=False, soft_wrap=True)
+    for outcome in outcomes:
+        if outcome.failure:
+            console.print(f"{outcome.run.path.stem}: {outcome.failure}", style="red", markup=False, soft_wrap=True)
+
+
+def _cells(outcome: Outcome) -> list[str]:
+    result, configuration = outcome.result, outcome.run.configuration
+    if result is None:
+        return ["[red]failed[/]"] + 7 * [""]
+    row, group, wrong = result["worst_row_cycles"], result["worst_group_cycles"], result["wrong_vs_golden"]
+    budget = configuration.group_budget
+    return [
+        str(result["pixels"]),
+        f"[red]{wrong}[/]" if wrong else "0",
+        str(result["wrong_vs_exact"]),
+        f"{row}/{configuration.screen_geometry.row_cycles}",
+        f"{group}/{budget}",
+        "[red]underrun[/]" if result["underrun"] else str(budget - group),
+        f"{CLOCK_HZ / (configuration.rows * row):.0f}" if row else "",
+        f"{result['sim_seconds']:.2f}",
+    ]
+
+
+def parse_arguments() -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(prog="python -m raycaster.verif.simulate", description=__doc__)
+    parser.add_argument(
+        "--scene",
+        action="append",
+        type=Path,
+        metavar="PATH",
+        help="a scene file; may be repeated (default: all of scenes/)",
+    )
+    parser.add_argument("--simulator", default="verilator", metavar="SIM", help=" or ".join(SIMULATORS))
+    parser.add_argument("--waves", action="store_true", help="write waveforms (FST) beside the pictures")
+    parser.add_argument(
+        "--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes (default: build)"
+    )
+    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="scenes at a time (default: 2)")
+    add_configuration_options(parser)
+    return parser.parse_args()
+
+
+def main() -> int:
+    """The command; returns its exit code."""
+    arguments = parse_arguments()
+    if arguments.simulator not in SIMULATORS:
+        raise UserError(f"simulator: {' or '.join(SIMULATORS)}, not {arguments.simulator}")
+    # make hands its variables down in the environment, where cocotb would take them for its own.
+    for name in ("WAVES", "GUI"):
+        os.environ.pop(name, None)
+    paths = arguments.scene or sorted(SCENES.glob("*.toml"))
+    if not paths:
+        raise UserError(f"there are no scenes in {SCENES.resolve()}; name one with --scene")
+    runs = plan_runs(paths, given_options(arguments))
+    find_tool(arguments.simulator)
+    # Into a file or a pipe rich would print as if on 80 columns, which the table does not fit.
+    console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
+    try:
+        models = build_models(runs, arguments.simulator, arguments.waves, arguments.build, console)
+    except SimulationError as error:
+        console.print(str(error), style="red", markup=False, soft_wrap=True)
+        return 1
+    outcomes = run_all(runs, models, arguments.build / "sim", max(1, arguments.jobs), console)
+    show(outcomes, console)
+    return int(any(outcome.failure for outcome in outcomes))
+
+
+if __name__ == "__main__":
+    run_command(main)

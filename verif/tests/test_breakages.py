@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: MIT
+"""The bench must notice: designs broken on purpose, each with the complaint that it must cause."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+
+import pytest
+from conftest import BUILD, SMALL_SCENE, Bench
+
+from raycaster.configuration import configure
+from raycaster.registers import address_bits
+from raycaster.verif.simulator import SimulationError, convert
+
+CONFIGURATION = configure(screen="tiny", units=8, rectangles=3)
+
+# A module that passes for the design, with the design inside and one thing wrong at the video output.
+WRAPPER = """
+module ray_caster_module (
+    input clk, input reset,
+    input [{address_top}:0] avs_s0_address, input avs_s0_read, input avs_s0_write,
+    input [31:0] avs_s0_writedata, input [3:0] avs_s0_byteenable,
+    output [31:0] avs_s0_readdata, output avs_s0_readdatavalid, output avs_s0_waitrequest, output irq,
+    output [7:0] vga_r, output [7:0] vga_g, output [7:0] vga_b,
+    output vga_hs, output vga_vs, output vga_blank_n, output vga_sync_n, output vga_clk
+);
+    wire [7:0] r, g, b;
+    wire hs, vs, blank_n, pixel_clk;
+    sound_module inner (clk, reset, avs_s0_address, avs_s0_read, avs_s0_write, avs_s0_writedata, avs_s0_byteenable,
+        avs_s0_readdata, avs_s0_readdatavalid, avs_s0_waitrequest, irq, r, g, b, hs, vs, blank_n, vga_sync_n, pixel_clk);
+    // The pixel's position in the picture, from 1, for faults in one place only.
+    integer x, y;
+    always @(negedge pixel_clk) #1 begin
+        x <= blank_n ? x + 1 : 0;
+        y <= !vs ? 0 : blank_n && x == 0 ? y + 1 : y;
+    end
+    // A pixel late: taken in the middle of a pixel, given out at its end.
+    reg hs_taken, hs_late, vs_taken, vs_late;
+    reg [7:0] r_taken, r_late;
+    always @(posedge pixel_clk) {{hs_taken, vs_taken, r_taken}} <= {{hs, vs, r}};
+    always @(negedge pixel_clk) {{hs_late, vs_late, r_late}} <= {{hs_taken, vs_taken, r_taken}};
+    assign vga_hs = {hs};
+    assign vga_vs = {vs};
+    assign vga_blank_n = {blank_n};
+    assign vga_clk = {clk};
+    assign vga_r = {r};
+    assign vga_g = g;
+    assign vga_b = b;
+endmodule
+"""
+PINS = {"hs": "hs", "vs": "vs", "blank_n": "blank_n", "clk": "pixel_clk", "r": "r"}
+
+
+@pytest.mark.parametrize(
+    ("pins", "complaint"),
+    [
+        pytest.param({}, None, id="sound"),
+        pytest.param({"r": "r ^ (x == 63 && y == 40)"}, "frame: 1 of 12288 pixels are wrong", id="one-bit-of-one-pixel"),
+        pytest.param({"r": "blank_n ? r_late : 8'd0"}, "pixels are wrong", id="picture-a-pixel-late"),
+        pytest.param({"hs": "hs_late"}, "line 1, sample 159: VS is 1, expected 0", id="hs-a-pixel-late"),
+        pytest.param({"vs": "vs_late"}, "VS is 1, expected 0", id="vs-a-pixel-late"),
+        pytest.param({"hs": "hs || hs_late"}, "line 0, sample 15: HS is 1, expected 0", id="hs-a-pixel-short"),
+        pytest.param({"hs": "hs && hs_late"}, "line 0, sample 16: HS is 0, expected 1", id="hs-a-pixel-long"),
+        pytest.param({"hs": "!hs"}, "line 0, sample .*: .* is", id="hs-upside-down"),
+        pytest.param({"vs": "!vs"}, "VS is 0, expected 1", id="vs-upside-down"),
+        pytest.param({"blank_n": "blank_n && x != 1"}, "BLANK_N is 0, expected 1", id="blank-a-pixel-long"),
+        pytest.param({"r": "blank_n ? r : 8'd1"}, "any colour in blanking is 1, expected 0", id="grey-blanking"),
+        pytest.param({"r": "x == 5 ? 8'bx : r"}, "an output is neither 0 nor 1", id="unknown"),
+        pytest.param({"clk": "!pixel_clk"}, "line 0, sample .*: HS is", id="wrong-clock-edge"),
+        pytest.param({"r": "r_taken & {8{blank_n}}"}, "video data changed at .* rising edges", id="unstable"),
+        pytest.param({"hs": "1'b1"}, "no leading edge of HS", id="no-hs"),
+        pytest.param({"vs": "1'b1"}, "no leading edge of VS", id="no-vs"),
+    ],
+)
+def test_is_noticed(bench: Bench, tmp_path, pins, complaint):
+    """One fault at a time; without any, the wrapper makes no difference."""
+    files = []
+    for source in convert(CONFIGURATION, BUILD):
+        copy = tmp_path / source.name
+        copy.write_text(re.sub(r"\bmodule ray_caster_module\b", "module sound_module", source.read_text()))
+        files.append(copy)
+    wrapper = tmp_path / "wrapper.v"
+    wrapper.write_text(WRAPPER.format(address_top=address_bits(CONFIGURATION.rectangles) - 1, **PINS | pins))
+    noticed = pytest.raises(SimulationError, match=complaint) if complaint else contextlib.nullcontext()
+    with noticed:
+        bench("frame_bench", CONFIGURATION, "icarus", SMALL_SCENE, verilog=[*files, wrapper])

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+"""The compiled arithmetic benches, briefly: they pass on the design, and catch designs that were spoilt."""
+
+import re
+
+import pytest
+
+from raycaster.errors import UserError
+from raycaster.verif import exhaustive
+from raycaster.verif.exhaustive import Bench, Builder, Mismatch, benches, main, run
+from raycaster.verif.seeds import repeat, seed
+
+VECTORS = 200_000
+BENCHES = {bench.label: bench for bench in benches(24 * VECTORS, VECTORS, 4)}
+
+
+@pytest.fixture(scope="module")
+def builder(tmp_path_factory) -> Builder:
+    return Builder(tmp_path_factory.mktemp("exhaustive"))
+
+
+def run_briefly(builder: Builder, bench: Bench, spoil=str) -> exhaustive.Outcome:
+    return run(builder.build(bench, spoil), bench, seed(), lambda _: None)
+
+
+@pytest.mark.parametrize("label", ["divider-f0t-d1", "divider-f0n-d2", "intersection-f0t-d3", "intersection-f8n-d2"])
+def test_a_part_of_the_vectors(label, builder):
+    outcome = run_briefly(builder, BENCHES[label])
+    assert outcome.vectors == VECTORS, repeat()
+    assert VECTORS // 5 < outcome.valid < VECTORS, "quotients were to overflow, and not to"
+
+
+def test_every_operand_of_a_narrow_unit(builder):
+    bench = BENCHES["reduced-w3-f1n-d3"]
+    outcome = run_briefly(builder, bench)
+    assert outcome.vectors == bench.total == 1 << (3 * 4 + 2 * 4)
+    assert outcome.valid > bench.total // 8
+
+
+def test_every_division_is_in_the_full_run():
+    full = benches(1, 0, 4)
+    assert [bench.total for bench in full if bench.kind == "divider"] == [67_592 * 512] * 6
+
+
+@pytest.mark.parametrize(
+    ("label", "before", "after"),
+    [
+        # The quotient that is the first to overflow.
+        ("divider-f0t-d1", r"too_large <= \((.*) >= (\w+)\)", r"too_large <= (\1 > \2)"),
+        ("divider-f0n-d2", r"twice_remainder >= divisor_held", r"twice_remainder > divisor_held"),
+        ("divider-f0t-d3", r"difference < 0", r"difference <= 0"),
+        ("intersection-f0t-d1", r"stored_negative <= loaded_negative", r"stored_negative <= started_negative"),
+        ("intersection-f4n-d3", r"\(stored_ahead && \(!overflow\)\)", r"stored_ahead"),
+        ("intersection-f1t-d2", r"distance <= loaded_distance", r"distance <= started_distance"),
+        ("reduced-w4-f0t-d2", r"backward = \(a - quotient\)", r"backward = (a + quotient)"),
+    ],
+)
+def test_what_is_spoilt_is_caught(label, before, after, builder):
+    spoilt = []
+
+    def spoil(text: str) -> str:
+        text, count = re.subn(before, after, text)
+        spoilt.append(count)
+        return text
+
+    with pytest.raises(Mismatch, match=r"mismatch .*hardware .*expected"):
+        run_briefly(builder, BENCHES[label], spoil)
+    assert sum(spoilt) == 1, "the text was to be changed in one place"
+
+
+def test_the_command_reports(capsys):
+    assert main(["--only", "divider-f0t-d3", "--divisions", str(VECTORS), "--seed", "7"]) == 0
+    report = capsys.readouterr().out
+    assert re.search(rf"divider-f0t-d3 +{VECTORS:,} +[\d,]+ +0 ", report)
+    assert "--only divider-f0t-d3" in report and "--seed 7" in report
+
+
+def test_the_command_fails_at_a_mismatch(monkeypatch, capsys):
+    build = Builder.build
+    monkeypatch.setattr(
+        Builder, "build", lambda self, bench: build(self, bench, lambda text: text.replace("difference < 0", "1"))
+    )
+    assert main(["--only", "divider-f0t-d3", "--divisions", str(VECTORS), "--seed", "7"]) == 1
+    complaint = capsys.readouterr().err
+    assert re.match(r"divider-f0t-d3: mismatch \d+ / \d+: hardware", complaint)
+    assert "repeat with: python -m raycaster.verif.exhaustive --only divider-f0t-d3" in complaint
+
+
+@pytest.mark.parametrize("arguments", [["--only", "adder"], ["--count", "0"], ["--divisions", "-1"], ["--seed", "-1"]])
+def test_what_a_user_can_mend_is_told(arguments):
+    with pytest.raises(UserError):
+        main(arguments)

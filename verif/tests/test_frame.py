@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: MIT
+"""Frames of the whole design, each pixel of the visible screen held against golden."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import pytest
+from conftest import BUILD, ROOT, SMALL_SCENE, Bench
+
+from raycaster.configuration import configure
+from raycaster.scene import load_scene
+
+SCENES = sorted((ROOT / "scenes").glob("*.toml"))
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=lambda path: path.stem)
+def test_full_size(bench: Bench, scene):
+    """Every scene, as `make sim` shows it."""
+    contents = load_scene(scene)
+    configuration = configure(rows=contents.rows, reflections=contents.reflections)
+    result = json.loads((bench("frame_bench", configuration, "verilator", scene) / "result.json").read_text())
+    assert result["pixels"] == 640 * 2 * configuration.rows
+    assert result["wrong_vs_golden"] == 0
+    assert not result["underrun"]
+    assert result["worst_group_cycles"] <= configuration.group_budget
+    assert result["worst_row_cycles"] <= configuration.screen_geometry.row_cycles
+
+
+def test_tiny_in_icarus():
+    """Every scene on the small screen in Icarus, through the command itself."""
+    build = BUILD / "test" / "tiny_in_icarus"
+    options = ("--screen", "tiny", "--simulator", "icarus", "--build", str(build))
+    subprocess.run([sys.executable, "-m", "raycaster.verif.simulate", *options], cwd=ROOT, check=True)
+    for scene in SCENES:
+        result = json.loads((build / "sim" / scene.stem / "result.json").read_text())
+        assert result["pixels"] == 128 * 96
+        assert result["wrong_vs_golden"] == 0
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"units": 2, "rectangles": 1, "reflections": 0, "divider_bits": 3},
+        {"units": 64, "rectangles": 1, "reflections": 0, "colour_bits": 1},
+        {"units": 16, "rectangles": 32, "reflections": 0},
+        {"units": 16, "reflections": 2, "divider_bits": 2},
+        {"units": 8, "rounding": "nearest", "colour_bits": 4},
+        {"units": 8, "fraction_bits": 1, "divider_bits": 3},
+        {"units": 8, "fraction_bits": 4},
+        {"units": 8, "fraction_bits": 4, "rounding": "nearest", "divider_bits": 2},
+        {"units": 8, "fraction_bits": 8, "rounding": "nearest", "reflections": 2},
+    ],
+    ids=lambda options: "-".join(f"{name}={value}" for name, value in options.items()),
+)
+def test_configurations(bench: Bench, tmp_path, options):
+    """Each option at its ends, on Icarus, which builds at once."""
+    scene = SMALL_SCENE.read_text()
+    if options.get("rectangles") == 1:
+        scene = scene[: scene.index("[[rect]]", scene.index("[[rect]]") + 1)]
+    path = tmp_path / "scene.toml"
+    path.write_text(scene)
+    configuration = configure(screen="tiny", **{"rectangles": 3} | options)
+    bench("frame_bench", configuration, "icarus", path)

@@ -1,0 +1,366 @@
+# SPDX-License-Identifier: MIT
+"""The contract of the conversion with its hierarchy kept, which rests on MyHDL's internals."""
+
+import filecmp
+import importlib.metadata
+import inspect
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from myhdl import ConcatSignal, always, always_comb, block
+
+from raycaster.configuration import configure
+from raycaster.rtl import convert
+from raycaster.rtl.convert import FILE_LIST, write_verilog
+from raycaster.rtl.hierarchy import (
+    HierarchyError,
+    Module,
+    Port,
+    constant,
+    convert_hierarchy,
+    quick_elaboration,
+    unconnected,
+)
+from raycaster.rtl.interfaces import Interface
+from raycaster.rtl.widths import bit, signed, unsigned
+from raycaster.verif.leaf import Leaf
+from raycaster.verif.seeds import repeat, seed
+
+
+class Pair(Interface):
+    """Two nibbles."""
+
+    def __init__(self):
+        self.high, self.low = unsigned(4), unsigned(4)
+
+
+@block
+def swap(pair, swapped):
+    """The nibbles the other way round."""
+
+    @always_comb
+    def cross():
+        swapped.high.next = pair.low
+        swapped.low.next = pair.high
+
+    return (cross,)
+
+
+@block
+def step(clk, value, step_by, stepped, wrapped, gain=1):
+    """stepped = value + gain * step_by, a cycle and, for step_by, two late; wrapped: what did not fit."""
+    width = len(stepped)
+    limit = 1 << width
+    product = unsigned(width)
+    total = unsigned(width + 1)
+
+    # The step, in a register: what is constant triggers no combinational process.
+    @always(clk.posedge)
+    def multiply():
+        product.next = (step_by * gain) % limit
+
+    # Keep the carry.
+    @always_comb
+    def add():
+        total.next = value + product
+
+    # A register.
+    @always(clk.posedge)
+    def keep():
+        stepped.next = total[width:]
+        wrapped.next = total[width]
+
+    return multiply, add, keep
+
+
+@block
+def everything(clk, word, pair, joined, swapped, count):
+    """Each way to connect a block: by slices, lists, interfaces, constants and not at all."""
+    halves = [unsigned(4) for _ in range(2)]
+    carries = [unconnected(1), unconnected(1)]
+    lower, upper = word(4, 0), word(8, 4)
+    amounts = [constant(3, 4), constant(15, 4)]
+    one = constant(1, 4)
+    both = ConcatSignal(*reversed(halves))
+    carry = unsigned(1)
+    total = unsigned(4)
+
+    first = step(clk, lower, amounts[0], halves[0], carries[0])
+    second = step(clk, upper, amounts[1], halves[1], carries[1])
+    third = step(clk, total, one, count, carry)
+    crossing = swap(pair, swapped)
+
+    # Both halves side by side.
+    @always_comb
+    def join():
+        joined.next = both
+
+    # What a process reads of an instance.
+    @always_comb
+    def choose():
+        if carry:
+            total.next = 0
+        else:
+            total.next = word[4:]
+
+    return first, second, third, crossing, join, choose
+
+
+def everything_arguments() -> dict:
+    signals = {"clk": bit(), "word": unsigned(8), "pair": Pair(), "joined": unsigned(8), "swapped": Pair()}
+    return signals | {"count": unsigned(4)}
+
+
+def converted(top, directory: Path) -> dict[str, Module]:
+    directory.mkdir(exist_ok=True)
+    return {module.name: module for module in convert_hierarchy(top, directory, "// {module}")}
+
+
+def test_every_kind_of_connection_works(tmp_path):
+    leaf = Leaf(everything, everything_arguments, tmp_path)
+    random = np.random.default_rng(seed())
+    names = {"word": 256, "pair_high": 16, "pair_low": 16}
+    stimulus = [{name: int(random.integers(limit)) for name, limit in names.items()} for _ in range(200)]
+    outputs = leaf.run_both(stimulus, settled=4)
+    for cycle in range(4, 200):
+        word, pair = stimulus[cycle - 1]["word"], stimulus[cycle]
+        joined = (word + 3) % 16 | ((word >> 4) + 15) % 16 << 4
+        assert outputs[cycle]["joined"] == joined, repeat()
+        assert outputs[cycle]["swapped_high"] == pair["pair_low"], repeat()
+        assert outputs[cycle]["swapped_low"] == pair["pair_high"], repeat()
+        # The carry of the cycle before clears what is counted from.
+        carried = outputs[cycle - 1]["count"] == 0
+        assert outputs[cycle]["count"] == (1 if carried else (word % 16 + 1) % 16), repeat()
+
+
+def test_modules_ports_and_instances(tmp_path):
+    modules = converted(everything(**everything_arguments()), tmp_path)
+    assert list(modules) == ["step", "swap", "everything"], "each after those that it instantiates, equal ones once"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["everything.v", "step.v", "swap.v"]
+    assert modules["everything"].instances == {"step_0": "step", "step_1": "step", "step_2": "step", "swap": "swap"}
+    assert modules["step"].instances == {}
+    assert set(modules["everything"].ports) == {
+        Port("clk", 1, False, False),
+        Port("word", 8, False, False),
+        Port("pair_high", 4, False, False),
+        Port("pair_low", 4, False, False),
+        Port("joined", 8, False, True),
+        Port("swapped_high", 4, False, True),
+        Port("swapped_low", 4, False, True),
+        Port("count", 4, False, True),
+    }
+    text = modules["everything"].path.read_text()
+    assert re.findall(r"^(\w+) (\w+_i) \($", text, re.M) == [
+        ("step", "step_0_i"),
+        ("step", "step_1_i"),
+        ("step", "step_2_i"),
+        ("swap", "swap_i"),
+    ]
+    assert text.count(".wrapped()") == 2, "nobody reads two of the carries"
+    assert "// A register.\nalways @(posedge clk) begin" in modules["step"].path.read_text()
+
+
+def test_a_signed_port_is_signed(tmp_path):
+    @block
+    def double(value, doubled):
+        @always_comb
+        def add():
+            doubled.next = value + value
+
+        return (add,)
+
+    modules = converted(double(signed(4), signed(5)), tmp_path)
+    assert modules["double"].ports == (Port("value", 4, True, False), Port("doubled", 5, True, True))
+
+
+def test_a_block_converts_alike_wherever_it_stands(tmp_path):
+    within = converted(everything(**everything_arguments()), tmp_path / "within")
+    alone = converted(step(bit(), unsigned(4), unsigned(4), unsigned(4), unsigned(1)), tmp_path / "alone")
+    again = converted(everything(**everything_arguments()), tmp_path / "again")
+    assert within["step"].path.read_text() == alone["step"].path.read_text()
+    for name, module in within.items():
+        assert module.path.read_text() == again[name].path.read_text()
+
+
+@block
+def two_steps(clk, value, by, first, second, gains, widths):
+    steps = [
+        step(clk, value, by, out, unconnected(1), gain=gain)
+        for out, gain, _ in zip((first, second), gains, widths, strict=True)
+    ]
+
+    return (steps,)
+
+
+def two_steps_of(gains: tuple[int, int], widths: tuple[int, int]):
+    outputs = [unsigned(width) for width in widths]
+    return two_steps(bit(), unsigned(4), unsigned(4), *outputs, gains, widths)
+
+
+def test_one_name_is_one_module(tmp_path):
+    assert list(converted(two_steps_of((2, 2), (4, 4)), tmp_path)) == ["step", "two_steps"]
+
+
+@pytest.mark.parametrize(("gains", "widths"), [((1, 2), (4, 4)), ((1, 1), (4, 5))])
+def test_one_name_with_two_meanings_is_refused(gains, widths, tmp_path):
+    with pytest.raises(HierarchyError, match=r"step stands in the design with different parameters or port widths"):
+        converted(two_steps_of(gains, widths), tmp_path)
+
+
+@block
+def careless(clk, value, result, undriven, unread):
+    """Where asked to, it reads a signal that nobody drives, or drives one that nobody reads."""
+    nothing, lost = unsigned(4), unsigned(4)
+
+    @always(clk.posedge)
+    def copy():
+        result.next = value
+
+    if undriven:
+
+        @always(clk.posedge)
+        def work():
+            result.next = value ^ nothing
+
+    elif unread:
+
+        @always(clk.posedge)
+        def work():
+            lost.next = value
+
+    else:
+        return (copy,)
+
+    return (work,) if undriven else (copy, work)
+
+
+@block
+def careless_parent(clk, value, result, undriven, unread):
+    """The same, where the signal is between instances."""
+    nothing, carry = unsigned(4), unsigned(1)
+    given = nothing if undriven else value
+    lost = carry if unread else unconnected(1)
+    stepping = step(clk, value, given, result, lost)
+
+    return (stepping,)
+
+
+@pytest.mark.parametrize("function", [careless, careless_parent])
+@pytest.mark.parametrize(
+    ("undriven", "unread", "complaint"),
+    [(True, False, "not driven"), (False, True, "not read"), (False, False, None)],
+)
+def test_a_signal_without_a_driver_or_reader_is_refused(function, undriven, unread, complaint, tmp_path):
+    top = function(bit(), unsigned(4), unsigned(4), undriven, unread)
+    if complaint is None:
+        converted(top, tmp_path)
+    else:
+        with pytest.raises(HierarchyError, match=f"{function.__name__}: .*{complaint}"):
+            converted(top, tmp_path)
+
+
+def test_a_connection_without_a_name_is_refused(tmp_path):
+    @block
+    def nameless(clk, value, result):
+        # The first one's result is known to no variable.
+        first = step(clk, value, value, unsigned(4), unconnected(1))
+        second = step(clk, value, value, result, unconnected(1))
+
+        return first, second
+
+    with pytest.raises(HierarchyError, match=r"nameless: what step\.stepped connects to has no name"):
+        converted(nameless(bit(), unsigned(4), unsigned(4)), tmp_path)
+
+
+def test_elaboration_gives_the_stack_back():
+    before = inspect.stack
+    with quick_elaboration():
+        assert inspect.stack is not before
+    assert inspect.stack is before
+
+
+def test_myhdl_is_the_version_that_this_was_written_for():
+    pins = [line for line in importlib.metadata.requires("raycaster") if line.startswith("myhdl")]
+    assert pins == [f"myhdl=={importlib.metadata.version('myhdl')}"]
+
+
+# The whole design ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("units", [1, 8])
+def test_a_unit_is_one_module_and_many_instances(units, tmp_path):
+    config = configure(units=units, screen="tiny", rectangles=2, allow_underrun=True)
+    files = write_verilog(config, tmp_path / "verilog")
+    names = [path.stem for path in files]
+    assert len(set(names)) == len(names)
+    for module in ("ray_unit", "line_buffer"):
+        assert names.count(module) == 1
+        instances = [re.findall(rf"^{module} {module}(_\d+)?_i \($", path.read_text(), re.M) for path in files]
+        assert sum(map(len, instances)) == units
+    defined = {path: re.findall(r"^module (\w+)", path.read_text(), re.M) for path in files}
+    assert defined == {path: [path.stem] for path in files}
+    assert names[-1] == "ray_caster_module"
+    assert (tmp_path / "verilog" / FILE_LIST).read_text().split() == [path.name for path in files]
+
+
+def test_every_module_is_made_of_nothing_unknown(tmp_path):
+    """In the order of the file list, each module stands after those that it instantiates."""
+    files = write_verilog(configure(screen="tiny", units=2, rectangles=2, allow_underrun=True), tmp_path / "verilog")
+    known = set()
+    for path in files:
+        used = set(re.findall(r"^(\w+) \w+_i \($", path.read_text(), re.M))
+        assert used <= known, path.name
+        known.add(path.stem)
+
+
+def test_the_header_says_what_and_never_when(tmp_path):
+    config = configure(screen="tiny", units=2, rectangles=2, fraction_bits=1, allow_underrun=True)
+    for path in write_verilog(config, tmp_path / "verilog"):
+        lines = path.read_text().splitlines()
+        assert lines[:3] == [
+            f"// RayCaster: {path.stem}",
+            f"// Configuration: {config.name}",
+            "// SPDX-License-Identifier: MIT",
+        ]
+        assert not re.search(r"\b20\d\d\b|\d\d:\d\d|MyHDL|Generated", path.read_text())
+
+
+def test_two_processes_write_the_same_bytes(tmp_path):
+    # Python's sets, of which MyHDL makes use, come in another order with another hash seed.
+    for number in ("1", "2"):
+        command = [sys.executable, "-m", "raycaster.rtl.convert", "--output", str(tmp_path / number)]
+        command += ["--screen", "tiny", "--units", "4", "--rectangles", "5", "--allow-underrun"]
+        subprocess.run(command, env={**os.environ, "PYTHONHASHSEED": number}, check=True, capture_output=True)
+    names = sorted(path.name for path in (tmp_path / "1").iterdir())
+    assert names == sorted(path.name for path in (tmp_path / "2").iterdir())
+    assert filecmp.cmpfiles(tmp_path / "1", tmp_path / "2", names, shallow=False) == (names, [], [])
+
+
+def test_a_directory_is_replaced_as_a_whole(tmp_path):
+    directory = tmp_path / "verilog"
+    directory.mkdir()
+    (directory / "ray_unit_of_yesterday.v").write_text("module ray_unit;")
+    config = configure(screen="tiny", units=2, rectangles=2, allow_underrun=True)
+    files = write_verilog(config, directory)
+    assert {path.name for path in directory.iterdir()} == {path.name for path in files} | {FILE_LIST}
+    assert [path.name for path in tmp_path.iterdir()] == ["verilog"], "nothing else is left"
+
+
+def test_a_conversion_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
+    directory = tmp_path / "verilog"
+    directory.mkdir()
+    (directory / "kept.v").write_text("module kept;")
+
+    def fail(*_):
+        raise HierarchyError("broken")
+
+    monkeypatch.setattr(convert, "convert_hierarchy", fail)
+    with pytest.raises(HierarchyError):
+        write_verilog(configure(screen="tiny", units=2, rectangles=2, allow_underrun=True), directory)
+    assert [path.name for path in directory.iterdir()] == ["kept.v"]
+    assert [path.name for path in tmp_path.iterdir()] == ["verilog"]

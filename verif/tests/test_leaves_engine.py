@@ -1,0 +1,569 @@
+# SPDX-License-Identifier: MIT
+"""The blocks that trace whole rays, from one unit to the whole module: MyHDL's simulator, the converted Verilog and
+golden on one set of scenes, and the control's steps cycle by cycle."""
+
+from itertools import pairwise
+from unittest import mock
+
+import numpy as np
+import pytest
+
+from raycaster.configuration import CHANNEL_BITS, SCREENS, WORLD_SIZE, Configuration, Screen, Span, configure
+from raycaster.golden import seed_engine
+from raycaster.golden.random_world import random_camera, random_rectangles
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import Rectangles
+from raycaster.registers import register_map
+from raycaster.rtl.interfaces import Plane, Point, Rect, SequentialRects, Steps
+from raycaster.rtl.ray_caster import ray_caster
+from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
+from raycaster.rtl.ray_caster_renderer import ray_caster_renderer
+from raycaster.rtl.ray_control import ray_control
+from raycaster.rtl.ray_unit import ray_unit
+from raycaster.rtl.widths import (
+    COLOUR_BITS,
+    CYCLE_BITS,
+    bit,
+    offset_bits,
+    pixel_bits,
+    row_bits,
+    unit_bits,
+    unsigned,
+)
+from raycaster.verif.leaf import Leaf, reset_signal, sorted_rect, trace_cycles
+from raycaster.verif.seeds import repeat, seed
+
+AXES = "xyz"
+SMALL_SCREEN = Screen(
+    columns=16,
+    rows=4,
+    horizon_row=3,
+    doubling=2,
+    horizontal=Span(32, 8, 24, 20, active_high=False),
+    vertical=Span(8, 1, 2, 2, active_high=True),
+)
+"""Small enough that MyHDL's simulator shows a whole frame in seconds."""
+
+
+def config_id(config: Configuration) -> str:
+    return config.name
+
+
+def small_config(**options) -> Configuration:
+    """A configuration for `SMALL_SCREEN`, which no name of a screen stands for."""
+    with mock.patch.dict(SCREENS, {("tiny", SMALL_SCREEN.rows): SMALL_SCREEN}):
+        config = configure(screen="tiny", rows=SMALL_SCREEN.rows, **options)
+        assert config.screen_geometry is SMALL_SCREEN  # looked up once, and kept from here on
+    return config
+
+
+def any_config(**options) -> Configuration:
+    return configure(**{"allow_underrun": True} | options)
+
+
+def visible_indices(table: Rectangles) -> list[int]:
+    return [int(index) for index in np.flatnonzero(table.visible)]
+
+
+def usable_mask(table: Rectangles) -> int:
+    return sum(1 << index for index in visible_indices(table))
+
+
+def rectangles_in_view(random: np.random.Generator, camera: np.ndarray, slopes: np.ndarray, count: int) -> Rectangles:
+    """Small rectangles where some ray passes, so that rays see this one or that one."""
+    targets = camera + slopes[random.integers(len(slopes), size=count)] * random.uniform(0, 3.5, (count, 1))
+    size = random.choice([0, 3, 40, 400], (count, 2, 3)) * np.array([-1, 1]).reshape(1, 2, 1)
+    corners = np.clip(targets[:, None, :] + size, 0, WORLD_SIZE - 1).astype(np.int64)
+    flat = random.integers(3, size=count)
+    corners[np.arange(count), 1, flat] = corners[np.arange(count), 0, flat]
+    return Rectangles(corners, random.integers(256, size=(count, 3)).astype(np.uint8), random.random(count) < 0.9)
+
+
+def scene_of(random: np.random.Generator, slopes: np.ndarray, count: int) -> tuple[np.ndarray, Rectangles]:
+    """A camera and a table: some in view, some from anywhere."""
+    if random.random() < 0.4:
+        table = random_rectangles(random, count, closed=None if count >= 7 else False)
+        return random_camera(random, table), table
+    camera = random.integers(WORLD_SIZE, size=3) // [2, 1, 1]
+    return camera, rectangles_in_view(random, camera, slopes, count)
+
+
+def colour_word(colour) -> int:
+    return int.from_bytes(bytes(np.asarray(colour, dtype=np.uint8)))
+
+
+def pixel_word(config: Configuration, colour) -> int:
+    word = 0
+    for channel in colour:
+        word = word << config.colour_bits | int(channel) >> (CHANNEL_BITS - config.colour_bits)
+    return word
+
+
+# ray_control ---------------------------------------------------------------------------------------------------------
+
+controls = pytest.mark.parametrize(
+    "config",
+    [
+        any_config(rectangles=rectangles, reflections=reflections, fraction_bits=bits, divider_bits=divider_bits)
+        for rectangles, reflections, bits, divider_bits in (
+            (1, 0, 0, 1), (1, 2, 8, 1), (2, 1, 0, 3), (3, 2, 0, 3), (5, 1, 4, 2), (8, 2, 1, 2), (12, 1, 0, 1),
+            (12, 2, 0, 3), (32, 1, 8, 3),
+        )
+    ],
+    ids=config_id,
+)  # fmt: skip
+
+
+@controls
+def test_ray_control(config, tmp_path):
+    leaf = Leaf(
+        ray_control,
+        lambda: {
+            "clk": bit(),
+            "reset_ray_caster": bit(),
+            "enable": bit(),
+            "reflections": unsigned(2),
+            "rects": SequentialRects(config),
+            "steps": Steps(),
+            "finishing_rect": Rect(),
+            "done": bit(),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    count = config.rectangles
+    every = (1 << count) - 1
+    masks = [every, 0, 1, 1 << (count - 1), every]
+    masks += [int(random.integers(1 << count)) & int(random.integers(1 << count)) for _ in range(6)]
+    table = Rectangles(
+        random.integers(WORLD_SIZE, size=(count, 2, 3)),
+        random.integers(256, size=(count, 3)).astype(np.uint8),
+        np.ones(count, dtype=bool),
+    )
+    table.corners[:, 1, 0] = table.corners[:, 0, 0]
+
+    stimulus, expected = [], []
+
+    def drive(inputs, wanted=None, current=None):
+        shown = int(random.integers(count)) if current is None else current
+        stimulus.append({**inputs, **sorted_rect(table, shown, "rects_rect")})
+        expected.append(wanted)
+
+    first_known = None
+    for number, mask in enumerate(masks):
+        usable = [index for index in range(count) if mask >> index & 1]
+        reflections = config.reflections if number < 2 else int(random.integers(config.reflections + 1))
+        held = {"rects_usable": mask, "reflections": reflections}
+        quiet = ({f"steps_{name}": 0 for name in vars(Steps()) if name != "initial_ray"} | {"done": 0}, None, None)
+        for _ in range(2):
+            drive({**held, "reset_ray_caster": 1, "enable": int(random.integers(2))})
+        for _ in range(int(random.integers(3))):
+            drive({**held, "reset_ray_caster": 0, "enable": 0}, quiet)
+        drive({**held, "reset_ray_caster": 0, "enable": 1}, quiet)
+        trace = trace_cycles(config, usable, reflections)
+        if mask == every and reflections == config.reflections:
+            assert len(trace) + 3 == config.group_cycles, "with done and the reset of two cycles"
+        # A row may be abandoned at any moment; what was under way must not come out later.
+        abandoned = number > 4 and number % 2
+        for cycle in trace[: int(random.integers(len(trace))) if abandoned else None]:
+            wanted = cycle.steps | {"done": 0}
+            if cycle.steps["steps_screen_to_ray"]:
+                del wanted["steps_initial_ray"]
+            if cycle.finishing is not None and first_known is None:
+                first_known = len(stimulus)
+            inputs = {**held, "reset_ray_caster": 0, "enable": int(random.integers(2))}
+            drive(inputs, (wanted, cycle.current, cycle.finishing), cycle.current)
+        if not abandoned:
+            for _ in range(int(random.integers(1, 4))):
+                wanted = {**quiet[0], "done": 1}
+                drive({**held, "reset_ray_caster": 0, "enable": int(random.integers(2))}, (wanted, None, None))
+
+    outputs = leaf.run_both(stimulus, settled=first_known)
+    held_by_memory = None
+    for cycle, (output, wanted) in enumerate(zip(outputs, expected, strict=True)):
+        if wanted is not None:
+            signals, current, finishing = wanted
+            assert {name: output[name] for name in signals} == signals, (cycle, repeat())
+            if current is not None:
+                assert held_by_memory == current, f"cycle {cycle}: it fetched another rectangle; {repeat()}"
+            if finishing is not None:
+                rect = sorted_rect(table, finishing, "finishing_rect")
+                assert {name: output[name] for name in rect} == rect, (cycle, repeat())
+        if output["rects_fetch"]:
+            held_by_memory = output["rects_index"]
+
+
+# ray_unit ------------------------------------------------------------------------------------------------------------
+
+
+def plane_and_rect(cycle, table: Rectangles) -> dict[str, int]:
+    """What the control and the memory show all units in a cycle."""
+    inputs = {}
+    if cycle.current is not None:
+        rect = sorted_rect(table, cycle.current, "current_plane")
+        inputs |= {name: rect[name] for name in ("current_plane_axis", "current_plane_position")}
+    if cycle.finishing is not None:
+        inputs |= sorted_rect(table, cycle.finishing, "finishing_rect")
+    return inputs
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        any_config(
+            screen=screen, units=units, rectangles=rectangles, reflections=reflections, fraction_bits=bits,
+            rounding=rounding, divider_bits=divider_bits, colour_bits=colour_bits,
+        )
+        for screen, units, rectangles, reflections, bits, rounding, divider_bits, colour_bits in (
+            ("vga", 32, 8, 1, 0, "truncate", 1, 8), ("vga", 5, 8, 2, 0, "nearest", 3, 4),
+            ("tiny", 2, 3, 0, 0, "truncate", 2, 8), ("vga", 1, 8, 2, 1, "truncate", 2, 5),
+            ("vga", 320, 7, 2, 4, "nearest", 3, 8), ("vga", 64, 8, 1, 4, "truncate", 1, 1),
+            ("tiny", 16, 8, 2, 8, "nearest", 2, 8), ("vga", 40, 8, 2, 8, "truncate", 3, 8),
+        )
+    ],
+    ids=config_id,
+)  # fmt: skip
+def test_ray_unit(config, tmp_path):
+    leaf = Leaf(
+        ray_unit,
+        lambda: {
+            "clk": bit(),
+            "steps": Steps(),
+            "row": unsigned(row_bits(config)),
+            "column_base": unsigned(unit_bits(config)),
+            "column_offset": unsigned(offset_bits(config)),
+            "camera": Point(),
+            "current_plane": Plane(),
+            "finishing_rect": Rect(),
+            "background": unsigned(COLOUR_BITS),
+            "reflections": unsigned(2),
+            "pixel": unsigned(pixel_bits(config)),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    slopes = primary_slopes(config.screen_geometry)
+    rows, columns, _ = slopes.shape
+    stimulus, results = [], []
+    fates = set()
+    for _ in range(24):
+        row = int(random.choice([0, 1, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))
+        column = int(random.choice([0, 1, columns // 2, columns - 1, random.integers(columns)]))
+        camera, table = scene_of(random, slopes[[row], column], config.rectangles)
+        background = random.integers(256, size=3)
+        reflections = int(random.integers(config.reflections + 1))
+        golden = seed_engine.trace(
+            table, camera, background, slopes[row, column][None], reflections,
+            fraction_bits=config.fraction_bits, rounding=config.rounding,
+        )  # fmt: skip
+        fates.add(sum(int(winner[0]) >= 0 for winner in golden.winners))
+        held = {
+            "row": row,
+            "column_base": column % config.units,
+            "column_offset": column // config.units,
+            "background": colour_word(background),
+            "reflections": reflections,
+            **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
+        }
+        stimulus += [
+            {**held, **cycle.steps, **plane_and_rect(cycle, table)}
+            for cycle in trace_cycles(config, visible_indices(table), reflections)
+        ]
+        case = f"row {row}, column {column}, camera {camera}, corners {table.corners.tolist()}; {repeat()}"
+        results.append((len(stimulus), pixel_word(config, golden.colours[0]), case))
+        # done: the pixel stands, whatever comes.
+        stimulus.append({**held, **dict.fromkeys(stimulus[-1], 0), "reflections": reflections})
+    outputs = leaf.run_both(stimulus, settled=results[0][0])
+    for cycle, pixel, case in results:
+        assert outputs[cycle]["pixel"] == pixel, case
+    assert fates == set(range(config.reflections + 2)), "rays were to hit nothing, once, and all the times they may"
+
+
+# ray_caster ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        any_config(units=1, rectangles=4, reflections=1, divider_bits=3),
+        any_config(units=2, rectangles=8, reflections=2, fraction_bits=4, rounding="nearest", divider_bits=3),
+        any_config(units=5, rectangles=5, reflections=1, fraction_bits=1, divider_bits=2, colour_bits=4),
+    ],
+    ids=config_id,
+)
+def test_ray_caster(config, tmp_path):
+    leaf = Leaf(
+        ray_caster,
+        lambda: {
+            "clk": bit(),
+            "reset_ray_caster": bit(),
+            "enable": bit(),
+            "row": unsigned(row_bits(config)),
+            "column_offset": unsigned(offset_bits(config)),
+            "camera": Point(),
+            "background": unsigned(COLOUR_BITS),
+            "reflections": unsigned(2),
+            "rects": SequentialRects(config),
+            "done": bit(),
+            "colors": unsigned(config.units * pixel_bits(config)),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    slopes = primary_slopes(config.screen_geometry)
+    stimulus, results = [], []
+    for _ in range(8):
+        row, offset = int(random.integers(len(slopes))), int(random.integers(config.groups))
+        group = slopes[row, offset * config.units : (offset + 1) * config.units]
+        camera, table = scene_of(random, group, config.rectangles)
+        background = random.integers(256, size=3)
+        reflections = int(random.integers(config.reflections + 1))
+        golden = seed_engine.trace(
+            table, camera, background, group, reflections,
+            fraction_bits=config.fraction_bits, rounding=config.rounding,
+        )  # fmt: skip
+        held = {
+            "row": row,
+            "column_offset": offset,
+            "background": colour_word(background),
+            "reflections": reflections,
+            "rects_usable": usable_mask(table),
+            **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
+        }
+        stimulus += [{**held, "reset_ray_caster": 1, "enable": 1}] * 2
+        stimulus.append({**held, "reset_ray_caster": 0, "enable": 1})
+        for cycle in trace_cycles(config, visible_indices(table), reflections):
+            rect = {} if cycle.current is None else sorted_rect(table, cycle.current, "rects_rect")
+            stimulus.append({**held, **rect, "reset_ray_caster": 0, "enable": 1})
+        colours = [pixel_word(config, colour) for colour in golden.colours]
+        case = f"row {row}, group {offset}, camera {camera}, corners {table.corners.tolist()}; {repeat()}"
+        results.append((len(stimulus), colours, case))
+        stimulus += [{}] * 2
+    outputs = leaf.run_both(stimulus, settled=results[0][0])
+    width = pixel_bits(config)
+    for cycle, colours, case in results:
+        for shown in outputs[cycle : cycle + 2]:
+            assert shown["done"], case
+            assert [shown["colors"] >> width * unit & (1 << width) - 1 for unit in range(config.units)] == colours, case
+        assert not outputs[cycle - 1]["done"], case
+
+
+# The picture ---------------------------------------------------------------------------------------------------------
+
+
+def monitored(outputs: list[dict[str, int]], config: Configuration) -> list[np.ndarray]:
+    """The frames that a monitor sees, as rows of pixel words; it samples where its clock has risen."""
+    horizontal, vertical = config.screen_geometry.horizontal, config.screen_geometry.vertical
+    words, shift = [], config.colour_bits
+    for before, output in pairwise(outputs):
+        if output["vga_clk"] and not before["vga_clk"] and output["vga_blank_n"]:
+            words.append((output["vga_r"] << shift | output["vga_g"]) << shift | output["vga_b"])
+    size = horizontal.visible * vertical.visible
+    return [
+        np.array(words[start : start + size]).reshape(vertical.visible, horizontal.visible)
+        for start in range(0, len(words) - size + 1, size)
+    ]
+
+
+def golden_words(config: Configuration, colours: np.ndarray) -> np.ndarray:
+    screen = config.screen_geometry
+    words = [pixel_word(config, colour) for colour in colours.reshape(-1, 3)]
+    return np.array(words).reshape(screen.rows, screen.columns)
+
+
+def doubled(config: Configuration, words: np.ndarray) -> np.ndarray:
+    return words.repeat(config.screen_geometry.doubling, axis=0).repeat(config.screen_geometry.doubling, axis=1)
+
+
+def start_screen_cycle(screen: Screen) -> int:
+    """Cycles from the end of reset to the first StartScreen."""
+    return (screen.vertical.blank - screen.doubling) * screen.horizontal.total * 2
+
+
+def renderer_leaf(config: Configuration, directory) -> Leaf:
+    return Leaf(
+        ray_caster_renderer,
+        lambda: {
+            "clk": bit(),
+            "reset": reset_signal(),
+            "run": bit(),
+            "reflections": unsigned(2),
+            "background": unsigned(COLOUR_BITS),
+            "camera": Point(),
+            "rects": SequentialRects(config),
+            "start_screen": bit(),
+            "busy": bit(),
+            "underrun": bit(),
+            "row_cycles": unsigned(CYCLE_BITS),
+            "group_cycles": unsigned(CYCLE_BITS),
+            **{f"vga_{channel}": unsigned(config.colour_bits) for channel in "rgb"},
+            **{f"vga_{name}": bit() for name in ("hs", "vs", "blank_n", "sync_n", "clk")},
+            "config": config,
+        },
+        directory,
+    )
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        small_config(units=4, rectangles=1, reflections=1, colour_bits=8),
+        small_config(units=2, rectangles=1, reflections=0, fraction_bits=4, rounding="nearest", colour_bits=4),
+        small_config(units=8, rectangles=1, reflections=2, divider_bits=1, colour_bits=2),
+        # 16 groups of 27 cycles, of which a row of 336 has time for twelve.
+        small_config(units=1, rectangles=1, reflections=0, fraction_bits=8, divider_bits=1, allow_underrun=True),
+    ],
+    ids=config_id,
+)
+def test_ray_caster_renderer(config, tmp_path):
+    """One rectangle, so that the memory's answer never changes; the first frame shows none, the third is black."""
+    screen = config.screen_geometry
+    random = np.random.default_rng(seed())
+    camera = np.array([100, 200, 100])
+    # At twice the distance of the viewing rectangle, a column is two units wide, and a row two high.
+    table = Rectangles(
+        np.array([[(301, 511, 104), (301, 192, 100)]]),
+        random.integers(1, 256, size=(1, 3)).astype(np.uint8),
+        np.ones(1, dtype=bool),
+    )
+    background = random.integers(1, 256, size=3)
+    scene = {
+        "background": colour_word(background),
+        "reflections": config.reflections,
+        **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
+        **sorted_rect(table, 0, "rects_rect"),
+    }
+    start, frame = start_screen_cycle(screen), screen.frame_cycles
+    # From the cycle after each StartScreen on, the next scene.
+    stimulus = [{**scene, "reset": 1}] * 2 + [{"reset": 0, "run": 1, "rects_usable": 0}] * (start + 1 + frame)
+    stimulus += [{"rects_usable": 1}] * frame + [{"run": 0}] * (frame // 2)
+    # What the control asks the memory for is known from the first group on.
+    outputs = renderer_leaf(config, tmp_path).run_both(stimulus, settled=2 + start + 6)[2:]
+
+    colours = seed_engine.trace(
+        table, camera, background, primary_slopes(screen).reshape(-1, 3), config.reflections,
+        fraction_bits=config.fraction_bits, rounding=config.rounding,
+    ).colours  # fmt: skip
+    golden = golden_words(config, colours)
+    assert len(set(golden.flat)) > 1, "the rectangle was to have an edge in view"
+    empty = np.full_like(golden, pixel_word(config, background))
+    group = len(trace_cycles(config, [0], config.reflections)) + 3
+    assert group == config.group_cycles
+    groups_in_time = min(config.groups, (screen.row_cycles - 1) // group)
+    shown = golden.copy()
+    # Columns that were not written in time keep what that half of the buffer held: the empty scene's.
+    shown[:, groups_in_time * config.units :] = empty[:, groups_in_time * config.units :]
+    frames = monitored(outputs, config)
+    assert len(frames) == 2
+    assert np.array_equal(frames[0], doubled(config, empty))
+    assert np.array_equal(frames[1], doubled(config, shown))
+    assert (groups_in_time < config.groups) == config.allow_underrun
+
+    assert not any(output[f"vga_{channel}"] for output in outputs[start + 2 * frame + 1 :] for channel in "rgb")
+
+    strobes = [cycle for cycle, output in enumerate(outputs) if output["start_screen"]]
+    assert strobes == [start, start + frame, start + 2 * frame]
+    late = [cycle for cycle, output in enumerate(outputs) if output["underrun"]]
+    rows = [start + frame + row * screen.row_cycles for row in range(1, screen.rows + 1)]
+    assert late == (rows if config.allow_underrun else [])
+    in_second = outputs[start + frame + 1 : start + 2 * frame]
+    if not config.allow_underrun:
+        assert max(output["row_cycles"] for output in in_second) == config.groups * group
+        assert sum(output["busy"] for output in in_second) == screen.rows * config.groups * group
+    assert max(output["group_cycles"] for output in in_second) == group
+
+
+# The module ----------------------------------------------------------------------------------------------------------
+
+
+class Bus:
+    """Writes the stimulus of a bus master, and remembers when the answer to each read comes."""
+
+    def __init__(self, config: Configuration):
+        self.registers = register_map(config.rectangles)
+        self.stimulus: list[dict[str, int]] = []
+        self.reads: dict[str, int] = {}
+        self._idle = {"avs_s0_write": 0, "avs_s0_read": 0}
+
+    def wait(self, cycles: int, **signals: int) -> None:
+        self.stimulus += [{**self._idle, **signals}] * cycles
+
+    def write(self, name: str, **fields: int) -> None:
+        transfer = {"avs_s0_address": self.registers[name].address, "avs_s0_byteenable": 15}
+        transfer["avs_s0_writedata"] = self.registers[name].pack(**{key: int(value) for key, value in fields.items()})
+        self.stimulus.append({**self._idle, **transfer, "avs_s0_write": 1})
+
+    def read(self, name: str) -> None:
+        self.reads[name] = len(self.stimulus) + 2
+        self.stimulus.append({**self._idle, "avs_s0_address": self.registers[name].address, "avs_s0_read": 1})
+
+    def write_scene(self, camera, background, reflections: int, table: Rectangles) -> None:
+        self.write("camera", **dict(zip(AXES, camera, strict=True)))
+        self.write("background", **dict(zip(("red", "green", "blue"), background, strict=True)))
+        for index, (corners, colour, enabled) in enumerate(
+            zip(table.corners, table.colours, table.enabled, strict=True)
+        ):
+            for number, corner in enumerate(corners):
+                self.write(f"rectangle[{index}].corner_{number}", **dict(zip(AXES, corner, strict=True)))
+            channels = dict(zip(("red", "green", "blue"), colour, strict=True))
+            self.write(f"rectangle[{index}].surface", enable=enabled, **channels)
+        self.write("control", run=1, commit=1, reflections=reflections)
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        small_config(units=4, rectangles=3, reflections=1),
+        small_config(units=4, rectangles=2, reflections=2, fraction_bits=4, rounding="nearest", colour_bits=4),
+        small_config(units=2, rectangles=5, reflections=0, divider_bits=3, colour_bits=6),
+    ],
+    ids=config_id,
+)
+def test_ray_caster_module(config, tmp_path):
+    """Two scenes over the bus, one shown after the other; each output of each cycle, and each pixel."""
+    random = np.random.default_rng(seed())
+    screen = config.screen_geometry
+    slopes = primary_slopes(screen).reshape(-1, 3)
+    bus = Bus(config)
+    pictures = []
+    bus.wait(2, reset=1)
+    bus.wait(3, reset=0)
+    for _ in range(2):
+        # Most of what is random cannot be told from a wall.
+        for _ in range(1000):
+            camera = random.integers(WORLD_SIZE, size=3) // [2, 1, 1]
+            table = rectangles_in_view(random, camera, slopes, config.rectangles)
+            background = random.integers(256, size=3)
+            golden = seed_engine.trace(
+                table, camera, background, slopes, config.reflections,
+                fraction_bits=config.fraction_bits, rounding=config.rounding,
+            )  # fmt: skip
+            if len(np.unique(golden.colours, axis=0)) > config.rectangles:
+                break
+        pictures.append(golden_words(config, golden.colours))
+        bus.write_scene(camera, background, config.reflections, table)
+        # To the cycle after the next StartScreen.
+        so_far = len(bus.stimulus) - 2 - start_screen_cycle(screen) - 1
+        bus.wait(-so_far % screen.frame_cycles)
+    bus.wait(screen.frame_cycles - 50)
+    for name in ("status", "cycles", "engine", "size"):
+        bus.read(name)
+    bus.wait(60)
+    leaf = Leaf(ray_caster_module, lambda: {**ModulePorts(config).all(), "config": config}, tmp_path)
+    outputs = leaf.run_both(bus.stimulus, settled=2)
+
+    frames = monitored(outputs[2:], config)
+    assert len(frames) == 2
+    for number, (frame, picture) in enumerate(zip(frames, pictures, strict=True)):
+        assert np.array_equal(frame, doubled(config, picture)), f"frame {number}; {repeat()}"
+    answers = {}
+    for name, cycle in bus.reads.items():
+        assert outputs[cycle]["avs_s0_readdatavalid"]
+        answers[name] = bus.registers[name].unpack(outputs[cycle]["avs_s0_readdata"])
+    assert answers["status"] == {"busy": 0, "underrun": 0, "bad_rectangle": 0, "frame": 2}
+    assert answers["cycles"]["group"] <= config.group_cycles
+    assert answers["size"] == {"units": config.units, "rectangles": config.rectangles, "rows": screen.rows}
+    assert answers["engine"]["fraction_bits"] == config.fraction_bits

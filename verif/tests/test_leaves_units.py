@@ -1,0 +1,410 @@
+# SPDX-License-Identifier: MIT
+"""What a ray unit is made of, but for its arithmetic: MyHDL's simulator, the converted Verilog and golden on one set of
+vectors."""
+
+import numpy as np
+import pytest
+
+from raycaster.configuration import CHANNEL_BITS, VIEW_DISTANCE, WORLD_SIZE, Configuration, configure
+from raycaster.golden import seed_engine
+from raycaster.golden.colour import blend
+from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles, random_slopes
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.rtl.color_channel import color_channel
+from raycaster.rtl.color_combiner import color_combiner
+from raycaster.rtl.interfaces import Origin, Plane, Rect, Signs, Slope, Steps
+from raycaster.rtl.intersection_finder import intersection_finder
+from raycaster.rtl.ray_generator import ray_generator
+from raycaster.rtl.ray_mem import ray_mem
+from raycaster.rtl.widths import (
+    AXIS_BITS,
+    COLOUR_BITS,
+    bit,
+    offset_bits,
+    pixel_bits,
+    position_bits,
+    row_bits,
+    unit_bits,
+    unsigned,
+)
+from raycaster.rtl.z_buffer import z_buffer
+from raycaster.verif.leaf import Leaf, sorted_rect, trace_cycles
+from raycaster.verif.seeds import repeat, seed
+
+AXES = "xyz"
+SLOPES = (0, 1, 2, 99, 100, 160, 190, 255, 256, 510, 511)
+
+
+def config_id(config: Configuration) -> str:
+    return config.name
+
+
+def any_config(**options) -> Configuration:
+    return configure(**{"rectangles": 4, "allow_underrun": True} | options)
+
+
+fractions = pytest.mark.parametrize(
+    "config", [any_config(fraction_bits=bits) for bits in (0, 3, 8)], ids=lambda config: f"F{config.fraction_bits}"
+)
+
+# The divider's bits a cycle matter here by its steps alone, so they need not meet every F.
+finders = pytest.mark.parametrize(
+    "config",
+    [
+        any_config(fraction_bits=bits, rounding=rounding, divider_bits=divider_bits)
+        for bits, divider_bits in ((0, 1), (0, 3), (1, 2), (4, 3), (8, 2))
+        for rounding in ("truncate", "nearest")
+    ],
+    ids=config_id,
+)
+
+
+def finder_leaf(config: Configuration, directory) -> Leaf:
+    return Leaf(
+        intersection_finder,
+        lambda: {
+            "clk": bit(),
+            "steps": Steps(),
+            "current_plane": Plane(),
+            "finishing_rect": Rect(),
+            "origin": Origin(config),
+            "signs": Signs(),
+            "slope": Slope(),
+            "hit": bit(),
+            "depth": unsigned(position_bits(config)),
+            "point": Origin(config),
+            "config": config,
+        },
+        directory,
+    )
+
+
+def ray_inputs(origin, slope) -> dict[str, int]:
+    inputs = {f"origin_{axis}": int(value) for axis, value in zip(AXES, origin, strict=True)}
+    inputs |= {f"slope_d{axis}": abs(int(value)) for axis, value in zip(AXES, slope, strict=True)}
+    return inputs | {f"signs_d{axis}": int(value < 0) for axis, value in zip(AXES, slope, strict=True)}
+
+
+def finder_stimulus(config: Configuration, rays) -> tuple[list[dict[str, int]], list[tuple[int, int, int]]]:
+    """One pass a ray over its table: the cycles, and (cycle, ray, rectangle) of each result."""
+    stimulus, results = [], []
+    for number, (origin, slope, table) in enumerate(rays):
+        visible = [int(index) for index in np.flatnonzero(table.visible)]
+        for cycle in trace_cycles(config, visible, 0)[1:]:
+            inputs = ray_inputs(origin, slope)
+            for name in ("find_intersection", "load_divider", "store_quotient"):
+                inputs[f"steps_{name}"] = cycle.steps[f"steps_{name}"]
+            if cycle.current is not None:
+                rect = sorted_rect(table, cycle.current, "current_plane")
+                inputs |= {name: rect[name] for name in ("current_plane_axis", "current_plane_position")}
+            if cycle.finishing is not None:
+                inputs |= sorted_rect(table, cycle.finishing, "finishing_rect")
+                del inputs["finishing_rect_colour"]
+            if cycle.steps["steps_write_z_buf"]:
+                results.append((len(stimulus), number, cycle.finishing))
+            stimulus.append(inputs)
+    return stimulus, results
+
+
+def traced_rays(config: Configuration, random: np.random.Generator, count: int) -> list:
+    """Rays as the engine meets them: whole origins first, then origins with a fraction, on the mirror that was hit."""
+    rays = []
+    while len(rays) < count:
+        table = random_rectangles(random, count=8, closed=True)
+        trace = seed_engine.trace(
+            table, random_camera(random, table), (0, 0, 0), random_slopes(random, 2), 2,
+            fraction_bits=config.fraction_bits, rounding=config.rounding, keep=True,
+        )  # fmt: skip
+        for bounce in trace.bounces:
+            for ray in np.flatnonzero(bounce.alive):
+                golden = [(bool(bounce.hits[i, ray]), bounce.depths[i, ray], bounce.points[i, ray]) for i in range(8)]
+                rays.append((bounce.origins[ray], bounce.slopes[ray], table, golden))
+    return rays[:count]
+
+
+def meet(config: Configuration, origin, slope, axis: int, plane: int) -> tuple[np.ndarray, bool]:
+    """Where a ray meets a plane of this axis, and whether it does."""
+    point, valid = np.zeros(3, dtype=int), True
+    point[axis] = plane << config.fraction_bits
+    for other in OTHER_AXES[axis]:
+        point[other], exists = seed_engine.intersect(
+            origin[other], slope[other], point[axis], origin[axis], slope[axis], config.fraction_bits, config.rounding
+        )
+        valid = valid and bool(exists)
+    return point, valid
+
+
+def aimed_ray(config: Configuration, random: np.random.Generator) -> tuple:
+    """A ray of any slope from anywhere, and rectangles whose bounds are at, or next to, the point that it meets."""
+    fraction_bits, limit = config.fraction_bits, WORLD_SIZE - 1
+    origin = np.where(
+        random.random(3) < 0.4,
+        random.choice(EXTREMES, 3) << fraction_bits,
+        random.integers(WORLD_SIZE << fraction_bits, size=3),
+    )
+    slope = random.choice(SLOPES, 3) * random.choice([-1, 1], 3)
+    corners = np.zeros((4, 2, 3), dtype=int)
+    for low, high in corners:
+        axis = int(random.integers(3))
+        high[:] = limit
+        low[axis] = high[axis] = random.choice([*EXTREMES, random.integers(limit), origin[axis] >> fraction_bits])
+        point, _ = meet(config, origin, slope, axis, low[axis])
+        for other in OTHER_AXES[axis]:
+            near = int(np.clip((point[other] >> fraction_bits) + random.integers(-1, 2), 0, limit))
+            if random.random() < 0.5:
+                low[other], high[other] = random.choice([(near, limit), (0, near), (near, near)])
+    table = Rectangles(corners, np.zeros((4, 3), dtype=np.uint8), np.ones(4, dtype=bool))
+    golden = []
+    for low, high, axis in zip(table.low, table.high, table.axes, strict=True):
+        point, valid = meet(config, origin, slope, axis, low[axis])
+        inside = np.all((low << fraction_bits <= point) & (point <= high << fraction_bits))
+        golden.append((valid and bool(inside), abs(point[0] - origin[0]), point))
+    return origin, slope, table, golden
+
+
+@finders
+def test_intersection_finder(config, tmp_path):
+    random = np.random.default_rng(seed())
+    rays = traced_rays(config, random, 15) + [aimed_ray(config, random) for _ in range(30)]
+    stimulus, results = finder_stimulus(config, [ray[:3] for ray in rays])
+    outputs = finder_leaf(config, tmp_path).run_both(stimulus, settled=config.divider_steps + 5)
+    seen = set()
+    for cycle, ray, index in results:
+        origin, slope, table, golden = rays[ray]
+        hit, depth, point = golden[index]
+        output = outputs[cycle]
+        case = f"origin {origin}, slope {slope}, corners {table.corners[index].tolist()}: {output}; {repeat()}"
+        assert output["hit"] == hit, case
+        if hit:
+            assert output["depth"] == depth, case
+            assert [output[f"point_{axis}"] for axis in AXES] == list(point), case
+        seen.add((int(table.axes[index]), hit))
+    assert len(seen) == 6, "each axis was to be hit and missed"
+
+
+@fractions
+def test_z_buffer(config, tmp_path):
+    width = position_bits(config)
+    leaf = Leaf(
+        z_buffer,
+        lambda: {
+            "clk": bit(),
+            "steps": Steps(),
+            "finishing_rect": Rect(),
+            "hit": bit(),
+            "depth": unsigned(width),
+            "point": Origin(config),
+            "found": bit(),
+            "found_axis": unsigned(AXIS_BITS),
+            "found_color": unsigned(COLOUR_BITS),
+            "found_point": Origin(config),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    limit = (1 << width) - 1
+    stimulus = [{"steps_reset_z_buf": 1}]
+    for number in range(1500):
+        # Few depths, so that many tie; and a first hit, from which on all registers are known.
+        depth = random.choice([0, 1, 255, 256, limit - 1, limit, random.integers(limit)])
+        write = number == 0 or random.random() < 0.7
+        stimulus.append(
+            {
+                "steps_reset_z_buf": int(number > 0 and random.random() < 0.15),
+                "steps_write_z_buf": int(write),
+                "hit": int(number == 0 or random.random() < 0.7),
+                "depth": int(depth),
+                "finishing_rect_axis": int(random.integers(3)),
+                "finishing_rect_colour": int(random.integers(1 << COLOUR_BITS)),
+                **{f"point_{axis}": int(random.integers(limit + 1)) for axis in AXES},
+            }
+        )
+    outputs = leaf.run_both(stimulus, settled=2)
+    kept = None
+    for cycle, (inputs, output) in enumerate(zip(stimulus[1:], outputs[1:], strict=True)):
+        assert output["found"] == (kept is not None), (cycle, repeat())
+        if kept is not None:
+            assert output["found_axis"] == kept["finishing_rect_axis"], (cycle, repeat())
+            assert output["found_color"] == kept["finishing_rect_colour"], (cycle, repeat())
+            for axis in AXES:
+                assert output[f"found_point_{axis}"] == kept[f"point_{axis}"], (cycle, repeat())
+        if inputs["steps_reset_z_buf"]:
+            kept = None
+        elif inputs["steps_write_z_buf"] and inputs["hit"] and (kept is None or inputs["depth"] < kept["depth"]):
+            kept = inputs
+
+
+@fractions
+def test_ray_mem(config, tmp_path):
+    leaf = Leaf(
+        ray_mem,
+        lambda: {
+            "clk": bit(),
+            "steps": Steps(),
+            "found_axis": unsigned(AXIS_BITS),
+            "found_point": Origin(config),
+            "signs": Signs(),
+            "reflected_origin": Origin(config),
+            "reflected_signs": Signs(),
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    values = [*EXTREMES, (1 << position_bits(config)) - 1]
+    stimulus = [
+        {
+            "steps_store_ray": int(number == 0 or random.random() < 0.7),
+            "found_axis": number % 3,
+            **{f"found_point_{axis}": int(random.choice(values)) for axis in AXES},
+            **{f"signs_d{axis}": int(random.integers(2)) for axis in AXES},
+        }
+        for number in range(300)
+    ]
+    outputs = leaf.run_both(stimulus, settled=1)
+    for inputs, output in zip(stimulus[:-1], outputs[1:], strict=True):
+        if inputs["steps_store_ray"]:
+            expected = {f"reflected_origin_{axis}": inputs[f"found_point_{axis}"] for axis in AXES}
+            for number, axis in enumerate(AXES):
+                expected[f"reflected_signs_d{axis}"] = inputs[f"signs_d{axis}"] ^ (inputs["found_axis"] == number)
+        assert output == expected, (inputs, repeat())
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        any_config(screen=screen, rows=rows, units=units)
+        for screen, rows, units in (
+            ("vga", 240, 1), ("vga", 240, 5), ("vga", 240, 32), ("vga", 240, 40), ("vga", 240, 320),
+            ("vga", 200, 20), ("vga", 200, 64), ("tiny", 48, 1), ("tiny", 48, 16), ("tiny", 48, 64),
+        )
+    ],
+    ids=config_id,
+)  # fmt: skip
+def test_ray_generator(config, tmp_path):
+    leaf = Leaf(
+        ray_generator,
+        lambda: {
+            "clk": bit(),
+            "steps": Steps(),
+            "row": unsigned(row_bits(config)),
+            "column_base": unsigned(unit_bits(config)),
+            "column_offset": unsigned(offset_bits(config)),
+            "initial_signs": Signs(),
+            "slope": Slope(),
+            "config": config,
+        },
+        tmp_path,
+    )
+    screen = config.screen_geometry
+    horizon, last_row, last_column = screen.horizon_row, screen.rows - 1, screen.columns - 1
+    rays = {(row, column) for row in (0, 1, horizon, last_row) for column in range(screen.columns)}
+    rays |= {(row, column) for row in range(screen.rows) for column in (0, screen.centre_column, last_column)}
+    stimulus = [
+        {
+            "row": row,
+            "column_offset": column // config.units,
+            "column_base": column % config.units,
+            "steps_screen_to_ray": load,
+        }
+        for number, (row, column) in enumerate(sorted(rays))
+        # Not every ray is loaded; the one before it must then stay.
+        for load in ([1] if number % 8 == 0 else [0] if number % 8 == 1 else [0, 1])
+    ]
+    # The counters rest one past their last value; nothing there may overflow.
+    stimulus.append({"row": screen.rows, "column_offset": config.groups, "column_base": config.units - 1})
+    outputs = leaf.run_both(stimulus, settled=1)
+    slopes = primary_slopes(screen)
+    loaded = 0
+    for inputs, output in zip(stimulus[:-1], outputs[1:], strict=True):
+        if inputs["steps_screen_to_ray"]:
+            loaded += 1
+            column = inputs["column_offset"] * config.units + inputs["column_base"]
+            slope = slopes[inputs["row"], column]
+            expected = {f"slope_d{axis}": abs(int(value)) for axis, value in zip(AXES, slope, strict=True)}
+            expected |= {f"initial_signs_d{axis}": int(value < 0) for axis, value in zip(AXES, slope, strict=True)}
+            assert expected["slope_dx"] == VIEW_DISTANCE
+        assert output == expected, inputs
+    assert loaded > len(rays) * 3 // 4
+
+
+@pytest.mark.parametrize("colour_bits", range(1, CHANNEL_BITS + 1))
+def test_color_channel(colour_bits, tmp_path):
+    config = any_config(colour_bits=colour_bits, reflections=2)
+    leaf = Leaf(
+        color_channel,
+        lambda: {
+            "clk": bit(),
+            "steps": Steps(),
+            "seen": unsigned(CHANNEL_BITS),
+            "reflections": unsigned(2),
+            "blended": unsigned(colour_bits),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    idle = {"steps_reset_color": 0, "steps_add_color": 0, "steps_initial_ray": 0}
+    stimulus, results = [], []
+    corners = [0, 1, 2, 127, 128, 254, 255]
+    for _ in range(250):
+        reflections = int(random.integers(3))
+        seen = [int(random.choice([*corners, random.integers(256)])) for _ in range(reflections + 1)]
+        stimulus.append({**idle, "steps_reset_color": 1, "reflections": reflections})
+        for number, value in enumerate(seen):
+            initial = {"steps_initial_ray": int(number == 0)}
+            stimulus += [{**idle, **initial, "seen": int(random.integers(256))}] * int(random.integers(2))
+            stimulus.append({**idle, **initial, "seen": value, "steps_add_color": 1})
+        results.append((len(stimulus), seen))
+        stimulus.append({**idle, "seen": int(random.integers(256))})
+    outputs = leaf.run_both(stimulus, settled=1)
+    for cycle, seen in results:
+        palette = np.array(seen, dtype=np.uint8)[:, None].repeat(3, axis=1)
+        expected = blend(palette, (0, 0, 0), [np.array([i]) for i in range(len(seen))])[0, 0]
+        assert outputs[cycle]["blended"] == expected >> (CHANNEL_BITS - colour_bits), (seen, repeat())
+
+
+@pytest.mark.parametrize("reflections", [0, 1, 2])
+@pytest.mark.parametrize("colour_bits", [1, 3, 4, 8])
+def test_color_combiner(colour_bits, reflections, tmp_path):
+    config = any_config(colour_bits=colour_bits, reflections=reflections)
+    leaf = Leaf(
+        color_combiner,
+        lambda: {
+            "clk": bit(),
+            "steps": Steps(),
+            "found": bit(),
+            "found_color": unsigned(COLOUR_BITS),
+            "background": unsigned(COLOUR_BITS),
+            "reflections": unsigned(2),
+            "pixel": unsigned(pixel_bits(config)),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    stimulus, results = [], []
+    for _ in range(200):
+        run_time = int(random.integers(reflections + 1))
+        palette = random.choice([0, 1, 255, 128, *random.integers(256, size=4)], (run_time + 2, 3)).astype(np.uint8)
+        words = [int.from_bytes(bytes(colour)) for colour in palette]
+        held = {"background": words[-1], "reflections": run_time, "steps_reset_color": 0, "steps_add_color": 0}
+        stimulus.append({**held, "steps_reset_color": 1})
+        winners, missed = [], False
+        for number in range(run_time + 1):
+            # After a miss the units go on and may find something, which must not count.
+            found = bool(random.random() < 0.6)
+            missed = missed or not found
+            winners.append(np.array([-1 if missed else number]))
+            ray = {**held, "found": int(found), "found_color": words[number], "steps_initial_ray": int(number == 0)}
+            stimulus += [ray] * int(random.integers(2))
+            stimulus.append({**ray, "steps_add_color": 1})
+        results.append((len(stimulus), palette, winners))
+        stimulus.append({**held, "found": int(random.integers(2))})
+    outputs = leaf.run_both(stimulus, settled=1)
+    for cycle, palette, winners in results:
+        expected = 0
+        for channel in blend(palette[:-1], palette[-1], winners)[0]:
+            expected = expected << colour_bits | int(channel) >> (CHANNEL_BITS - colour_bits)
+        assert outputs[cycle]["pixel"] == expected, (palette.tolist(), winners, repeat())

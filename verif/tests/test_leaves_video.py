@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: MIT
+"""The line buffer and the video timing: MyHDL's simulator, the converted Verilog and a model on one stimulus."""
+
+import numpy as np
+import pytest
+
+from raycaster.configuration import SCREENS, Configuration, Screen, Span, configure
+from raycaster.rtl.line_buffer import line_buffer
+from raycaster.rtl.video_generator import video_generator
+from raycaster.rtl.widths import bit, bits_for, offset_bits, pixel_bits, unsigned
+from raycaster.verif.leaf import Leaf, reset_signal
+from raycaster.verif.seeds import repeat, seed
+
+
+@pytest.mark.parametrize("colour_bits", [1, 4, 8])
+@pytest.mark.parametrize("units", [1, 5, 32, 64, 160, 320])
+def test_line_buffer(units, colour_bits, tmp_path):
+    config = configure(units=units, colour_bits=colour_bits, rectangles=1, allow_underrun=True)
+    groups, width = config.groups, pixel_bits(config)
+    leaf = Leaf(
+        line_buffer,
+        lambda: {
+            "clk": bit(),
+            "write": bit(),
+            "line_buf_sel": bit(),
+            "write_offset": unsigned(offset_bits(config)),
+            "pixel_in": unsigned(width),
+            "read_offset": unsigned(bits_for(groups)),
+            "pixel_out": unsigned(width),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+
+    def pixel() -> int:
+        return int(random.choice([0, 1, (1 << width) - 1, random.integers(1 << width)]))
+
+    halves = [{}, {}]
+    filling = [(half, offset) for half in (0, 1) for offset in range(groups)]
+    stimulus = [
+        {"write": 1, "line_buf_sel": half, "write_offset": offset, "pixel_in": pixel()} for half, offset in filling
+    ]
+    for _ in range(600):
+        written = int(random.choice([0, groups - 1, random.integers(groups)]))
+        # The renderer's counter rests at Max without writing.
+        write = int(random.random() < 0.5)
+        stimulus.append(
+            {
+                "write": write,
+                "line_buf_sel": int(random.integers(2)),
+                "write_offset": written if write or random.random() < 0.5 else groups,
+                "pixel_in": pixel(),
+                "read_offset": int(random.choice([written, random.integers(groups)])),
+            }
+        )
+    outputs = leaf.run_both(stimulus, settled=len(filling) + 1)
+    expected = None
+    for cycle, (inputs, output) in enumerate(zip(stimulus, outputs, strict=True)):
+        if cycle > len(filling):
+            assert output["pixel_out"] == expected, (cycle, inputs, repeat())
+        shown = halves[1 - inputs["line_buf_sel"]]
+        expected = shown.get(inputs.get("read_offset", 0))
+        if inputs["write"]:
+            halves[inputs["line_buf_sel"]][inputs["write_offset"]] = inputs["pixel_in"]
+
+
+def video_model(screen: Screen, cycle: int, colours: list[tuple[int, int, int]]) -> dict[str, int]:
+    """Every output, from the number of cycles since reset alone; `colours` are those at the inputs so far."""
+    horizontal, vertical, doubling = screen.horizontal, screen.vertical, screen.doubling
+
+    def position(pixel: int) -> tuple[int, int]:
+        line, x = divmod(pixel, horizontal.total)
+        return x - horizontal.blank, line % vertical.total - vertical.blank
+
+    pixel, second_half = divmod(cycle, 2)
+    x, y = position(pixel)
+    line_start = x == -horizontal.blank and not second_half
+    outputs = {
+        "start_screen": line_start and y == -doubling,
+        "start_row": line_start and y >= 0 and y % doubling == 0,
+        "visible_line": x >= 0,
+        "next_column": x >= 0 and second_half and x % doubling == doubling - 1,
+        "vga_clk": second_half,
+        "vga_sync_n": 0,
+    }
+    hs = vs = visible = False
+    if pixel > 0:
+        # The outputs are a pixel behind.
+        x, y = position(pixel - 1)
+        hs = horizontal.front <= x + horizontal.blank < horizontal.front + horizontal.sync
+        # Vertical sync waits for the next horizontal sync to begin.
+        line = y + vertical.blank - (x + horizontal.blank < horizontal.front)
+        vs = vertical.front <= line < vertical.front + vertical.sync
+        visible = x >= 0 and y >= 0
+    outputs |= {"vga_hs": hs == horizontal.active_high, "vga_vs": vs == vertical.active_high, "vga_blank_n": visible}
+    shown = colours[2 * pixel - 1] if visible else (0, 0, 0)
+    outputs |= dict(zip(("vga_r", "vga_g", "vga_b"), shown, strict=True))
+    return {name: int(value) for name, value in outputs.items()}
+
+
+SMALL_SCREENS = {
+    "both-low": Screen(4, 3, 1, 2, Span(8, 1, 2, 1, active_high=False), Span(6, 1, 1, 2, active_high=False)),
+    "both-high": Screen(3, 4, 1, 2, Span(6, 3, 1, 2, active_high=True), Span(8, 2, 1, 1, active_high=True)),
+    "mixed": Screen(5, 2, 1, 1, Span(5, 2, 3, 4, active_high=False), Span(2, 1, 2, 1, active_high=True)),
+    "threefold": Screen(2, 2, 1, 3, Span(6, 1, 1, 1, active_high=True), Span(6, 1, 1, 3, active_high=False)),
+    "tiny": SCREENS["tiny", 48],
+}
+
+
+@pytest.mark.parametrize("colour_bits", [1, 8])
+@pytest.mark.parametrize("name", SMALL_SCREENS)
+def test_video_generator(name, colour_bits, tmp_path):
+    screen = SMALL_SCREENS[name]
+    channels = ("red", "green", "blue")
+    leaf = Leaf(
+        video_generator,
+        lambda: {
+            "clk": bit(),
+            "reset": reset_signal(),
+            **{port: bit() for port in ("start_screen", "start_row", "visible_line", "next_column")},
+            **{channel: unsigned(colour_bits) for channel in channels},
+            **{f"vga_{channel}": unsigned(colour_bits) for channel in "rgb"},
+            **{f"vga_{port}": bit() for port in ("hs", "vs", "blank_n", "sync_n", "clk")},
+            "screen": screen,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    large = screen.frame_cycles > 10_000
+    # Three frames; or one that reset ended early, at a pixel's second half, and then a few lines of the second.
+    lengths = [screen.frame_cycles + 500] if large else [3 * screen.frame_cycles + 7, screen.frame_cycles // 2 | 1, 60]
+    stimulus, positions = [], []
+    for length in lengths:
+        for cycle in (None, None, *range(length)):
+            colours = dict(zip(channels, map(int, random.integers(1 << colour_bits, size=3)), strict=True))
+            stimulus.append({**colours, "reset": int(cycle is None)})
+            positions.append(cycle)
+    outputs = leaf.run_both(stimulus, settled=1)
+    colours = []
+    for number, (cycle, inputs) in enumerate(zip(positions, stimulus, strict=True)):
+        if cycle == 0:
+            colours = []
+        colours.append(tuple(inputs[channel] for channel in channels))
+        if cycle is not None:
+            assert outputs[number] == video_model(screen, cycle, colours), f"{cycle} cycles after reset; {repeat()}"
+
+
+def standard(config: Configuration) -> tuple[tuple[int, ...], tuple[int, ...], bool, bool]:
+    """What makes a video mode: pixels of a line, lines of a frame, and whether the syncs are active high."""
+    horizontal, vertical = config.screen_geometry.horizontal, config.screen_geometry.vertical
+    return (
+        (horizontal.visible, horizontal.front, horizontal.sync, horizontal.back),
+        (vertical.visible, vertical.front, vertical.sync, vertical.back),
+        horizontal.active_high,
+        vertical.active_high,
+    )
+
+
+@pytest.mark.parametrize(
+    ("rows", "mode"),
+    [
+        (240, ((640, 16, 96, 48), (480, 10, 2, 33), False, False)),
+        (200, ((640, 16, 96, 48), (400, 12, 2, 35), False, True)),
+    ],
+)
+def test_the_full_screens_are_the_standard_modes(rows, mode):
+    assert standard(configure(rows=rows)) == mode

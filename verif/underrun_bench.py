@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: MIT
+"""cocotb: a design too small for its scene loses columns, says so, and never disturbs the monitor."""
+
+from __future__ import annotations
+
+import cocotb
+import numpy as np
+from cocotb.handle import HierarchyObject
+
+from raycaster.scene import Scene
+from raycaster.verif.harness import Harness
+
+_CAMERA = {"position": [20, 256, 100]}
+_COLOURS = ("#ff0000", "#00ff00", "#0000ff", "#ffff00", "#00ffff", "#ff00ff")
+
+
+def _light() -> Scene:
+    floor = {"corners": [[0, 0, 0], [511, 511, 0]], "colour": "#c8c8b4"}
+    return Scene.model_validate({"background": "#402010", "camera": _CAMERA, "rect": [floor]})
+
+
+def _heavy(rectangles: int) -> Scene:
+    """As many rectangles as fit, across the view in all columns."""
+    walls = [
+        {
+            "corners": [[100 + 30 * n, 0, 20 * n], [100 + 30 * n, 511, 20 * n + 30]],
+            "colour": _COLOURS[n % len(_COLOURS)],
+        }
+        for n in range(rectangles)
+    ]
+    return Scene.model_validate({"background": "#104020", "camera": _CAMERA, "rect": walls})
+
+
+@cocotb.test()
+async def underrun(bench: HierarchyObject) -> None:
+    """A light scene, one that is too heavy, and the light one again. The monitor checks the sync of each frame."""
+    harness = Harness(bench)
+    bus, monitor, configuration = harness.bus, harness.monitor, harness.configuration
+    assert configuration.group_cycles > configuration.group_budget, "this design cannot underrun"
+    light, heavy = _light(), _heavy(configuration.rectangles)
+    reflections = configuration.reflections
+    light_picture, heavy_picture = harness.golden(light, reflections), harness.golden(heavy, reflections)
+
+    await harness.reset()
+    await bus.load_scene(light)
+    await bus.commit(reflections=reflections)
+    harness.expect_picture(await monitor.frame(), light_picture, "the light scene")
+    assert (await bus.read("status"))["underrun"] == 0
+    assert (await bus.read("cycles"))["row"] <= harness.screen.row_cycles
+
+    await bus.load_scene(heavy)
+    await bus.commit(reflections=reflections)
+    _expect_abandoned_rows(harness, await monitor.frame(), heavy_picture, light_picture)
+    assert (await bus.read("status"))["underrun"] == 1
+
+    await bus.load_scene(light)
+    await bus.commit(reflections=reflections)
+    harness.expect_picture(await monitor.frame(), light_picture, "the light scene after the heavy one")
+    assert (await bus.read("status"))["underrun"] == 1, "underrun is sticky"
+    await bus.write("status", underrun=0)
+    assert (await bus.read("status"))["underrun"] == 1, "writing 0 must not clear underrun"
+    await bus.write("status", underrun=1)
+    assert (await bus.read("status"))["underrun"] == 0, "writing 1 clears underrun"
+    harness.expect_picture(await monitor.frame(), light_picture, "the light scene, one frame later")
+    assert (await bus.read("status"))["underrun"] == 0
+    monitor.check_pins()
+
+
+def _expect_abandoned_rows(harness: Harness, seen: np.ndarray, complete: np.ndarray, before: np.ndarray) -> None:
+    """Every row must be new up to some group of columns, and from there on hold what its half of the buffer held."""
+    doubling, units = harness.screen.doubling, harness.configuration.units
+    lengths = set()
+    for line in range(len(seen)):
+        # The halves were last written whole by the last two rows of the frame before.
+        row = line // doubling
+        stale = before[(harness.screen.rows - 2 + row % 2) * doubling]
+        for groups in range(harness.configuration.groups):
+            new = groups * units * doubling
+            if np.array_equal(seen[line], np.concatenate([complete[line, :new], stale[new:]])):
+                lengths.add(groups)
+                break
+        else:
+            raise AssertionError(f"line {line}: not a new beginning and the old rest of its half of the buffer")
+    assert max(lengths) > 0, "no group of columns was ever complete"
