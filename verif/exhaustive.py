@@ -301,10 +301,10 @@ def run(executable: Path, bench: Bench, number: int, report: Callable[[int], Non
 
 def show(outcomes: Mapping[Bench, Outcome], number: int, console: Console) -> None:
     """The table of results."""
-    table = Table(title=f"No mismatch (seed {number})", title_justify="left", box=SIMPLE)
+    table = Table(title=f"No mismatch (seed {number})", title_justify="left", box=SIMPLE, padding=0)
     table.add_column("bench", no_wrap=True)
     for heading in ("vectors", "valid", "wrong", "seconds", "vectors/s"):
-        table.add_column(heading, justify="right")
+        table.add_column(heading, justify="right", no_wrap=True)
 
     def add(label: str, vectors: int, valid: int, seconds: float) -> None:
         rate = f"{vectors / max(seconds, 1e-9):,.0f}"

@@ -27,8 +27,10 @@ module ray_caster_module (
 );
     wire [7:0] r, g, b;
     wire hs, vs, blank_n, pixel_clk;
-    sound_module inner (clk, reset, avs_s0_address, avs_s0_read, avs_s0_write, avs_s0_writedata, avs_s0_byteenable,
-        avs_s0_readdata, avs_s0_readdatavalid, avs_s0_waitrequest, irq, r, g, b, hs, vs, blank_n, vga_sync_n, pixel_clk);
+    sound_module inner (
+        clk, reset, avs_s0_address, avs_s0_read, avs_s0_write, avs_s0_writedata, avs_s0_byteenable, avs_s0_readdata,
+        avs_s0_readdatavalid, avs_s0_waitrequest, irq, r, g, b, hs, vs, blank_n, vga_sync_n, pixel_clk
+    );
     // The pixel's position in the picture, from 1, for faults in one place only.
     integer x, y;
     always @(negedge pixel_clk) #1 begin
@@ -56,7 +58,9 @@ PINS = {"hs": "hs", "vs": "vs", "blank_n": "blank_n", "clk": "pixel_clk", "r": "
     ("pins", "complaint"),
     [
         pytest.param({}, None, id="sound"),
-        pytest.param({"r": "r ^ (x == 63 && y == 40)"}, "frame: 1 of 12288 pixels are wrong", id="one-bit-of-one-pixel"),
+        pytest.param(
+            {"r": "r ^ (x == 63 && y == 40)"}, "frame: 1 of 12288 pixels are wrong", id="one-bit-of-one-pixel"
+        ),
         pytest.param({"r": "blank_n ? r_late : 8'd0"}, "pixels are wrong", id="picture-a-pixel-late"),
         pytest.param({"hs": "hs_late"}, "line 1, sample 159: VS is 1, expected 0", id="hs-a-pixel-late"),
         pytest.param({"vs": "vs_late"}, "VS is 1, expected 0", id="vs-a-pixel-late"),

@@ -247,8 +247,9 @@ def test_ray_unit(config, tmp_path):
     slopes = primary_slopes(config.screen_geometry)
     rows, columns, _ = slopes.shape
     stimulus, results = [], []
-    fates = set()
-    for _ in range(24):
+    # How many mirrors a ray meets: none, one, and all that it may.
+    fates, every_fate = set(), set(range(config.reflections + 2))
+    while len(results) < 24 or fates != every_fate:
         row = int(random.choice([0, 1, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))
         column = int(random.choice([0, 1, columns // 2, columns - 1, random.integers(columns)]))
         camera, table = scene_of(random, slopes[[row], column], config.rectangles)
@@ -258,7 +259,10 @@ def test_ray_unit(config, tmp_path):
             table, camera, background, slopes[row, column][None], reflections,
             fraction_bits=config.fraction_bits, rounding=config.rounding,
         )  # fmt: skip
-        fates.add(sum(int(winner[0]) >= 0 for winner in golden.winners))
+        fate = sum(int(winner[0]) >= 0 for winner in golden.winners)
+        if len(results) >= 24 and fate in fates:
+            continue
+        fates.add(fate)
         held = {
             "row": row,
             "column_base": column % config.units,
@@ -278,7 +282,6 @@ def test_ray_unit(config, tmp_path):
     outputs = leaf.run_both(stimulus, settled=results[0][0])
     for cycle, pixel, case in results:
         assert outputs[cycle]["pixel"] == pixel, case
-    assert fates == set(range(config.reflections + 2)), "rays were to hit nothing, once, and all the times they may"
 
 
 # ray_caster ----------------------------------------------------------------------------------------------------------
@@ -412,7 +415,7 @@ def renderer_leaf(config: Configuration, directory) -> Leaf:
     [
         small_config(units=4, rectangles=1, reflections=1, colour_bits=8),
         small_config(units=2, rectangles=1, reflections=0, fraction_bits=4, rounding="nearest", colour_bits=4),
-        small_config(units=8, rectangles=1, reflections=2, divider_bits=1, colour_bits=2),
+        small_config(units=4, rectangles=1, reflections=2, divider_bits=3, colour_bits=2),
         # 16 groups of 27 cycles, of which a row of 336 has time for twelve.
         small_config(units=1, rectangles=1, reflections=0, fraction_bits=8, divider_bits=1, allow_underrun=True),
     ],
@@ -471,8 +474,11 @@ def test_ray_caster_renderer(config, tmp_path):
     assert late == (rows if config.allow_underrun else [])
     in_second = outputs[start + frame + 1 : start + 2 * frame]
     if not config.allow_underrun:
-        assert max(output["row_cycles"] for output in in_second) == config.groups * group
+        assert max(output["row_cycles"] for output in in_second if output["busy"]) == config.groups * group
         assert sum(output["busy"] for output in in_second) == screen.rows * config.groups * group
+        times = [output["group_cycles"] for output in in_second]
+        finished = [before for before, after in pairwise(times) if after < before]
+        assert finished == [group] * screen.rows * config.groups
     assert max(output["group_cycles"] for output in in_second) == group
 
 

@@ -215,7 +215,8 @@ def table_stimulus(random: np.random.Generator, table: Table, rectangles: int) -
     stimulus = [{**random_bus(random, [0]), "reset": 1}] * 2
     last = 1 << address_bits(rectangles)
     written = list(table.words)
-    while len(stimulus) < CYCLES:
+    # Many rectangles take their time.
+    while len(stimulus) < (CYCLES if rectangles < 20 else CYCLES // 2):
         _, words = rectangle_words(random)
         slot = int(random.integers(rectangles))
         data = words[int(random.integers(len(words)))]
@@ -412,7 +413,7 @@ class Agent:
         self.irq_pending = bool(start_screen or (self.irq_pending and not (name == "irq_pending" and ones & 1)))
         if name == "cycles" and bus["bus_mask"]:
             self.row = self.group = 0
-        else:
+        elif inputs["busy"]:
             self.row, self.group = max(self.row, inputs["row_cycles"]), max(self.group, inputs["group_cycles"])
         committing = name == "control" and bool(ones & 2)
         # A commit counts from the cycle in which the shadow is copied; a StartScreen in that cycle is too early for it.
