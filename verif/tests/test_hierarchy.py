@@ -87,7 +87,7 @@ def everything(clk, word, pair, joined, swapped, count):
     amounts = [constant(3, 4), constant(15, 4)]
     one = constant(1, 4)
     both = ConcatSignal(*reversed(halves))
-    carry = unsigned(1)
+    carry = bit()
     total = unsigned(4)
 
     first = step(clk, lower, amounts[0], halves[0], carries[0])
@@ -180,7 +180,7 @@ def test_a_signed_port_is_signed(tmp_path):
 
 def test_a_block_converts_alike_wherever_it_stands(tmp_path):
     within = converted(everything(**everything_arguments()), tmp_path / "within")
-    alone = converted(step(bit(), unsigned(4), unsigned(4), unsigned(4), unsigned(1)), tmp_path / "alone")
+    alone = converted(step(bit(), unsigned(4), unsigned(4), unsigned(4), bit()), tmp_path / "alone")
     again = converted(everything(**everything_arguments()), tmp_path / "again")
     assert within["step"].path.read_text() == alone["step"].path.read_text()
     for name, module in within.items():
@@ -242,7 +242,7 @@ def careless(clk, value, result, undriven, unread):
 @block
 def careless_parent(clk, value, result, undriven, unread):
     """The same, where the signal is between instances."""
-    nothing, carry = unsigned(4), unsigned(1)
+    nothing, carry = unsigned(4), bit()
     given = nothing if undriven else value
     lost = carry if unread else unconnected(1)
     stepping = step(clk, value, given, result, lost)

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+"""Random scenes: the generator, and soaking as `make soak` does it, with a sound design and a broken one."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import pytest
+from conftest import BUILD, ROOT
+
+from raycaster.configuration import configure
+from raycaster.scene import dump_scene, load_scene
+from raycaster.verif.job import Job
+from raycaster.verif.random_scenes import STYLES, random_scene
+from raycaster.verif.simulator import SimulationError, build_model, convert, run_bench
+
+SMALL = configure(screen="tiny", units=8, rectangles=4, reflections=2, divider_bits=3)
+
+
+def test_scenes_survive_their_file(tmp_path):
+    """Every style, and what is written is what is read."""
+    for seed in range(4 * len(STYLES)):
+        scene = random_scene(seed, 12, 2)
+        assert 1 <= len(scene.rect) <= 12
+        path = tmp_path / f"{seed}.toml"
+        path.write_text(dump_scene(scene))
+        assert load_scene(path) == scene
+        assert random_scene(seed, 12, 2) == scene
+
+
+def test_soak():
+    """A handful at full size."""
+    build = BUILD / "test" / "soak"
+    ran = subprocess.run(
+        [sys.executable, "-m", "raycaster.verif.soak", "--seeds", "6", "--build", str(build)],
+        cwd=ROOT, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    results = [json.loads(line) for line in (build / "soak" / "results.jsonl").read_text().splitlines()]
+    assert [result["seed"] for result in results] == list(range(6))
+    assert all(result["pixels"] == 640 * 480 and result["wrong_vs_golden"] == 0 for result in results)
+
+
+def test_a_wrong_scene_shrinks(tmp_path):
+    """A design that swaps the bounds on one axis loses rectangles, and one is enough to show it."""
+    files = []
+    for source in convert(SMALL, BUILD):
+        copy = tmp_path / source.name
+        copy.write_text(source.read_text().replace("(u_0 <= u_1)", "(u_0 > u_1)"))
+        files.append(copy)
+    assert any("(u_0 > u_1)" in file.read_text() for file in files)
+    model = build_model(SMALL, "icarus", build=BUILD, verilog=files)
+    seeds = (0, 1, 5)
+    with pytest.raises(SimulationError, match="wrong pixels in the scenes of seeds"):
+        run_bench(model, "raycaster.verif.soak_bench", Job(SMALL, output=str(tmp_path), seeds=seeds), tmp_path)
+    shrunk = [load_scene(path) for path in tmp_path.glob("*-shrunk.toml")]
+    assert shrunk
+    assert all(len(scene.rect) == 1 for scene in shrunk)
+    assert all(load_scene(tmp_path / path.name.replace("-shrunk", "")) for path in tmp_path.glob("*-shrunk.toml"))
