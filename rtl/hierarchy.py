@@ -131,7 +131,8 @@ class _Converter:
     def _module_of(self, block: _Block) -> Module:
         name = block.func.__name__
         ports, parameters = _arguments(block)
-        signature = (parameters, tuple((port, len(signal) or 1, (signal.min or 0) < 0) for port, signal in ports.items()))
+        shapes = tuple((port, len(signal) or 1, (signal.min or 0) < 0) for port, signal in ports.items())
+        signature = parameters, shapes
         if name in self._modules:
             known, module = self._modules[name]
             if known != signature:

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: MIT
+// The registers and the scene memories as software sees them, against a model of one word at an arbitrary address.
+//
+// Assumed: a transfer reads or writes, and not both, as Avalon asks; one cycle of reset at first. Reset may come again
+// at any time, and StartScreen, the budget's counters and the renderer's flags do as they like. `watched` is chosen by
+// the solver and then stays, so that what holds for it holds for every address.
+
+module avalon_agent #(
+    parameter ADDRESS_BITS = 5, parameter [31:0] ENGINE_WORD = 0, parameter [31:0] SIZE_WORD = 0,
+    parameter REFLECTIONS = 1
+) (
+    input clk, input reset,
+    input [ADDRESS_BITS-1:0] address, input read, input write, input [31:0] writedata, input [3:0] byteenable,
+    input start_screen, input busy, input underrun, input [15:0] row_cycles, input [15:0] group_cycles,
+    input rects_index, input rects_fetch
+);
+wire [31:0] readdata, camera_word, rect_word, bus_data, bus_mask;
+wire readdatavalid, waitrequest, irq, bad_rectangle, run, bus_write, bus_commit, bus_go_live;
+wire [1:0] reflections;
+wire [23:0] background;
+wire [ADDRESS_BITS-1:0] bus_address;
+wire [8:0] camera_x, camera_y, camera_z;
+
+avalon_interface registers (
+    .clk(clk), .reset(reset), .avs_s0_address(address), .avs_s0_read(read), .avs_s0_write(write),
+    .avs_s0_writedata(writedata), .avs_s0_byteenable(byteenable), .avs_s0_readdata(readdata),
+    .avs_s0_readdatavalid(readdatavalid), .avs_s0_waitrequest(waitrequest), .irq(irq), .camera_word(camera_word),
+    .rect_word(rect_word), .bad_rectangle(bad_rectangle), .run(run), .reflections(reflections),
+    .background(background), .start_screen(start_screen), .busy(busy), .underrun(underrun), .row_cycles(row_cycles),
+    .group_cycles(group_cycles), .bus_write(bus_write), .bus_commit(bus_commit), .bus_go_live(bus_go_live),
+    .bus_address(bus_address), .bus_data(bus_data), .bus_mask(bus_mask)
+);
+camera_mem camera (
+    .clk(clk), .reset(reset), .read_word(camera_word), .bus_write(bus_write), .bus_commit(bus_commit),
+    .bus_go_live(bus_go_live), .bus_address(bus_address), .bus_data(bus_data), .bus_mask(bus_mask),
+    .camera_x(camera_x), .camera_y(camera_y), .camera_z(camera_z)
+);
+rect_mem rects (
+    .clk(clk), .reset(reset), .read_word(rect_word), .bad_rectangle(bad_rectangle), .bus_write(bus_write),
+    .bus_commit(bus_commit), .bus_go_live(bus_go_live), .bus_address(bus_address), .bus_data(bus_data),
+    .bus_mask(bus_mask), .rects_usable(), .rects_index(rects_index), .rects_fetch(rects_fetch), .rects_rect_axis(),
+    .rects_rect_position(), .rects_rect_u_low(), .rects_rect_u_high(), .rects_rect_v_low(), .rects_rect_v_high(),
+    .rects_rect_colour()
+);
+
+// The register map once more, by hand.
+localparam ID = 0, VERSION = 1, ENGINE = 2, SIZE = 3, CONTROL = 4, STATUS = 5, CYCLES = 6, IRQ_ENABLE = 7,
+    IRQ_PENDING = 8, BACKGROUND = 9, CAMERA = 10, TABLE = 16;
+localparam [31:0] POINT_BITS = 32'h1ff7fdff, SURFACE_BITS = 32'h80ffffff;
+(* anyconst *) reg [ADDRESS_BITS-1:0] watched;
+reg [31:0] implemented;  // of what is shadowed; the other words have none
+always @* case (watched)
+    CONTROL: implemented = 32'h301;
+    BACKGROUND: implemented = 32'h00ffffff;
+    CAMERA, TABLE, TABLE + 1, TABLE + 4, TABLE + 5: implemented = POINT_BITS;
+    TABLE + 2, TABLE + 6: implemented = SURFACE_BITS;
+    default: implemented = 0;
+endcase
+
+reg known = 0;
+reg last_reset;
+always @(posedge clk) begin
+    known <= 1;
+    last_reset <= reset;
+end
+always @* begin
+    if (!known) assume (reset);
+    assume (!(read && write));
+end
+
+// waitrequest: the first cycle after reset, and never else.
+always @* if (known) assert (waitrequest == last_reset);
+
+// What is accepted, and in the cycle after.
+wire accepted = !waitrequest && !reset;
+wire reads = read && accepted, writes = write && accepted;
+wire [31:0] mask = {{8{byteenable[3]}}, {8{byteenable[2]}}, {8{byteenable[1]}}, {8{byteenable[0]}}};
+wire commits = writes && address == CONTROL && byteenable[0] && writedata[1];
+reg wrote, committed_1, committed_2;
+reg [ADDRESS_BITS-1:0] wrote_address;
+reg [31:0] wrote_ones, wrote_mask;
+always @(posedge clk) begin
+    wrote <= writes;
+    wrote_address <= address;
+    wrote_ones <= writedata & mask;
+    wrote_mask <= mask;
+    committed_1 <= commits;
+    committed_2 <= !reset && committed_1;
+end
+
+// Shadow, what was committed of it with the very write that asked for it, and what is shown. A commit takes two cycles
+// on its way, which is what StartScreen must leave it.
+reg [31:0] shadow, snapshot, pending, live;
+reg outstanding;  // committed and not shown
+always @(posedge clk) begin
+    if (reset) begin
+        shadow <= 0;
+        pending <= 0;
+        live <= 0;
+        outstanding <= 0;
+    end
+    else begin
+        if (writes && address == watched) shadow <= ((shadow & ~mask) | (writedata & mask)) & implemented;
+        if (committed_2) pending <= snapshot;
+        if (start_screen) live <= pending;
+        if (commits) outstanding <= 1;
+        else if (start_screen && !committed_1 && !committed_2) outstanding <= 0;
+    end
+    if (committed_1) snapshot <= shadow;
+end
+
+// Status, interrupt and cycles: an event in the cycle in which a write clears it is kept.
+wire wrote_status = wrote && wrote_address == STATUS;
+wire wrote_cycles = wrote && wrote_address == CYCLES && wrote_mask != 0;
+reg status_underrun, status_bad, enabled, event_pending;
+reg [15:0] frame, slowest_row, slowest_group;
+always @(posedge clk) begin
+    if (reset) begin
+        {status_underrun, status_bad, enabled, event_pending} <= 0;
+        {frame, slowest_row, slowest_group} <= 0;
+    end
+    else begin
+        status_underrun <= underrun || (status_underrun && !(wrote_status && wrote_ones[1]));
+        status_bad <= (committed_2 && bad_rectangle) || (status_bad && !(wrote_status && wrote_ones[2]));
+        event_pending <= start_screen
+            || (event_pending && !(wrote && wrote_address == IRQ_PENDING && wrote_ones[0]));
+        if (wrote && wrote_address == IRQ_ENABLE && wrote_mask[0]) enabled <= wrote_ones[0];
+        if (start_screen) frame <= frame + 1;
+        slowest_row <= wrote_cycles ? 0 : busy && row_cycles > slowest_row ? row_cycles : slowest_row;
+        slowest_group <= wrote_cycles ? 0 : busy && group_cycles > slowest_group ? group_cycles : slowest_group;
+    end
+end
+always @* if (known) assert (irq == (enabled && event_pending));
+
+// Every accepted read is answered two cycles later and nothing else is; the watched word with what was written before
+// the read was accepted.
+reg read_1, read_2, watched_1, watched_2;
+reg [31:0] shadow_1, expected_1, expected_2;
+always @* case (watched)
+    ID: expected_1 = 32'h52415943;
+    VERSION: expected_1 = 1;
+    ENGINE: expected_1 = ENGINE_WORD;
+    SIZE: expected_1 = SIZE_WORD;
+    CONTROL: expected_1 = shadow_1 | (outstanding << 1);
+    STATUS: expected_1 = {frame, 13'b0, status_bad, status_underrun, busy};
+    CYCLES: expected_1 = {slowest_group, slowest_row};
+    IRQ_ENABLE: expected_1 = enabled;
+    IRQ_PENDING: expected_1 = event_pending;
+    default: expected_1 = shadow_1;  // which is 0 where there is nothing
+endcase
+always @(posedge clk) begin
+    read_1 <= reads;
+    read_2 <= read_1 && !reset;
+    watched_1 <= address == watched;
+    watched_2 <= watched_1;
+    shadow_1 <= reset ? 0 : shadow;
+    expected_2 <= expected_1;
+end
+always @* if (known && !last_reset) begin
+    assert (readdatavalid == read_2);
+    if (readdatavalid && watched_2) assert (readdata == expected_2);
+end
+always @* if (known && last_reset) assert (!readdatavalid);
+
+// What the renderer gets is the live word, which changes at StartScreen only.
+(* hierconn *) wire [31:0] \registers.live_control , \registers.live_background , \camera.live ,
+    \rects.rect_slot_0_i.live_corner_0 , \rects.rect_slot_0_i.live_corner_1 , \rects.rect_slot_0_i.live_surface ,
+    \rects.rect_slot_1_i.live_corner_0 , \rects.rect_slot_1_i.live_corner_1 , \rects.rect_slot_1_i.live_surface ;
+reg [31:0] shown;
+always @* case (watched)
+    CONTROL: shown = \registers.live_control ;
+    BACKGROUND: shown = \registers.live_background ;
+    CAMERA: shown = \camera.live ;
+    TABLE: shown = \rects.rect_slot_0_i.live_corner_0 ;
+    TABLE + 1: shown = \rects.rect_slot_0_i.live_corner_1 ;
+    TABLE + 2: shown = \rects.rect_slot_0_i.live_surface ;
+    TABLE + 4: shown = \rects.rect_slot_1_i.live_corner_0 ;
+    TABLE + 5: shown = \rects.rect_slot_1_i.live_corner_1 ;
+    TABLE + 6: shown = \rects.rect_slot_1_i.live_surface ;
+    default: shown = 0;
+endcase
+wire [1:0] most_reflections = REFLECTIONS;
+wire [52:0] scene = {run, reflections, background, camera_x, camera_y, camera_z};
+reg [31:0] last_shown;
+reg [52:0] last_scene;
+reg last_start;
+always @(posedge clk) begin
+    last_shown <= shown;
+    last_scene <= scene;
+    last_start <= start_screen;
+end
+always @* if (known) begin
+    assert (shown == live);
+    if (watched == CONTROL) begin
+        assert (run == live[0]);
+        assert (reflections == (live[9:8] > most_reflections ? most_reflections : live[9:8]));
+    end
+    if (watched == BACKGROUND) assert (background == live[23:0]);
+    if (watched == CAMERA) assert ({camera_z, camera_y, camera_x} == {live[28:20], live[18:10], live[8:0]});
+    if (!last_start && !last_reset) assert (shown == last_shown && scene == last_scene);
+end
+
+// A committed rectangle is bad where it is enabled and its corners share no coordinate.
+(* hierconn *) wire [31:0] \registers.control_word , \registers.background_word ,
+    \rects.rect_slot_0_i.corner_0 , \rects.rect_slot_0_i.corner_1 , \rects.rect_slot_0_i.surface ,
+    \rects.rect_slot_1_i.corner_0 , \rects.rect_slot_1_i.corner_1 , \rects.rect_slot_1_i.surface ;
+function shares(input [31:0] a, input [31:0] b);
+    shares = a[8:0] == b[8:0] || a[18:10] == b[18:10] || a[28:20] == b[28:20];
+endfunction
+wire bad_0 = \rects.rect_slot_0_i.surface [31]
+    && !shares(\rects.rect_slot_0_i.corner_0 , \rects.rect_slot_0_i.corner_1 );
+wire bad_1 = \rects.rect_slot_1_i.surface [31]
+    && !shares(\rects.rect_slot_1_i.corner_0 , \rects.rect_slot_1_i.corner_1 );
+always @* if (known) assert (bad_rectangle == (bad_0 || bad_1));
+
+// Invariants: the registers behind the bus are a cycle behind the model, and the pending copies equal its own.
+(* hierconn *) wire [31:0] \registers.scene_word_0_i.pending , \registers.scene_word_1_i.pending ,
+    \camera.scene_word_i.pending , \rects.rect_slot_0_i.scene_word_0_i.pending ,
+    \rects.rect_slot_0_i.scene_word_1_i.pending , \rects.rect_slot_0_i.scene_word_2_i.pending ,
+    \rects.rect_slot_1_i.scene_word_0_i.pending , \rects.rect_slot_1_i.scene_word_1_i.pending ,
+    \rects.rect_slot_1_i.scene_word_2_i.pending ;
+(* hierconn *) wire [15:0] \registers.frame , \registers.slowest_row , \registers.slowest_group ;
+(* hierconn *) wire \registers.sticky_underrun , \registers.sticky_bad , \registers.irq_enable ,
+    \registers.irq_pending , \registers.commit_pending , \registers.reading ;
+reg [31:0] kept, kept_pending;
+always @* case (watched)
+    CONTROL: {kept, kept_pending} = {\registers.control_word , \registers.scene_word_0_i.pending };
+    BACKGROUND: {kept, kept_pending} = {\registers.background_word , \registers.scene_word_1_i.pending };
+    CAMERA: {kept, kept_pending} = {camera_word, \camera.scene_word_i.pending };
+    TABLE: {kept, kept_pending} = {\rects.rect_slot_0_i.corner_0 , \rects.rect_slot_0_i.scene_word_0_i.pending };
+    TABLE + 1: {kept, kept_pending} = {\rects.rect_slot_0_i.corner_1 , \rects.rect_slot_0_i.scene_word_1_i.pending };
+    TABLE + 2: {kept, kept_pending} = {\rects.rect_slot_0_i.surface , \rects.rect_slot_0_i.scene_word_2_i.pending };
+    TABLE + 4: {kept, kept_pending} = {\rects.rect_slot_1_i.corner_0 , \rects.rect_slot_1_i.scene_word_0_i.pending };
+    TABLE + 5: {kept, kept_pending} = {\rects.rect_slot_1_i.corner_1 , \rects.rect_slot_1_i.scene_word_1_i.pending };
+    TABLE + 6: {kept, kept_pending} = {\rects.rect_slot_1_i.surface , \rects.rect_slot_1_i.scene_word_2_i.pending };
+    default: {kept, kept_pending} = 0;
+endcase
+always @* if (known) begin
+    assert (kept == shadow_1 && (kept & ~implemented) == 0 && (shadow & ~implemented) == 0);
+    if (!wrote || wrote_address != watched) assert (shadow == shadow_1);
+    else assert (shadow == (((shadow_1 & ~wrote_mask) | wrote_ones) & implemented));
+    assert (kept_pending == pending);
+    if (committed_2) assert (snapshot == shadow_1 && outstanding);
+    if (committed_1) assert (outstanding);
+    assert (outstanding == (committed_1 || committed_2 || \registers.commit_pending ));
+    assert (bus_commit == committed_2);
+    assert (committed_1 == (wrote && wrote_address == CONTROL && wrote_ones[1]));
+    assert (bus_write == wrote && \registers.reading == read_1);
+    if (wrote) assert (bus_address == wrote_address && bus_mask == wrote_mask && (bus_data & bus_mask) == wrote_ones);
+    if (read_1) assert (watched_1 == (bus_address == watched));
+    assert (!(wrote && read_1));
+    assert (\registers.frame == frame);
+    assert (\registers.slowest_row == slowest_row && \registers.slowest_group == slowest_group);
+    assert (\registers.sticky_underrun == status_underrun && \registers.sticky_bad == status_bad);
+    assert (\registers.irq_enable == enabled && \registers.irq_pending == event_pending);
+end
+
+// What was written and committed is shown, and read back; the interrupt is raised, and cleared.
+reg was_irq = 0;
+always @(posedge clk) was_irq <= !reset && (was_irq || irq);
+always @* begin
+    cover (watched == TABLE + 6 && live[31] && !outstanding && readdatavalid && watched_2);
+    cover (was_irq && !irq && !reset && enabled);
+end
+endmodule

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+// The divider: quotient * divisor + remainder = dividend with remainder < divisor, rounded as configured, or overflow.
+//
+// Assumed, as the control has it: store_quotient comes STEPS cycles after load_divider and at no other time, and
+// load_divider not before that. The operands are any, also those that overflow.
+//
+// A product of two variables is hard for a solver, so `times` is written as the sum of shifted divisors that it is, in
+// Horner's order. That is the order in which a division delivers its digits: each step's product is the last one's
+// doubled, with the new digit added, and the proof by induction needs additions only.
+
+module divider_exact #(
+    parameter WIDTH = 9, parameter BITS = 1, parameter STEPS = 9, parameter NEAREST = 0, parameter PART = 2
+) (
+    input clk, input load_divider, input store_quotient, input [WIDTH+8:0] dividend, input [8:0] divisor
+);
+localparam DIGITS = BITS * STEPS, EXTRA = DIGITS - WIDTH, PRODUCT = DIGITS + 10;
+
+wire [WIDTH-1:0] quotient;
+wire overflow;
+
+divider dut (
+    .clk(clk), .load_divider(load_divider), .store_quotient(store_quotient), .dividend(dividend), .divisor(divisor),
+    .quotient(quotient), .overflow(overflow)
+);
+
+reg busy = 0, stored = 0;
+reg [4:0] step;
+reg [WIDTH+8:0] held_dividend, result_dividend;
+reg [8:0] held_divisor, result_divisor;
+always @(posedge clk) begin
+    if (load_divider) begin
+        busy <= 1;
+        step <= 0;
+        held_dividend <= dividend;
+        held_divisor <= divisor;
+    end
+    else begin
+        if (store_quotient) busy <= 0;
+        step <= step + 1;
+    end
+    if (store_quotient) begin
+        stored <= 1;
+        result_dividend <= held_dividend;
+        result_divisor <= held_divisor;
+    end
+end
+always @* begin
+    assume (store_quotient == (busy && step == STEPS - 1));
+    if (load_divider) assume (!busy || step == STEPS - 1);
+end
+
+// product times 2 ** BITS, plus as many digits times the divisor.
+function [PRODUCT-1:0] append(input [PRODUCT-1:0] product, input [BITS-1:0] digits, input [8:0] by);
+    integer i;
+    begin
+        append = product;
+        for (i = BITS - 1; i >= 0; i = i - 1) append = (append << 1) + (digits[i] ? by : 0);
+    end
+endfunction
+
+// number * by.
+function [PRODUCT-1:0] times(input [DIGITS-1:0] number, input [8:0] by);
+    integer i;
+    begin
+        times = 0;
+        for (i = STEPS - 1; i >= 0; i = i - 1) times = append(times, number[i*BITS+:BITS], by);
+    end
+endfunction
+
+// The result stands from the cycle after store_quotient on. `down` is the quotient rounded down.
+reg [WIDTH-1:0] down;
+(* hierconn *) wire [DIGITS-1:0] \dut.last_pending ;
+always @(posedge clk) if (store_quotient) down <= \dut.last_pending ;
+reg [PRODUCT-1:0] result_product;  // before the last step
+wire [PRODUCT-1:0] last_step = append(result_product, down[BITS-1:0], result_divisor);
+wire [PRODUCT-1:0] multiple = times(down, result_divisor);
+// The second part proves that these two are one where the result counts; the third wants the simpler.
+wire [PRODUCT-1:0] below = PART == 2 ? last_step : multiple;
+wire [PRODUCT-1:0] left = result_dividend - below;
+wire round_up = NEAREST && 2 * left >= result_divisor;
+wire too_large = result_dividend >> WIDTH >= result_divisor;  // so it is where the divisor is 0
+wire [WIDTH:0] rounded = down + round_up;
+always @* if (stored && PART == 2) begin
+    if (too_large) assert (overflow);
+    else begin
+        assert (below <= result_dividend && left < result_divisor);
+        assert (quotient == rounded[WIDTH-1:0]);
+        assert (overflow == rounded[WIDTH]);
+    end
+end
+
+// Invariants for each step and for the result, in parts that are proved one after the other, each on the ground of
+// those before: the product and the remainder are the dividend's top digits; the product is that of the divisor and the
+// quotient's digits so far. The third part is the claim.
+(* hierconn *) wire [8:0] \dut.remainder , \dut.divisor_held , \dut.last_remainder ;
+(* hierconn *) wire [DIGITS-1:0] \dut.pending ;
+(* hierconn *) wire \dut.too_large ;
+reg [PRODUCT-1:0] last_product;
+reg [8:0] result_remainder;
+wire [PRODUCT-1:0] product = step == 0 ? 0 : append(last_product, \dut.pending [BITS-1:0], held_divisor);
+wire fits = held_dividend >> WIDTH < held_divisor;
+always @(posedge clk) begin
+    last_product <= product;
+    if (store_quotient) begin
+        result_product <= product;
+        result_remainder <= \dut.last_remainder ;
+    end
+end
+always @* if (busy) begin
+    assert (step < STEPS);
+    assert (\dut.divisor_held == held_divisor);
+    assert (\dut.too_large == !fits);
+end
+
+genvar k;
+generate
+    for (k = 0; k < STEPS; k = k + 1) begin: after
+        wire [DIGITS-1:0] digits = \dut.pending & ((1 << BITS * k) - 1);
+        wire [DIGITS-1:0] rest = held_dividend << BITS * k;
+        wire [WIDTH+8:0] top = held_dividend >> (DIGITS - BITS * k);
+        wire short = !fits || k == 0 || digits >> (BITS * k - EXTRA) == 0;
+        wire divided = \dut.pending == (rest | digits) && (!fits || (
+            product + \dut.remainder == top && product <= top && \dut.remainder < held_divisor));
+        wire multiplied = product == times(digits, held_divisor);
+        always @* if (busy && step == k) begin
+            if (PART == 0) assert (divided && short);
+            if (PART == 1) assume (short);
+            if (PART == 1) assert (multiplied);
+        end
+    end
+endgenerate
+
+wire result_divided = last_step + result_remainder == result_dividend && last_step <= result_dividend
+    && result_remainder < result_divisor;
+wire result_multiplied = last_step == multiple;
+wire result_round_up = NEAREST && 2 * result_remainder >= result_divisor;
+wire [WIDTH:0] result_rounded = down + result_round_up;
+wire result_stored = too_large ? overflow : {overflow, quotient} == result_rounded;
+always @* if (stored) begin
+    if (PART == 0) assert (result_stored && (too_large || result_divided));
+    if (PART == 1) assert (too_large || result_multiplied);
+    if (PART == 2) assume (result_stored && (too_large || result_divided));
+end
+endmodule

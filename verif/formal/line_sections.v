@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// A section of the line buffer: what is written is not what is read in the same cycle, whichever half is selected.
+//
+// Assumed is what `render_counters` proves of the renderer: the offset that is read, and that of each write, lie below
+// the number of groups. There is no state in it, so one step is every step.
+
+module line_sections #(
+    parameter GROUPS = 10, parameter WRITE_BITS = 4, parameter READ_BITS = 4, parameter ADDRESS_BITS = 5,
+    parameter PIXEL_BITS = 24
+) (
+    input clk, input write, input line_buf_sel, input [WRITE_BITS-1:0] write_offset, input [PIXEL_BITS-1:0] pixel_in,
+    input [READ_BITS-1:0] read_offset
+);
+line_buffer dut (
+    .clk(clk), .write(write), .line_buf_sel(line_buf_sel), .write_offset(write_offset), .pixel_in(pixel_in),
+    .read_offset(read_offset), .pixel_out()
+);
+
+always @* begin
+    assume (read_offset < GROUPS);
+    if (write) assume (write_offset < GROUPS);
+end
+
+(* hierconn *) wire [ADDRESS_BITS-1:0] \dut.write_address , \dut.read_address ;
+always @* begin
+    assert (\dut.read_address < 2 * GROUPS);
+    if (write) begin
+        assert (\dut.write_address < 2 * GROUPS);
+        assert (\dut.write_address != \dut.read_address );
+    end
+end
+
+// The halves are told apart: the same offset of both is two addresses, and two offsets of one half are two.
+always @* begin
+    assert (\dut.write_address == (line_buf_sel ? write_offset + GROUPS : write_offset) || !write);
+    assert (\dut.read_address == (line_buf_sel ? read_offset : read_offset + GROUPS));
+end
+endmodule

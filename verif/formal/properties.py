@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: MIT
+"""What is proved, of which configurations, and how deep."""
+
+from __future__ import annotations
+
+from raycaster.configuration import RESULT_LATENCY, Configuration, Screen, Span, configure
+from raycaster.registers import address_bits
+from raycaster.rtl.avalon_interface import engine_word, size_word
+from raycaster.rtl.widths import bits_for, index_bits, offset_bits, pixel_bits, position_bits, row_bits, unit_bits
+from raycaster.verif.formal.prover import Property
+
+TOY_SCREEN = Screen(3, 2, 1, 3, Span(9, 1, 2, 1, active_high=True), Span(6, 1, 1, 3, active_high=True))
+"""Tripled pixels, and a frame short enough to be walked through whole."""
+
+SLOWEST = {9: (0, 1), 8: (7, 2), 7: (5, 2), 6: (3, 2), 5: (0, 2), 4: (3, 3), 3: (0, 3)}
+"""Fraction bits and divider bits that give each number of divider steps."""
+
+
+def _signed_bits(least: int, beyond: int) -> int:
+    """Width of a two's complement counter from `least`, which is negative, to below `beyond`."""
+    return max((-least - 1).bit_length(), (beyond - 1).bit_length()) + 1
+
+
+def _video(design: Configuration | Screen, label: str, small: bool) -> Property:
+    screen = design if isinstance(design, Screen) else design.screen_geometry
+    spans = {"H": screen.horizontal, "V": screen.vertical}
+    parameters = {}
+    for letter, span in spans.items():
+        parameters |= {
+            f"{letter}_VISIBLE": span.visible,
+            f"{letter}_FRONT": span.front,
+            f"{letter}_SYNC": span.sync,
+            f"{letter}_BACK": span.back,
+            f"{letter}_HIGH": int(span.active_high),
+        }
+    parameters |= {
+        "DOUBLING": screen.doubling,
+        "ROWS": screen.rows,
+        "COLOUR_BITS": 8 if isinstance(design, Screen) else design.colour_bits,
+        "X_BITS": _signed_bits(-screen.horizontal.blank, screen.horizontal.visible),
+        "Y_BITS": _signed_bits(-screen.vertical.blank, screen.vertical.visible),
+        "REPEAT_BITS": bits_for(screen.doubling),
+    }
+    return Property(
+        "video-timing",
+        "sync, blanking and strobes exactly at the standard's counts, whatever the inputs",
+        design, label, ("video_generator",), parameters, induction=1, small=small,
+    )  # fmt: skip
+
+
+def _avalon(config: Configuration, small: bool) -> Property:
+    return Property(
+        "avalon-agent",
+        "reads answered once and in order, no write lost, commit atomic, sticky bits and interrupt kept",
+        config,
+        _label(config),
+        ("avalon_interface", "camera_mem", "rect_mem", "rect_slot", "rect_sorter", "scene_word"),
+        {
+            "ADDRESS_BITS": address_bits(config.rectangles),
+            "ENGINE_WORD": engine_word(config),
+            "SIZE_WORD": size_word(config),
+            "REFLECTIONS": config.reflections,
+        },
+        induction=3,
+        reach=12,
+        small=small,
+    )
+
+
+def _order(config: Configuration, small: bool) -> Property:
+    bound = config.group_cycles - 2  # done comes two cycles before the next group may start
+    return Property(
+        "ray-order",
+        "every usable rectangle once a ray and in order, reflections + 1 rays, done in the budget's cycles",
+        config,
+        _label(config),
+        ("ray_control",),
+        {
+            "RECTANGLES": config.rectangles,
+            "INDEX_BITS": index_bits(config),
+            "STEPS": config.divider_steps,
+            "SLOT_BITS": bits_for(config.divider_steps),
+            "REFLECTIONS": config.reflections,
+            "RESULT_LATENCY": RESULT_LATENCY,
+            "RUN_BOUND": bound,
+        },
+        induction=2,
+        reach=bound + 2 if config.rectangles == 2 and config.reflections == 1 and config.divider_steps == 3 else 0,
+        small=small,
+    )
+
+
+def _sections(config: Configuration, small: bool) -> Property:
+    return Property(
+        "line-sections",
+        "a line buffer section is never read where it is written",
+        config,
+        _label(config),
+        ("line_buffer",),
+        {
+            "GROUPS": config.groups,
+            "WRITE_BITS": offset_bits(config),
+            "READ_BITS": bits_for(config.groups),
+            "ADDRESS_BITS": bits_for(2 * config.groups),
+            "PIXEL_BITS": pixel_bits(config),
+        },
+        induction=1,
+        small=small,
+    )
+
+
+def _counters(config: Configuration, small: bool) -> Property:
+    cut = ("ray_unit", "line_buffer", "video_generator")
+    return Property(
+        "render-counters",
+        "the renderer's counters stay in range, a group is written once and into its row",
+        config,
+        _label(config),
+        ("ray_caster_renderer", "ray_caster", "ray_control", *cut),
+        {
+            "RECTANGLES": config.rectangles,
+            "INDEX_BITS": index_bits(config),
+            "COLOUR_BITS": config.colour_bits,
+            "GROUPS": config.groups,
+            "UNITS": config.units,
+            "ROWS": config.screen_geometry.rows,
+            "ROW_BITS": row_bits(config),
+            "COLUMN_BITS": offset_bits(config),
+            "OFFSET_BITS": bits_for(config.groups),
+            "UNIT_BITS": unit_bits(config),
+        },
+        induction=1,
+        cut=cut,
+        reach=20 if config.rectangles == 2 else 0,
+        small=small,
+    )
+
+
+def _divider(config: Configuration, part: int, small: bool) -> Property:
+    return Property(
+        "divider-exact",
+        "quotient * divisor + remainder = dividend, rounded as configured, or overflow",
+        config,
+        f"{_label(config)} {('digits', 'product', 'result')[part]}",
+        ("divider", "divider_step"),
+        {
+            "WIDTH": position_bits(config),
+            "BITS": config.divider_bits,
+            "STEPS": config.divider_steps,
+            "NEAREST": int(config.rounding == "nearest"),
+            "PART": part,
+        },
+        induction=1,
+        small=small,
+    )
+
+
+def _label(config: Configuration) -> str:
+    return config.name.removeprefix(f"{config.engine}-")
+
+
+def _tiny(**values: int | str) -> Configuration:
+    return configure(screen="tiny", units=2, allow_underrun=True, **values)
+
+
+def _ray_control(rectangles: int, reflections: int, steps: int) -> Configuration:
+    fraction_bits, divider_bits = SLOWEST[steps]
+    return _tiny(rectangles=rectangles, reflections=reflections, fraction_bits=fraction_bits, divider_bits=divider_bits)
+
+
+DEFAULT = configure()
+
+
+def _one_unit(**values: int | str) -> Configuration:
+    """For what does not depend on the number of ray units: a design that converts quickly."""
+    return configure(units=1, allow_underrun=True, **values)
+
+
+PROPERTIES: list[Property] = [
+    _video(_one_unit(), "vga240", small=True),
+    _video(_one_unit(rows=200), "vga200", small=True),
+    _video(_one_unit(screen="tiny"), "tiny48", small=True),
+    _video(TOY_SCREEN, "toy", small=True),
+    _avalon(_one_unit(rectangles=2), small=True),
+    _avalon(_one_unit(rectangles=2, reflections=2, rounding="nearest", fraction_bits=4, rows=200), small=False),
+    *(
+        _order(_ray_control(rectangles, reflections, steps), small=(rectangles, reflections) in {(2, 1), (4, 2)})
+        for rectangles in (2, 3, 4)
+        for reflections in (0, 1, 2)
+        for steps in SLOWEST
+    ),
+    _order(_one_unit(divider_bits=1), small=False),  # the default's control
+    _sections(DEFAULT, small=True),
+    _sections(configure(reflections=2), small=False),
+    _sections(_tiny(rectangles=2), small=True),
+    _sections(configure(units=16, rectangles=4), small=False),
+    _counters(DEFAULT, small=True),
+    _counters(configure(rows=200, reflections=2), small=False),
+    _counters(_tiny(rectangles=2), small=True),
+    _counters(configure(units=16, rectangles=4), small=False),
+    *(
+        _divider(_tiny(rectangles=2, divider_bits=bits, rounding=rounding), part, small=False)
+        for bits, rounding in ((3, "truncate"), (3, "nearest"), (2, "truncate"), (1, "truncate"))
+        for part in range(3)
+    ),
+]

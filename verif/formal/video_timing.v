@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// The video generator against a reference that knows the standard only: a half, a column and a line of the total
+// frame, with the blanking first, and the sync pulses as pixel counts from its start.
+//
+// Nothing is assumed of the inputs: reset may come at any time, the colours are whatever they are. The frame's strobes
+// are functions of the reference position, which visits every place of the frame once; that start_row comes ROWS times
+// a frame is counted besides. The invariants at the end tie the generator's registers to the reference, which makes
+// the proof inductive at any size of screen.
+
+module video_timing #(
+    parameter H_VISIBLE = 640, parameter H_FRONT = 16, parameter H_SYNC = 96, parameter H_BACK = 48,
+    parameter H_HIGH = 0,
+    parameter V_VISIBLE = 480, parameter V_FRONT = 10, parameter V_SYNC = 2, parameter V_BACK = 33,
+    parameter V_HIGH = 0,
+    parameter DOUBLING = 2, parameter ROWS = 240, parameter COLOUR_BITS = 8,
+    parameter X_BITS = 11, parameter Y_BITS = 10, parameter REPEAT_BITS = 1
+) (
+    input clk, input reset,
+    input [COLOUR_BITS-1:0] red, input [COLOUR_BITS-1:0] green, input [COLOUR_BITS-1:0] blue
+);
+localparam H_BLANK = H_FRONT + H_SYNC + H_BACK, H_TOTAL = H_BLANK + H_VISIBLE;
+localparam V_BLANK = V_FRONT + V_SYNC + V_BACK, V_TOTAL = V_BLANK + V_VISIBLE;
+localparam OUTPUTS = 3 * COLOUR_BITS + 4;
+
+wire start_screen, start_row, visible_line, next_column;
+wire [COLOUR_BITS-1:0] vga_r, vga_g, vga_b;
+wire vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_clk;
+
+video_generator dut (
+    .clk(clk), .reset(reset), .start_screen(start_screen), .start_row(start_row), .visible_line(visible_line),
+    .next_column(next_column), .red(red), .green(green), .blue(blue), .vga_r(vga_r), .vga_g(vga_g), .vga_b(vga_b),
+    .vga_hs(vga_hs), .vga_vs(vga_vs), .vga_blank_n(vga_blank_n), .vga_sync_n(vga_sync_n), .vga_clk(vga_clk)
+);
+
+// The system is reset once before anything is asked of it.
+reg known = 0;
+always @(posedge clk) known <= 1;
+always @* if (!known) assume (reset);
+
+// The position that is prepared, and the one that the outputs show, a pixel behind; none of it since reset.
+reg half;
+reg [11:0] column, line, shown_column, shown_line;
+reg showing;
+always @(posedge clk) begin
+    if (reset) begin
+        half <= 0;
+        column <= 0;
+        line <= 0;
+        showing <= 0;
+        shown_column <= 0;
+        shown_line <= 0;
+    end
+    else begin
+        half <= !half;
+        if (half) begin
+            column <= column == H_TOTAL - 1 ? 0 : column + 1;
+            if (column == H_TOTAL - 1) line <= line == V_TOTAL - 1 ? 0 : line + 1;
+            showing <= 1;
+            shown_column <= column;
+            shown_line <= line;
+        end
+    end
+end
+
+// What a monitor must see. The vertical pulse starts and ends where a horizontal one starts.
+wire h_active = showing && shown_column >= H_FRONT && shown_column < H_FRONT + H_SYNC;
+wire past_v_start = shown_line > V_FRONT || (shown_line == V_FRONT && shown_column >= H_FRONT);
+wire past_v_end = shown_line > V_FRONT + V_SYNC || (shown_line == V_FRONT + V_SYNC && shown_column >= H_FRONT);
+wire v_active = showing && past_v_start && !past_v_end;
+wire picture = showing && shown_column >= H_BLANK && shown_line >= V_BLANK;
+
+// The colours that were there when the shown pixel was taken.
+reg [COLOUR_BITS-1:0] taken_red, taken_green, taken_blue;
+always @(posedge clk) if (half) begin
+    taken_red <= red;
+    taken_green <= green;
+    taken_blue <= blue;
+end
+
+always @* if (known) begin
+    assert (vga_hs == (h_active ? H_HIGH : !H_HIGH));
+    assert (vga_vs == (v_active ? V_HIGH : !V_HIGH));
+    assert (vga_blank_n == picture);
+    assert (vga_r == (picture ? taken_red : 0));
+    assert (vga_g == (picture ? taken_green : 0));
+    assert (vga_b == (picture ? taken_blue : 0));
+    assert (!vga_sync_n);
+    assert (vga_clk == half);
+end
+
+// Outputs change at the falling edge of the pixel clock only, reset aside.
+wire [OUTPUTS-1:0] outputs = {vga_r, vga_g, vga_b, vga_hs, vga_vs, vga_blank_n, vga_sync_n};
+reg [OUTPUTS-1:0] last_outputs;
+reg last_clk, last_reset;
+always @(posedge clk) begin
+    last_outputs <= outputs;
+    last_clk <= vga_clk;
+    last_reset <= reset;
+end
+always @* if (known && !last_reset && !(last_clk && !vga_clk)) assert (outputs == last_outputs);
+
+// The renderer's strobes: StartScreen a row ahead of the picture, start_row at each row's first line, next_column at
+// each column's end.
+wire line_begins = !half && column == 0;
+wire [11:0] picture_line = line - V_BLANK, picture_column = column - H_BLANK;
+always @* if (known) begin
+    assert (start_screen == (line_begins && line == V_BLANK - DOUBLING));
+    assert (start_row == (line_begins && line >= V_BLANK && picture_line % DOUBLING == 0));
+    assert (visible_line == (column >= H_BLANK));
+    assert (next_column == (half && column >= H_BLANK && picture_column % DOUBLING == DOUBLING - 1));
+end
+
+// Rows since StartScreen: all of them when the next one comes.
+reg [11:0] rows_seen;
+reg screen_seen;
+always @(posedge clk) begin
+    if (reset) begin
+        rows_seen <= 0;
+        screen_seen <= 0;
+    end
+    else if (start_screen) begin
+        rows_seen <= 0;
+        screen_seen <= 1;
+    end
+    else if (start_row) rows_seen <= rows_seen + 1;
+end
+always @* if (known && screen_seen) begin
+    assert (rows_seen <= ROWS);
+    if (start_screen) assert (rows_seen == ROWS);
+end
+
+// Invariants: the reference in range, its shown position behind the prepared one, and the generator's registers as the
+// position says.
+(* hierconn *) wire signed [X_BITS-1:0] \dut.x ;
+(* hierconn *) wire signed [Y_BITS-1:0] \dut.y ;
+(* hierconn *) wire [REPEAT_BITS-1:0] \dut.pixel_repeat , \dut.line_repeat ;
+wire signed [15:0] x = \dut.x , y = \dut.y ;
+wire signed [15:0] position_x = $signed({4'b0, column}) - H_BLANK, position_y = $signed({4'b0, line}) - V_BLANK;
+wire wrapped = shown_column == H_TOTAL - 1;
+wire [11:0] row_of_line = picture_line / DOUBLING;
+wire row_begins = line_begins && picture_line % DOUBLING == 0;
+always @* if (known) begin
+    assert (column < H_TOTAL && line < V_TOTAL);
+    assert (shown_column < H_TOTAL && shown_line < V_TOTAL);
+    if (showing) begin
+        assert (column == (wrapped ? 0 : shown_column + 1));
+        assert (line == (!wrapped ? shown_line : shown_line == V_TOTAL - 1 ? 0 : shown_line + 1));
+    end
+    else assert (column == 0 && line == 0);
+    assert (x == position_x && x >= -H_BLANK && x < H_VISIBLE);
+    assert (y == position_y && y >= -V_BLANK && y < V_VISIBLE);
+    assert (\dut.pixel_repeat == (x < 0 ? 0 : picture_column % DOUBLING));
+    assert (\dut.line_repeat == (y < 0 ? 0 : picture_line % DOUBLING));
+    if (screen_seen) begin
+        if (line >= V_BLANK) assert (rows_seen == row_of_line + !row_begins);
+        else if (line < V_BLANK - DOUBLING || start_screen) assert (rows_seen == ROWS);
+        else assert (rows_seen == 0);
+    end
+end
+endmodule

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""The proofs hold, and none of them would hold of a design that is wrong: one fault at a time in the Verilog."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from raycaster.verif.formal.properties import PROPERTIES
+from raycaster.verif.formal.prover import Property, missing_tools, prove
+
+pytestmark = pytest.mark.skipif(bool(missing_tools()), reason=f"not installed: {', '.join(missing_tools())}")
+
+
+def chosen(name: str, label: str) -> Property:
+    """The property of this name for this design."""
+    [found] = [proof for proof in PROPERTIES if (proof.name, proof.label) == (name, label)]
+    return found
+
+
+TIMING = chosen("video-timing", "tiny48")
+AGENT = chosen("avalon-agent", "vga240-u1-r2-m1-f0t-d3-c8")
+ORDER = chosen("ray-order", "tiny48-u2-r2-m1-f0t-d3-c8")
+SECTIONS = chosen("line-sections", "tiny48-u2-r2-m1-f0t-d3-c8")
+COUNTERS = chosen("render-counters", "vga240-u16-r4-m1-f0t-d1-c8")
+DIVIDER = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d3-c8 digits")
+
+FAULTS = {
+    "hsync-a-pixel-long": (TIMING, "video_generator", "(x <= (-9))", "(x <= (-8))"),
+    "vsync-a-line-late": (TIMING, "video_generator", "(y >= (-6))", "(y >= (-5))"),
+    "line-too-short": (TIMING, "video_generator", "if ((x == 127)) begin", "if ((x == 126)) begin"),
+    "sync-follows-colour": (TIMING, "video_generator", "assign vga_hs = hs;", "assign vga_hs = (hs && (red != 255));"),
+    "colour-in-blanking": (TIMING, "video_generator", "if (((x >= 0) && (y >= 0))) begin", "if ((x >= 0)) begin"),
+    "colour-between-pixels": (TIMING, "video_generator", "vga_r <= red;\n", "vga_r <= red;\n end if (x >= 0) begin\n"),
+    "start-screen-late": (TIMING, "video_generator", "(y == (-2))", "(y == (-1))"),
+    "start-row-each-line": (TIMING, "video_generator", " && (line_repeat == 0)", ""),
+    "wait-in-traffic": (AGENT, "avalon_interface", "wait_request <= 1'b0;", "wait_request <= avs_s0_write;"),
+    "answer-to-write": (AGENT, "avalon_interface", "readdatavalid <= reading;",
+                        "readdatavalid <= (reading || bus_write);"),
+    "write-lost": (AGENT, "avalon_interface", "bus_write <= (avs_s0_write", "bus_write <= ((!reading) && avs_s0_write"),
+    "byteenable": (AGENT, "avalon_interface", "bus_mask[16-1:8] <= 255;", "bus_mask[16-1:8] <= 127;"),
+    "unmapped-not-0": (AGENT, "rect_mem", "else if ((bus_address[2-1:0] == 2)) begin", "else begin"),
+    "commit-not-atomic": (AGENT, "scene_word", "if (bus_commit) begin", "if ((bus_commit || bus_write)) begin"),
+    "live-too-early": (AGENT, "scene_word", "if (bus_go_live) begin", "if ((bus_go_live || bus_commit)) begin"),
+    "commit-reads-0": (AGENT, "avalon_interface", "(commit_pending || bus_commit)", "commit_pending"),
+    "sticky-lost": (AGENT, "avalon_interface", "if (underrun) begin", "if ((underrun && (!bus_write))) begin"),
+    "irq-not-enabled": (AGENT, "avalon_interface", "assign irq = (irq_pending && irq_enable);",
+                        "assign irq = irq_pending;"),
+    "rectangle-twice": (ORDER, "ray_control", "others[((2 - 1) - i)] = 0;", "others[((2 - 1) - i)] = waiting[i];"),
+    "last-rectangle-missed": (ORDER, "ray_control", "fetched <= (candidates != 0);", "fetched <= (others != 0);"),
+    "wrong-order": (ORDER, "ray_control", "rects_index = ((2 - 1) - i);", "rects_index = i;"),
+    "a-ray-too-many": (ORDER, "ray_control", "if ((bounce == reflections)) begin", "if ((bounce > reflections)) begin"),
+    "never-done": (ORDER, "ray_control", "state <= 3'b100;", "state <= 3'b011;"),
+    "blended-too-early": (ORDER, "ray_control", "(in_flight[6-1:0] == 0)", "(in_flight[5-1:0] == 0)"),
+    "stored-too-early": (ORDER, "ray_control", "store_quotient = in_flight[4];", "store_quotient = in_flight[3];"),
+    "wrong-rectangle": (ORDER, "ray_control", "_position <= dividing_rect_position;",
+                        "_position <= rects_rect_position;"),
+    "halves-overlap": (SECTIONS, "line_buffer", "read_address = ((read_offset + 32)",
+                       "read_address = ((read_offset + 31)"),
+    "one-half": (SECTIONS, "line_buffer", "if (line_buf_sel) begin", "if ((line_buf_sel && (!write))) begin"),
+    "past-the-row": (COUNTERS, "ray_caster_renderer", "enable = (rendering && run && (column_offset != 20))",
+                     "enable = (rendering && run)"),
+    "a-row-too-many": (COUNTERS, "ray_caster_renderer", "row}) == (240 - 1))", "row}) == 240)"),
+    "control-runs-on": (COUNTERS, "ray_caster_renderer", "start_screen || start_row || done)", "start_screen || done)"),
+    "read-too-far": (COUNTERS, "ray_caster_renderer", "read_offset}) != (20 - 1))", "read_offset}) != 20)"),
+    "divisor-equal": (DIVIDER, "divider_step", "if ((difference < 0)) begin", "if ((difference <= 0)) begin"),
+    "overflow-missed": (DIVIDER, "divider", "overflow <= too_large;", "overflow <= (too_large && (quotient != 0));"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "proof", [TIMING, AGENT, ORDER, SECTIONS, COUNTERS], ids=lambda proof: f"{proof.name}-{proof.label}"
+)
+def test_holds(proof, output):
+    """What the faults below are planted in is proved without them."""
+    result = prove(proof, output / "proof", timeout=100)
+    assert result.proved, f"{result.outcome}: {result.detail}; trace {result.trace}"
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_fault_is_found(fault, output):
+    """The proof fails, by a counterexample and not for want of time."""
+    proof, module, right, wrong = FAULTS[fault]
+
+    def plant(verilog: Path) -> None:
+        path = verilog / f"{module}.v"
+        text = path.read_text()
+        assert text.count(right) == 1, f"{module}.v has {text.count(right)} places for this fault"
+        path.write_text(text.replace(right, wrong))
+
+    result = prove(proof, output / "proof", timeout=100, change=plant)
+    assert result.outcome in {"base failed", "step failed", "reach failed"}
+    assert result.trace or result.outcome == "reach failed"
+
+
+def test_every_property_has_a_fault():
+    """A property that no fault contradicts may claim nothing."""
+    assert {proof.name for proof, *_ in FAULTS.values()} == {proof.name for proof in PROPERTIES}
+
+
+def test_unknown_property():
+    """The command names what there is."""
+    command = [sys.executable, "-m", "raycaster.verif.formal", "--property", "no-such"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "no-such is none of video-timing" in done.stderr
