@@ -86,7 +86,11 @@ def ray_caster_renderer(
     @always_comb
     def compare_max():
         enable.next = rendering and run and (column_offset != groups)
-        busy.next = rendering and run and (column_offset != groups)
+
+    # What software sees of it.
+    @always_comb
+    def tell_busy():
+        busy.next = enable
 
     # When done, the group is written, the next one takes its place, and the ray caster starts anew.
     @always_comb
@@ -174,6 +178,6 @@ def ray_caster_renderer(
             blue.next = shown[channel:]
 
     return (
-        video, caster, buffers, select_line_buffer, compare_max, finish_group, delay_reset, join_resets, count_rows,
-        count_columns, watch_budget, measure, follow_columns, choose_section, split_channels,
+        video, caster, buffers, select_line_buffer, compare_max, tell_busy, finish_group, delay_reset, join_resets,
+        count_rows, count_columns, watch_budget, measure, follow_columns, choose_section, split_channels,
     )  # fmt: skip

@@ -155,6 +155,7 @@ def build_model(
     build: Path = BUILD,
     verilog: Sequence[Path] | None = None,
     flags: Sequence[str] = VERILATOR_FLAGS,
+    variant: str = "",
 ) -> Model:
     """Build a model of a design, or find it built.
 
@@ -165,6 +166,7 @@ def build_model(
         build: the directory that holds `model/`.
         verilog: files to use instead of the converted ones, for instance broken on purpose.
         flags: for Verilator.
+        variant: names a model that differs by files or flags, so that it does not replace the plain one.
 
     Raises:
         UserError: the simulator, or a library that it needs, is missing.
@@ -177,8 +179,8 @@ def build_model(
     digest = hashlib.sha256(repr((tool.name, tool.version, cocotb.__version__, parameters, arguments)).encode())
     for source in sources:
         digest.update(source.read_bytes())
-    suffix = ("-broken" if verilog is not None else "") + ("-waves" if waves else "")
-    directory = build / "model" / f"{configuration.name}-{simulator}{suffix}"
+    parts = (configuration.name, simulator, variant, "waves" if waves else "")
+    directory = build / "model" / "-".join(filter(None, parts))
     with _lock(directory):
         stamp = directory / "stamp.json"
         fresh = _stamped(stamp, digest.hexdigest()) is None
@@ -231,7 +233,15 @@ def _build_arguments(simulator: str, waves: bool, flags: Sequence[str]) -> list[
     return [*flags, *(["--trace-fst", "--trace-structs"] if waves else [])]
 
 
-def run_bench(model: Model, test_module: str, job: Job, directory: Path, *, testcase: str | None = None) -> Path | None:
+def run_bench(
+    model: Model,
+    test_module: str,
+    job: Job,
+    directory: Path,
+    *,
+    testcase: str | None = None,
+    plusargs: Sequence[str] = (),
+) -> Path | None:
     """Run a cocotb bench on a model.
 
     Args:
@@ -240,6 +250,7 @@ def run_bench(model: Model, test_module: str, job: Job, directory: Path, *, test
         job: what they are to do.
         directory: for `sim.log`, `results.xml` and waveforms; it may hold other things.
         testcase: only this test.
+        plusargs: for the simulator, each with its plus sign.
 
     Returns:
         The waveform file, where the model writes one.
@@ -253,7 +264,7 @@ def run_bench(model: Model, test_module: str, job: Job, directory: Path, *, test
     waves = directory / "waves.fst" if model.waves else None
     dump_options = {
         "verilator": {"test_args": ["--trace-file", str(waves)]},
-        "icarus": {"plusargs": [f"+dumpfile_path={waves}"]},
+        "icarus": {"plusargs": [f"+dumpfile_path={waves}", *plusargs]},
     }
     with contextlib.suppress(RuntimeError, SystemExit):  # what went wrong stands in the log and the results
         get_runner(model.simulator).test(
@@ -268,7 +279,7 @@ def run_bench(model: Model, test_module: str, job: Job, directory: Path, *, test
             waves=model.waves,
             # Threads of numpy's would spin beside the simulation, and never have work.
             extra_env=job.environment() | {"OPENBLAS_NUM_THREADS": "1"},
-            **(dump_options[model.simulator] if waves else {}),
+            **{"plusargs": plusargs} | (dump_options[model.simulator] if waves else {}),
         )
     try:
         tests, failures = get_results(results)

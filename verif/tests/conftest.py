@@ -44,7 +44,7 @@ def bench(output: Path) -> Bench:
         *,
         verilog: list[Path] | None = None,
     ) -> Path:
-        model = build_model(configuration, simulator, build=BUILD, verilog=verilog)
+        model = build_model(configuration, simulator, build=BUILD, verilog=verilog, variant="broken" if verilog else "")
         job = Job(configuration, scene=str(scene), output=str(output), reflections=configuration.reflections)
         run_bench(model, f"raycaster.verif.{module}", job, output)
         return output

@@ -73,7 +73,7 @@ def test_failed_build_does_not_count(tmp_path):
     broken.write_text("module ray_caster_module (input clk;\n")
     for _ in range(2):
         with pytest.raises(SimulationError, match=r"icarus could not build .*; its log is .*\.log"):
-            build_model(TINY, "icarus", build=tmp_path, verilog=[broken])
+            build_model(TINY, "icarus", build=tmp_path, verilog=[broken], variant="broken")
 
 
 def test_environment_is_left_alone(tmp_path, monkeypatch):
