@@ -9,7 +9,6 @@ parent's conversion it is replaced by text that instantiates the module. Equal b
 from __future__ import annotations
 
 import inspect
-import re
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -25,6 +24,8 @@ from myhdl._instance import _Instantiator
 from myhdl._ShadowSignal import _SliceSignal
 from myhdl._Signal import _Signal
 from myhdl.conversion._toVerilog import _ToVerilogConvertor, toVerilog
+
+from raycaster.rtl.verilog_style import restyle
 
 
 class HierarchyError(Exception):
@@ -181,7 +182,8 @@ class _Converter:
             toVerilog.header, toVerilog.name = "", None
         if not {port.name for port in convertor.ports} <= set(ports):
             raise HierarchyError(f"{name}: MyHDL found other ports than its arguments")
-        _polish(self._directory / f"{name}.v", block)
+        path = self._directory / f"{name}.v"
+        path.write_text(restyle(path.read_text(), block, [port.name for port in convertor.ports]))
         return convertor.ports
 
 
@@ -271,33 +273,6 @@ def _name_connections(block: _Block, children: list[_Block]) -> None:
                 )
             block.sigdict[candidates[id(signal)]] = signal
             named.add(id(signal))
-
-
-def _polish(path: Path, block: _Block) -> None:
-    """Carry each process's purpose, the comment above it, into the Verilog, and drop MyHDL's stray white space."""
-    text = path.read_text()
-    for sub in block.subs:
-        if isinstance(sub, _Instantiator):
-            comment = inspect.getcomments(sub.funcobj)
-            if comment:
-                purpose = " ".join(line.lstrip("# ").rstrip() for line in comment.splitlines())
-                label = re.escape(sub.funcobj.__name__.lower())
-                text = re.sub(rf"^(always [^\n]*begin: {label}\n)", rf"// {purpose}\n\1", text, flags=re.M | re.I)
-    # A block that declares nothing needs no name, and Icarus pays for one with a thread at each evaluation.
-    text = re.sub(r"^(always [^\n]*begin): \w+\n(?! *(?:integer|reg)\b)", r"\1\n", text, flags=re.M)
-    text = re.sub(r"^always @\(([^)]*)\)", _sensitivity, text, flags=re.M)
-    lines = (line.rstrip() for line in text.splitlines())
-    path.write_text(re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).lstrip("\n").rstrip("\n") + "\n")
-
-
-def _sensitivity(match: re.Match[str]) -> str:
-    """MyHDL lists what a process reads in the order of a Python set, which changes from run to run."""
-    names = match[1].split(", ")
-    if any(name.startswith(("posedge", "negedge")) for name in names):
-        return match[0]
-    if any("[" in name for name in names):  # words of an array, which not every tool takes @* to cover
-        return f"always @({', '.join(sorted(names))})"
-    return "always @*"
 
 
 class _Unconnected(_Signal):

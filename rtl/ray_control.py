@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The one control that operates all ray units in step."""
 
-from myhdl import Signal, always, always_comb, block, enum
+from myhdl import Signal, always, always_comb, block, downrange, enum
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.interfaces import Rect
@@ -53,11 +53,11 @@ def ray_control(clk, reset_ray_caster, enable, reflections, rects, steps, finish
     def choose_rectangle():
         rects.index.next = 0
         others.next = candidates
-        for i in range(rectangles):
-            if candidates[rectangles - 1 - i]:
-                rects.index.next = rectangles - 1 - i
+        for i in downrange(rectangles):
+            if candidates[i]:
+                rects.index.next = i
                 others.next = candidates
-                others.next[rectangles - 1 - i] = 0
+                others.next[i] = 0
 
     # A rectangle is fetched in the cycle before it may start.
     @always_comb

@@ -327,7 +327,7 @@ def test_the_header_says_what_and_never_when(tmp_path):
             f"// Configuration: {config.name}",
             "// SPDX-License-Identifier: MIT",
         ]
-        assert not re.search(r"\b20\d\d\b|\d\d:\d\d|MyHDL|Generated", path.read_text())
+        assert not re.search(r"\b20\d\d\b|(?<!\[)\b\d\d:\d\d|MyHDL|Generated", path.read_text())
 
 
 def test_two_processes_write_the_same_bytes(tmp_path):
