@@ -3,21 +3,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import FallingEdge, RisingEdge
 
-from raycaster.configuration import CHANNEL_BITS
+from raycaster.configuration import CHANNEL_BITS, CLOCKS_PER_PIXEL
 from raycaster.golden import seed_engine
 from raycaster.golden.picture import count_wrong
 from raycaster.scene import Scene
 from raycaster.verif.avalon import AvalonBus
 from raycaster.verif.job import Job
-from raycaster.verif.monitor import Monitor
+from raycaster.verif.monitor import CLOCK_NS, Monitor
 
 RESET_CLOCKS = 4
+RESET_TOLERANCE = 8
+"""Clocks from the end of reset that registers on the way to the video output may add."""
 
 
 class Harness:
@@ -40,6 +43,29 @@ class Harness:
         self.bench.reset.value = 0
         self.monitor.forget()
         await RisingEdge(self.bench.clk)
+
+    async def frame_after_reset(self, released_ns: int, on_row: Callable[[int], None] | None = None) -> np.ndarray:
+        """The first frame after a reset, which restarts the video at the first pixel of the vertical front porch.
+
+        Args:
+            released_ns: when reset ended.
+            on_row: see `Monitor.frame`.
+
+        Returns:
+            Its visible part, see `Monitor.frame`.
+
+        Raises:
+            AssertionError: HS or VS came too early or too late.
+        """
+        horizontal, vertical = self.screen.horizontal, self.screen.vertical
+        line_ns = horizontal.total * CLOCKS_PER_PIXEL * CLOCK_NS
+        porch_end = await self.monitor.line()
+        late = (porch_end.end_ns - released_ns) // CLOCK_NS - horizontal.front * CLOCKS_PER_PIXEL
+        assert 0 <= late <= RESET_TOLERANCE, f"HS's leading edge came {late} clocks after the front porch since reset"
+        frame = await self.monitor.frame(on_row)
+        lines = (self.monitor.frame_lines[0].end_ns - line_ns - porch_end.end_ns) / line_ns
+        assert lines == vertical.front, f"VS's leading edge came {lines} lines after HS's first"
+        return frame
 
     def write_progress(self, visible_lines: int) -> None:
         """Tell the parent, if it asked, how many lines of the picture have come."""

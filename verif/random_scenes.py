@@ -46,7 +46,8 @@ def random_scene(seed: int, rectangles: int, reflections: int) -> Scene:
 def _corners(rng: np.random.Generator, style: str, count: int) -> np.ndarray:
     """int64 (rectangles, 2, 3), each with a plane."""
     if style == "degenerate":
-        table = random_rectangles(rng, count)
+        # A room of its own takes six rectangles, and one to see in it.
+        table = random_rectangles(rng, count, closed=None if count > len(ROOM) else False)
         corners = table.corners[table.visible]
     elif style == "extreme":
         corners = _flatten(rng, rng.choice(EXTREMES, (count, 2, 3)))

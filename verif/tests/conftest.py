@@ -43,10 +43,16 @@ def bench(output: Path) -> Bench:
         scene: Path | str = "",
         *,
         verilog: list[Path] | None = None,
+        seeds: tuple[int, ...] = (),
+        plusargs: tuple[str, ...] = (),
     ) -> Path:
-        model = build_model(configuration, simulator, build=BUILD, verilog=verilog, variant="broken" if verilog else "")
-        job = Job(configuration, scene=str(scene), output=str(output), reflections=configuration.reflections)
-        run_bench(model, f"raycaster.verif.{module}", job, output)
+        # A broken model is a test's own: another worker would replace it.
+        variant = f"broken-{output.name}" if verilog else ""
+        model = build_model(configuration, simulator, build=BUILD, verilog=verilog, variant=variant)
+        job = Job(
+            configuration, scene=str(scene), output=str(output), reflections=configuration.reflections, seeds=seeds
+        )
+        run_bench(model, f"raycaster.verif.{module}", job, output, plusargs=plusargs)
         return output
 
     return run

@@ -12,7 +12,10 @@ import pytest
 from conftest import ROOT, SMALL_SCENE, Bench
 
 from raycaster.configuration import Configuration, configure
+from raycaster.verif.seeds import repeat, seed
+from raycaster.verif.simulator import SimulationError
 
+TRAFFIC_SEEDS = {"verilator": 2, "icarus": 1}
 FULL_SCENE = ROOT / "scenes" / "mirror_room.toml"
 DESIGNS = [
     pytest.param("verilator", configure(screen="tiny"), FULL_SCENE, id="verilator"),
@@ -35,6 +38,16 @@ def test_motion_full_size(bench: Bench):
 def test_registers(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
     """The register map, and what its bits do."""
     bench("register_bench", configuration, simulator, scene)
+
+
+@pytest.mark.parametrize(("simulator", "configuration", "scene"), DESIGNS)
+def test_traffic(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
+    """Random traffic and a reset at every moment: each answer, the interrupt, the sync and the picture."""
+    first = 100 * seed()
+    try:
+        bench("traffic_bench", configuration, simulator, seeds=tuple(range(first, first + TRAFFIC_SEEDS[simulator])))
+    except SimulationError as error:
+        pytest.fail(f"{error}; {repeat()}")
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,334 @@
+# SPDX-License-Identifier: MIT
+"""The registers in Python, clock by clock: what each answer must be, and which scene is shown."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from raycaster.configuration import CLOCKS_PER_PIXEL, Configuration
+from raycaster.golden.world import Rectangles
+from raycaster.registers import register_map
+
+AXES = "xyz"
+COLOURS = ("red", "green", "blue")
+EVERY_LANE = 0b1111
+
+
+class Word:
+    """What software writes, what waits, and what is shown."""
+
+    def __init__(self, implemented: int):
+        self.implemented = implemented
+        self.reset()
+
+    def reset(self) -> None:
+        """Nothing is written, nothing is shown."""
+        self.shadow = self.pending = self.live = 0
+
+    def clock(self, bus: dict[str, int], selected: bool) -> None:
+        """An edge of the clock, with what the bus within the design says before it."""
+        if bus["bus_go_live"]:
+            self.live = self.pending
+        if bus["bus_commit"]:
+            self.pending = self.shadow
+        if bus["bus_write"] and selected:
+            mask = bus["bus_mask"]
+            self.shadow = (self.shadow & ~mask | bus["bus_data"] & mask) & self.implemented
+
+
+class Table:
+    """The rectangle table, three words a slot."""
+
+    def __init__(self, rectangles: int):
+        registers = register_map(rectangles)
+        self._point, self._surface = (registers[f"rectangle[0].{name}"] for name in ("corner_0", "surface"))
+        self.words = {
+            registers[f"rectangle[{index}].{name}"].address: Word(registers[f"rectangle[{index}].{name}"].implemented)
+            for index in range(rectangles)
+            for name in ("corner_0", "corner_1", "surface")
+        }
+        self._rectangles = rectangles
+
+    def slot(self, index: int) -> list[Word]:
+        """A rectangle's corners and surface."""
+        first = self._point.address + 4 * index
+        return [self.words[first + offset] for offset in range(3)]
+
+    def rectangles(self, stage: str) -> Rectangles:
+        """What a stage, `"shadow"` or `"live"`, says."""
+        corners, colours, enabled = [], [], []
+        for index in range(self._rectangles):
+            corner_0, corner_1, surface = (getattr(word, stage) for word in self.slot(index))
+            corners.append([[self._point.unpack(corner)[axis] for axis in AXES] for corner in (corner_0, corner_1)])
+            fields = self._surface.unpack(surface)
+            colours.append([fields[channel] for channel in COLOURS])
+            enabled.append(bool(fields["enable"]))
+        return Rectangles(np.array(corners), np.array(colours, dtype=np.uint8), np.array(enabled))
+
+    def clock(self, inputs: dict[str, int]) -> None:
+        """An edge of the clock, with reset and the bus within the design before it."""
+        if inputs["reset"]:
+            for word in self.words.values():
+                word.reset()
+        elif inputs["bus_commit"] or inputs["bus_go_live"]:
+            for address, word in self.words.items():
+                word.clock(inputs, inputs["bus_address"] == address)
+        elif word := self.words.get(inputs["bus_address"]):
+            word.clock(inputs, True)
+
+
+class Agent:
+    """The agent's contract: a write is known a cycle after it was accepted, a read answered two cycles after it was."""
+
+    def __init__(self, config: Configuration):
+        self.config = config
+        registers = register_map(config.rectangles)
+        self.registers = registers
+        self.addresses = {register.address: name for name, register in registers.items()}
+        self.control = Word(registers["control"].implemented & ~registers["control"].fields["commit"].mask)
+        self.background = Word(registers["background"].implemented)
+        constants = {
+            "id": {"magic": int.from_bytes(b"RAYC", "big")},
+            "version": {field: value.reset for field, value in registers["version"].fields.items()},
+            "engine": {
+                "engine": 0,
+                "fraction_bits": config.fraction_bits,
+                "nearest": int(config.rounding == "nearest"),
+                "divider_bits": config.divider_bits,
+                "reflections": config.reflections,
+                "scale": 1,
+                "colour_bits": config.colour_bits,
+            },
+            "size": {
+                "units": config.units, "rectangles": config.rectangles, "rows": config.screen_geometry.rows,
+            },
+        }  # fmt: skip
+        self._constants = {name: registers[name].pack(**fields) for name, fields in constants.items()}
+        self.reset()
+
+    def reset(self) -> None:
+        """What holds from the clock edge at which reset is high: no request is known any more."""
+        self.control.reset()
+        self.background.reset()
+        self.waiting = True
+        self.bus = {"bus_write": 0, "bus_commit": 0, "bus_address": 0, "bus_data": 0, "bus_mask": 0}
+        self.reading = False
+        self.answer = (0, 0)
+        self.commit = False
+        self.frame = self.row = self.group = 0
+        self.underrun = self.bad = self.irq_enable = self.irq_pending = False
+
+    def read(self, inputs: dict[str, int]) -> int:
+        """The word at the bus's address in this cycle."""
+        name = self.addresses.get(self.bus["bus_address"], "")
+        if name in self._constants:
+            return self._constants[name]
+        fields = {
+            "status": {
+                "busy": inputs["busy"], "underrun": int(self.underrun), "bad_rectangle": int(self.bad),
+                "frame": self.frame,
+            },
+            "cycles": {"row": self.row, "group": self.group},
+            "irq_enable": {"start_screen": int(self.irq_enable)},
+            "irq_pending": {"start_screen": int(self.irq_pending)},
+        }  # fmt: skip
+        if name in fields:
+            return self.registers[name].pack(**fields[name])
+        words = {
+            "control": self.control.shadow | self.registers["control"].pack(commit=int(self.commit)),
+            "background": self.background.shadow,
+            "camera": inputs["camera_word"],
+        }
+        return words.get(name, inputs["rect_word"])
+
+    def outputs(self, inputs: dict[str, int]) -> dict[str, int]:
+        """Every output of the agent in this cycle."""
+        control = self.registers["control"].unpack(self.control.live)
+        valid, data = self.answer
+        return {
+            **self.bus,
+            "bus_go_live": inputs["start_screen"],
+            "avs_s0_waitrequest": int(self.waiting),
+            "avs_s0_readdatavalid": valid,
+            "avs_s0_readdata": data,
+            "irq": int(self.irq_enable and self.irq_pending),
+            "run": control["run"],
+            "reflections": min(control["reflections"], self.config.reflections),
+            "background": self.background.live,
+        }
+
+    def clock(self, inputs: dict[str, int]) -> None:
+        """An edge of the clock, with the agent's inputs before it."""
+        if inputs["reset"]:
+            self.reset()
+            return
+        bus, start_screen = self.bus, inputs["start_screen"]
+        name = self.addresses.get(bus["bus_address"], "") if bus["bus_write"] else ""
+        ones = bus["bus_data"] & bus["bus_mask"]
+        self.answer = (int(self.reading), self.read(inputs) if self.reading else self.answer[1])
+        for register, word in (("control", self.control), ("background", self.background)):
+            word.clock({**bus, "bus_go_live": start_screen}, name == register)
+        self.frame = (self.frame + start_screen) % (1 << 16)
+        self.underrun = bool(inputs["underrun"] or (self.underrun and not (name == "status" and ones & 2)))
+        bad_now = bus["bus_commit"] and inputs["bad_rectangle"]
+        self.bad = bool(bad_now or (self.bad and not (name == "status" and ones & 4)))
+        if name == "irq_enable" and bus["bus_mask"] & 1:
+            self.irq_enable = bool(ones & 1)
+        self.irq_pending = bool(start_screen or (self.irq_pending and not (name == "irq_pending" and ones & 1)))
+        if name == "cycles" and bus["bus_mask"]:
+            self.row = self.group = 0
+        elif inputs["busy"]:
+            self.row, self.group = max(self.row, inputs["row_cycles"]), max(self.group, inputs["group_cycles"])
+        committing = name == "control" and bool(ones & 2)
+        # A commit counts from the cycle in which the shadow is copied; a StartScreen in that cycle is too early for it.
+        self.commit = committing or bool(bus["bus_commit"]) or (self.commit and not start_screen)
+        accepted = not self.waiting
+        self.waiting = False
+        self.bus = {
+            **bus,
+            "bus_commit": int(committing),
+            "bus_write": int(accepted and inputs["avs_s0_write"]),
+        }
+        self.reading = bool(accepted and inputs["avs_s0_read"])
+        if accepted and (inputs["avs_s0_read"] or inputs["avs_s0_write"]):
+            self.bus["bus_address"] = inputs["avs_s0_address"]
+        if accepted and inputs["avs_s0_write"]:
+            lanes = [0xFF << 8 * lane for lane in range(4) if inputs["avs_s0_byteenable"] >> lane & 1]
+            self.bus |= {"bus_data": inputs["avs_s0_writedata"], "bus_mask": sum(lanes)}
+
+
+class Request(NamedTuple):
+    """A transfer that the bus's master asks for."""
+
+    address: int
+    """In words."""
+
+    word: int | None = None
+    """What to write; None reads."""
+
+    lanes: int = EVERY_LANE
+    """The bytes that count when writing; a read returns all."""
+
+
+@dataclass(frozen=True)
+class LiveScene:
+    """What the registers tell the renderer from a StartScreen on."""
+
+    run: bool
+    reflections: int
+    """As many as the hardware computes."""
+
+    background: tuple[int, ...]
+    camera: tuple[int, ...]
+    rectangles: Rectangles
+
+
+class RegisterFile:
+    """The registers of a whole design, which see nothing but reset and the bus, and know StartScreen by counting.
+
+    Underrun is taken not to happen. What the renderer measures (`status.busy`, `cycles`) is not foreseen but bounded.
+    """
+
+    def __init__(self, config: Configuration):
+        self.config = config
+        self.agent = Agent(config)
+        self.table = Table(config.rectangles)
+        self.camera = Word(self.agent.registers["camera"].implemented)
+        self.camera_address = self.agent.registers["camera"].address
+        screen = config.screen_geometry
+        lines = screen.vertical.blank - screen.doubling
+        self.start_screen_clock = lines * screen.horizontal.total * CLOCKS_PER_PIXEL
+        """From the end of reset to the first StartScreen."""
+        self._frame_cycles = screen.frame_cycles
+        self.clocks = 0
+        """Since the end of reset, modulo a frame."""
+        self.live: LiveScene | None = None
+        """What the last StartScreen since reset made live."""
+        self._answered = ""
+        self._least_cycles = (0, 0)
+
+    @property
+    def in_flight(self) -> int:
+        """Accepted reads whose answer is still to be seen on the bus."""
+        return int(self.agent.reading) + self.agent.answer[0]
+
+    def clock(self, reset: bool, request: Request | None) -> bool:
+        """An edge of the clock, with reset and the bus's inputs before it.
+
+        Returns:
+            Whether the request was taken.
+        """
+        agent, bus = self.agent, self.agent.bus
+        start_screen = int(self.clocks == self.start_screen_clock)
+        word = self.table.words.get(bus["bus_address"])
+        inputs = {
+            **bus,
+            "reset": int(reset),
+            "bus_go_live": start_screen,
+            "start_screen": start_screen,
+            "camera_word": self.camera.shadow,
+            "rect_word": word.shadow if word else 0,
+            "bad_rectangle": 0,
+            "busy": 0,
+            "underrun": 0,
+            "avs_s0_address": request.address if request else 0,
+            "avs_s0_read": int(request is not None and request.word is None),
+            "avs_s0_write": int(request is not None and request.word is not None),
+            "avs_s0_writedata": (request.word if request else None) or 0,
+            "avs_s0_byteenable": request.lanes if request else 0,
+        }
+        if bus["bus_commit"]:
+            shadow = self.table.rectangles("shadow")
+            inputs["bad_rectangle"] = int(np.any(shadow.enabled & (shadow.axes < 0)))
+        if agent.reading:
+            self._answered = agent.addresses.get(bus["bus_address"], "unmapped")
+        if bus["bus_write"] and agent.addresses.get(bus["bus_address"]) == "cycles" and bus["bus_mask"]:
+            self._least_cycles = (0, 0)
+        taken = request is not None and not agent.waiting and not reset
+        self.table.clock(inputs)
+        self.camera.clock(inputs, bus["bus_address"] == self.camera_address)
+        agent.clock(inputs)
+        if reset:
+            self.camera.reset()
+            self.clocks, self.live, self._least_cycles = 0, None, (0, 0)
+            return False
+        if start_screen:
+            self.live = self._read_live()
+        self.clocks = (self.clocks + 1) % self._frame_cycles
+        return taken
+
+    def _read_live(self) -> LiveScene:
+        registers = self.agent.registers
+        control = registers["control"].unpack(self.agent.control.live)
+        background = registers["background"].unpack(self.agent.background.live)
+        camera = registers["camera"].unpack(self.camera.live)
+        return LiveScene(
+            run=bool(control["run"]),
+            reflections=min(control["reflections"], self.config.reflections),
+            background=tuple(background[colour] for colour in COLOURS),
+            camera=tuple(camera[axis] for axis in AXES),
+            rectangles=self.table.rectangles("live"),
+        )
+
+    def check_answer(self, word: int) -> None:
+        """Hold what stands on the bus against the answer that is due there now.
+
+        Raises:
+            AssertionError: it is another; says which register was read.
+        """
+        expected, name = self.agent.answer[1], self._answered
+        register = self.agent.registers.get(name)
+        if name == "cycles":
+            cycles = register.unpack(word)
+            most = (self.config.screen_geometry.row_cycles, self.config.group_cycles)
+            seen = (cycles["row"], cycles["group"])
+            for least, value, bound in zip(self._least_cycles, seen, most, strict=True):
+                assert least <= value <= bound, f"cycles reads {cycles}; at least {self._least_cycles}, at most {most}"
+            self._least_cycles = seen
+            return
+        if name == "status":
+            word &= ~register.fields["busy"].mask
+        assert word == expected, f"{name} reads {word:#010x}, expected {expected:#010x}"

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: MIT
+"""The traffic bench must notice what is wrong with the bus and with reset, and registers must start unknown."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from conftest import BUILD, SMALL_SCENE, Bench
+
+from raycaster.configuration import configure
+from raycaster.verif.simulator import SimulationError, convert
+
+SMALL = configure(screen="tiny", units=8, rectangles=3)
+
+
+def broken(directory: Path, module: str, right: str, wrong: str) -> list[Path]:
+    """The design's files with one module changed."""
+    files = []
+    for source in convert(SMALL, BUILD):
+        text = source.read_text()
+        if source.stem == module:
+            assert right in text, f"{module} has no {right!r}"
+            text = text.replace(right, wrong)
+        files.append(directory / source.name)
+        files[-1].write_text(text)
+    return files
+
+
+@pytest.mark.parametrize(
+    ("module", "right", "wrong", "complaint"),
+    [
+        pytest.param("avalon_interface", "if (avs_s0_byteenable[2])", "if (1'b1)", "reads 0x", id="a-lane-always"),
+        pytest.param("rect_mem", "else if (bus_address[1:0] == 2)", "else", "unmapped reads 0x", id="unmapped-aliases"),
+        pytest.param(
+            "avalon_interface", "readdatavalid <= reading;", "readdatavalid <= reading && !avs_s0_read;",
+            "avs_s0_readdatavalid is 0, expected 1", id="answer-lost",
+        ),
+        pytest.param(
+            "avalon_interface", "reading <= 0;", "reading <= reading;", "avs_s0_readdatavalid is X|is 1, expected 0",
+            id="answered-after-reset",
+        ),
+        pytest.param(
+            "avalon_interface", "wait_request <= 1'b0;", "wait_request <= avs_s0_write && bus_write;",
+            "avs_s0_waitrequest is 1, expected 0", id="waits-in-a-burst",
+        ),
+        pytest.param(
+            "scene_word", "if (bus_go_live)", "if (bus_go_live || bus_commit)", "pixels are wrong|cycles reads",
+            id="live-in-mid-frame",
+        ),
+        pytest.param("video_generator", "x <= -32;", "x <= -31;", "irq is 0, expected 1", id="restarts-too-early"),
+    ],
+)  # fmt: skip
+def test_is_noticed(bench: Bench, tmp_path, module, right, wrong, complaint):
+    """One fault at a time, each with the complaint that it must cause."""
+    files = broken(tmp_path, module, right, wrong)
+    with pytest.raises(SimulationError, match=rf"seed \d+: .*({complaint})"):
+        bench("traffic_bench", SMALL, "icarus", seeds=(1, 2), verilog=files)
+
+
+@pytest.mark.parametrize("start", [1, 2, 3, 4])
+def test_random_start(bench: Bench, start):
+    """Registers and memories start with random values, and nothing of them is seen after reset."""
+    bench("frame_bench", SMALL, "verilator", SMALL_SCENE, plusargs=random_values(start))
+
+
+def random_values(start: int) -> tuple[str, str]:
+    """Verilator's own options, which its models take at run time."""
+    return "+verilator+rand+reset+2", f"+verilator+seed+{start}"
+
+
+def test_the_start_is_random(bench: Bench, tmp_path):
+    """Without its reset a counter starts with what it happens to hold, each time something else."""
+    files = broken(tmp_path, "avalon_interface", "frame <= 0;", "frame <= frame;")
+    complaints = set()
+    for start in (1, 2, 3):
+        with pytest.raises(SimulationError, match="status reads") as caught:
+            bench("traffic_bench", SMALL, "verilator", seeds=(1,), verilog=files, plusargs=random_values(start))
+        complaints.add(str(caught.value).partition(";")[0])
+    assert len(complaints) == 3, complaints
+
+
+def test_an_unknown_start_is_noticed(bench: Bench, tmp_path):
+    """The same without its reset in Icarus, where registers start unknown and stay so."""
+    files = broken(tmp_path, "video_generator", "if (reset == 1)", "if (1'b0)")
+    with pytest.raises(SimulationError, match=r"no leading edge of HS|neither 0 nor 1"):
+        bench("frame_bench", SMALL, "icarus", SMALL_SCENE, verilog=files)
