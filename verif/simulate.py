@@ -10,7 +10,7 @@ import shutil
 import sys
 import tempfile
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,9 +26,22 @@ from raycaster.errors import UserError
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.scene import Scene, load_scene
 from raycaster.verif.job import Job
-from raycaster.verif.simulator import BUILD, SIMULATORS, Model, SimulationError, build_model, find_tool, run_bench
+from raycaster.verif.netlist import COUNTED_CELLS, Netlist, find_yosys, synthesise
+from raycaster.verif.simulator import (
+    BUILD,
+    SIMULATORS,
+    Model,
+    SimulationError,
+    build_model,
+    convert,
+    find_tool,
+    run_bench,
+)
 
 SCENES = Path("scenes")
+GATES_OPTIONS: Mapping[str, Any] = {"screen": "tiny", "units": 16, "reflections": 2}
+"""Of a netlist, where they are not given: the fewest units with which one design shows all of `SCENES` in time."""
+
 POLL_SECONDS = 0.1
 LOG_COLUMNS = 120
 
@@ -44,7 +57,7 @@ class Run:
 
     @property
     def output(self) -> Path:
-        """Directory of its pictures, below `sim/`."""
+        """Directory of its pictures, below that of all outputs."""
         return Path(self.path.stem)
 
 
@@ -58,14 +71,19 @@ class Outcome:
     waves: Path | None = None
 
 
-def plan_run(path: Path, options: dict[str, Any]) -> Run:
+def plan_run(path: Path, options: Mapping[str, Any], defaults: Mapping[str, Any]) -> Run:
     """Read a scene and choose its design: rows and reflections are the scene's unless they are given.
+
+    Args:
+        path: the scene file.
+        options: of the configuration, as they are given.
+        defaults: for the design where nothing is given, instead of the scene's and the configuration's own.
 
     Raises:
         UserError: the scene or the options are not good; one line.
     """
     scene = load_scene(path)
-    chosen = dict(options)
+    chosen = {**defaults, **options}
     if "rows" not in chosen and chosen.get("screen", "vga") == "vga":
         if scene.rows == 180:
             raise UserError(f"{path}: rows: 180 rows need the beam engine; give 240 or 200, or ROWS=240")
@@ -73,16 +91,18 @@ def plan_run(path: Path, options: dict[str, Any]) -> Run:
     chosen.setdefault("reflections", scene.reflections)
     configuration = configure(**chosen)
     load_scene(path, configuration.rectangles)  # refuses more rectangles than that
-    return Run(path, scene, configuration, configuration.reflections)
+    # Those of the hardware where they were asked for; a default design may have more than the scene needs.
+    reflections = configuration.reflections if "reflections" in options else scene.reflections
+    return Run(path, scene, configuration, reflections)
 
 
-def plan_runs(paths: Iterable[Path], options: dict[str, Any]) -> list[Run]:
+def plan_runs(paths: Iterable[Path], options: Mapping[str, Any], defaults: Mapping[str, Any]) -> list[Run]:
     """Plan all before anything is built, so that a mistake costs no time.
 
     Raises:
         UserError: as `plan_run`, or two scenes would write into one directory.
     """
-    runs = [plan_run(path, options) for path in paths]
+    runs = [plan_run(path, options, defaults) for path in paths]
     seen: dict[Path, Path] = {}
     for run in runs:
         if (other := seen.setdefault(run.output, run.path)) != run.path:
@@ -124,13 +144,36 @@ def simulate(run: Run, model: Model, sim: Path, progress: Path) -> Outcome:
     return Outcome(run, result, failure, target / waves.name if waves else None)
 
 
-def build_models(runs: list[Run], simulator: str, waves: bool, build: Path, console: Console) -> dict[str, Model]:
-    """One model for each configuration, by its name."""
+def configurations(runs: list[Run]) -> list[Configuration]:
+    """The designs of these runs, each once."""
+    return list({run.configuration.name: run.configuration for run in runs}.values())
+
+
+def synthesise_all(runs: list[Run], build: Path, console: Console) -> dict[str, Netlist]:
+    """One netlist for each configuration, by its name."""
+    netlists: dict[str, Netlist] = {}
+    for configuration in configurations(runs):
+        name = configuration.name
+        with console.status(f"synthesising {name}"):
+            started = time.perf_counter()
+            netlist = synthesise(convert(configuration, build), build / "model" / name / "netlist")
+        took = f"synthesised in {time.perf_counter() - started:.1f} s" if netlist.fresh else "was synthesised before"
+        console.print(f"{name} {took}", highlight=False)
+        netlists[name] = netlist
+    return netlists
+
+
+def build_models(
+    runs: list[Run], simulator: str, waves: bool, build: Path, netlists: Mapping[str, Netlist], console: Console
+) -> dict[str, Model]:
+    """One model for each configuration, by its name; of its netlist, where it has one."""
     models: dict[str, Model] = {}
-    for configuration in {run.configuration.name: run.configuration for run in runs}.values():
+    for configuration in configurations(runs):
+        netlist = netlists.get(configuration.name)
+        files, variant = (netlist.files, "gates") if netlist else (None, "")
         with console.status(f"building {configuration.name} with {simulator}"):
             started = time.perf_counter()
-            model = build_model(configuration, simulator, waves=waves, build=build)
+            model = build_model(configuration, simulator, waves=waves, build=build, verilog=files, variant=variant)
         took = f"built in {time.perf_counter() - started:.1f} s" if model.fresh else "was built before"
         console.print(f"{configuration.name} ({simulator}) {took}", highlight=False)
         models[configuration.name] = model
@@ -160,10 +203,25 @@ def run_all(runs: list[Run], models: dict[str, Model], sim: Path, jobs: int, con
         return [future.result() for future in futures]
 
 
-def show(outcomes: list[Outcome], console: Console) -> None:
-    """Print a table, a line a scene, then what went wrong and where to look."""
+def _table(title: str | None = None) -> Table:
     # As narrow as a terminal of 80 columns wants it.
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+    return Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+
+
+def show_cells(netlists: Mapping[str, Netlist], console: Console) -> None:
+    """Print a table of the cells that netlists are made of, a line each."""
+    table = _table()
+    table.add_column("netlist", no_wrap=True)
+    for cell in COUNTED_CELLS:
+        table.add_column(cell.replace("_", "\n"), justify="right", no_wrap=True)
+    for name, netlist in netlists.items():
+        table.add_row(name, *(str(netlist.cells[cell]) for cell in COUNTED_CELLS))
+    console.print(table)
+
+
+def show(outcomes: list[Outcome], console: Console, title: str | None = None) -> None:
+    """Print a table, a line a scene, then what went wrong and where to look."""
+    table = _table(title)
     table.add_column("scene", no_wrap=True)
     for heading in ("pixels", "wrong", "vs\nexact", "row", "group", "slack", "alone\nHz", "time\ns"):
         table.add_column(heading, justify="right", no_wrap=True)
@@ -212,6 +270,12 @@ def parse_arguments() -> argparse.Namespace:
         help="a scene file; may be repeated (default: all of scenes/)",
     )
     parser.add_argument("--simulator", default="verilator", metavar="SIM", help=" or ".join(SIMULATORS))
+    parser.add_argument(
+        "--gates",
+        action="store_true",
+        help="show them through the netlist that Yosys makes of the design, of ECP5 cells; for a design that is small "
+        f"({', '.join(f'{name} {value}' for name, value in GATES_OPTIONS.items())}) where nothing else is given",
+    )
     parser.add_argument("--waves", action="store_true", help="write waveforms (FST) beside the pictures")
     parser.add_argument(
         "--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes (default: build)"
@@ -232,17 +296,24 @@ def main() -> int:
     paths = arguments.scene or sorted(SCENES.glob("*.toml"))
     if not paths:
         raise UserError(f"there are no scenes in {SCENES.resolve()}; name one with --scene")
-    runs = plan_runs(paths, given_options(arguments))
+    gates = arguments.gates
+    runs = plan_runs(paths, given_options(arguments), GATES_OPTIONS if gates else {})
     find_tool(arguments.simulator)
+    if gates:
+        find_yosys()
     # Into a file or a pipe rich would print as if on 80 columns, which the table does not fit.
     console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
     try:
-        models = build_models(runs, arguments.simulator, arguments.waves, arguments.build, console)
+        netlists = synthesise_all(runs, arguments.build, console) if gates else {}
+        models = build_models(runs, arguments.simulator, arguments.waves, arguments.build, netlists, console)
     except SimulationError as error:
         console.print(str(error), style="red", markup=False, soft_wrap=True)
         return 1
-    outcomes = run_all(runs, models, arguments.build / "sim", max(1, arguments.jobs), console)
-    show(outcomes, console)
+    outputs = arguments.build / ("gates" if gates else "sim")
+    outcomes = run_all(runs, models, outputs, max(1, arguments.jobs), console)
+    if gates:
+        show_cells(netlists, console)
+    show(outcomes, console, "through the netlist" if gates else None)
     return int(any(outcome.failure for outcome in outcomes))
 
 

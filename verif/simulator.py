@@ -136,14 +136,14 @@ def convert(configuration: Configuration, build: Path = BUILD) -> list[Path]:
         for source in sorted(Path(package.__path__[0]).iterdir()):
             if source.suffix in (".py", ".rdl"):
                 digest.update(source.read_bytes())
-    with _lock(directory):
+    with lock(directory):
         stamp = directory / "stamp.json"
-        if (files := _stamped(stamp, digest.hexdigest())) is not None:
+        if (files := stamped(stamp, digest.hexdigest())) is not None:
             return [directory / name for name in files]
         from raycaster.rtl.convert import write_verilog  # noqa: PLC0415 - MyHDL is only loaded where it has work
 
         files = [path.name for path in write_verilog(configuration, directory) if path.suffix == ".v"]
-        _write_stamp(stamp, digest.hexdigest(), files)
+        write_stamp(stamp, digest.hexdigest(), files)
         return [directory / name for name in files]
 
 
@@ -181,9 +181,9 @@ def build_model(
         digest.update(source.read_bytes())
     parts = (configuration.name, simulator, variant, "waves" if waves else "")
     directory = build / "model" / "-".join(filter(None, parts))
-    with _lock(directory):
+    with lock(directory):
         stamp = directory / "stamp.json"
-        fresh = _stamped(stamp, digest.hexdigest()) is None
+        fresh = stamped(stamp, digest.hexdigest()) is None
         if fresh:
             shutil.rmtree(directory, ignore_errors=True)
             directory.mkdir(parents=True)
@@ -202,7 +202,7 @@ def build_model(
                     )
                 except (RuntimeError, SystemExit):
                     raise _build_failure(configuration, simulator, log) from None
-            _write_stamp(stamp, digest.hexdigest(), [])
+            write_stamp(stamp, digest.hexdigest(), [])
     return Model(configuration, simulator, directory, waves, fresh)
 
 
@@ -298,7 +298,7 @@ def _first_failure(log: Path) -> str | None:
     return match[1] if match else "a test failed"
 
 
-def _stamped(stamp: Path, digest: str) -> list[str] | None:
+def stamped(stamp: Path, digest: str) -> list[str] | None:
     """What a stamp of this digest says, or None where there is no such stamp."""
     try:
         contents = json.loads(stamp.read_text())
@@ -307,7 +307,7 @@ def _stamped(stamp: Path, digest: str) -> list[str] | None:
     return contents["files"] if contents["digest"] == digest else None
 
 
-def _write_stamp(stamp: Path, digest: str, files: Sequence[str]) -> None:
+def write_stamp(stamp: Path, digest: str, files: Sequence[str]) -> None:
     """Written last, and at once: what was interrupted has no stamp and does not count as built."""
     partial = stamp.with_suffix(".partial")
     partial.write_text(json.dumps({"digest": digest, "files": list(files)}))
@@ -315,7 +315,7 @@ def _write_stamp(stamp: Path, digest: str, files: Sequence[str]) -> None:
 
 
 @contextlib.contextmanager
-def _lock(directory: Path) -> Iterator[None]:
+def lock(directory: Path) -> Iterator[None]:
     """Keep two commands from making the same directory at the same time."""
     directory.parent.mkdir(parents=True, exist_ok=True)
     with directory.with_name(directory.name + ".lock").open("w") as file:

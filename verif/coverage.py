@@ -1,0 +1,287 @@
+# SPDX-License-Identifier: MIT
+"""What the regression exercises: `make coverage`.
+
+Code: lines, conditions and toggles of the converted Verilog, over the benches of the whole design. Function: kinds of
+ray and rectangle intersections, over all scenes and random ones. Every hole must be closed or explained.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shutil
+import sys
+import time
+from collections import Counter
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from raycaster.configuration import Configuration, configure
+from raycaster.errors import UserError
+from raycaster.options import run_command
+from raycaster.scene import load_scene
+from raycaster.verif.coverage_code import KINDS, Judgement, Point, describe, judge, load_explanations, read_counts
+from raycaster.verif.coverage_functional import POINTS, FunctionalCoverage
+from raycaster.verif.job import Job
+from raycaster.verif.random_scenes import random_scene
+from raycaster.verif.simulate import LOG_COLUMNS, SCENES
+from raycaster.verif.simulator import (
+    BUILD,
+    TOP,
+    VERILATOR_FLAGS,
+    Model,
+    SimulationError,
+    build_model,
+    run_bench,
+)
+from raycaster.verif.soak import soak
+
+# One design that every bench can run, so that nothing must be merged. At full size, for the counters to run through
+# their range. Not 32 units but 20, whose budget is 200 cycles a group: all 12 rectangles with two reflections take 202,
+# which the bench of the underrun wants, and whatever the other benches show takes less.
+DESIGN = configure(units=20, reflections=2, divider_bits=2, allow_underrun=True)
+SOAK_DESIGN = configure(reflections=2)
+"""That of `make soak`: without counters it shows a random scene several times as fast."""
+
+FLAGS = (
+    *VERILATOR_FLAGS,
+    "--coverage-line",
+    "--coverage-expr",
+    "--coverage-toggle",
+    # The widest bus of the design; what the bench gathers a line in is wider.
+    "--coverage-max-width",
+    "1024",
+    # Counting costs more than -O2 gains, and so does compiling it.
+    "-CFLAGS",
+    "-O1",
+)
+
+
+@dataclass(frozen=True)
+class Run:
+    """A bench, and what it shows."""
+
+    bench: str
+    scene: Path | None = None
+    """A file, where the bench wants one."""
+
+    reflections: int | None = None
+    """Instead of the scene's own."""
+
+    @property
+    def name(self) -> str:
+        """Of its directory."""
+        return f"{self.bench}-{self.scene.stem}" if self.scene else self.bench
+
+
+BENCHES = (
+    # 11 rectangles meet the row budget even with two reflections.
+    Run("register_bench", SCENES / "floor.toml", 2),
+    Run("motion_bench", SCENES / "floor.toml", 2),
+    Run("underrun_bench"),
+    Run("coverage_bench"),
+)
+"""Beyond a frame of every scene. The longest come first."""
+
+EXTRA_SCENE = Path(__file__).with_name("coverage_scene.toml")
+
+
+def run_all(
+    model: Model, runs: Sequence[Run], output: Path, jobs: int, console: Console
+) -> tuple[Counter[Point], list[str]]:
+    """Run benches on a model that counts, some at a time.
+
+    Returns:
+        The counts of all together, and what failed runs said.
+    """
+    counts: Counter[Point] = Counter()
+    failures = []
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console, transient=True) as bars, ThreadPoolExecutor(jobs) as pool:
+        bar = bars.add_task("benches", total=len(runs))
+        futures = {pool.submit(_run, model, run, output / run.name): run for run in runs}
+        for future in as_completed(futures):
+            try:
+                for point, count in future.result().items():
+                    counts[point] += count
+            except SimulationError as error:
+                failures.append(f"{futures[future].name}: {error}")
+            bars.advance(bar)
+    return counts, failures
+
+
+def _run(model: Model, run: Run, directory: Path) -> Counter[Point]:
+    directory.mkdir(parents=True)
+    scene = str(run.scene.resolve()) if run.scene else ""
+    job = Job(model.configuration, scene=scene, output=str(directory.resolve()), reflections=run.reflections)
+    counts_file = directory.resolve() / "coverage.dat"
+    run_bench(
+        model, f"raycaster.verif.{run.bench}", job, directory, plusargs=[f"+verilator+coverage+file+{counts_file}"]
+    )
+    return read_counts(counts_file, leave_out=[TOP])
+
+
+def show_code(counts: Counter[Point], judgement: Judgement, console: Console) -> None:
+    """Print a line a module, the explanations, holes that have none, and explanations that have no hole."""
+    table = Table(title="Code coverage: hit / all", title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
+    table.add_column("module", no_wrap=True)
+    for heading in (*KINDS, "explained", "holes"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    modules = sorted({point.module for point in counts})
+    for module in (*modules, None):
+        cells = [_share(*_hits(counts, module, types)) for types in KINDS.values()]
+        explained = sum(module in (None, point.module) for point in judgement.explained)
+        holes = sum(module in (None, point.module) for point in judgement.unexplained)
+        if module is None:
+            table.add_section()
+        table.add_row(module or "all", *cells, str(explained), f"[red]{holes}[/]" if holes else "0")
+    console.print(table)
+    console.print("Points that cannot be seen, by their explanation:")
+    for reason, number in Counter(explanation.reason for explanation in judgement.explained.values()).items():
+        console.print(f"  {number}: {reason}", markup=False, highlight=False)
+    for line in describe(judgement.unexplained):
+        console.print(f"not covered: {line}", style="red", markup=False, highlight=False, soft_wrap=True)
+    for stale in judgement.stale:
+        console.print(f"stale explanation: {stale}", style="red", markup=False, highlight=False, soft_wrap=True)
+
+
+def _hits(counts: Counter[Point], module: str | None, types: Sequence[str]) -> tuple[int, int]:
+    chosen = [count > 0 for point, count in counts.items() if module in (None, point.module) and point.kind in types]
+    return sum(chosen), len(chosen)
+
+
+def _share(hit: int, total: int) -> str:
+    return f"{hit} / {total} {100 * hit / total:5.1f} %" if total else ""
+
+
+def export_code(counts: Counter[Point], judgement: Judgement, path: Path) -> None:
+    """Write hit and all by module, and every hole with its reason, as JSON."""
+    modules = {
+        module: {name: _hits(counts, module, types) for name, types in KINDS.items()}
+        for module in sorted({point.module for point in counts})
+    }
+    holes = [
+        {"file": point.file.name, "line": point.line, "kind": point.kind, "what": point.what, "reason": reason}
+        for point, reason in [
+            *((point, None) for point in judgement.unexplained),
+            *((point, explanation.reason) for point, explanation in judgement.explained.items()),
+        ]
+    ]
+    path.write_text(json.dumps({"modules": modules, "holes": holes, "stale": judgement.stale}, indent=1) + "\n")
+
+
+def show_functional(functional: FunctionalCoverage, scenes: int, console: Console) -> None:
+    """Print the counts of the cross, with nothing where it is impossible, and the bins that were not hit."""
+    bins = functional.bins
+    directions = [(axis, slope) for axis in POINTS["axis"] for slope in POINTS["slope"]]
+    kinds = [
+        (result, rank)
+        for result in POINTS["result"]
+        for rank in POINTS["rank"]
+        if any((*direction, result, rank, "first") in bins for direction in directions)
+    ]
+    signs = {"negative": "-", "zero": "0", "positive": "+"}
+    for ray in POINTS["ray"]:
+        table = Table(title=f"{ray} ray", title_justify="left", box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+        table.add_column("result", no_wrap=True)
+        for axis, slope in directions:
+            table.add_column(f"{axis} {signs[slope]}", justify="right", no_wrap=True)
+        for result, rank in kinds:
+            times = [bins.get((*direction, result, rank, ray)) for direction in directions]
+            cells = ["" if n is None else f"{n:,}" if n else "[red]0[/]" for n in times]
+            table.add_row(result if rank == "none" else f"{result}, {rank}", *cells)
+        console.print(table)
+    console.print(
+        f"{len(bins) - len(functional.holes)} of {len(bins)} bins hit in {scenes} scenes, {sum(bins.values()):,} "
+        "intersections; left out as impossible:",
+        highlight=False,
+    )
+    for reason, number in functional.ignored.items():
+        console.print(f"  {number}: {reason}", highlight=False)
+    for hole in functional.holes:
+        console.print(f"not hit: {', '.join(hole)}", style="red")
+
+
+def main(argv: list[str] | None = None) -> int:
+    """The command.
+
+    Args:
+        argv: its arguments, those of the process by default.
+
+    Returns:
+        Its exit code: 1 for a hole without an explanation, an explanation without a hole, or a failed run.
+    """
+    parser = argparse.ArgumentParser(
+        prog="python -m raycaster.verif.coverage",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--seeds", type=int, default=100, metavar="N", help="random scenes (default: %(default)s)")
+    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="simulations at a time (default: %(default)s)")
+    parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes")
+    arguments = parser.parse_args(argv)
+    if arguments.seeds < 1 or arguments.jobs < 1:
+        raise UserError("--seeds and --jobs must be at least 1")
+    explanations = load_explanations()
+    scenes = sorted(SCENES.glob("*.toml"))
+    if not scenes:
+        raise UserError(f"there are no scenes in {SCENES.resolve()}")
+    scenes.append(EXTRA_SCENE)
+    # Into a file or a pipe rich would print as if on 80 columns, which the tables do not fit.
+    console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
+    output = arguments.build / "coverage"
+    shutil.rmtree(output, ignore_errors=True)
+    started = time.perf_counter()
+
+    counting = _build(DESIGN, console, arguments.build, FLAGS, "coverage")
+    runs = [*BENCHES, *(Run("frame_bench", scene) for scene in scenes)]
+    counts, failures = run_all(counting, runs, output / "runs", arguments.jobs, console)
+    judgement = judge(counts, explanations)
+
+    plain = _build(SOAK_DESIGN, console, arguments.build)
+    results, complaints = soak(plain, range(arguments.seeds), output / "soak", arguments.jobs, console)
+    failures += complaints
+    functional = FunctionalCoverage()
+    with console.status("counting intersections"):
+        for path in scenes:
+            scene = load_scene(path)
+            functional.add_scene(scene, DESIGN, scene.reflections)
+        for result in results:
+            scene = random_scene(result["seed"], SOAK_DESIGN.rectangles, SOAK_DESIGN.reflections)
+            functional.add_scene(scene, SOAK_DESIGN, scene.reflections)
+
+    export_code(counts, judgement, output / "code.json")
+    functional.export(output / "functional")
+    show_code(counts, judgement, console)
+    show_functional(functional, len(scenes) + len(results), console)
+    for failure in failures:
+        console.print(failure, style="red", markup=False, soft_wrap=True)
+    console.print(f"{time.perf_counter() - started:.0f} s; figures and holes are in {output}/", highlight=False)
+    return verdict(judgement, functional, failures)
+
+
+def verdict(judgement: Judgement, functional: FunctionalCoverage, failures: Sequence[str]) -> int:
+    """The exit code."""
+    return int(bool(judgement.unexplained or judgement.stale or functional.holes or failures))
+
+
+def _build(
+    configuration: Configuration,
+    console: Console,
+    build: Path,
+    flags: Sequence[str] = VERILATOR_FLAGS,
+    variant: str = "",
+) -> Model:
+    with console.status(f"building {configuration.name} {variant}"):
+        return build_model(configuration, build=build, flags=flags, variant=variant)
+
+
+if __name__ == "__main__":
+    run_command(main)

