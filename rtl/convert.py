@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.rtl.convert`: the design as Verilog, one file a module, with a file list."""
+"""`python -m raycaster.rtl.convert`: the design as Verilog, one file a module, with what other flows want beside it."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ from raycaster.configuration import Configuration, configure
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.rtl.hierarchy import convert_hierarchy, quick_elaboration
 from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
-
-FILE_LIST = "ray_caster_module.f"
+from raycaster.rtl.take_home import FILE_LIST, write_take_home
 
 
 def write_verilog(config: Configuration, directory: Path) -> list[Path]:
@@ -24,7 +23,7 @@ def write_verilog(config: Configuration, directory: Path) -> list[Path]:
         directory: replaced as a whole, once everything is generated.
 
     Returns:
-        The files, each module after those that it instantiates; the top, `ray_caster_module.v`, is the last.
+        The modules' files, each after those that it instantiates; the top, `ray_caster_module.v`, is the last.
     """
     directory.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=directory.parent, prefix=f".{directory.name}-") as scratch:
@@ -34,7 +33,7 @@ def write_verilog(config: Configuration, directory: Path) -> list[Path]:
             top = ray_caster_module(**ModulePorts(config).all(), config=config)
         modules = convert_hierarchy(top, written, _header(config))
         names = [module.path.name for module in modules]
-        (written / FILE_LIST).write_text("".join(f"{name}\n" for name in names))
+        write_take_home(config, names, written)
         if directory.exists():
             shutil.rmtree(directory)
         written.rename(directory)

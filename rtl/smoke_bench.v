@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// A first simulation in one's own tools: does the design answer on the bus, and does it draw lines of the right length?
+// It says PASS or FAIL and ends; whether the picture is right is for a bench with a model of it.
+
+`timescale 1ns / 1ns
+
+module smoke_bench #(
+    parameter ADDRESS_BITS = 6,     // of the bus's word address
+    parameter COLOUR_BITS = 8,      // of a channel
+    parameter H_TOTAL = 800,        // pixels a line, blanking included
+    parameter H_SYNC = 96,          // pixels of HS's pulse
+    parameter HS_ACTIVE = 0,        // level of HS in its pulse
+    parameter SIZE = 0              // what the register with the design's size must hold
+) ();
+    localparam IDENTIFICATION = 0, SIZE_ADDRESS = 3;
+    localparam MAGIC = 32'h52415943;
+    localparam LINES = 3;
+
+    reg clk = 1'b0, reset = 1'b1;
+    always #10 clk = ~clk;
+
+    reg [ADDRESS_BITS-1:0] address = 0;
+    reg read = 1'b0;
+    wire [31:0] readdata;
+    wire readdatavalid, waitrequest, irq;
+    wire [COLOUR_BITS-1:0] vga_r, vga_g, vga_b;
+    wire vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_clk;
+
+    ray_caster_module dut (
+        .clk(clk),
+        .reset(reset),
+        .avs_s0_address(address),
+        .avs_s0_read(read),
+        .avs_s0_write(1'b0),
+        .avs_s0_writedata(32'b0),
+        .avs_s0_byteenable(4'b1111),
+        .avs_s0_readdata(readdata),
+        .avs_s0_readdatavalid(readdatavalid),
+        .avs_s0_waitrequest(waitrequest),
+        .irq(irq),
+        .vga_r(vga_r),
+        .vga_g(vga_g),
+        .vga_b(vga_b),
+        .vga_hs(vga_hs),
+        .vga_vs(vga_vs),
+        .vga_blank_n(vga_blank_n),
+        .vga_sync_n(vga_sync_n),
+        .vga_clk(vga_clk)
+    );
+
+    integer faults = 0;
+
+    task expect_word(input [ADDRESS_BITS-1:0] at, input [31:0] expected);
+        begin
+            @(negedge clk) begin
+                address = at;
+                read = 1'b1;
+            end
+            while (waitrequest) @(negedge clk);
+            @(negedge clk) read = 1'b0;
+            while (readdatavalid !== 1'b1) @(negedge clk);
+            if (readdata !== expected) begin
+                $display("FAIL: address %0d reads %h, expected %h", at, readdata, expected);
+                faults = faults + 1;
+            end
+        end
+    endtask
+
+    // Lines, by the pixel clock.
+    wire hs_active = vga_hs == HS_ACTIVE[0];
+    reg hs_was_active = 1'b0;
+    integer pixels = 0, pulse = 0, lines = 0;
+    always @(posedge vga_clk) begin
+        if (hs_active && !hs_was_active) begin
+            if (lines > 0 && (pixels != H_TOTAL || pulse != H_SYNC)) begin
+                $display("FAIL: a line of %0d pixels, %0d of them sync; expected %0d and %0d", pixels, pulse, H_TOTAL,
+                    H_SYNC);
+                faults = faults + 1;
+            end
+            lines = lines + 1;
+            pixels = 0;
+            pulse = 0;
+        end
+        hs_was_active = hs_active;
+        pixels = pixels + 1;
+        if (hs_active) pulse = pulse + 1;
+    end
+
+    initial begin
+        repeat (4) @(negedge clk);
+        reset = 1'b0;
+        expect_word(IDENTIFICATION, MAGIC);
+        expect_word(SIZE_ADDRESS, SIZE);
+        repeat (2 * H_TOTAL * (LINES + 1)) @(negedge clk);
+        if (lines < LINES) begin
+            $display("FAIL: %0d lines, expected %0d or more", lines, LINES);
+            faults = faults + 1;
+        end
+        if (faults != 0) $stop;     // with which simulators that run unattended end in an error
+        $display("PASS: %0d lines, and the bus answers", lines);
+        $finish;
+    end
+endmodule

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: MIT
+"""What goes with the Verilog so that it builds in other people's flows: lists, constraints, waivers, a first bench."""
+
+from __future__ import annotations
+
+import dataclasses
+import shutil
+from collections.abc import Sequence
+from importlib.metadata import version
+from pathlib import Path
+
+from raycaster.configuration import CLOCKS_PER_PIXEL, Configuration
+from raycaster.registers import address_bits
+from raycaster.rtl.avalon_interface import size_word
+
+TOP = "ray_caster_module"
+FILE_LIST = f"{TOP}.f"
+CLOCK_NS = 20
+"""Period of the one clock, 50 MHz."""
+
+SMOKE_BENCH = Path(__file__).with_name("smoke_bench.v")
+BENCHES = "bench"
+"""Folder of what is not hardware, so that all Verilog files beside it are."""
+
+WAIVERS = Path(__file__).with_name("waivers.vlt")
+
+
+def write_take_home(config: Configuration, sources: Sequence[str], directory: Path) -> None:
+    """Write beside the Verilog what tools want to know of it.
+
+    Args:
+        config: what was generated.
+        sources: the files' names, each after those that it needs.
+        directory: where they are.
+    """
+    (directory / FILE_LIST).write_text("".join(f"{name}\n" for name in sources))
+    (directory / f"{TOP}.sdc").write_text(_constraints(config))
+    (directory / f"{TOP}.core").write_text(_core(config, sources))
+    shutil.copyfile(WAIVERS, directory / f"{TOP}.vlt")
+    (directory / BENCHES).mkdir()
+    shutil.copyfile(SMOKE_BENCH, directory / BENCHES / SMOKE_BENCH.name)
+    top = directory / f"{TOP}.v"
+    top.write_text(top.read_text().replace(f"{config.name}\n", f"{config.name}\n{_description(config)}", 1))
+
+
+def _description(config: Configuration) -> str:
+    """The configuration as comment lines."""
+    values = {field.name: getattr(config, field.name) for field in dataclasses.fields(config)}
+    pad = max(map(len, values))
+    return "".join(f"//     {name:<{pad}}  {value}\n" for name, value in values.items())
+
+
+def _constraints(config: Configuration) -> str:
+    return f"""# SPDX-License-Identifier: MIT
+# {TOP}, {config.name}. One clock; the VGA outputs are registers that change at the falling edge of
+# vga_clk, which is clk divided by {CLOCKS_PER_PIXEL}, and are taken at its rising edge half a pixel later.
+create_clock -name clk -period {CLOCK_NS}.000 [get_ports clk]
+create_generated_clock -name vga_clk -source [get_ports clk] -divide_by {CLOCKS_PER_PIXEL} [get_ports vga_clk]
+
+# Where the ports are pins, say here what the board takes; inside a system the other side's constraints hold.
+# set_output_delay -clock vga_clk -max 2.0 [get_ports {{vga_r[*] vga_g[*] vga_b[*] vga_hs vga_vs vga_blank_n}}]
+"""
+
+
+def _core(config: Configuration, sources: Sequence[str]) -> str:
+    """A FuseSoC core (CAPI2) that lints, simulates and synthesises the files where they are."""
+    horizontal = config.screen_geometry.horizontal
+    parameters = {
+        "ADDRESS_BITS": address_bits(config.rectangles),
+        "COLOUR_BITS": config.colour_bits,
+        "H_TOTAL": horizontal.total,
+        "H_SYNC": horizontal.sync,
+        "HS_ACTIVE": int(horizontal.active_high),
+        "SIZE": size_word(config),
+    }
+    files = "".join(f"      - {name}\n" for name in sources)
+    declared = "".join(
+        f"  {name}:\n    datatype: int\n    paramtype: vlogparam\n    default: {value}\n"
+        for name, value in parameters.items()
+    )
+    return f"""CAPI=2:
+# SPDX-License-Identifier: MIT
+name: raycaster::{TOP}:{version("raycaster")}
+description: RayCaster, a real-time ray tracer, as {config.name}
+
+filesets:
+  rtl:
+    files:
+{files}    file_type: verilogSource-2005
+  constraints:
+    files:
+      - {TOP}.sdc: {{file_type: SDC}}
+  waivers:
+    files:
+      - {TOP}.vlt: {{file_type: vlt}}
+  bench:
+    files:
+      - {BENCHES}/{SMOKE_BENCH.name}: {{file_type: verilogSource-2005}}
+
+targets:
+  default: &default
+    filesets: [rtl, constraints]
+    toplevel: {TOP}
+  lint:
+    <<: *default
+    description: Verilator's -Wall, with the waivers
+    filesets: [rtl, waivers]
+    default_tool: verilator
+    tools:
+      verilator:
+        mode: lint-only
+        verilator_options: [-Wall]
+  sim:
+    description: The bus answers and lines are as long as they should be
+    filesets: [rtl, bench]
+    toplevel: {SMOKE_BENCH.stem}
+    default_tool: icarus
+    parameters: [{", ".join(parameters)}]
+    tools:
+      icarus:
+        iverilog_options: [-g2005]
+        vvp_options: [-N]
+      verilator:
+        mode: binary
+        verilator_options: [--timing, -Wno-fatal, -CFLAGS, -fcoroutines]
+  synth:
+    <<: *default
+    description: Yosys, for an ECP5
+    filesets: [rtl]
+    default_tool: yosys
+    tools:
+      yosys:
+        arch: ecp5
+        output_format: json
+
+parameters:
+{declared}"""

