@@ -142,9 +142,7 @@ class Leaf:
         directory.mkdir(parents=True)
         for module in self.modules:
             shutil.copy(module.path, directory)
-        inputs, outputs = (
-            {name: port.width for name, port in ports.items()} for ports in (self.inputs, self.outputs)
-        )
+        inputs, outputs = ({name: port.width for name, port in ports.items()} for ports in (self.inputs, self.outputs))
         description = {
             "module": self.modules[-1].name,
             "files": [module.path.name for module in self.modules],
