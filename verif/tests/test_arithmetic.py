@@ -16,6 +16,7 @@ from raycaster.verif.seeds import repeat, seed
 
 VECTORS = 300
 SLOPE_CORNERS = (0, 1, 2, 100, 160, 190, 255, 256, 510, 511)
+POWERS = tuple(1 << place for place in range(SLOPE_BITS))
 
 arithmetic = pytest.mark.parametrize(
     "config",
@@ -141,13 +142,23 @@ def test_intersection_helper(config, tmp_path):
         return int(random.choice(corners) if random.random() < 0.4 else random.integers(1 << width))
 
     def slope() -> int:
-        magnitude = random.choice(SLOPE_CORNERS) if random.random() < 0.4 else random.integers(1 << SLOPE_BITS)
+        corner = random.choice([*SLOPE_CORNERS, *POWERS])
+        magnitude = corner if random.random() < 0.4 else random.integers(1 << SLOPE_BITS)
         return int(magnitude * random.choice([-1, 1]))
 
     operands = [(position(), slope(), position(), position(), slope()) for _ in range(VECTORS)]
+    for number in range(VECTORS):
+        # Products whose every bit tells in the quotient, and distances with a single one.
+        c, b, e = position(), int(random.choice([1, 2, 3, 5])), int(random.choice(POWERS))
+        distance = int(random.choice([1 << random.integers(width), random.integers(1, 100)]))
+        if number % 2:
+            b = e = int(random.integers(1 << SLOPE_BITS)) | 1
+            distance = int(random.integers(1 << width)) | 1
+        d = c - distance if c >= distance else min(c + distance, (1 << width) - 1)
+        operands.append((position(), b * int(random.choice([-1, 1])), c, d, e * int(random.choice([-1, 1]))))
     steps = config.divider_steps
     idle = {"steps_find_intersection": 0, "steps_load_divider": 0, "steps_store_quotient": 0}
-    stimulus = [dict(idle) for _ in range((VECTORS + 2) * steps + 6)]
+    stimulus = [dict(idle) for _ in range((len(operands) + 2) * steps + 6)]
     for number, (a, b, c, d, e) in enumerate(operands):
         start = number * steps
         stimulus[start] |= {"steps_find_intersection": 1, "b": abs(b), "b_negative": int(b < 0)}

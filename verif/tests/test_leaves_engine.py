@@ -554,14 +554,17 @@ def scene_in_view(random: np.random.Generator, config: Configuration, axis: int)
     for _ in range(300):
         camera = random.integers(WORLD_SIZE, size=3) // [2, 1, 1]
         table = rectangles_in_view(random, camera, slopes, config.rectangles)
+        table = Rectangles(table.corners, table.colours, random.random(config.rectangles) < 0.7)
         background = random.integers(256, size=3)
         reflections = int(random.integers(config.reflections + 1))
-        golden = seed_engine.trace(
-            table, camera, background, slopes, reflections,
-            fraction_bits=config.fraction_bits, rounding=config.rounding,
+        trace = partial(
+            seed_engine.trace, camera=camera, background=background, reflections=reflections,
+            fraction_bits=config.fraction_bits, rounding=config.rounding, keep=True,
         )  # fmt: skip
-        words = golden_words(config, golden.colours)
-        if anything or (len(np.unique(words)) > config.rectangles and axis in table.axes[table.visible]):
+        ray = slopes[random.integers(len(slopes))][None]
+        table = edged(random, config, trace(table, slopes=ray), table)
+        words = golden_words(config, trace(table, slopes=slopes).colours)
+        if anything or (len(np.unique(words)) > 1 and axis in table.axes[table.visible]):
             break
     return camera, table, background, reflections, words
 
@@ -571,7 +574,7 @@ def test_ray_caster_renderer_scenes(tmp_path):
     config = small_config(TINY_SCREEN, units=2, rectangles=1, reflections=1, divider_bits=1)
     screen = config.screen_geometry
     random = np.random.default_rng(seed())
-    scenes = [scene_in_view(random, config, number % 3) for number in range(20)]
+    scenes = [scene_in_view(random, config, number % 3) for number in range(30)]
     stimulus = [{"reset": 1, "run": 1}] * 2
     start = start_screen_cycle(screen)
     for number, (camera, table, background, reflections, _) in enumerate(scenes):
@@ -710,7 +713,7 @@ def test_ray_caster_module_scenes(tmp_path):
             else:
                 bus.write_word(name, int(random.integers(1 << 32)), int(random.choice([1, 2, 4, 8, 3, 12, 15])))
 
-    for number in range(16):
+    for number in range(40):
         camera, table, background, reflections, words = scene_in_view(random, config, number % 3)
         pictures.append(words)
         start = 2 + start_screen_cycle(screen) + number * screen.frame_cycles

@@ -151,8 +151,9 @@ def aimed_ray(config: Configuration, random: np.random.Generator) -> tuple:
         low[axis] = high[axis] = random.choice([*EXTREMES, random.integers(limit), origin[axis] >> fraction_bits])
         point, _ = meet(config, origin, slope, axis, low[axis])
         for other in OTHER_AXES[axis]:
-            near = int(np.clip((point[other] >> fraction_bits) + random.integers(-1, 2), 0, limit))
-            if random.random() < 0.5:
+            away = random.choice([-1, 0, 1, 1, *(sign << place for sign in (-1, 1) for place in range(1, 9))])
+            near = int(np.clip((point[other] >> fraction_bits) + away, 0, limit))
+            if random.random() < 0.7:
                 low[other], high[other] = random.choice([(near, limit), (0, near), (near, near)])
     table = Rectangles(corners, np.zeros((4, 3), dtype=np.uint8), np.ones(4, dtype=bool))
     golden = []
@@ -166,7 +167,7 @@ def aimed_ray(config: Configuration, random: np.random.Generator) -> tuple:
 @finders
 def test_intersection_finder(config, tmp_path):
     random = np.random.default_rng(seed())
-    rays = traced_rays(config, random, 15) + [aimed_ray(config, random) for _ in range(30)]
+    rays = traced_rays(config, random, 15) + [aimed_ray(config, random) for _ in range(140)]
     stimulus, results = finder_stimulus(config, [ray[:3] for ray in rays])
     outputs = finder_leaf(config, tmp_path).run_both(stimulus, settled=config.divider_steps + 5)
     seen = set()
@@ -398,7 +399,8 @@ def test_color_combiner(colour_bits, reflections, tmp_path):
             missed = missed or not found
             winners.append(np.array([-1 if missed else number]))
             ray = {**held, "found": int(found), "found_color": words[number], "steps_initial_ray": int(number == 0)}
-            stimulus += [ray] * int(random.integers(2))
+            # Only what is found in the cycle of the addition counts.
+            stimulus += [{**ray, "found": int(random.integers(2))}] * int(random.integers(2))
             stimulus.append({**ray, "steps_add_color": 1})
         results.append((len(stimulus), palette, winners))
         stimulus.append({**held, "found": int(random.integers(2))})

@@ -103,7 +103,7 @@ SMALL_SCREENS = {
     "both-low": Screen(4, 3, 1, 2, Span(8, 1, 2, 1, active_high=False), Span(6, 1, 1, 2, active_high=False)),
     "both-high": Screen(3, 4, 1, 2, Span(6, 3, 1, 2, active_high=True), Span(8, 2, 1, 1, active_high=True)),
     "mixed": Screen(5, 2, 1, 1, Span(5, 2, 3, 4, active_high=False), Span(2, 1, 2, 1, active_high=True)),
-    "threefold": Screen(2, 2, 1, 3, Span(6, 1, 1, 1, active_high=True), Span(6, 1, 1, 3, active_high=False)),
+    "threefold": Screen(2, 2, 1, 3, Span(6, 1, 2, 2, active_high=True), Span(6, 1, 1, 3, active_high=False)),
     "tiny": SCREENS["tiny", 48],
 }
 

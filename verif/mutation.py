@@ -1,0 +1,529 @@
+# SPDX-License-Identifier: MIT
+"""`python -m raycaster.verif.mutation`: would the leaf tests notice a fault? Mutation testing of every module.
+
+The leaf tests run once and record what they drive and expect. Then, for each recording, Yosys plants up to --mutants
+faults, spread over the cells of the module under test, into its Verilog: an inverted or stuck bit of a cell's port, for
+all values or for those of another bit. Verilator compiles the netlist with all faults in it and an input that chooses
+one, and each fault is replayed. It is caught where an output differs from the expected one in a cycle that the test
+looks at; registers start as zeros, as ones and at random, as the tests' own simulator has them unknown.
+
+What survives goes to the solver z3, which may find that no input sequence tells it from the module: it is equivalent
+(or equivalent under the module's contract, where that names what its inputs never do; invariants of its registers are
+proved first). The solver looks at the module's own cells: its submodules' inputs must stay as they are. What else
+survives must be explained in mutation.toml, or it is an error; so is an explanation that nothing needs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+from rich.box import SIMPLE
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from raycaster.errors import UserError
+from raycaster.options import run_command
+from raycaster.verif.exhaustive import Builder
+from raycaster.verif.formal.prover import missing_tools, run_yosys
+from raycaster.verif.leaf import RECORD_VARIABLE, recording_name
+
+SOURCES = Path(__file__).parent
+MUTANTS = 200
+SEED = 20150
+LEAST_CAUGHT = 0.95
+"""Of the mutants that are not equivalent, in each module."""
+
+OUTCOMES = ("caught", "equivalent", "contract", "explained", "surviving")
+
+
+class MutationError(UserError):
+    """Mutation testing that could not be done, or a data file that does not fit the design."""
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Why a mutant may survive; a field that is empty fits every mutant.
+
+    Attributes:
+        why: the reason.
+        at: the Verilog that the cell stands for, as `Mutant.at` has it.
+        kind: of cell.
+        port: of the cell, with the bit or without.
+        mode: of the fault.
+    """
+
+    why: str
+    at: str = ""
+    kind: str = ""
+    port: str = ""
+    mode: str = ""
+
+    def fits(self, mutant: Mutant) -> bool:
+        """Whether it is about this mutant."""
+        ports = ("", mutant.port, mutant.port.partition("[")[0])
+        return (
+            self.at in ("", mutant.at)
+            and self.kind in ("", mutant.kind)
+            and self.port in ports
+            and self.mode in ("", mutant.mode)
+        )
+
+
+@dataclass(frozen=True)
+class Expectation:
+    """What the data file says of a module.
+
+    Attributes:
+        tests: leaf tests whose recordings are used, as `file::test[parameters]`.
+        assumptions: Verilog expressions of the module's inputs that its contract makes true, each with its reason.
+        invariants: Verilog expressions of its registers, true from reset on; proved.
+        look_into: submodules that the solver sees into.
+        explained: the survivors that remain.
+    """
+
+    tests: tuple[str, ...]
+    assumptions: Mapping[str, str] = field(default_factory=dict)
+    invariants: tuple[str, ...] = ()
+    look_into: tuple[str, ...] = ()
+    explained: tuple[Explanation, ...] = ()
+
+
+def expectations(path: Path = SOURCES / "mutation.toml") -> dict[str, Expectation]:
+    """Read the data file.
+
+    Raises:
+        MutationError: it says what nobody asks for.
+    """
+    found = {}
+    for module, values in tomllib.loads(path.read_text()).items():
+        try:
+            explained = tuple(Explanation(**entry) for entry in values.pop("explained", []))
+            lists = {name: tuple(values.pop(name, ())) for name in ("tests", "invariants", "look_into")}
+            found[module] = Expectation(**lists, explained=explained, **values)
+        except TypeError as error:
+            raise MutationError(f"{path.name}, {module}: {error}") from None
+    return found
+
+
+@dataclass
+class Mutant:
+    """One fault.
+
+    Attributes:
+        selector: the number that chooses it.
+        mode: inv, const0, const1; cnot0 and cnot1 invert where another bit is 0 or 1.
+        kind: of the cell: add, procmux, procdff, a submodule's instance, ...
+        port: of the cell, with the bit.
+        at: the Verilog that the cell was made from.
+        options: as Yosys wants them.
+        outcome: one of `OUTCOMES`.
+        detail: the cycle that caught it, or why it may survive.
+    """
+
+    selector: int
+    mode: str
+    kind: str
+    port: str
+    at: str
+    options: str = field(repr=False)
+    outcome: str = "surviving"
+    detail: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.mode} {self.kind} {self.port} at `{self.at}`"
+
+
+@dataclass
+class Result:
+    """A recording's mutants."""
+
+    module: str
+    recording: str
+    cycles: int
+    seconds: float
+    mutants: list[Mutant]
+
+
+class Recording:
+    """What `Leaf.record` left of a leaf test, and work on it.
+
+    Args:
+        directory: the recording.
+        work: scratch space, replaced.
+    """
+
+    def __init__(self, directory: Path, work: Path):
+        self.name = directory.name
+        self._directory, self._work = directory, work
+        leaf = json.loads((directory / "leaf.json").read_text())
+        self.module: str = leaf["module"]
+        self._files: list[str] = leaf["files"]
+        self._clocked: bool = leaf["clocked"]
+        self._inputs: dict[str, int] = leaf["inputs"]
+        self._outputs: dict[str, int] = leaf["outputs"]
+        self._settled: int = leaf["settled"]
+        self._cycles: int = leaf["cycles"]
+        shutil.rmtree(work, ignore_errors=True)
+        work.mkdir(parents=True)
+        for name in self._files:
+            shutil.copy(directory / name, work)
+
+    def run(self, count: int, seed: int, expectation: Expectation, builder: ReplayBuilder) -> Result:
+        """Plant faults, replay them, and let the solver look at the survivors.
+
+        Args:
+            count: how many faults at most.
+            seed: chooses them.
+            expectation: assumptions, invariants and explanations.
+            builder: compiles the netlist.
+
+        Raises:
+            MutationError: the replay fails without a fault, or an invariant does not hold.
+        """
+        begin = time.monotonic()
+        mutants = self.plant(count, seed, expectation.look_into)
+        self._replay(mutants, builder)
+        survivors = [mutant for mutant in mutants if mutant.outcome == "surviving"]
+        if survivors:
+            self._compare(survivors, expectation)
+        for mutant in survivors:
+            reason = next((entry.why for entry in expectation.explained if entry.fits(mutant)), None)
+            if mutant.outcome == "surviving" and reason:
+                mutant.outcome, mutant.detail = "explained", reason
+        return Result(self.module, self.name, self._cycles, time.monotonic() - begin, mutants)
+
+    def _read(self) -> list[str]:
+        return [
+            f"read_verilog {' '.join(self._files)}",
+            f"hierarchy -check -top {self.module}",
+            # MyHDL's constants have 32 bits, of which most faults would change nothing.
+            f"select {self.module}",
+            "proc",
+            "opt",
+            "wreduce",
+            "opt_clean",
+        ]
+
+    def plant(self, count: int, seed: int, look_into: Sequence[str] = ()) -> list[Mutant]:
+        """Choose faults, and write the netlist with all of them, for simulation and for the solver.
+
+        Args:
+            count: how many at most.
+            seed: chooses them.
+            look_into: submodules that are part of what the solver sees.
+        """
+        submodules = [Path(name).stem for name in self._files[:-1]]
+        width = count.bit_length()
+        listing = f"mutate -list {count} -seed {seed} -ctrl mutsel {width} 1 -o mutants.ys"
+        run_yosys(self._work, "list", [*self._read(), listing])
+        lines = (self._work / "mutants.ys").read_text().splitlines()
+        mutants = [self._describe(number, line) for number, line in enumerate(lines, 1)]
+        cut = [
+            f"write_verilog -noattr -selected {self.module}_mutants.v",
+            "select -clear",
+            *(f"setattr -mod -set keep_hierarchy 1 {name}" for name in submodules if name not in look_into),
+            *(f"proc {name}" for name in submodules if name in look_into),
+            "flatten",
+            # For the solver, other submodules are their ports: they answer equal inputs equally.
+            f"expose -evert -sep _ {self.module}/c:*",  # of its cells only: wires would all become outputs
+            "memory_map",
+            "opt_clean",
+            "async2sync",
+            "dffunmap",
+            "setundef -zero",
+            *(f"delete {name}" for name in submodules if name not in look_into),
+            f"write_smt2 -stbv -wires {self.module}.smt2",
+        ]
+        run_yosys(self._work, "plant", [*self._read(), *lines, *cut])
+        return mutants
+
+    def _describe(self, number: int, line: str) -> Mutant:
+        options = dict(re.findall(r"-(mode|cell|port|portbit) (\S+)", line))
+        # "$add$file.v:12$34", "$procmux$34", "instance"
+        kind = options["cell"].lstrip("$").split("$")[0]
+        texts = dict.fromkeys(self._text(source) for source in re.findall(r"-src (\S+)", line))
+        return Mutant(
+            number, options["mode"], kind, f"{options['port']}[{options['portbit']}]", " / ".join(texts), line
+        )
+
+    def _text(self, source: str) -> str:
+        """The Verilog from `file:line.column` up to `line.column`, or the first line of it."""
+        match = re.fullmatch(r"(.+):(\d+)\.(\d+)-(\d+)\.(\d+)", source)
+        file, first, start, last, end = match[1], *map(int, match.groups()[1:])
+        line = (self._work / file).read_text().splitlines()[first - 1]
+        # The label of a case has a place, and no extent.
+        return line[start - 1 : end - 1 if first == last and start < end else None].strip()
+
+    def _replay(self, mutants: list[Mutant], builder: ReplayBuilder) -> None:
+        width = max(mutant.selector for mutant in mutants).bit_length()
+        sources = [f"{self.module}_mutants.v", *self._files[:-1]]
+        executable = builder.compile(self._work, self._wrapper(width), sources, *self._words())
+        command = [executable, str(self._directory / "vectors.txt"), str(self._settled), str(len(mutants))]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        first, fault_free, *lines = done.stdout.splitlines() or ["", ""]
+        if done.returncode or first != f"cycles {self._cycles}" or len(lines) != len(mutants):
+            raise MutationError(f"{self.name}: the replay failed: {done.stdout[-500:]}{done.stderr}")
+        if fault_free != "0 -1":
+            raise MutationError(f"{self.name}: the replay differs from the recording without any fault: {fault_free}")
+        for mutant, line in zip(mutants, lines, strict=True):
+            cycle = int(line.split()[1])
+            if cycle >= 0:
+                mutant.outcome, mutant.detail = "caught", f"cycle {cycle}"
+
+    def _words(self) -> tuple[int, int]:
+        return tuple(-(-sum(ports.values()) // 32) for ports in (self._inputs, self._outputs))
+
+    def _wrapper(self, selector_width: int) -> str:
+        # Vectors of more than 64 bits, so that Verilator has arrays of words for them.
+        bits_in, bits_out = (max(65, sum(ports.values())) for ports in (self._inputs, self._outputs))
+        high = sum(self._inputs.values())
+        pins = [".mutsel(selector)"] + [".clk(clk)"] * self._clocked
+        for name, width in self._inputs.items():
+            high -= width
+            pins.append(f".{name}(in[{high + width - 1}:{high}])")
+        wires = "".join(f"wire [{width - 1}:0] {name};\n" for name, width in self._outputs.items())
+        pins += [f".{name}({name})" for name in self._outputs]
+        return f"""module replay(input clk, input [{selector_width - 1}:0] selector, input [{bits_in - 1}:0] in,
+    output [{bits_out - 1}:0] out);
+{wires}{self.module} dut ({", ".join(pins)});
+assign out = {{{", ".join(self._outputs)}}};
+endmodule
+"""
+
+    def _compare(self, survivors: Iterable[Mutant], expectation: Expectation) -> None:
+        # z3 may be missing where only this file's help or names are wanted.
+        from raycaster.verif.mutation_equivalence import Comparison  # noqa: PLC0415
+
+        alone = Comparison(self._work, self.module)
+        contract = None
+        if expectation.assumptions or expectation.invariants:
+            contract = Comparison(self._work, self.module, tuple(expectation.assumptions), expectation.invariants)
+        for mutant in survivors:
+            if alone.equivalent(mutant.selector):
+                mutant.outcome = "equivalent"
+            elif contract and contract.equivalent(mutant.selector):
+                mutant.outcome = "contract"
+
+
+class ReplayBuilder(Builder):
+    """Compiles netlists with the program that replays a recording, and what all of them link with once.
+
+    Args:
+        directory: scratch space.
+    """
+
+    def __init__(self, directory: Path):
+        super().__init__(directory)
+        self._objects = [path.resolve() for path in self._link()]
+
+    def compile(self, directory: Path, wrapper: str, sources: list[str], words_in: int, words_out: int) -> Path:
+        """Compile.
+
+        Args:
+            directory: where the sources are, and where the model goes.
+            wrapper: module `replay`, which has all inputs as one vector and all outputs as another.
+            sources: names of the files that it needs.
+            words_in: 32-bit words of the inputs.
+            words_out: of the outputs.
+
+        Returns:
+            The executable.
+        """
+        (directory / "replay.v").write_text(wrapper)
+        self._call(
+            directory, "verilator", "--cc", "-O3", "--no-assert", "--x-assign", "unique", "--x-initial", "unique",
+            "-Wno-fatal", "-Wno-lint", "-Wno-style", "--prefix", "Vreplay", "--Mdir", "model", "--top-module", "replay",
+            "replay.v", *sources,
+        )  # fmt: skip
+        model = directory / "model"
+        parts = [*sorted(path.name for path in model.glob("*.cpp")), SOURCES / "mutation_replay.cpp"]
+        (model / "all.cc").write_text("".join(f'#include "{part}"\n' for part in parts))
+        self._compile(
+            model, f"-DIN_WORDS={words_in}", f"-DOUT_WORDS={words_out}", "-O1", "all.cc", *self._objects,
+            "-o", "replay",
+        )  # fmt: skip
+        return (model / "replay").resolve()
+
+
+def record(tests: Iterable[str], directory: Path, jobs: int) -> None:
+    """Run leaf tests with recording switched on.
+
+    Args:
+        tests: `file::test[parameters]`.
+        directory: replaced; gets a recording each.
+        jobs: tests at a time.
+
+    Raises:
+        MutationError: a test failed, or there is none of that name.
+    """
+    shutil.rmtree(directory, ignore_errors=True)
+    command = [sys.executable, "-m", "pytest", "-q", "-n", str(jobs), "--dist", "worksteal"]
+    done = subprocess.run(
+        [*command, *tests], cwd=SOURCES / "tests", env=os.environ | {RECORD_VARIABLE: str(directory.resolve())},
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    if done.returncode:
+        raise MutationError(f"the leaf tests could not be recorded:\n{done.stdout[-2000:]}{done.stderr[-1000:]}")
+
+
+def stale(results: Iterable[Result], known: Mapping[str, Expectation]) -> list[str]:
+    """Explanations that no mutant needs."""
+    found = []
+    for module, expectation in known.items():
+        mutants = [mutant for result in results if result.module == module for mutant in result.mutants]
+        for entry in expectation.explained:
+            if not any(mutant.outcome == "explained" and entry.fits(mutant) for mutant in mutants):
+                found.append(f"{module}: {entry}")
+    return found
+
+
+def count_outcomes(mutants: Iterable[Mutant]) -> dict[str, int]:
+    """How many mutants had each outcome."""
+    counts = dict.fromkeys(OUTCOMES, 0)
+    for mutant in mutants:
+        counts[mutant.outcome] += 1
+    return counts
+
+
+def share_caught(counts: Mapping[str, int]) -> float:
+    """Of the mutants that are not equivalent. What is merely explained counts as not caught."""
+    different = counts["caught"] + counts["explained"] + counts["surviving"]
+    return counts["caught"] / different if different else 1.0
+
+
+def _table(results: list[Result]) -> Table:
+    table = Table(title="Mutants of each module", title_justify="left", box=SIMPLE, padding=0)
+    table.add_column("module", no_wrap=True)
+    for heading in ("mutants", *OUTCOMES, "of all", "of the rest", "seconds"):
+        table.add_column(heading, justify="right", no_wrap=True)
+
+    def add(label: str, chosen: list[Result]) -> None:
+        counts = count_outcomes(mutant for result in chosen for mutant in result.mutants)
+        total = sum(counts.values())
+        table.add_row(
+            label, str(total), *map(str, counts.values()), f"{counts['caught'] / max(total, 1):.1%}",
+            f"{share_caught(counts):.1%}", f"{sum(result.seconds for result in chosen):.0f}",
+        )  # fmt: skip
+
+    for module in sorted({result.module for result in results}):
+        add(module, [result for result in results if result.module == module])
+    table.add_section()
+    add("[bold]all", results)
+    return table
+
+
+def complaints(results: list[Result], known: Mapping[str, Expectation]) -> list[str]:
+    """Whatever makes the command fail.
+
+    Args:
+        results: of all recordings.
+        known: whose explanations must each be needed.
+    """
+    found = [
+        f"{result.module}: survives the vectors of {result.recording}: {mutant}"
+        for result in results
+        for mutant in result.mutants
+        if mutant.outcome == "surviving"
+    ]
+    for module in {result.module: None for result in results}:
+        counts = count_outcomes(mutant for result in results if result.module == module for mutant in result.mutants)
+        if share_caught(counts) < LEAST_CAUGHT:
+            found.append(f"{module}: fewer than {LEAST_CAUGHT:.0%} of the mutants that differ are caught")
+    return found + [f"needed by no mutant: {text}" for text in stale(results, known)]
+
+
+def _positive(text: str) -> int:
+    value = int(text)
+    if value < 1:
+        raise ValueError
+    return value
+
+
+def _run_all(
+    tests: Mapping[str, str], arguments: argparse.Namespace, known: Mapping[str, Expectation], console: Console
+) -> list[Result]:
+    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+        recordings = arguments.build / "recordings"
+        task = progress.add_task("recording the leaf tests", total=None)
+        record(tests, recordings, arguments.jobs)
+        progress.update(task, description="replaying mutants", total=len(tests), completed=0)
+
+        builder = ReplayBuilder(arguments.build)
+
+        def run(test: str) -> Result:
+            name = recording_name(test.partition("::")[2])
+            recording = Recording(recordings / name, arguments.build / "work" / name)
+            if recording.module != tests[test]:
+                raise MutationError(f"{test} is no test of {tests[test]}, but of {recording.module}")
+            result = recording.run(arguments.mutants, arguments.seed, known[recording.module], builder)
+            progress.advance(task)
+            return result
+
+        with ThreadPoolExecutor(arguments.jobs) as pool:
+            return list(pool.map(run, tests))
+
+
+def main(argv: list[str] | None = None) -> int:
+    """The command.
+
+    Args:
+        argv: its arguments, those of the process by default.
+
+    Returns:
+        Its exit code: 1 where a survivor is not explained, an explanation is stale, or too few mutants are caught.
+
+    Raises:
+        UserError: no such module, or a tool is missing.
+    """
+    parser = argparse.ArgumentParser(
+        prog="python -m raycaster.verif.mutation",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--module", action="append", metavar="NAME", help="only this one; repeatable")
+    parser.add_argument(
+        "--mutants", type=_positive, default=MUTANTS, help="of each recording, at most (default: %(default)s)"
+    )
+    parser.add_argument("--seed", type=_positive, default=SEED, help="chooses the faults (default: %(default)s)")
+    parser.add_argument("--jobs", type=_positive, default=2, help="recordings at a time (default: %(default)s)")
+    parser.add_argument("--build", type=Path, default=Path("build/mutation"), help="(default: %(default)s)")
+    arguments = parser.parse_args(argv)
+    if missing := missing_tools():
+        raise UserError(f"{', '.join(missing)} not found; install the extra `formal` of this package")
+    known = expectations()
+    for module in arguments.module or []:
+        if module not in known:
+            raise UserError(f"--module: {module} is none of {', '.join(known)}")
+    known = {module: known[module] for module in arguments.module or known}
+    tests = {test: module for module, expectation in known.items() for test in expectation.tests}
+
+    # A table of this many columns is read from a log as well as on a screen.
+    console = Console(width=None if sys.stdout.isatty() else 150)
+    results = _run_all(tests, arguments, known, console)
+    (arguments.build / "results.json").write_text(json.dumps([asdict(result) for result in results], indent=2) + "\n")
+    console.print(_table(results))
+    # Another choice of faults need not have the survivors that are explained.
+    usual = (arguments.mutants, arguments.seed) == (MUTANTS, SEED)
+    found = complaints(results, known if usual else {})
+    for complaint in found:
+        console.print(escape(complaint), style="red", soft_wrap=True)
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    run_command(main)

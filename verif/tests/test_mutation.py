@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: MIT
+"""Mutation testing works: faults are caught, shown equivalent or explained, and vectors that are too few are found."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import pytest
+
+from raycaster.configuration import configure
+from raycaster.errors import UserError
+from raycaster.rtl.convert import write_verilog
+from raycaster.rtl.divider_step import divider_step
+from raycaster.rtl.interfaces import SceneBus
+from raycaster.rtl.scene_word import scene_word
+from raycaster.rtl.widths import WORD_BITS, bit, unsigned
+from raycaster.verif.formal.prover import missing_tools
+from raycaster.verif.leaf import Leaf, reset_signal
+from raycaster.verif.mutation import (
+    LEAST_CAUGHT,
+    Expectation,
+    Explanation,
+    Mutant,
+    MutationError,
+    Recording,
+    ReplayBuilder,
+    Result,
+    complaints,
+    count_outcomes,
+    expectations,
+    main,
+    share_caught,
+)
+
+pytestmark = pytest.mark.skipif(bool(missing_tools()), reason=f"not installed: {', '.join(missing_tools())}")
+
+WIDTH, COUNT = 3, 2
+MUTANTS = 30
+
+
+@pytest.fixture(scope="module")
+def builder(tmp_path_factory) -> ReplayBuilder:
+    return ReplayBuilder(tmp_path_factory.mktemp("replay"))
+
+
+@pytest.fixture
+def recorded(tmp_path):
+    """Records what a divider's step does, and changes what is expected."""
+
+    def record(remainders, change=dict) -> Recording:
+        ports = {"remainder": WIDTH, "digits": COUNT, "divisor": WIDTH, "next_remainder": WIDTH, "next_digits": COUNT}
+        (tmp_path / "verilog").mkdir()
+        leaf = Leaf(
+            divider_step, lambda: {name: unsigned(width) for name, width in ports.items()}, tmp_path / "verilog"
+        )
+        stimulus = [
+            {"remainder": remainder, "digits": digits, "divisor": divisor}
+            for divisor in range(1, 1 << WIDTH)
+            for remainder in remainders
+            if remainder < divisor
+            for digits in range(1 << COUNT)
+        ]
+        leaf.record(tmp_path / "recording", stimulus, [change(cycle) for cycle in leaf.run_myhdl(stimulus)], 0)
+        return Recording(tmp_path / "recording", tmp_path / "work")
+
+    return record
+
+
+def outcomes(result: Result) -> dict[str, int]:
+    return count_outcomes(result.mutants)
+
+
+def test_every_operand_catches_every_fault(recorded, builder):
+    contract = Expectation((), assumptions={"remainder < divisor": "the division's invariant"})
+    result = recorded(range(1 << WIDTH)).run(MUTANTS, 1, contract, builder)
+    counts = outcomes(result)
+    assert sum(counts.values()) == MUTANTS
+    assert counts["surviving"] == counts["explained"] == 0, [str(mutant) for mutant in result.mutants]
+    assert share_caught(counts) == 1.0
+
+
+def test_one_operand_leaves_survivors(recorded, builder):
+    result = recorded([0]).run(MUTANTS, 1, Expectation(()), builder)
+    survivors = [mutant for mutant in result.mutants if mutant.outcome == "surviving"]
+    assert survivors
+    assert share_caught(outcomes(result)) < 1
+    assert any("remainder" in mutant.at for mutant in survivors), [str(mutant) for mutant in survivors]
+
+
+def test_a_recording_that_does_not_fit_is_an_error(recorded, builder):
+    def wrong(cycle):
+        return {**cycle, "next_digits": cycle["next_digits"] ^ 1}
+
+    with pytest.raises(MutationError, match="without any fault"):
+        recorded([0], wrong).run(MUTANTS, 1, Expectation(()), builder)
+
+
+def word_recording(tmp_path, cycles: int) -> Recording:
+    """A word that is reset, and then written in each cycle."""
+    (tmp_path / "verilog").mkdir()
+    leaf = Leaf(
+        scene_word,
+        lambda: {
+            "clk": bit(),
+            "reset": reset_signal(),
+            "bus": SceneBus(7),
+            "selected": bit(),
+            "implemented": unsigned(WORD_BITS),
+            "shadow": unsigned(WORD_BITS),
+            "live": unsigned(WORD_BITS),
+        },
+        tmp_path / "verilog",
+    )
+    written = {"reset": 0, "selected": 1, "bus_write": 1, "bus_mask": 0xFFFF, "bus_data": 0x5A5A, "implemented": 0xFFF}
+    stimulus = [{"reset": 1}] + [written] * cycles
+    leaf.record(tmp_path / "recording", stimulus, leaf.run_myhdl(stimulus), 1)
+    return Recording(tmp_path / "recording", tmp_path / "work")
+
+
+@pytest.mark.parametrize(
+    ("expectation", "complaint"),
+    [
+        (Expectation((), invariants=("shadow != 5",)), "does not follow from the cycle before"),
+        (Expectation((), invariants=("shadow != 0",)), "does not follow from reset"),
+        (Expectation((), assumptions={"no_such == 1": ""}), "no_such"),
+    ],
+)
+def test_a_contract_that_does_not_hold_is_an_error(expectation, complaint, tmp_path, builder):
+    with pytest.raises(UserError, match=complaint):
+        word_recording(tmp_path, 2).run(MUTANTS, 1, expectation, builder)
+
+
+def test_explanations(tmp_path, builder):
+    needed, stale = Explanation("anything"), Explanation("nothing", kind="none")
+    expectation = Expectation((), explained=(stale, needed))
+    result = word_recording(tmp_path, 2).run(MUTANTS, 1, expectation, builder)
+    counts = outcomes(result)
+    assert counts["explained"] and not counts["surviving"]
+    assert share_caught(counts) < LEAST_CAUGHT, "what is only explained was not caught"
+    few, unneeded = complaints([result], {"scene_word": expectation})
+    assert "fewer than 95%" in few and str(stale) in unneeded
+
+
+def test_an_explanation_fits_what_it_names():
+    mutant = Mutant(1, "inv", "and", "A[3]", "pending", "")
+    for fitting in ({}, {"at": "pending"}, {"port": "A"}, {"port": "A[3]", "mode": "inv"}, {"kind": "and"}):
+        assert Explanation("", **fitting).fits(mutant)
+    for other in ({"at": "live"}, {"port": "A[4]"}, {"port": "A", "mode": "const0"}, {"kind": "or"}):
+        assert not Explanation("", **other).fits(mutant)
+
+
+def test_every_module_is_mutated(tmp_path):
+    files = write_verilog(configure(units=1, rectangles=1, allow_underrun=True), tmp_path / "verilog")
+    known = expectations()
+    assert set(known) == {path.stem for path in files}
+    assert all(expectation.tests for expectation in known.values())
+    assert all(entry.why for expectation in known.values() for entry in expectation.explained)
+
+
+def test_a_data_file_with_an_unknown_key_is_an_error(tmp_path):
+    path = tmp_path / "wrong.toml"
+    path.write_text("[divider]\nshould_be = 1\n")
+    with pytest.raises(MutationError, match="should_be"):
+        expectations(path)
+
+
+def test_the_command_reports(tmp_path, capsys):
+    assert main(["--module", "ray_mem", "--mutants", "20", "--jobs", "1", "--build", str(tmp_path)]) == 0
+    assert re.search(r"ray_mem +20 +\d+", capsys.readouterr().out)
+    [result] = json.loads((tmp_path / "results.json").read_text())
+    assert result["module"] == "ray_mem" and len(result["mutants"]) == 20
+
+
+@pytest.mark.parametrize("arguments", [["--module", "adder"]])
+def test_what_a_user_can_mend_is_told(arguments):
+    with pytest.raises(UserError, match="adder is none of"):
+        main(arguments)
