@@ -503,6 +503,7 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--jobs", type=_positive, default=2, help="recordings at a time (default: %(default)s)")
     parser.add_argument("--build", type=Path, default=Path("build/mutation"), help="(default: %(default)s)")
     arguments = parser.parse_args(argv)
+    arguments.build = arguments.build.resolve()  # tools run in the folders below it
     if missing := missing_tools():
         raise UserError(f"{', '.join(missing)} not found; install the extra `formal` of this package")
     known = expectations()

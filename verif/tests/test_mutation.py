@@ -165,10 +165,11 @@ def test_a_data_file_with_an_unknown_key_is_an_error(tmp_path):
         expectations(path)
 
 
-def test_the_command_reports(tmp_path, capsys):
-    assert main(["--module", "ray_mem", "--mutants", "20", "--jobs", "1", "--build", str(tmp_path)]) == 0
+def test_the_command_reports(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["--module", "ray_mem", "--mutants", "20", "--jobs", "1", "--build", "build"]) == 0
     assert re.search(r"ray_mem +20 +\d+", capsys.readouterr().out)
-    [result] = json.loads((tmp_path / "results.json").read_text())
+    [result] = json.loads((tmp_path / "build" / "results.json").read_text())
     assert result["module"] == "ray_mem" and len(result["mutants"]) == 20
 
 
