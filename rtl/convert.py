@@ -6,13 +6,19 @@ from __future__ import annotations
 import argparse
 import shutil
 import tempfile
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+
+from myhdl._block import _Block
 
 from raycaster.configuration import Configuration, configure
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.rtl.hierarchy import convert_hierarchy, quick_elaboration
 from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
+from raycaster.rtl.ray_caster_system import SystemPorts, ray_caster_system
 from raycaster.rtl.take_home import FILE_LIST, write_take_home
+from raycaster.scene import Scene
 
 
 def write_verilog(config: Configuration, directory: Path) -> list[Path]:
@@ -25,15 +31,46 @@ def write_verilog(config: Configuration, directory: Path) -> list[Path]:
     Returns:
         The modules' files, each after those that it instantiates; the top, `ray_caster_module.v`, is the last.
     """
+
+    def elaborate() -> _Block:
+        return ray_caster_module(**ModulePorts(config).all(), config=config)
+
+    return _write(elaborate, config, directory, partial(write_take_home, config))
+
+
+def write_system(config: Configuration, scene: Scene, directory: Path) -> list[Path]:
+    """Generate the Verilog of a system without a processor, otherwise as `write_verilog`.
+
+    Args:
+        config: what to generate.
+        scene: what it shows; it has no more rectangles than the hardware.
+        directory: replaced as a whole, once everything is generated.
+
+    Returns:
+        The modules' files, each after those that it instantiates; the top, `ray_caster_system.v`, is the last.
+    """
+
+    def elaborate() -> _Block:
+        return ray_caster_system(**SystemPorts(config).all(), config=config, scene=scene)
+
+    return _write(elaborate, config, directory)
+
+
+def _write(
+    elaborate: Callable[[], _Block],
+    config: Configuration,
+    directory: Path,
+    complete: Callable[[list[str], Path], None] | None = None,
+) -> list[Path]:
     directory.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=directory.parent, prefix=f".{directory.name}-") as scratch:
         written = Path(scratch) / "verilog"
         written.mkdir()
         with quick_elaboration():
-            top = ray_caster_module(**ModulePorts(config).all(), config=config)
-        modules = convert_hierarchy(top, written, _header(config))
-        names = [module.path.name for module in modules]
-        write_take_home(config, names, written)
+            top = elaborate()
+        names = [module.path.name for module in convert_hierarchy(top, written, _header(config))]
+        if complete:
+            complete(names, written)
         if directory.exists():
             shutil.rmtree(directory)
         written.rename(directory)

@@ -285,5 +285,5 @@ def unconnected(width: int) -> _Signal:
 
 
 def constant(value: int, width: int) -> Constant:
-    """A signal for an instance's input that never changes."""
-    return Constant(intbv(value)[width:])
+    """A signal for an instance's input that never changes; of one bit it is a bool, as such inputs are."""
+    return Constant(intbv(value)[width:] if width > 1 else bool(value))

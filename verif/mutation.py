@@ -37,8 +37,9 @@ from rich.table import Table
 
 from raycaster.errors import UserError
 from raycaster.options import run_command
+from raycaster.tools import run_yosys
 from raycaster.verif.exhaustive import Builder
-from raycaster.verif.formal.prover import missing_tools, run_yosys
+from raycaster.verif.formal.prover import missing_tools
 from raycaster.verif.leaf import RECORD_VARIABLE, recording_name
 
 SOURCES = Path(__file__).parent

@@ -11,7 +11,7 @@ from pathlib import Path
 import z3
 
 from raycaster.errors import UserError
-from raycaster.verif.formal.prover import run_yosys
+from raycaster.tools import run_yosys
 
 SECONDS = 60
 """For each mutant; after that it is not known to be equivalent."""

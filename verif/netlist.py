@@ -14,6 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from raycaster.errors import UserError
+from raycaster.tools import run_yosys
 from raycaster.verif.simulator import lock, stamped, write_stamp
 
 COUNTED_CELLS = ("LUT4", "TRELLIS_FF", "CCU2C", "PFUMX", "L6MUX21", "TRELLIS_DPR16X4")
@@ -94,9 +95,6 @@ def synthesise(verilog: Sequence[Path], directory: Path, top: str = "ray_caster_
         stamp = directory / "stamp.json"
         fresh = stamped(stamp, digest.hexdigest()) is None
         if fresh:
-            # It brings MyHDL, which is only loaded where it has work.
-            from raycaster.verif.formal.prover import run_yosys  # noqa: PLC0415
-
             shutil.rmtree(directory, ignore_errors=True)
             directory.mkdir(parents=True)
             for source in verilog:

