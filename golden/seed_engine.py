@@ -78,6 +78,10 @@ class Trace:
     winners: tuple[np.ndarray, ...]
     """For the primary ray and each reflection, int64 (rays,): index of the rectangle hit, -1 for none."""
 
+    points: tuple[np.ndarray, ...]
+    """For the primary ray and each reflection, int64 (rays, 3): where it hit, in units of 2^-F; for a miss, where it
+    started."""
+
     bounces: tuple[Bounce, ...]
     """For the primary ray and each reflection; empty unless it was to be kept."""
 
@@ -202,20 +206,21 @@ def trace(
     slope = np.array(np.asarray(slopes).T, dtype=np.int64, order="C")
     origin = np.array(np.broadcast_to(np.asarray(camera), slope.T.shape).T, dtype=np.int64, order="C") << fraction_bits
     alive = np.ones(slope.shape[1], dtype=bool)
-    winners, bounces = [], []
+    winners, points, bounces = [], [], []
     for _ in range(reflections + 1):
         bounce = _empty_bounce(rectangles, origin, slope, alive) if keep else None
         winner, origin = _nearest(
             rectangles, origin, slope, fraction_bits=fraction_bits, rounding=rounding, bounce=bounce
         )
         winners.append(winner)
+        points.append(origin.T)
         if bounce:
             bounce.winners[:] = winner
             bounces.append(bounce)
         alive = winner >= 0
         for axis in range(3):
             slope[axis, alive & (rectangles.axes[winner] == axis)] *= -1
-    return Trace(blend(rectangles.colours, background, winners), tuple(winners), tuple(bounces))
+    return Trace(blend(rectangles.colours, background, winners), tuple(winners), tuple(points), tuple(bounces))
 
 
 def _nearest(

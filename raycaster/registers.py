@@ -8,7 +8,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from systemrdl import RDLCompiler
-from systemrdl.node import FieldNode, RegNode
+from systemrdl.node import AddrmapNode, FieldNode, RegNode
 
 SOURCE = Path(__file__).with_name("registers.rdl")
 
@@ -40,6 +40,11 @@ class Register:
         """The bits that belong to a field."""
         return sum(field.mask for field in self.fields.values())
 
+    @property
+    def reset(self) -> int:
+        """The word after reset, where it says anything then."""
+        return sum(field.reset << field.lsb for field in self.fields.values())
+
     def pack(self, **values: int) -> int:
         """The word with these fields set and the others 0.
 
@@ -60,14 +65,18 @@ class Register:
         return {name: (word & field.mask) >> field.lsb for name, field in self.fields.items()}
 
 
+def compile_registers(rectangles: int) -> AddrmapNode:
+    """The compiled map of a design with this many rectangles."""
+    compiler = RDLCompiler()
+    compiler.compile_file(str(SOURCE), defines={"RECTANGLES": str(rectangles)})
+    return compiler.elaborate("ray_caster").top
+
+
 @lru_cache
 def register_map(rectangles: int) -> dict[str, Register]:
     """Every register by its path: `"control"`, `"camera"`, `"rectangle[3].corner_0"`, ..."""
-    compiler = RDLCompiler()
-    compiler.compile_file(str(SOURCE))
-    top = compiler.elaborate("ray_caster", parameters={"RECTANGLES": rectangles}).top
     registers = {}
-    for node in top.descendants(unroll=True):
+    for node in compile_registers(rectangles).descendants(unroll=True):
         if isinstance(node, RegNode):
             path = node.get_path().removeprefix("ray_caster.")
             registers[path] = Register(path, node.absolute_address // 4, dict(map(_field, node.fields())))

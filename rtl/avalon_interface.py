@@ -66,30 +66,29 @@ def avalon_interface(
     is accepted later is answered.
     """
     registers = register_map(config.rectangles)
-    id_address, id_value = registers["id"].address, registers["id"].fields["magic"].reset
-    version_address = registers["version"].address
-    version_value = sum(field.reset << field.lsb for field in registers["version"].fields.values())
-    engine_address, engine_value = registers["engine"].address, engine_word(config)
-    size_address, size_value = registers["size"].address, size_word(config)
-    control = registers["control"]
-    control_address = control.address
+    control, status, cycles = registers["control"], registers["status"], registers["cycles"]
     run_bit, commit_bit = control.fields["run"].lsb, control.fields["commit"].lsb
     reflections_low = control.fields["reflections"].lsb
     reflections_high = reflections_low + control.fields["reflections"].width
     most_reflections = config.reflections
-    status = registers["status"]
-    status_address = status.address
     busy_bit, underrun_bit, bad_bit = (status.fields[name].lsb for name in ("busy", "underrun", "bad_rectangle"))
     frame_low = status.fields["frame"].lsb
     frame_bits = status.fields["frame"].width
-    cycles_address = registers["cycles"].address
-    group_low = registers["cycles"].fields["group"].lsb
-    irq_enable_address = registers["irq_enable"].address
-    irq_pending_address = registers["irq_pending"].address
+    group_low = cycles.fields["group"].lsb
     irq_bit = registers["irq_pending"].fields["start_screen"].lsb
-    background_address = registers["background"].address
-    camera_address = registers["camera"].address
 
+    def address_of(name: str):
+        return constant(registers[name].address, len(bus.address))
+
+    id_address, version_address, engine_address, size_address, control_address, status_address = map(
+        address_of, ("id", "version", "engine", "size", "control", "status")
+    )
+    cycles_address, irq_enable_address, irq_pending_address, background_address, camera_address = map(
+        address_of, ("cycles", "irq_enable", "irq_pending", "background", "camera")
+    )
+    id_value = constant(registers["id"].reset, WORD_BITS)
+    version_value = constant(registers["version"].reset, WORD_BITS)
+    engine_value, size_value = constant(engine_word(config), WORD_BITS), constant(size_word(config), WORD_BITS)
     control_bits = constant(control.implemented & ~control.fields["commit"].mask, WORD_BITS)
     background_bits = constant(registers["background"].implemented, WORD_BITS)
     control_word, live_control = unsigned(WORD_BITS), unsigned(WORD_BITS)

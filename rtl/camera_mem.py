@@ -15,7 +15,7 @@ X, Y, Z = (CAMERA.fields[axis] for axis in "xyz")
 @block
 def camera_mem(clk, reset, bus, read_word, camera):
     """A scene_word, taken apart: camera is the live position, read_word the shadow."""
-    address = CAMERA.address
+    camera_address = constant(CAMERA.address, len(bus.address))
     x_low, x_high = X.lsb, X.lsb + X.width
     y_low, y_high = Y.lsb, Y.lsb + Y.width
     z_low, z_high = Z.lsb, Z.lsb + Z.width
@@ -28,7 +28,7 @@ def camera_mem(clk, reset, bus, read_word, camera):
     # Whether a write is for the camera.
     @always_comb
     def decode():
-        selected.next = bus.address == address
+        selected.next = bus.address == camera_address
 
     # The word's three coordinates.
     @always_comb

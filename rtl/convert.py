@@ -14,7 +14,7 @@ from myhdl._block import _Block
 
 from raycaster.configuration import Configuration, configure
 from raycaster.options import add_configuration_options, given_options, run_command
-from raycaster.rtl.hierarchy import convert_hierarchy, quick_elaboration
+from raycaster.rtl.hierarchy import Module, convert_hierarchy, quick_elaboration
 from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
 from raycaster.rtl.ray_caster_system import SystemPorts, ray_caster_system
 from raycaster.rtl.take_home import FILE_LIST, write_take_home
@@ -60,7 +60,7 @@ def _write(
     elaborate: Callable[[], _Block],
     config: Configuration,
     directory: Path,
-    complete: Callable[[list[str], Path], None] | None = None,
+    complete: Callable[[list[Module], Path], None] | None = None,
 ) -> list[Path]:
     directory.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=directory.parent, prefix=f".{directory.name}-") as scratch:
@@ -68,13 +68,13 @@ def _write(
         written.mkdir()
         with quick_elaboration():
             top = elaborate()
-        names = [module.path.name for module in convert_hierarchy(top, written, _header(config))]
+        modules = convert_hierarchy(top, written, _header(config))
         if complete:
-            complete(names, written)
+            complete(modules, written)
         if directory.exists():
             shutil.rmtree(directory)
         written.rename(directory)
-    return [directory / name for name in names]
+    return [directory / module.path.name for module in modules]
 
 
 def _header(config: Configuration) -> str:

@@ -14,11 +14,11 @@ def reset_release(clk, ready, reset):
     """Hold reset until `ready`, which may change at any time, has been high for `HOLD_CYCLES`.
 
     The registers here have no reset of their own: chips power up with them at 0, and simulators set them by a low
-    `ready` of three cycles. reset: high from the second cycle after ready fell.
+    `ready` of three cycles. reset: high again three cycles after ready fell.
     """
-    last = HOLD_CYCLES - 1
+    last = HOLD_CYCLES
     arriving, steady = bit(), bit()
-    held = unsigned(bits_for(HOLD_CYCLES))
+    held = unsigned(bits_for(HOLD_CYCLES + 1))
 
     # Two registers, as ready is not of this clock.
     @always_seq(clk.posedge, reset=None)

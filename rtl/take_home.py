@@ -10,8 +10,11 @@ from importlib.metadata import version
 from pathlib import Path
 
 from raycaster.configuration import CLOCKS_PER_PIXEL, Configuration
+from raycaster.register_views import HEADER, write_header
 from raycaster.registers import address_bits
 from raycaster.rtl.avalon_interface import size_word
+from raycaster.rtl.hierarchy import Module
+from raycaster.rtl.platform_designer import COMPONENT, component
 
 TOP = "ray_caster_module"
 FILE_LIST = f"{TOP}.f"
@@ -25,17 +28,20 @@ BENCHES = "bench"
 WAIVERS = Path(__file__).with_name("waivers.vlt")
 
 
-def write_take_home(config: Configuration, sources: Sequence[str], directory: Path) -> None:
+def write_take_home(config: Configuration, modules: Sequence[Module], directory: Path) -> None:
     """Write beside the Verilog what tools want to know of it.
 
     Args:
         config: what was generated.
-        sources: the files' names, each after those that it needs.
-        directory: where they are.
+        modules: what it consists of, each after those that it instantiates; the top is the last.
+        directory: where its files are.
     """
+    sources = [module.path.name for module in modules]
     (directory / FILE_LIST).write_text("".join(f"{name}\n" for name in sources))
     (directory / f"{TOP}.sdc").write_text(_constraints(config))
     (directory / f"{TOP}.core").write_text(_core(config, sources))
+    (directory / COMPONENT).write_text(component(config, modules[-1].ports, sources))
+    write_header(config.rectangles, directory / HEADER)
     shutil.copyfile(WAIVERS, directory / f"{TOP}.vlt")
     (directory / BENCHES).mkdir()
     shutil.copyfile(SMOKE_BENCH, directory / BENCHES / SMOKE_BENCH.name)

@@ -47,8 +47,10 @@ def restyle(text: str, block: _Block, ports: Sequence[str]) -> str:
             text = _name_states(text, name, signal.val)
     text = _drop_modulo(text, block)
     text = _fold_constants(text)
+    text = re.sub(r"\b33'h(?=[89a-f][0-9a-f]{7}\b)", "32'h", text)  # MyHDL adds a bit for a sign that is not there
     text = "\n".join(map(_drop_parentheses, text.splitlines()))
     text = _declare_ports(text, ports)
+    text = _declare_constants(text)
     lines = (wrapped for line in text.splitlines() for wrapped in _wrap(line.rstrip()))
     return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).strip("\n") + "\n"
 
@@ -173,3 +175,13 @@ def _declare_ports(text: str, ports: Sequence[str]) -> str:
     pad = max(len(left) for left, _ in rows)
     declarations = ",\n".join(f"    {left:<{pad}} {port}" for left, port in rows)
     return f"{before}{purpose}module {name} (\n{declarations}\n);\n{body}"
+
+
+def _declare_constants(text: str) -> str:
+    """A module's constants stand together above its signals, whole words of the bus in hexadecimal."""
+    constants = "".join(re.findall(r"^localparam [^\n]*;\n", text, re.M))
+    if not constants:
+        return text
+    constants = re.sub(r"= 32'd(\d+);", lambda match: f"= 32'h{int(match[1]):08x};", constants)
+    text = re.sub(r"^localparam [^\n]*;\n", "", text, flags=re.M)
+    return re.sub(r"^\);\n+", f");\n\n{constants}\n", text, count=1, flags=re.M)

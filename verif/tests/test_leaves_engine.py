@@ -15,12 +15,16 @@ from raycaster.golden.random_world import random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.registers import register_map
+from raycaster.rtl.camera_axis import STEP
 from raycaster.rtl.interfaces import Plane, Point, Rect, SequentialRects, Steps
 from raycaster.rtl.ray_caster import ray_caster
 from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
 from raycaster.rtl.ray_caster_renderer import ray_caster_renderer
+from raycaster.rtl.ray_caster_system import SystemPorts, ray_caster_system
 from raycaster.rtl.ray_control import ray_control
 from raycaster.rtl.ray_unit import ray_unit
+from raycaster.rtl.reset_release import HOLD_CYCLES
+from raycaster.rtl.scene_player import BUTTONS
 from raycaster.rtl.widths import (
     COLOUR_BITS,
     CYCLE_BITS,
@@ -31,6 +35,7 @@ from raycaster.rtl.widths import (
     unit_bits,
     unsigned,
 )
+from raycaster.scene import Camera, Rectangle, Scene
 from raycaster.verif.leaf import Leaf, reset_signal, sorted_rect, trace_cycles
 from raycaster.verif.seeds import repeat, seed
 
@@ -730,3 +735,46 @@ def test_ray_caster_module_scenes(tmp_path):
     assert len(frames) == len(pictures)
     for number, (frame, picture) in enumerate(zip(frames, pictures, strict=True)):
         assert np.array_equal(frame, doubled(config, picture)), f"frame {number}; {repeat()}"
+
+
+def test_ray_caster_system(tmp_path):
+    """A scene that loads itself, and the camera that buttons move from frame to frame."""
+    config = small_config(TINY_SCREEN, units=2, rectangles=3, reflections=1, divider_bits=2)
+    screen = config.screen_geometry
+    random = np.random.default_rng(seed())
+    camera, table, background, reflections, _ = scene_in_view(random, config, 0)
+    table = Rectangles(table.corners, table.colours, np.ones(config.rectangles, dtype=bool))
+    scene = Scene(
+        reflections=reflections,
+        background=tuple(map(int, background)),
+        camera=Camera(position=tuple(map(int, camera))),
+        rect=tuple(
+            Rectangle(corners=corners, colour="#{:02x}{:02x}{:02x}".format(*colour))
+            for corners, colour in zip(table.corners.tolist(), table.colours, strict=True)
+        ),
+    )
+    frames, ready = 30, 5
+    start = ready + 2 + HOLD_CYCLES  # the first cycle without reset
+    stimulus = [{"ready": 0, "buttons": 0}] * ready
+    position, pictures = np.array(scene.camera.position), []
+    for _ in range(frames):
+        held = int(random.integers(1 << len(BUTTONS)))
+        steps = {name: held >> place & 1 for place, name in enumerate(BUTTONS)}
+        # Until the cycle after StartScreen, where they count.
+        until = start + start_screen_cycle(screen) + len(pictures) * screen.frame_cycles + 2
+        stimulus += [{"ready": 1, "buttons": held}] * (until - len(stimulus))
+        golden = seed_engine.trace(
+            table, position, scene.background, primary_slopes(screen).reshape(-1, 3), reflections,
+            fraction_bits=config.fraction_bits, rounding=config.rounding,
+        )  # fmt: skip
+        pictures.append(golden_words(config, golden.colours))
+        more, less = (("forward", "right", "up"), ("back", "left", "down"))
+        target = position + [STEP * (steps[up] - steps[down]) for up, down in zip(more, less, strict=True)]
+        position = np.where((target >= 0) & (target < WORLD_SIZE), target, position)
+    stimulus += [{"ready": 1, "buttons": 0}] * screen.frame_cycles
+    leaf = Leaf(ray_caster_system, lambda: {**SystemPorts(config).all(), "config": config, "scene": scene}, tmp_path)
+    shown = monitored(leaf.run_both(stimulus, settled=ready)[start:], config)
+    assert len(shown) == frames
+    for number, (frame, picture) in enumerate(zip(shown, pictures, strict=True)):
+        assert np.array_equal(frame, doubled(config, picture)), f"frame {number}; {repeat()}"
+    assert len({picture.tobytes() for picture in pictures}) > 1

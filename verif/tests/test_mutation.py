@@ -7,14 +7,16 @@ import json
 import re
 
 import pytest
+from conftest import SMALL_SCENE
 
 from raycaster.configuration import configure
 from raycaster.errors import UserError
-from raycaster.rtl.convert import write_verilog
+from raycaster.rtl.convert import write_system
 from raycaster.rtl.divider_step import divider_step
 from raycaster.rtl.interfaces import SceneBus
 from raycaster.rtl.scene_word import scene_word
 from raycaster.rtl.widths import WORD_BITS, bit, unsigned
+from raycaster.scene import load_scene
 from raycaster.verif.formal.prover import missing_tools
 from raycaster.verif.leaf import Leaf, reset_signal
 from raycaster.verif.mutation import (
@@ -151,7 +153,8 @@ def test_an_explanation_fits_what_it_names():
 
 
 def test_every_module_is_mutated(tmp_path):
-    files = write_verilog(configure(units=1, rectangles=1, allow_underrun=True), tmp_path / "verilog")
+    scene = load_scene(SMALL_SCENE)
+    files = write_system(configure(units=1, rectangles=4, allow_underrun=True), scene, tmp_path / "verilog")
     known = expectations()
     assert set(known) == {path.stem for path in files}
     assert all(expectation.tests for expectation in known.values())

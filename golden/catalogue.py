@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: MIT
+"""Scenes that strain fixed-point arithmetic, each by name with what it strains.
+
+They are made for the full screen, whose rays have slopes (100, -160..159, -49..190).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from raycaster.configuration import WORLD_SIZE
+from raycaster.scene import Camera, Rectangle, Scene
+
+LAST = WORLD_SIZE - 1
+MIDDLE = WORLD_SIZE // 2
+
+Corner = tuple[int, int, int]
+Corners = tuple[Corner, Corner]
+
+_PALETTE = (
+    (200, 200, 180), (230, 80, 60), (60, 160, 80), (70, 100, 220), (240, 200, 60), (160, 70, 180),
+    (60, 190, 200), (250, 140, 40), (120, 120, 130), (220, 120, 160), (140, 180, 60), (90, 60, 40),
+)  # fmt: skip
+"""Colours in turn, no two of which blend alike."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """One entry of the catalogue."""
+
+    name: str
+    strain: str
+    """What it is about, in a few words."""
+
+    scene: Scene
+
+
+def catalogue() -> list[Case]:
+    """All cases; every scene has at most 12 rectangles and two reflections."""
+    found = [_case(*entry) for family in _FAMILIES for entry in family()]
+    names = [case.name for case in found]
+    if len(set(names)) != len(names):
+        raise ValueError("two cases have one name")
+    return found
+
+
+_Entry = tuple[str, str, Corner, Sequence[Corners]]
+
+
+def _case(name: str, strain: str, camera: Corner, rectangles: Sequence[Corners]) -> Case:
+    coloured = [
+        Rectangle(corners=corners, colour="#{:02x}{:02x}{:02x}".format(*_PALETTE[index % len(_PALETTE)]))
+        for index, corners in enumerate(rectangles)
+    ]
+    scene = Scene(title=f"{name}: {strain}", reflections=2, camera=Camera(position=camera), rect=coloured)
+    return Case(name, strain, scene)
+
+
+def _plane(axis: int, position: int, low: tuple[int, int] = (0, 0), high: tuple[int, int] = (LAST, LAST)) -> Corners:
+    """A rectangle on an axis; its extent is given on the two others in the order x, y, z."""
+
+    def corner(extent: tuple[int, int]) -> Corner:
+        coordinates = list(extent)
+        coordinates.insert(axis, position)
+        x, y, z = coordinates
+        return x, y, z
+
+    return corner(low), corner(high)
+
+
+def _box(low: Corner, high: Corner) -> list[Corners]:
+    """The six sides."""
+    sides = []
+    for axis in range(3):
+        others = [other for other in range(3) if other != axis]
+        extent = [(corner[others[0]], corner[others[1]]) for corner in (low, high)]
+        sides += [_plane(axis, corner[axis], *extent) for corner in (low, high)]
+    return sides
+
+
+_WORLD = _box((0, 0, 0), (LAST, LAST, LAST))
+_BACK = _plane(0, LAST)
+_FLOOR = _plane(2, 0)
+
+
+def _grazing() -> Iterator[_Entry]:
+    """e = 1: the quotient is the slope times the distance, and an error of the origin is multiplied likewise."""
+    for name, axis, step in (("right", 1, 1), ("left", 1, -1), ("ceiling", 2, 1), ("floor", 2, -1)):
+        camera = (0, MIDDLE, MIDDLE)
+        for distance in (1, 2, 5):
+            plane = _plane(axis, camera[axis] + step * distance)
+            yield f"grazing_{name}_{distance}", f"e = 1 on a plane {distance} away", camera, [plane, _BACK]
+    low = (0, MIDDLE, 0)
+    yield "grazing_190", "e = 1 against b = 190, the steepest ray", low, [_plane(1, 257), _BACK]
+    yield "grazing_380", "e = 1 against b = 190, over two units", low, [_plane(1, 258), _BACK]
+    yield (
+        "grazing_after_floor", "a mirror rounds the point on the floor, a grazed wall multiplies its error",
+        (0, 250, 40), [_FLOOR, _plane(1, 254), _plane(1, 246), _BACK],
+    )  # fmt: skip
+    yield (
+        "grazing_after_back", "a mirror rounds the point on the back wall, a grazed wall multiplies its error",
+        (200, 250, 100), [_plane(0, 400), _plane(1, 253), _plane(1, 247), _plane(0, 0)],
+    )  # fmt: skip
+    yield (
+        "grazing_after_side", "a mirror rounds the point on the side wall, a grazed floor multiplies its error",
+        (0, 500, 40), [_plane(1, 505), _plane(2, 36), _plane(2, 44), _BACK],
+    )  # fmt: skip
+
+
+def _parallel() -> Iterator[_Entry]:
+    """e = 0."""
+    camera = (0, MIDDLE, MIDDLE)
+    yield "parallel_in_plane", "e = 0 and n = 0: rays run within a plane", camera, [_plane(1, MIDDLE), _BACK]
+    yield (
+        "parallel_beside", "e = 0 between two walls one unit away",
+        camera, [_plane(1, MIDDLE - 1), _plane(1, MIDDLE + 1), _BACK],
+    )  # fmt: skip
+    yield (
+        "parallel_between", "e = 0 between floor and ceiling one unit away",
+        camera, [_plane(2, MIDDLE - 1), _plane(2, MIDDLE + 1), _BACK],
+    )  # fmt: skip
+    yield "parallel_cross", "e = 0 on two axes at once", camera, [_plane(1, MIDDLE), _plane(2, MIDDLE), _BACK]
+
+
+def _camera_on() -> Iterator[_Entry]:
+    """n = 0, and walls that are touched."""
+    camera = (100, 200, 300)
+    for axis, name in enumerate("xyz"):
+        plane = _plane(axis, camera[axis])
+        yield f"camera_on_{name}_plane", f"n = 0 along {name}", camera, [plane, *_WORLD]
+    yield "camera_on_edge", "the camera on the edge of two rectangles", camera, [
+        _plane(1, 200, (100, 0), (LAST, 300)), _plane(2, 300, (100, 200), (LAST, LAST)), _BACK,
+    ]  # fmt: skip
+    for name, corner in (
+        ("origin", (0, 0, 0)), ("left_top", (0, 0, LAST)), ("right_floor", (0, LAST, 0)),
+        ("right_top", (0, LAST, LAST)), ("far", (LAST, LAST, LAST)), ("far_floor", (LAST, 0, 0)),
+    ):  # fmt: skip
+        yield f"camera_in_corner_{name}", "the camera in a corner of the world", corner, _WORLD
+
+
+def _boxes() -> Iterator[_Entry]:
+    """Closed, so that every ray is reflected as often as it may."""
+    middle = (MIDDLE, MIDDLE, MIDDLE)
+    for half in (1, 2, 10, 100):
+        sides = _box((MIDDLE - half,) * 3, (MIDDLE + half,) * 3)
+        yield f"box_{2 * half}", f"inside a box of mirrors of {2 * half} units", middle, sides
+    yield "box_world", "inside the whole world", middle, _WORLD
+    yield (
+        "box_off_centre",
+        "inside a box of mirrors, beside a wall",
+        (101, 299, 201),
+        _box((100, 200, 200), (140, 300, 260)),
+    )
+    yield (
+        "box_in_box",
+        "a mirror box within mirrored walls",
+        (20, 250, 100),
+        [*_WORLD, *_box((200, 200, 80), (260, 300, 140))],
+    )
+
+
+def _extreme_coordinates() -> Iterator[_Entry]:
+    """Nothing but 0 and 511."""
+    zero, last = (0, 0, 0), (LAST, LAST, LAST)
+    lines = [_plane(axis, 0, (0, 0), (0, LAST)) for axis in range(3)]
+    yield "all_0", "every coordinate 0 or along an axis", zero, [(zero, zero), *lines, _plane(0, 0), _FLOOR]
+    yield "all_511", "every coordinate 511", (0, LAST, LAST), [(last, last), *(_plane(axis, LAST) for axis in range(3))]
+    edges = [
+        _plane(axis, position, (0, other), (LAST, other))
+        for axis in range(3)
+        for position in (0, LAST)
+        for other in (0, LAST)
+    ]
+    yield "world_edges", "lines along the edges of the world", (0, MIDDLE, MIDDLE), edges
+
+
+def _quotients() -> Iterator[_Entry]:
+    """The divider's greatest quotient, and the first that overflows."""
+    yield "quotient_511", "100 x 511 / 100: the greatest quotient", (0, 0, 0), [_BACK]
+    yield "quotient_512", "100 x 128 / 25: the least that overflows", (0, MIDDLE, 128), [_FLOOR, _BACK]
+    yield (
+        "quotient_511_6",
+        "100 x 220 / 43: 511.6, which nearest rounds out of the world",
+        (0, MIDDLE, 220),
+        [_FLOOR, _BACK],
+    )
+    yield "quotient_negative_511", "as much to the left", (0, LAST, 0), [_BACK]
+    yield "quotient_huge", "190 x 511 / 1: far more than fits", (0, 0, 0), [_plane(1, LAST), _BACK]
+
+
+def _close_planes() -> Iterator[_Entry]:
+    """Depths that differ by one."""
+    for axis, name, camera in ((0, "x", (0, MIDDLE, 100)), (1, "y", (0, 0, 100)), (2, "z", (0, MIDDLE, 0))):
+        yield (
+            f"far_pair_{name}",
+            "two planes one unit apart, far away",
+            camera,
+            [_plane(axis, LAST), _plane(axis, LAST - 1)],
+        )
+    yield "far_stack", "twelve planes one unit apart", (0, MIDDLE, 100), [
+        _plane(0, LAST - index, (40 * index, 0), (LAST, LAST)) for index in range(12)
+    ]  # fmt: skip
+    yield (
+        "near_pair",
+        "two planes one and two units away",
+        (100, MIDDLE, 100),
+        [_plane(0, 102), _plane(0, 101, (0, 100), (LAST, LAST))],
+    )
+    yield "camera_beside_edge_of_world", "misses at y = 511.01, which truncation turns into hits", (400, LAST, 100), [
+        _plane(0, 401),
+    ]  # fmt: skip
+
+
+def _slits() -> Iterator[_Entry]:
+    """One unit wide."""
+    camera = (0, MIDDLE, 100)
+    for name, x in (("near", 20), ("far", 500)):
+        yield f"slit_y_{name}", "a gap of one unit between two walls", camera, [
+            _plane(0, x, (0, 0), (MIDDLE, LAST)), _plane(0, x, (MIDDLE + 1, 0), (LAST, LAST)), _BACK,
+        ]  # fmt: skip
+        yield f"slit_z_{name}", "a gap of one unit above a sill", camera, [
+            _plane(0, x, (0, 0), (LAST, 100)), _plane(0, x, (0, 101), (LAST, LAST)), _BACK,
+        ]  # fmt: skip
+        yield f"strips_{name}", "strips one unit wide, one unit apart", camera, [
+            *(_plane(0, x, (MIDDLE - 10 + 2 * index, 0), (MIDDLE - 9 + 2 * index, LAST)) for index in range(10)), _BACK,
+        ]  # fmt: skip
+
+
+def _shared() -> Iterator[_Entry]:
+    """Ties."""
+    camera = (0, MIDDLE, 100)
+    wall = _plane(0, 300, (100, 50), (400, 300))
+    yield "coincident", "one rectangle three times", camera, [wall, wall, wall]
+    yield (
+        "coincident_part",
+        "two that overlap in one plane",
+        camera,
+        [wall, _plane(0, 300, (200, 0), (LAST, 200)), _FLOOR],
+    )
+    yield "shared_edge", "two walls that meet in an edge", camera, [
+        _plane(0, 300, (0, 0), (300, LAST)), _plane(1, 300, (100, 0), (300, LAST)), _FLOOR,
+    ]  # fmt: skip
+    yield "shared_corner", "three that meet in a corner", camera, [
+        _plane(0, 300, (0, 0), (300, 200)), _plane(1, 300, (100, 0), (300, 200)), _plane(2, 200, (100, 0), (300, 300)),
+    ]  # fmt: skip
+    yield "tiles", "tiles in one plane that share edges and corners", camera, [
+        _plane(0, LAST, (100 * column, 120 * row), (100 * column + 100, 120 * row + 120))
+        for column in range(4) for row in range(3)
+    ]  # fmt: skip
+
+
+def _thin() -> Iterator[_Entry]:
+    """No extent."""
+    camera = (0, MIDDLE, 100)
+    yield "points", "rectangles of one point, some of them on a ray", camera, [
+        ((100 * step, MIDDLE + offset * step, 100 + rise * step),) * 2
+        for step in (1, 2, 3) for offset, rise in ((0, 0), (10, 20), (-33, 7), (40, -15))
+    ]  # fmt: skip
+    for axis, name in enumerate("xyz"):
+        starts = ((100, MIDDLE - 60, 60), (200, MIDDLE + 40, 130), (400, MIDDLE, 100), (500, MIDDLE + 1, 101))
+        yield f"lines_{name}", f"lines along {name}, one of them on a ray", camera, [
+            (start, tuple(min(LAST, value + 200) if axis == other else value for other, value in enumerate(start)))
+            for start in starts
+        ]  # fmt: skip
+
+
+def _mirror_edges() -> Iterator[_Entry]:
+    """Whether a mirror is hit decides everything after it."""
+    camera = (0, MIDDLE, 100)
+    yield "mirror_edge", "a mirror that ends where rays arrive at whole units", camera, [
+        _plane(0, 200, (MIDDLE - 40, 60), (MIDDLE + 40, 140)), _plane(0, 0), _BACK, _FLOOR,
+    ]  # fmt: skip
+    yield "mirror_strip", "a mirror one unit wide before a wall", camera, [
+        _plane(0, 300, (MIDDLE, 0), (MIDDLE + 1, LAST)), _plane(0, 0), _BACK,
+    ]  # fmt: skip
+    yield "mirror_floor_edge", "a mirror on the floor that ends beside a wall", camera, [
+        _plane(2, 0, (100, 100), (400, 300)), _plane(1, 301), _plane(0, 401), _plane(2, LAST),
+    ]  # fmt: skip
+
+
+def _facing() -> Iterator[_Entry]:
+    """The error is carried from mirror to mirror."""
+    for width in (1, 4, 40, 400):
+        low = MIDDLE - (width + 1) // 2
+        sides = [_plane(1, low), _plane(1, low + width + 1)]
+        yield f"facing_y_{width}", f"mirrors {width + 1} apart, side by side", (0, MIDDLE, 100), [*sides, _BACK]
+    yield "facing_z", "mirrors above and below", (0, MIDDLE, 100), [_plane(2, 90), _plane(2, 112), _BACK]
+    yield "facing_x", "mirrors before and behind", (300, MIDDLE, 100), [_plane(0, 290), _plane(0, 330), _FLOOR]
+    yield "corner_reflector", "three mirrors that send every ray back", (0, 300, 200), [
+        _plane(0, 400), _plane(1, 400), _plane(2, 100), _plane(0, 0),
+    ]  # fmt: skip
+    yield "periscope", "two small mirrors above each other", (100, MIDDLE, 100), [
+        _plane(0, 300, (MIDDLE - 50, 50), (MIDDLE + 50, 150)), _plane(0, 40, (100, 100), (400, 400)), _plane(2, LAST),
+    ]  # fmt: skip
+
+
+_FAMILIES = (
+    _grazing, _parallel, _camera_on, _boxes, _extreme_coordinates, _quotients, _close_planes, _slits, _shared, _thin,
+    _mirror_edges, _facing,
+)  # fmt: skip

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: MIT
+"""`python -m raycaster.register_views`: the register map for C and for people, from `registers.rdl`."""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import tempfile
+from pathlib import Path
+
+from peakrdl_cheader.c_standards import CStandard
+from peakrdl_cheader.exporter import CHeaderExporter
+from peakrdl_html import HTMLExporter
+
+from raycaster.configuration import Configuration, configure
+from raycaster.options import run_command
+from raycaster.registers import compile_registers
+
+HEADER = "ray_caster_registers.h"
+SOFTWARE = Path("sw")
+"""Folder of the header that is kept with the sources, from the root."""
+
+
+def write_header(rectangles: int, path: Path) -> None:
+    """Write the C header: a struct of the registers, and each field's mask, position and width.
+
+    Args:
+        rectangles: entries of the hardware's table, 1 to 32.
+        path: the file; replaced.
+    """
+    with tempfile.TemporaryDirectory() as scratch:
+        # The guard of the header is made of the file's name.
+        written = Path(scratch) / HEADER
+        CHeaderExporter().export(compile_registers(rectangles), str(written), std=CStandard.gnu11)
+        path.write_text(f"// SPDX-License-Identifier: MIT\n{written.read_text()}")
+
+
+def write_page(rectangles: int, directory: Path) -> Path:
+    """Write the page, which a browser opens without a server.
+
+    Args:
+        rectangles: entries of the hardware's table, 1 to 32.
+        directory: replaced as a whole.
+
+    Returns:
+        The page's first file.
+    """
+    directory.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=directory.parent, prefix=f".{directory.name}-") as scratch:
+        written = Path(scratch) / "page"
+        HTMLExporter().export(compile_registers(rectangles), str(written), title="RayCaster registers")
+        if directory.exists():
+            shutil.rmtree(directory)
+        written.rename(directory)
+    return directory / "index.html"
+
+
+def main() -> None:
+    """The command."""
+    parser = argparse.ArgumentParser(prog="python -m raycaster.register_views", description=__doc__)
+    parser.add_argument("--output", type=Path, default=Path("build/registers"), help="the page (default: %(default)s)")
+    parser.add_argument("--software", type=Path, default=SOFTWARE, help="the C header (default: %(default)s)")
+    default = Configuration().rectangles
+    parser.add_argument("--rectangles", default=default, help="entries of the table (default: %(default)s)")
+    arguments = parser.parse_args()
+    rectangles = configure(rectangles=arguments.rectangles, allow_underrun=True).rectangles
+    page = write_page(rectangles, arguments.output)
+    arguments.software.mkdir(parents=True, exist_ok=True)
+    header = arguments.software / HEADER
+    write_header(rectangles, header)
+    print(f"C header: {header}; page: {page}")
+
+
+if __name__ == "__main__":
+    run_command(main)

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: MIT
+"""What is made of the register map: the C header, the page, and the constants in the Verilog."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from raycaster.configuration import configure
+from raycaster.register_views import HEADER, SOFTWARE, write_header, write_page
+from raycaster.registers import SOURCE, register_map
+from raycaster.rtl.convert import write_verilog
+
+ROOT = Path(__file__).parents[2]
+RECTANGLES = 12
+
+
+def test_the_header_has_not_drifted(tmp_path):
+    write_header(RECTANGLES, tmp_path / HEADER)
+    assert (ROOT / SOFTWARE / HEADER).read_text() == (tmp_path / HEADER).read_text(), "make registers writes it anew"
+
+
+def test_drift_is_noticed(tmp_path, monkeypatch):
+    moved = tmp_path / SOURCE.name
+    text = SOURCE.read_text()
+    assert "run[0:0]" in text
+    moved.write_text(text.replace("run[0:0]", "run[2:2]"))
+    monkeypatch.setattr("raycaster.registers.SOURCE", moved)
+    with pytest.raises(AssertionError, match="make registers"):
+        test_the_header_has_not_drifted(tmp_path)
+
+
+@pytest.mark.parametrize("rectangles", [1, RECTANGLES, 32])
+def test_c_finds_every_register_and_field(tmp_path, rectangles):
+    """A C program that takes the header says where everything is."""
+    registers = register_map(rectangles)
+    write_header(rectangles, tmp_path / HEADER)
+    prints = []
+    for name, register in registers.items():
+        prints.append(f'printf("{name} %zu\\n", offsetof(ray_caster_t, {name}));')
+        kind = re.sub(r"\[\d+\]|(?<=corner)_\d", "", name).replace(".", "__").upper()
+        for field in register.fields:
+            macro = f"RAY_CASTER__{kind}__{field.upper()}"
+            prints.append(f'printf("{name}.{field} %u %u\\n", (unsigned){macro}_bp, (unsigned){macro}_bw);')
+    program = tmp_path / "where.c"
+    lines = "\n    ".join(prints)
+    includes = f'#include <stddef.h>\n#include <stdio.h>\n#include "{HEADER}"\n'
+    program.write_text(f"{includes}int main(void) {{\n    {lines}\n}}\n")
+    compiler = shutil.which("gcc") or shutil.which("cc")
+    subprocess.run([compiler, "-std=gnu11", "-Wall", "-Werror", "where.c", "-o", "where"], cwd=tmp_path, check=True)
+    said = subprocess.run([tmp_path / "where"], capture_output=True, text=True, check=True).stdout.splitlines()
+    expected = []
+    for name, register in registers.items():
+        expected.append(f"{name} {4 * register.address}")
+        expected += [f"{name}.{field} {bits.lsb} {bits.width}" for field, bits in register.fields.items()]
+    assert said == expected
+
+
+def test_the_header_goes_with_the_verilog(tmp_path):
+    write_verilog(configure(screen="tiny", units=1, rectangles=3, allow_underrun=True), tmp_path / "verilog")
+    assert "rectangle[3];" in (tmp_path / "verilog" / HEADER).read_text()
+
+
+def test_the_page_knows_every_register_and_text(tmp_path):
+    page = write_page(RECTANGLES, tmp_path / "page")
+    text = " ".join(path.read_text() for path in page.parent.rglob("*") if path.suffix in (".html", ".json", ".js"))
+    for name, register in register_map(RECTANGLES).items():
+        for word in (name.rpartition(".")[2], *register.fields):
+            assert word in text
+    for description in re.findall(r'desc = "(.*?)"', SOURCE.read_text(), re.S):
+        assert " ".join(description.split())[:40] in " ".join(text.split())
+
+
+def test_the_verilog_decodes_what_the_map_says(tmp_path):
+    write_verilog(configure(screen="tiny", units=1, rectangles=3, allow_underrun=True), tmp_path / "verilog")
+    text = (tmp_path / "verilog" / "avalon_interface.v").read_text()
+    found = {
+        name: int(value)
+        for name, value in re.findall(r"^localparam \[\d+:0\] (\w+)_address = \d+'d(\d+);$", text, re.M)
+    }
+    single = {name: register.address for name, register in register_map(3).items() if "." not in name}
+    assert found == single
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [(("--rectangles", "33"), "error: rectangles: "), (("--rectangles", "x"), "error: rectangles: ")],
+)
+def test_bad_options_get_one_line(tmp_path, options, complaint):
+    command = (sys.executable, "-m", "raycaster.register_views", *options)
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith(complaint)
+    assert done.stderr.count("\n") == 1
+    assert not any(tmp_path.iterdir())
