@@ -3,7 +3,7 @@
 
 from myhdl import always_comb, always_seq, block
 
-from raycaster.rtl.widths import bit, bits_for, unsigned
+from raycaster.rtl.widths import bit, unsigned
 
 HOLD_CYCLES = 16
 """Clock cycles that reset lasts after `ready` was seen."""
@@ -16,9 +16,9 @@ def reset_release(clk, ready, reset):
     The registers here have no reset of their own: chips power up with them at 0, and simulators set them by a low
     `ready` of three cycles. reset: high again three cycles after ready fell.
     """
-    last = HOLD_CYCLES
+    last = HOLD_CYCLES - 1
     arriving, steady = bit(), bit()
-    held = unsigned(bits_for(HOLD_CYCLES + 1))
+    held = unsigned(HOLD_CYCLES)
 
     # Two registers, as ready is not of this clock.
     @always_seq(clk.posedge, reset=None)
@@ -26,17 +26,17 @@ def reset_release(clk, ready, reset):
         arriving.next = ready
         steady.next = arriving
 
-    # How long it has been ready, as far as that matters.
+    # A one moves up for each cycle in which it is ready.
     @always_seq(clk.posedge, reset=None)
-    def count():
-        if not steady:
-            held.next = 0
-        elif held != last:
-            held.next = held + 1
+    def shift():
+        held.next = 0
+        if steady:
+            held.next[HOLD_CYCLES:1] = held[last:]
+            held.next[0] = True
 
-    # Reset ends with the count.
+    # Reset ends when the first has arrived.
     @always_comb
     def drive():
-        reset.next = held != last
+        reset.next = not held[last]
 
-    return synchronise, count, drive
+    return synchronise, shift, drive

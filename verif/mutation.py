@@ -213,7 +213,7 @@ class Recording:
             f"hierarchy -check -top {self.module}",
             # MyHDL's constants have 32 bits, of which most faults would change nothing.
             f"select {self.module}",
-            "proc",
+            "proc -norom",  # a fault in the address of a ROM would make a memory that Yosys cannot write
             "opt",
             "wreduce",
             "opt_clean",
@@ -237,7 +237,7 @@ class Recording:
             f"write_verilog -noattr -selected {self.module}_mutants.v",
             "select -clear",
             *(f"setattr -mod -set keep_hierarchy 1 {name}" for name in submodules if name not in look_into),
-            *(f"proc {name}" for name in submodules if name in look_into),
+            *(f"proc -norom {name}" for name in submodules if name in look_into),
             "flatten",
             # For the solver, other submodules are their ports: they answer equal inputs equally.
             f"expose -evert -sep _ {self.module}/c:*",  # of its cells only: wires would all become outputs

@@ -16,7 +16,7 @@ from raycaster.rtl.camera_axis import STEP, camera_axis
 from raycaster.rtl.reset_release import HOLD_CYCLES, reset_release
 from raycaster.rtl.scene_player import BUTTONS, scene_player
 from raycaster.rtl.widths import WORD_BITS, bit, unsigned
-from raycaster.scene import load_scene
+from raycaster.scene import Camera, load_scene
 from raycaster.verif.leaf import Leaf, reset_signal
 from raycaster.verif.seeds import repeat, seed
 
@@ -80,7 +80,7 @@ def test_reset_release(tmp_path):
 def test_scene_player(rectangles, tmp_path):
     """Every write is held until it is taken; the camera goes where buttons that were held at the interrupt say."""
     config = configure(rectangles=rectangles, screen="tiny", units=1, allow_underrun=True)
-    scene = load_scene(SMALL_SCENE, rectangles)
+    scene = load_scene(SMALL_SCENE, rectangles).model_copy(update={"camera": Camera(position=(11, 233, 96))})
     leaf = Leaf(
         scene_player,
         lambda: {
@@ -101,14 +101,14 @@ def test_scene_player(rectangles, tmp_path):
     random = np.random.default_rng(seed())
     stimulus = [{"reset": 1, "buttons": 0, "irq": 0, "avm_m0_waitrequest": 1}]
     buttons = 0
-    for cycle in range(1, 3000):
-        if random.random() < 0.02:
+    for cycle in range(1, 12000):
+        if random.random() < 0.002:
             buttons = int(random.choice([0, *(1 << index for index in range(len(BUTTONS))), random.integers(64)]))
         stimulus.append(
             {
-                "reset": int(cycle in (40, 1500)),
+                "reset": int(cycle in (40, 6000)),
                 "buttons": buttons,
-                "irq": int(random.random() < 0.2),
+                "irq": int(random.random() < 0.5),
                 "avm_m0_waitrequest": int(random.random() < 0.3),
             }
         )

@@ -156,7 +156,8 @@ def test_every_module_is_mutated(tmp_path):
     scene = load_scene(SMALL_SCENE)
     files = write_system(configure(units=1, rectangles=4, allow_underrun=True), scene, tmp_path / "verilog")
     known = expectations()
-    assert set(known) == {path.stem for path in files}
+    # The system's scene is fixed when it is generated, so its leaf test cannot vary what goes over its wires.
+    assert set(known) == {path.stem for path in files} - {"ray_caster_system"}
     assert all(expectation.tests for expectation in known.values())
     assert all(entry.why for expectation in known.values() for entry in expectation.explained)
 
