@@ -76,11 +76,15 @@ def test_reset_release(tmp_path):
         assert outputs[cycle] == {"reset": expected}, (cycle, repeat())
 
 
-@pytest.mark.parametrize("rectangles", [4, 12])
-def test_scene_player(rectangles, tmp_path):
+@pytest.mark.parametrize(
+    ("rectangles", "camera"),
+    [(4, (0, 0, 0)), (12, (11, 233, 97)), (12, (10, 232, 96))],
+    ids=["4", "12-odd", "12-even"],  # a step keeps that
+)
+def test_scene_player(rectangles, camera, tmp_path):
     """Every write is held until it is taken; the camera goes where buttons that were held at the interrupt say."""
     config = configure(rectangles=rectangles, screen="tiny", units=1, allow_underrun=True)
-    scene = load_scene(SMALL_SCENE, rectangles).model_copy(update={"camera": Camera(position=(11, 233, 96))})
+    scene = load_scene(SMALL_SCENE, rectangles).model_copy(update={"camera": Camera(position=camera)})
     leaf = Leaf(
         scene_player,
         lambda: {
