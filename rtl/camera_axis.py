@@ -6,8 +6,8 @@ from myhdl import always, always_comb, block
 from raycaster.configuration import WORLD_SIZE
 from raycaster.rtl.widths import bit
 
-STEP = 2
-"""World units that a held button moves the camera in a frame: across the world in about four seconds."""
+STEP = 3
+"""World units that a held button moves the camera in a frame: across the world in about three seconds."""
 
 
 @block
