@@ -45,9 +45,9 @@ def test_camera_axis(tmp_path):
     random = np.random.default_rng(seed())
     stimulus = []
     walls = [*range(2 * STEP), *range(WORLD_SIZE - 2 * STEP, WORLD_SIZE)]
-    for start, more in product(walls, (0, 1)):
+    for start, up in product(walls, (0, 1)):
         stimulus.append({"reset": 1, "start": start, "move": 1, "more": 1, "less": 0})
-        stimulus.append({"reset": 0, "start": start, "move": 1, "more": more, "less": 1 - more})
+        stimulus.append({"reset": 0, "start": start, "move": 1, "more": up, "less": 1 - up})
         for _ in range(40):
             move, more, less = (int(random.random() < likely) for likely in (0.8, 0.5, 0.5))
             stimulus.append({"reset": 0, "start": start, "move": move, "more": more, "less": less})
