@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: MIT
+"""TMDS, the code of a DVI link's channels: bytes and control bits to symbols of ten bits, and back (DVI 1.0, 3.2).
+
+A symbol's bit 0 is sent first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+CONTROL_SYMBOLS = (0b1101010100, 0b0010101011, 0b0101010100, 0b1010101011)
+"""What is sent in blanking, by the control bits c1 c0."""
+
+
+class Sample(NamedTuple):
+    """What a channel carries in one pixel: in the picture a byte, in blanking two bits."""
+
+    visible: bool
+    data: int
+    control: int
+
+
+def minimise_transitions(data: int) -> int:
+    """The first step: nine bits, of which the highest says how the byte was chained, 1 by XOR, 0 by XNOR."""
+    ones = data.bit_count()
+    xnor = int(ones > 4 or (ones == 4 and not data & 1))
+    word = data & 1
+    for index in range(1, 8):
+        word |= ((word >> index - 1 ^ data >> index ^ xnor) & 1) << index
+    return word | (1 - xnor) << 8
+
+
+def encode(samples: Iterable[Sample]) -> Iterator[int]:
+    """The symbols of a channel, from a balanced start on."""
+    disparity = 0  # ones less zeros of what was sent since blanking
+    for visible, data, control in samples:
+        if not visible:
+            disparity = 0
+            yield CONTROL_SYMBOLS[control]
+            continue
+        word = minimise_transitions(data)
+        chained, low = word >> 8, word & 0xFF
+        excess = 2 * low.bit_count() - 8
+        invert = 1 - chained if 0 in (disparity, excess) else int((disparity > 0) == (excess > 0))
+        symbol = invert << 9 | chained << 8 | (low ^ 0xFF if invert else low)
+        disparity += 2 * symbol.bit_count() - 10
+        yield symbol
+
+
+def decode(symbol: int) -> Sample:
+    """What a symbol carries.
+
+    Raises:
+        ValueError: the symbol stands for nothing.
+    """
+    if symbol in CONTROL_SYMBOLS:
+        return Sample(False, 0, CONTROL_SYMBOLS.index(symbol))
+    chained, word = symbol >> 8 & 1, symbol & 0xFF
+    if symbol >> 9:
+        word ^= 0xFF
+    steps = word ^ word << 1
+    data = (steps if chained else steps ^ 0xFE) & 0xFF
+    if minimise_transitions(data) != chained << 8 | word:
+        raise ValueError(f"{symbol:010b} is no TMDS symbol")
+    return Sample(True, data, 0)

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: MIT
+"""Where the rays of a frame hit, as the converted Verilog stored it: for errors that no pixel shows."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from raycaster.configuration import Configuration
+from raycaster.scene import Scene, dump_scene
+from raycaster.verif.job import Job
+from raycaster.verif.simulator import BUILD, VERILATOR_FLAGS, Model, build_model, convert, run_bench
+
+PROBE = Path(__file__).with_name("hit_probe.v")
+
+
+def build_probed_model(configuration: Configuration, build: Path = BUILD) -> Model:
+    """A model of the seed engine, in Verilator, that writes down its hit points; see `build_model`."""
+    return build_model(
+        configuration,
+        "verilator",
+        build=build,
+        verilog=[*convert(configuration, build), PROBE],
+        flags=(*VERILATOR_FLAGS, f"+define+PROBED_UNITS={configuration.units}"),
+        variant="probed",
+    )
+
+
+def hit_points(model: Model, scene: Scene, reflections: int, directory: Path) -> tuple[np.ndarray, ...]:
+    """Simulate a frame, every pixel of which is checked, and read what the probes wrote.
+
+    Args:
+        model: of `build_probed_model`.
+        scene: what to show.
+        reflections: at most the hardware's.
+        directory: for the frame's pictures, results and logs.
+
+    Returns:
+        For the primary ray and each reflection, int64 (rays, 3): where it hit, in units of 2^-F, rays in the order of
+        rows and columns; -1 for a miss.
+
+    Raises:
+        SimulationError: the frame is not golden's.
+    """
+    directory.mkdir(parents=True, exist_ok=True)
+    file = directory / "scene.toml"
+    file.write_text(dump_scene(scene))
+    job = Job(model.configuration, scene=str(file.resolve()), output=str(directory.resolve()), reflections=reflections)
+    run_bench(model, "raycaster.verif.frame_bench", job, directory)
+    screen = model.configuration.screen_geometry
+    points = np.full((reflections + 1, screen.rows, screen.columns, 3), -1, dtype=np.int64)
+    for path in sorted(directory.glob("hits.*")):
+        # The rays of the next frame's first rows follow, and are the same.
+        lines = np.array(path.read_text().split(), dtype=np.int64).reshape(-1, 6)
+        row, column, depth = lines[:, :3].T
+        points[depth, row, column] = lines[:, 3:]
+        path.unlink()
+    for depth in range(1, reflections + 1):
+        # A ray that missed is led on by the control, which serves all units, and comes to nothing.
+        points[depth][points[depth - 1] < 0] = -1
+    return tuple(points.reshape(reflections + 1, -1, 3))

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// Looks into every ray unit and writes down where its rays hit: a line for each ray that hits something, "row column
+// depth x y z" in units of 2^-F, into the file hits.<unit> of the directory in which the simulation runs.
+
+`timescale 1ns / 1ns
+
+module hit_probe #(
+    parameter UNITS = 1,
+    parameter POSITION_BITS = 9
+) (
+    input wire clk,
+    input wire initial_ray,         // the ray comes from the camera
+    input wire store_ray,           // a ray ends: what it found stands now
+    input wire found,
+    input wire [15:0] row,
+    input wire [15:0] unit,
+    input wire [15:0] offset,
+    input wire [POSITION_BITS-1:0] x,
+    input wire [POSITION_BITS-1:0] y,
+    input wire [POSITION_BITS-1:0] z
+);
+    integer file = 0;
+    integer depth = 0;              // of the ray that ended last
+    reg [8*16-1:0] name;
+
+    // Both decide within the edge, so nothing is lost between them.
+    always @(posedge clk)
+        if (store_ray) begin
+            depth = initial_ray ? 0 : depth + 1;
+            if (file == 0) begin
+                $sformat(name, "hits.%0d", unit);
+                file = $fopen(name, "w");
+            end
+            if (found)
+                $fwrite(file, "%0d %0d %0d %0d %0d %0d\n", row, offset * UNITS + unit, depth, x, y, z);
+        end
+endmodule
+
+bind ray_unit hit_probe #(
+    .UNITS(`PROBED_UNITS),
+    .POSITION_BITS($bits(found_point_x))
+) hit_probe_i (
+    .clk(clk),
+    .initial_ray(steps_initial_ray),
+    .store_ray(steps_store_ray),
+    .found(found),
+    .row(16'(row)),
+    .unit(16'(column_base)),
+    .offset(16'(column_offset)),
+    .x(found_point_x),
+    .y(found_point_y),
+    .z(found_point_z)
+);
