@@ -14,6 +14,7 @@ from myhdl._block import _Block
 
 from raycaster.configuration import Configuration, configure
 from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.rtl.dvi_encoder import DviPorts, dvi_encoder
 from raycaster.rtl.hierarchy import Module, convert_hierarchy, quick_elaboration
 from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
 from raycaster.rtl.ray_caster_system import SystemPorts, ray_caster_system
@@ -52,6 +53,19 @@ def write_system(config: Configuration, scene: Scene, directory: Path) -> list[P
 
     def elaborate() -> _Block:
         return ray_caster_system(**SystemPorts(config).all(), config=config, scene=scene)
+
+    return _write(elaborate, config, directory)
+
+
+def write_dvi_encoder(config: Configuration, directory: Path) -> list[Path]:
+    """Generate the Verilog of what stands between a configuration's VGA output and a DVI link; as `write_verilog`.
+
+    Returns:
+        The modules' files, each after those that it instantiates; the top, `dvi_encoder.v`, is the last.
+    """
+
+    def elaborate() -> _Block:
+        return dvi_encoder(**DviPorts(config).all(), config=config)
 
     return _write(elaborate, config, directory)
 
