@@ -58,14 +58,18 @@ def write_system(config: Configuration, scene: Scene, directory: Path) -> list[P
 
 
 def write_dvi_encoder(config: Configuration, directory: Path) -> list[Path]:
-    """Generate the Verilog of what stands between a configuration's VGA output and a DVI link; as `write_verilog`.
+    """Generate the Verilog of what stands between the VGA output, of 8 bits a colour, and a DVI link.
+
+    Args:
+        config: of the design that it goes with, for the files' heads.
+        directory: replaced as a whole, once everything is generated.
 
     Returns:
         The modules' files, each after those that it instantiates; the top, `dvi_encoder.v`, is the last.
     """
 
     def elaborate() -> _Block:
-        return dvi_encoder(**DviPorts(config).all(), config=config)
+        return dvi_encoder(**DviPorts().all())
 
     return _write(elaborate, config, directory)
 

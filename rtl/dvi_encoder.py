@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """From the VGA output to the symbols of a DVI link."""
 
-from myhdl import always_comb, always_seq, block
+from myhdl import Signal, always_comb, always_seq, block
 
-from raycaster.configuration import CHANNEL_BITS, Configuration
+from raycaster.configuration import CHANNEL_BITS
 from raycaster.rtl.hierarchy import constant
 from raycaster.rtl.tmds_encoder import SYMBOL_BITS, tmds_encoder
 from raycaster.rtl.widths import bit, unsigned
@@ -12,45 +12,31 @@ from raycaster.rtl.widths import bit, unsigned
 class DviPorts:
     """Signals for every port of dvi_encoder; `all()` are its arguments, by name."""
 
-    def __init__(self, config: Configuration):
+    def __init__(self):
         self.clk = bit()
-        self.vga_r, self.vga_g, self.vga_b = (unsigned(config.colour_bits) for _ in range(3))
+        self.vga_r, self.vga_g, self.vga_b = (unsigned(CHANNEL_BITS) for _ in range(3))
         self.vga_hs, self.vga_vs, self.vga_blank_n, self.vga_clk = (bit() for _ in range(4))
         self.blue, self.green, self.red = (unsigned(SYMBOL_BITS) for _ in range(3))
         self.pixel = bit()
 
-    def all(self):
+    def all(self) -> dict[str, Signal]:
         """The ports by name, as keyword arguments."""
         return vars(self)
 
 
 @block
-def dvi_encoder(
-    clk, vga_r, vga_g, vga_b, vga_hs, vga_vs, vga_blank_n, vga_clk, blue, green, red, pixel, config: Configuration
-):
+def dvi_encoder(clk, vga_r, vga_g, vga_b, vga_hs, vga_vs, vga_blank_n, vga_clk, blue, green, red, pixel):
     """Channel 0 carries blue and the syncs, 1 green, 2 red, as DVI 1.0 has it, section 2.2.3.
 
-    vga_*: as ray_caster_module has them, two cycles of clk a pixel; blue, green, red: symbols, three pixels later, each
-    stable for a pixel; pixel: changes its level with every symbol, in the same cycle.
+    vga_*: as ray_caster_module has them, 8 bits a colour, two cycles of clk a pixel; blue, green, red: symbols, each
+    stable for a pixel, from the second rise of vga_clk after their pixel on; pixel: changes its level with them.
     """
-    padding = CHANNEL_BITS - config.colour_bits
-    blue_byte, green_byte, red_byte = (unsigned(CHANNEL_BITS) for _ in range(3))
     syncs = unsigned(2)
     none = constant(0, 2)
 
-    blue_channel = tmds_encoder(clk, vga_clk, blue_byte, syncs, vga_blank_n, blue)
-    green_channel = tmds_encoder(clk, vga_clk, green_byte, none, vga_blank_n, green)
-    red_channel = tmds_encoder(clk, vga_clk, red_byte, none, vga_blank_n, red)
-
-    # A channel of fewer bits stands in the top ones.
-    @always_comb
-    def widen():
-        blue_byte.next = 0
-        green_byte.next = 0
-        red_byte.next = 0
-        blue_byte.next[CHANNEL_BITS:padding] = vga_b
-        green_byte.next[CHANNEL_BITS:padding] = vga_g
-        red_byte.next[CHANNEL_BITS:padding] = vga_r
+    blue_channel = tmds_encoder(clk, vga_clk, vga_b, syncs, vga_blank_n, blue)
+    green_channel = tmds_encoder(clk, vga_clk, vga_g, none, vga_blank_n, green)
+    red_channel = tmds_encoder(clk, vga_clk, vga_r, none, vga_blank_n, red)
 
     # Control bits of channel 0.
     @always_comb
@@ -64,4 +50,4 @@ def dvi_encoder(
         if vga_clk:
             pixel.next = not pixel
 
-    return blue_channel, green_channel, red_channel, widen, place_syncs, mark
+    return blue_channel, green_channel, red_channel, place_syncs, mark

