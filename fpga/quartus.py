@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: MIT
+"""`python -m raycaster.fpga.quartus`: a Quartus project that shows a scene on a board, compiled where Quartus is found.
+
+No Quartus and no board were at hand: the projects are checked as text, and with Yosys, simulators and Tcl.
+What the original design had beside the ray tracer: its SRAM has no successor, as nothing needs one, with no processor
+and the scene as a table in logic; for its debugging over JTAG, Platform Designer's "JTAG to Avalon Master Bridge" on
+avs_s0 reads every register of ray_caster_module.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+
+from raycaster.configuration import CLOCKS_PER_PIXEL, Configuration
+from raycaster.design import design_for
+from raycaster.errors import UserError
+from raycaster.fpga.board import BOARDS, TOP, Board, check_project, find_board, top_ports
+from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.rtl.convert import write_system
+from raycaster.rtl.take_home import CLOCK_NS
+from raycaster.scene import Scene
+from raycaster.tools import find_program, run_program
+
+SCENE = Path("scenes/mirror_room.toml")
+VERILOG = "verilog"
+"""Folder of the generated modules, within the project's."""
+
+HELPER = Path(__file__).with_name("channel_pins.v")
+OUTPUT_FILES = "output_files"
+"""Where Quartus puts what it makes."""
+
+TIMEOUT = 4 * 3600
+"""Seconds after which a compilation that should have ended long ago is stopped."""
+
+_SETUP_NS, _HOLD_NS = 0.2, 1.5
+"""Of the ADV7123's data and control inputs: t1 and t2 of its data sheet (rev. D), 3.3 V timing specifications."""
+
+_CLOCK_REGISTER = "*|video_generator:*|pixel_end"
+"""What drives vga_clk, as Quartus names it."""
+
+
+def write_project(board: Board, config: Configuration, scene: Scene, directory: Path) -> None:
+    """Write a Quartus project.
+
+    Args:
+        board: what it is for.
+        config: the hardware.
+        scene: what it shows; it has no more rectangles than the hardware.
+        directory: replaced as a whole, once everything is generated.
+
+    Raises:
+        BoardError: the board's pins and its top do not agree; nothing is generated.
+    """
+    top = (board.directory / board.top).read_text()
+    ports = top_ports(top)
+    pins = _pin_assignments(board, ports)
+    check_project(board, top, pins)
+    directory.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=directory.parent, prefix=f".{directory.name}-") as scratch:
+        written = Path(scratch) / directory.name
+        modules = write_system(config, scene, written / VERILOG)
+        sources = [f"{VERILOG}/{path.name}" for path in modules] + [HELPER.name, f"{TOP}.v"]
+        shutil.copyfile(HELPER, written / HELPER.name)
+        (written / f"{TOP}.v").write_text(top)
+        (written / f"{TOP}.qpf").write_text(f'PROJECT_REVISION = "{TOP}"\n')
+        (written / f"{TOP}.qsf").write_text(_settings(board, config, sources) + pins)
+        (written / f"{TOP}.sdc").write_text(_constraints(board, config, ports))
+        if directory.exists():
+            shutil.rmtree(directory)
+        written.rename(directory)
+
+
+def compile_project(board: Board, directory: Path) -> Path:
+    """Compile a project with the Quartus that is on the path.
+
+    Returns:
+        The file for the chip.
+
+    Raises:
+        UserError: there is none, or it failed; one line.
+    """
+    quartus = find_program("quartus_sh")
+    if quartus is None:
+        raise UserError(
+            f"quartus_sh is not on the path, and the {board.title} needs {board.quartus}; "
+            f"the project is {directory / TOP}.qpf"
+        )
+    print(f"{quartus} compiles {directory / TOP}.qpf; that takes a while", flush=True)
+    try:
+        done = run_program([quartus, "--flow", "compile", TOP], directory, TIMEOUT)
+    except subprocess.TimeoutExpired:
+        raise UserError(f"Quartus took more than {TIMEOUT // 3600} hours on {directory / TOP}.qpf") from None
+    log = directory / "quartus.log"
+    log.write_text(done.stdout + done.stderr)
+    if done.returncode:
+        first = re.search(r"^\s*(Error.*)$", log.read_text(), re.M)
+        said = first[1] if first else f"exit code {done.returncode}"
+        raise UserError(f"Quartus failed, see {log}: {said}")
+    return directory / OUTPUT_FILES / f"{TOP}.sof"
+
+
+def _settings(board: Board, config: Configuration, sources: list[str]) -> str:
+    """The settings file but for the pins: the chip and the sources."""
+    settings = {
+        "FAMILY": board.family,
+        "DEVICE": board.device,
+        "TOP_LEVEL_ENTITY": TOP,
+        "PROJECT_OUTPUT_DIRECTORY": OUTPUT_FILES,
+        "VERILOG_INPUT_VERSION": "VERILOG_2001",
+        # Registers without a reset, of which the reset itself is made, rely on 0.
+        "ALLOW_POWER_UP_DONT_CARE": "OFF",
+        **board.settings,
+    }
+    lines = [f"# RayCaster, {config.name}, on the {board.title}", "# SPDX-License-Identifier: MIT"]
+    lines += [f'set_global_assignment -name {name} "{value}"' for name, value in settings.items()]
+    lines += [f'set_global_assignment -name VERILOG_FILE "{source}"' for source in sources]
+    lines.append(f'set_global_assignment -name SDC_FILE "{TOP}.sdc"')
+    lines.append(f"set_parameter -name COLOUR_BITS {config.colour_bits}")
+    return "\n".join(lines) + "\n"
+
+
+def _pin_assignments(board: Board, ports: dict[str, str]) -> str:
+    """The rest of it: pin and standard of each bit of the top's ports that the board has."""
+    pins = board.pins
+    lines = []
+    for bit in ports:
+        if bit in pins:
+            lines.append(f"set_location_assignment PIN_{pins[bit]} -to {bit}")
+            standard = board.signals[bit.partition("[")[0]].standard
+            lines.append(f'set_instance_assignment -name IO_STANDARD "{standard}" -to {bit}')
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _constraints(board: Board, config: Configuration, ports: dict[str, str]) -> str:
+    """The timing constraints."""
+    asynchronous = _patterns(bit for bit, direction in ports.items() if direction == "input" and bit != board.clock)
+    start = f"""# SPDX-License-Identifier: MIT
+# RayCaster, {config.name}, on the {board.title}.
+create_clock -name clk -period {CLOCK_NS}.000 [get_ports {board.clock}]
+derive_clock_uncertainty
+
+# Buttons and switches know no clock, and are synchronised.
+set_false_path -from [get_ports {{{asynchronous}}}]
+"""
+    sync = ["VGA_HS", "VGA_VS"]
+    if board.dac_clock is None:
+        pins = _patterns(bit for bit, direction in ports.items() if direction == "output")
+        return f"""{start}
+# Nothing takes these at a clock: the monitor sees them change. Half a pixel keeps them together.
+set_max_delay -to [get_ports {{{pins}}}] {CLOCK_NS}.000
+set_min_delay -to [get_ports {{{pins}}}] 0.000
+"""
+    taken = _patterns(
+        bit for bit, direction in ports.items() if direction == "output" and bit not in (*sync, board.dac_clock)
+    )
+    return f"""{start}
+# The pixel clock is a register, and goes to the DAC's pin.
+create_generated_clock -name vga_clk -divide_by {CLOCKS_PER_PIXEL} -source [get_ports {board.clock}] \\
+    [get_registers {{{_CLOCK_REGISTER}}}]
+create_generated_clock -name dac_clk -source [get_registers {{{_CLOCK_REGISTER}}}] [get_ports {board.dac_clock}]
+
+# Setup and hold of the ADV7123 at 3.3 V. Data changes at the falling edge, a whole period of clk before the rising one
+# that takes it, and again only a pixel later: hold is not at the edge that the clocks alone suggest.
+set_output_delay -clock dac_clk -max {_SETUP_NS:.3f} [get_ports {{{taken}}}]
+set_output_delay -clock dac_clk -min {-_HOLD_NS:.3f} [get_ports {{{taken}}}]
+set_multicycle_path -hold -start -from [get_clocks clk] -to [get_clocks dac_clk] {CLOCKS_PER_PIXEL - 1}
+
+# The sync goes past the DAC to the monitor: half a pixel keeps it with the picture.
+set_max_delay -to [get_ports {{{" ".join(sync)}}}] {CLOCK_NS}.000
+set_min_delay -to [get_ports {{{" ".join(sync)}}}] 0.000
+"""
+
+
+def _patterns(bits: Iterable[str]) -> str:
+    """Names of whole ports for Tcl: `KEY[*] VGA_HS`."""
+    return " ".join(dict.fromkeys(re.sub(r"\[\d+\]$", "[*]", bit) for bit in bits))
+
+
+def main() -> None:
+    """The command."""
+    parser = argparse.ArgumentParser(prog="python -m raycaster.fpga.quartus", description=__doc__.partition("\n")[0])
+    parser.add_argument("--board", required=True, help=", ".join(BOARDS))
+    parser.add_argument("--scene", type=Path, default=SCENE, metavar="PATH", help="(default: %(default)s)")
+    parser.add_argument(
+        "--output",
+        type=Path,
+        default=Path("build/quartus"),
+        metavar="DIR",
+        help="where a folder for the board is made (default: %(default)s)",
+    )
+    add_configuration_options(parser)
+    arguments = parser.parse_args()
+    board = find_board(arguments.board)
+    design = design_for(arguments.scene, given_options(arguments), board.configuration)
+    directory = arguments.output / arguments.board
+    write_project(board, design.configuration, design.scene, directory)
+    print(compile_project(board, directory))
+
+
+if __name__ == "__main__":
+    run_command(main)
