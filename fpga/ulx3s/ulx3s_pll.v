@@ -10,6 +10,9 @@ module ulx3s_pll (
 
 // 25 MHz / CLKI_DIV * CLKFB_DIV = 125 MHz at CLKOP, whose divider of 4 makes the oscillator run at 500 MHz, within its
 // 400 to 800 MHz; a tenth of that is 50 MHz. A phase of the divider less one puts the rising edges together.
+//
+// nextpnr takes an analogue setting that is not given as 0, no charge pump among them; these are those of ecppll.
+(* ICP_CURRENT="12" *) (* LPF_RESISTOR="8" *) (* MFG_ENABLE_FILTEROPAMP="1" *) (* MFG_GMCREF_SEL="2" *)
 EHXPLLL #(
     .CLKI_DIV(1),
     .CLKFB_DIV(5),
