@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import shutil
 import tempfile
+import threading
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -20,6 +21,9 @@ from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
 from raycaster.rtl.ray_caster_system import SystemPorts, ray_caster_system
 from raycaster.rtl.take_home import FILE_LIST, write_take_home
 from raycaster.scene import Scene
+
+_CONVERSION = threading.Lock()
+"""MyHDL converts through globals, so one design at a time, whatever else runs."""
 
 
 def write_verilog(config: Configuration, directory: Path) -> list[Path]:
@@ -84,9 +88,8 @@ def _write(
     with tempfile.TemporaryDirectory(dir=directory.parent, prefix=f".{directory.name}-") as scratch:
         written = Path(scratch) / "verilog"
         written.mkdir()
-        with quick_elaboration():
-            top = elaborate()
-        modules = convert_hierarchy(top, written, _header(config))
+        with _CONVERSION, quick_elaboration():
+            modules = convert_hierarchy(elaborate(), written, _header(config))
         if complete:
             complete(modules, written)
         if directory.exists():

