@@ -160,16 +160,15 @@ def _count_cyclone_v(cells: Mapping[str, Any]) -> Area:
 FAMILIES = {
     family.name: family
     for family in (
-        Family("ecp5", "ECP5", "LUT4", f"synth_ecp5 -top {TOP}", (), _count_ecp5),
+        Family("ecp5", "ECP5", "LUT4", "synth_ecp5", (), _count_ecp5),
         Family(
             "cycloneive",
             "Cyclone IV E",
             "logic elements",
-            f"synth_intel -family cycloneive -top {TOP}",
+            "synth_intel -family cycloneive",
             # It would make logic of multipliers, each some 225 logic elements.
             (
                 f"read_verilog {HARD_MULTIPLIER.name}",
-                f"hierarchy -check -top {TOP}",
                 "proc",
                 "opt",
                 "wreduce",
@@ -182,7 +181,7 @@ FAMILIES = {
             "cyclonev",
             "Cyclone V",
             "ALMs, at least",
-            f"synth_intel_alm -family cyclonev -top {TOP}",
+            "synth_intel_alm -family cyclonev",
             (),
             _count_cyclone_v,
         ),
@@ -190,24 +189,25 @@ FAMILIES = {
 }
 
 
-def measure(config: Configuration, family: Family, directory: Path) -> Area:
-    """The flattened design.
+def measure(config: Configuration, family: Family, directory: Path, top: str = TOP) -> Area:
+    """The flattened design, or a module of it by itself, such as one ray unit.
 
     Args:
         config: the design.
         family: one of `FAMILIES`.
         directory: replaced; keeps what was read and written.
+        top: the module.
 
     Raises:
         UserError: Yosys is missing, or refuses something.
     """
-    modules = _synthesise(config, family, directory, flat=True)
-    return family.count(modules[TOP]["cells"])
+    modules = _synthesise(config, family, directory, top)
+    return family.count(modules[top]["cells"])
 
 
 def measure_modules(config: Configuration, family: Family, directory: Path) -> dict[str, tuple[int, Area]]:
     """By module, deepest last: how many there are of it, and what one takes by itself, without those inside it."""
-    modules = _synthesise(config, family, directory, flat=False)
+    modules = _synthesise(config, family, directory, TOP, "-noflatten")
     found: dict[str, tuple[int, Area]] = {}
 
     def visit(name: str, times: int) -> None:
@@ -222,15 +222,16 @@ def measure_modules(config: Configuration, family: Family, directory: Path) -> d
     return found
 
 
-def _synthesise(config: Configuration, family: Family, directory: Path, *, flat: bool) -> Mapping[str, Any]:
+def _synthesise(config: Configuration, family: Family, directory: Path, top: str, *options: str) -> Mapping[str, Any]:
     """The netlist's modules."""
     shutil.rmtree(directory, ignore_errors=True)
     sources = [path.name for path in write_verilog(config, directory)]
     shutil.copy(HARD_MULTIPLIER, directory)
     script = [
         *(f"read_verilog {source}" for source in sources),
+        f"hierarchy -check -top {top}",
         *family.prepare,
-        family.synthesis + ("" if flat else " -noflatten"),
+        " ".join([family.synthesis, f"-top {top}", *options]),
         "delete t:$scopeinfo",
         "write_json netlist.json",
     ]

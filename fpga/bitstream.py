@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import shutil
 import tempfile
 import time
@@ -44,12 +45,14 @@ class Board:
         chip: nextpnr's options for the chip, its package and its speed grade.
         described: the same in words.
         clocks: nets of the top module that carry a clock, and what each has to run at, in MHz.
+        crossings: pairs of them, and what a path from the one to the other may take, in ns.
     """
 
     name: str
     chip: tuple[str, ...]
     described: str
     clocks: Mapping[str, float]
+    crossings: Mapping[tuple[str, str], float]
 
     @property
     def directory(self) -> Path:
@@ -57,15 +60,30 @@ class Board:
         return HERE / self.name
 
 
-SYSTEM_CLOCK = "clk"
+SYSTEM_CLOCK, SHIFT_CLOCK = "clk", "shift_clk"
+SHIFT_MHZ = 5 * CLOCK_HZ / 2e6
+"""Ten bits a pixel, two of them each cycle."""
+
 BOARDS = {
     "ulx3s": Board(
         "ulx3s",
         ("--85k", "--package", "CABGA381", "--speed", "6"),
         "LFE5U-85F-6BG381C",
-        {SYSTEM_CLOCK: CLOCK_HZ / 1e6, "shift_clk": 5 * CLOCK_HZ / 2e6},
+        {SYSTEM_CLOCK: CLOCK_HZ / 1e6, SHIFT_CLOCK: SHIFT_MHZ},
+        {(SYSTEM_CLOCK, SHIFT_CLOCK): 1000 / SHIFT_MHZ},
     ),
 }
+
+
+def find_board(name: str) -> Board:
+    """One of `BOARDS`.
+
+    Raises:
+        UserError: there is no such board; lists them.
+    """
+    if name not in BOARDS:
+        raise UserError(f"board: {name} is not known here; choose one of {', '.join(BOARDS)}")
+    return BOARDS[name]
 
 
 @dataclass(frozen=True)
@@ -78,13 +96,17 @@ class Outcome:
     clocks: Mapping[str, tuple[float, float]]
     """Reached, and required, in MHz, by the net's name."""
 
+    crossings: Mapping[str, tuple[float, float]]
+    """The longest path from a clock to another, and what it may take, in ns, by the names of both."""
+
     seconds: Mapping[str, float]
     """By stage."""
 
     @property
     def missed(self) -> list[str]:
-        """The clocks that are too slow."""
-        return [name for name, (reached, required) in self.clocks.items() if reached < required]
+        """The clocks, and paths between them, that are too slow."""
+        clocks = [name for name, (reached, required) in self.clocks.items() if reached < required]
+        return clocks + [name for name, (taken, allowed) in self.crossings.items() if taken > allowed]
 
 
 def write_project(board: Board, design: Design, directory: Path) -> list[Path]:
@@ -104,10 +126,11 @@ def write_project(board: Board, design: Design, directory: Path) -> list[Path]:
         UserError: the design has fewer bits a colour.
     """
     config = design.configuration
+    scene = design.scene.model_copy(update={"reflections": design.reflections})
     if config.colour_bits != CHANNEL_BITS:
         raise UserError(f"colour_bits: a DVI link carries {CHANNEL_BITS} bits a colour, not {config.colour_bits}")
     generated = [
-        *write_system(config, design.scene, directory / "system"),
+        *write_system(config, scene, directory / "system"),
         *write_dvi_encoder(config, directory / "dvi"),
     ]
     own = [shutil.copy(path, directory) for path in sorted(board.directory.iterdir()) if path.suffix in (".v", ".lpf")]
@@ -188,16 +211,25 @@ def _call(command: list[str], work: Path, log: Path) -> None:
 
 def _read_report(board: Board, path: Path, seconds: Mapping[str, float]) -> Outcome:
     report = json.loads(path.read_text())
-    # nextpnr names a net by where it is driven or used, such as $glbnet$pll.clk.
-    reached = {name: entry["achieved"] for name, entry in report["fmax"].items()}
-    clocks = {}
-    for net, required in board.clocks.items():
-        [found] = [mhz for name, mhz in reached.items() if name.split("$")[-1].split(".")[-1] == net]
-        clocks[net] = round(found, 2), required
+    reached = {_net(name): entry["achieved"] for name, entry in report["fmax"].items()}
+    clocks = {net: (round(reached[net], 2), required) for net, required in board.clocks.items()}
+    longest = {
+        (_net(entry["from"]), _net(entry["to"])): sum(step["delay"] for step in entry["path"])
+        for entry in report["critical_paths"]
+    }
+    crossings = {
+        f"{source} to {sink}": (round(longest[source, sink], 2), allowed)
+        for (source, sink), allowed in board.crossings.items()
+    }
     cells = {
         name: (entry["used"], entry["available"]) for name, entry in report["utilization"].items() if entry["used"]
     }
-    return Outcome(cells, clocks, seconds)
+    return Outcome(cells, clocks, crossings, seconds)
+
+
+def _net(name: str) -> str:
+    """A net's own name: nextpnr puts edge, network and the module that drives or uses it before it."""
+    return re.split(r"[ $.]", name)[-1]
 
 
 def show(board: Board, outcome: Outcome, console: Console) -> None:
@@ -208,9 +240,12 @@ def show(board: Board, outcome: Outcome, console: Console) -> None:
     for name, (used, there) in sorted(outcome.cells.items()):
         table.add_row(name, f"{used:,}", f"{there:,}", f"{used / there:.1%}")
     console.print(table)
-    table = Table("clock", "reached", "required", "")
-    for name, (reached, required) in outcome.clocks.items():
-        table.add_row(name, f"{reached:.2f} MHz", f"{required:.2f} MHz", "met" if reached >= required else "MISSED")
+    table = Table("clock, or from one to another", "reached", "required", "")
+    rows = [(name, *figures, "MHz") for name, figures in outcome.clocks.items()]
+    rows += [(name, *figures, "ns") for name, figures in outcome.crossings.items()]
+    for name, reached, required, unit in rows:
+        verdict = "MISSED" if name in outcome.missed else "met"
+        table.add_row(name, f"{reached:.2f} {unit}", f"{required:.2f} {unit}", verdict)
     console.print(table)
 
 
@@ -223,9 +258,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1, help="of the placement (default: %(default)s)")
     add_configuration_options(parser)
     arguments = parser.parse_args()
-    if arguments.board not in BOARDS:
-        raise UserError(f"board: {arguments.board} is not known here; choose one of {', '.join(BOARDS)}")
-    board = BOARDS[arguments.board]
+    board = find_board(arguments.board)
     design = design_for(arguments.scene, given_options(arguments))
     console = Console()
     output = arguments.output / board.name

@@ -29,7 +29,7 @@ def dvi_encoder(clk, vga_r, vga_g, vga_b, vga_hs, vga_vs, vga_blank_n, vga_clk, 
     """Channel 0 carries blue and the syncs, 1 green, 2 red, as DVI 1.0 has it, section 2.2.3.
 
     vga_*: as ray_caster_module has them, 8 bits a colour, two cycles of clk a pixel; blue, green, red: symbols, each
-    stable for a pixel, from the second rise of vga_clk after their pixel on; pixel: changes its level with them.
+    stable for a pixel, from the second rise of vga_clk after their pixel on; pixel: rises with them.
     """
     syncs = unsigned(2)
     none = constant(0, 2)
@@ -47,7 +47,6 @@ def dvi_encoder(clk, vga_r, vga_g, vga_b, vga_hs, vga_vs, vga_blank_n, vga_clk, 
     # Symbols change where vga_clk is high, which is the second half of a pixel.
     @always_seq(clk.posedge, reset=None)
     def mark():
-        if vga_clk:
-            pixel.next = not pixel
+        pixel.next = vga_clk
 
     return blue_channel, green_channel, red_channel, place_syncs, mark

