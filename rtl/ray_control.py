@@ -18,7 +18,7 @@ def ray_control(clk, reset_ray_caster, enable, reflections, rects, steps, finish
     t + 2, store_quotient in t + 2 + divider_steps (together with the next rectangle's load_divider) and write_z_buf two
     cycles later; after the last one BLEND follows, and then the next ray. finishing_rect is the rectangle whose
     quotients were stored. enable is looked at while idle; done stays until reset_ray_caster, which is synchronous.
-    reflections: 0 to config.reflections, still while rendering; rects.usable: still from the cycle that looks at enable.
+    reflections: 0 to config.reflections, still while rendering; rects.usable: from the cycle that looks at enable.
     """
     rectangles = config.rectangles
     last_slot = config.divider_steps - 1
