@@ -258,7 +258,10 @@ class Model:
         return self.shared + self.unit * units
 
     def fitting(self, chip: Chip, columns: int) -> int:
-        """The most units, of the numbers that divide the columns, that a chip has room for; 0 for none."""
+        """The most units, of the numbers that divide the columns, that a chip has room for; 0 for none.
+
+        Those that are no power of two take somewhat more than is foretold here: a ray's column is then a product.
+        """
         fit = 0
         for units in range(1, columns + 1):
             area = self.predict(units)
@@ -268,9 +271,8 @@ class Model:
 
 
 def unit_counts(config: Configuration) -> list[int]:
-    """Units of the designs that are synthesised: the asked for, and the next three smaller divisors of the columns."""
-    columns = config.screen_geometry.columns
-    return [units for units in range(config.units, 0, -1) if columns % units == 0][:4]
+    """Units of the designs that are synthesised: the asked for, and up to three times half of them."""
+    return [config.units >> times for times in range(4) if config.units % (1 << times) == 0]
 
 
 def with_units(config: Configuration, units: int) -> Configuration:
@@ -375,9 +377,9 @@ def main() -> None:
         areas = {units: results[family.name, units] for units in counts}
         show_modules(family, results[family.name, 0], areas[config.units], console)
         published["families"][family.name] = {"units": {units: asdict(area) for units, area in areas.items()}}
-        if len(counts) > 2:
-            # Not through the asked for, nor the smallest, so that the model has something to foretell.
-            _, many, few, *_ = counts
+        if len(counts) > 1:
+            # Through the ends: those between are foretold.
+            many, *_, few = counts
             models[family.name] = model = Model.of((few, areas[few]), (many, areas[many]))
             show_units(family, areas, model, console)
             published["families"][family.name] |= {"shared": asdict(model.shared), "unit": asdict(model.unit)}

@@ -126,11 +126,10 @@ def write_project(board: Board, design: Design, directory: Path) -> list[Path]:
         UserError: the design has fewer bits a colour.
     """
     config = design.configuration
-    scene = design.scene.model_copy(update={"reflections": design.reflections})
     if config.colour_bits != CHANNEL_BITS:
         raise UserError(f"colour_bits: a DVI link carries {CHANNEL_BITS} bits a colour, not {config.colour_bits}")
     generated = [
-        *write_system(config, scene, directory / "system"),
+        *write_system(config, design.shown, directory / "system"),
         *write_dvi_encoder(config, directory / "dvi"),
     ]
     own = [shutil.copy(path, directory) for path in sorted(board.directory.iterdir()) if path.suffix in (".v", ".lpf")]

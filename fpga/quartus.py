@@ -199,7 +199,7 @@ def main() -> None:
     board = find_board(arguments.board)
     design = design_for(arguments.scene, given_options(arguments), board.configuration)
     directory = arguments.output / arguments.board
-    write_project(board, design.configuration, design.scene, directory)
+    write_project(board, design.configuration, design.shown, directory)
     print(compile_project(board, directory))
 
 

@@ -27,6 +27,11 @@ class Design:
         """The scene file's, without its suffix."""
         return self.path.stem
 
+    @property
+    def shown(self) -> Scene:
+        """The scene with these reflections instead of its own."""
+        return self.scene.model_copy(update={"reflections": self.reflections})
+
 
 def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, Any] | None = None) -> Design:
     """Read a scene and choose its hardware: rows and reflections are the scene's unless they are given.
