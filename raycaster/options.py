@@ -35,6 +35,18 @@ def given_options(arguments: argparse.Namespace) -> dict[str, Any]:
     return {name: values[name] for name in FIELD_NAMES if values.get(name) is not None}
 
 
+def as_options(config: Configuration) -> list[str]:
+    """The options that make a configuration: those whose values are not the defaults."""
+    fields: dict[str, FieldInfo] = Configuration.__pydantic_fields__
+    words = []
+    for name in FIELD_NAMES:
+        value = getattr(config, name)
+        if value != fields[name].default:
+            words.append("--" + name.replace("_", "-"))
+            words += [] if isinstance(value, bool) else [str(value)]
+    return words
+
+
 def run_command(main: Callable[[], int | None]) -> NoReturn:
     """Run a command's body; what the user can mend becomes one line on standard error and exit code 2."""
     try:
