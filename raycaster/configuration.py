@@ -28,9 +28,10 @@ CLOCKS_PER_PIXEL = 2
 
 CLOCK_HZ = 50_000_000
 
-RESULT_LATENCY = 6
-"""Cycles from the end of the last division's slot of a pass to the first cycle of the next pass: slope and plane
-latched, product, divider loaded, hit point, depth compared, ray stored (see `rtl/ray_control.py`)."""
+RESULT_LATENCY = {"seed": 6, "exact": 4}
+"""By engine, cycles from the end of a pass's last slot to the first cycle of the next pass. Seed: slope and plane
+latched, product, divider loaded, hit point, depth compared, ray stored (see `rtl/ray_control.py`). Exact: two more
+stages of the test after the first, which the slot is, depth compared, ray stored (see `rtl/rect_tester.py`)."""
 
 GROUP_OVERHEAD = 4
 """Cycles a group pays once: the write to the line buffer with the reset of two cycles, idling, ray generation."""
@@ -103,14 +104,17 @@ SCREENS: Mapping[tuple[str, int], Screen] = {
 class Configuration:
     """Everything that distinguishes one generated design from another.
 
-    `rows` and `divider_bits` may be left to the default (`None`, `"auto"`); a constructed configuration holds
-    the numbers that were chosen, so that equal designs compare equal.
+    `rows`, `units` and `divider_bits` may be left to the default (`None`, `"auto"`); a constructed configuration holds
+    the numbers that were chosen, so that equal designs compare equal. An engine without quotients has no fraction, no
+    rounding and no divider bits.
 
     Raises `ConfigurationError` through `configure`; constructed directly, pydantic's `ValidationError`.
     """
 
-    engine: Literal["seed"] = Field("seed", description="what computes the rays")
-    units: int = Field(32, ge=1, description="ray units in parallel, a divisor of the columns")
+    engine: Literal["seed", "exact"] = Field("seed", description="what computes the rays: seed or exact")
+    units: int | None = Field(
+        None, ge=1, description="ray units in parallel, a divisor of the columns: 32, or the fewest of the exact engine"
+    )
     rectangles: int = Field(12, ge=1, le=32, description="rectangles that the scene memory holds")
     reflections: int = Field(1, ge=0, le=2, description="reflections a ray may have")
     rows: int | None = Field(None, description="rows of rays: 240 (640x480@60) or 200 (640x400@70)")
@@ -124,11 +128,16 @@ class Configuration:
     @model_validator(mode="after")
     def _complete(self) -> Configuration:
         self._choose_rows()
+        if self.engine == "exact":
+            self._refuse_quotients()
+        if self.units is None:
+            self._choose_units()
         if self.screen_geometry.columns % self.units:
             columns = self.screen_geometry.columns
             divisors = ", ".join(str(n) for n in range(1, columns + 1) if columns % n == 0)
             raise ValueError(f"units: {self.units} does not divide the {columns} columns; choose one of {divisors}")
         self._choose_divider_bits()
+        self._check_budget()
         return self
 
     def _choose_rows(self) -> None:
@@ -140,18 +149,42 @@ class Configuration:
             beam = "; 180 rows need the beam engine" if self.rows == 180 else ""
             raise ValueError(f"rows: the {self.screen} screen has {choices} rows, not {self.rows}{beam}")
 
+    def _refuse_quotients(self) -> None:
+        if self.fraction_bits:
+            raise ValueError(f"fraction_bits: the exact engine has none, not {self.fraction_bits}")
+        if self.rounding != "truncate":
+            raise ValueError(f"rounding: the exact engine does not round; leave out {self.rounding}")
+        if self.divider_bits not in ("auto", 0):
+            raise ValueError(f"divider_bits: the exact engine has no divider; leave out {self.divider_bits}")
+        object.__setattr__(self, "divider_bits", 0)
+
+    def _choose_units(self) -> None:
+        """The seed's 32; of the exact engine as few as meet the row budget, or all columns where none do."""
+        columns = self.screen_geometry.columns
+        fitting = (
+            units
+            for units in range(1, columns + 1)
+            if columns % units == 0 and self._group_cycles(0) <= self._group_budget(units)
+        )
+        object.__setattr__(self, "units", 32 if self.engine == "seed" else next(fitting, columns))
+
     def _choose_divider_bits(self) -> None:
+        if self.engine == "exact":
+            return
         if self.divider_bits == "auto":
             costs = {bits: self._group_cycles(bits) for bits in (1, 2, 3)}
             chosen = next((bits for bits, cycles in costs.items() if cycles <= self.group_budget), 3)
             object.__setattr__(self, "divider_bits", chosen)
         elif self.divider_bits not in (1, 2, 3):
             raise ValueError(f"divider_bits: must be auto, 1, 2 or 3, not {self.divider_bits}")
+
+    def _check_budget(self) -> None:
         if self.group_cycles > self.group_budget and not self.allow_underrun:
             raise ValueError(
                 f"row budget: a group of {self.units} columns takes {self.group_cycles} cycles with {self.rectangles} "
-                f"rectangles, {self.reflections} reflections and {self.divider_steps} divider steps, but a row leaves "
-                f"it {self.group_budget} ({self.screen_geometry.row_cycles} cycles over {self.groups} groups); "
+                f"rectangles, {self.reflections} reflections and {self.slot_cycles} cycles a rectangle, but a row "
+                f"leaves it {self.group_budget} (less than {self.screen_geometry.row_cycles} cycles over {self.groups} "
+                "groups); "
                 "take more units or divider bits, fewer rectangles, reflections or fraction bits, or ALLOW_UNDERRUN=1"
             )
 
@@ -172,15 +205,25 @@ class Configuration:
 
     @property
     def divider_steps(self) -> int:
-        """Cycles of one division, and from one rectangle to the next."""
-        return self._divider_steps(self.divider_bits)
+        """Cycles of one division; only of engines that divide."""
+        return -(-self.quotient_bits // self.divider_bits)
 
-    def _divider_steps(self, bits: int) -> int:
-        return -(-self.quotient_bits // bits)
+    @property
+    def slot_cycles(self) -> int:
+        """Cycles from one rectangle to the next."""
+        return self._slot_cycles(self.divider_bits)
 
-    def _group_cycles(self, bits: int) -> int:
+    def _slot_cycles(self, divider_bits: int) -> int:
+        return -(-self.quotient_bits // divider_bits) if self.engine == "seed" else 1
+
+    @property
+    def result_latency(self) -> int:
+        """As `RESULT_LATENCY`."""
+        return RESULT_LATENCY[self.engine]
+
+    def _group_cycles(self, divider_bits: int) -> int:
         passes = self.reflections + 1
-        return passes * (self.rectangles * self._divider_steps(bits) + RESULT_LATENCY) + GROUP_OVERHEAD
+        return passes * (self.rectangles * self._slot_cycles(divider_bits) + self.result_latency) + GROUP_OVERHEAD
 
     @property
     def group_cycles(self) -> int:
@@ -189,16 +232,20 @@ class Configuration:
 
     @property
     def group_budget(self) -> int:
-        """Cycles that a group may take for a row to be ready while the row above it is shown."""
-        return self.screen_geometry.row_cycles // self.groups
+        """Cycles that a group may take for a row to be ready before the row above it was shown."""
+        return self._group_budget(self.units)
+
+    def _group_budget(self, units: int) -> int:
+        return (self.screen_geometry.row_cycles - 1) // (self.screen_geometry.columns // units)
 
     @property
     def name(self) -> str:
         """A short file name that differs wherever the generated hardware does."""
         rounding = "n" if self.rounding == "nearest" else "t"
+        quotients = f"-f{self.fraction_bits}{rounding}-d{self.divider_bits}" if self.engine == "seed" else ""
         return (
             f"{self.engine}-{self.screen}{self.rows}-u{self.units}-r{self.rectangles}-m{self.reflections}"
-            f"-f{self.fraction_bits}{rounding}-d{self.divider_bits}-c{self.colour_bits}"
+            f"{quotients}-c{self.colour_bits}"
         )
 
 

@@ -9,7 +9,7 @@ from raycaster.rtl.hierarchy import constant
 from raycaster.rtl.scene_word import scene_word
 from raycaster.rtl.widths import COLOUR_BITS, CYCLE_BITS, WORD_BITS, bit, unsigned
 
-ENGINE_CODES = {"seed": 0}
+ENGINE_CODES = {"seed": 0, "exact": 1}
 
 
 def engine_word(config: Configuration) -> int:

@@ -10,6 +10,7 @@ from raycaster.rtl.widths import (
     bit,
     index_bits,
     position_bits,
+    signed,
     unsigned,
 )
 
@@ -44,8 +45,8 @@ class Signs(Interface):
 class Slope(Interface):
     """Magnitudes of a ray's slope; they are the same before and after a reflection."""
 
-    def __init__(self):
-        self.dx, self.dy, self.dz = (unsigned(SLOPE_BITS) for _ in range(3))
+    def __init__(self, bits: int = SLOPE_BITS):
+        self.dx, self.dy, self.dz = (unsigned(bits) for _ in range(3))
 
 
 class Plane(Interface):
@@ -72,20 +73,50 @@ class Colour(Interface):
         self.red, self.green, self.blue = (unsigned(CHANNEL_BITS) for _ in range(3))
 
 
-class Steps(Interface):
+class RaySteps(Interface):
     """The control signals that operate all ray units in step.
 
     screen_to_ray: load the primary ray; initial_ray: trace it, and not a reflected one; find_intersection: start on the
-    current plane; load_divider, store_quotient: move what was started through the divider; reset_z_buf, write_z_buf:
-    forget, and offer, a hit; reset_color, add_color: forget, and add, what the ray saw; store_ray: keep the reflected
-    ray. All but initial_ray are strobes of a cycle.
+    rectangle at hand; reset_z_buf, write_z_buf: forget, and offer, a hit; reset_color, add_color: forget, and add, what
+    the ray saw; store_ray: keep the reflected ray. All but initial_ray are strobes of a cycle.
     """
 
     def __init__(self):
-        self.screen_to_ray, self.initial_ray, self.find_intersection, self.load_divider, self.store_quotient = (
-            bit() for _ in range(5)
-        )
+        self.screen_to_ray, self.initial_ray, self.find_intersection = (bit() for _ in range(3))
         self.reset_z_buf, self.write_z_buf, self.reset_color, self.add_color, self.store_ray = (bit() for _ in range(5))
+
+
+class Steps(RaySteps):
+    """Those of the seed engine: load_divider and store_quotient move what was started through the divider."""
+
+    def __init__(self):
+        super().__init__()
+        self.load_divider, self.store_quotient = (bit() for _ in range(2))
+
+
+class Eye(Interface):
+    """The camera, mirrored in all mirrors so far: two's complement, in whole world units."""
+
+    def __init__(self, bits: int):
+        self.x, self.y, self.z = (signed(bits) for _ in range(3))
+
+
+class Mirror(Interface):
+    """What a reflected ray left last, if `active`: the axis and the coordinate of the mirror's plane."""
+
+    def __init__(self):
+        self.active = bit()
+        self.axis = unsigned(AXIS_BITS)
+        self.position = unsigned(COORDINATE_BITS)
+
+
+class Surface(Interface):
+    """What a ray that hits a rectangle must know of it."""
+
+    def __init__(self):
+        self.axis = unsigned(AXIS_BITS)
+        self.position = unsigned(COORDINATE_BITS)
+        self.colour = unsigned(COLOUR_BITS)
 
 
 class SceneBus(Interface):

@@ -4,8 +4,8 @@
 from myhdl import always, always_comb, always_seq, block
 
 from raycaster.configuration import Configuration
+from raycaster.rtl.engines import ENGINES
 from raycaster.rtl.line_buffer import line_buffer
-from raycaster.rtl.ray_caster import ray_caster
 from raycaster.rtl.video_generator import video_generator
 from raycaster.rtl.widths import CYCLE_BITS, bit, bits_for, offset_bits, pixel_bits, row_bits, unit_bits, unsigned
 
@@ -69,7 +69,7 @@ def ray_caster_renderer(
         clk, reset, start_screen, start_row, visible_line, next_column, red, green, blue,
         vga_r, vga_g, vga_b, vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_clk, config.screen_geometry,
     )  # fmt: skip
-    caster = ray_caster(
+    caster = ENGINES[config.engine](
         clk, reset_ray_caster, enable, row, column_offset, camera, background, reflections, rects, done, colors, config
     )
     buffers = [

@@ -4,7 +4,7 @@
 from myhdl import always, always_comb, block
 
 from raycaster.configuration import VIEW_DISTANCE, Configuration
-from raycaster.rtl.widths import SLOPE_BITS, row_bits, signed, unsigned
+from raycaster.rtl.widths import row_bits, signed, unsigned
 
 
 @block
@@ -12,8 +12,10 @@ def ray_generator(clk, steps, row, column_base, column_offset, initial_signs, sl
     """Slope of the ray through (row, column): (100, column - centre, horizon - row), in sign and magnitude.
 
     The column is column_offset * units + column_base: neighbours in one group share their fate. Loaded at
-    steps.screen_to_ray. Every primary ray starts at the camera, which needs no register here.
+    steps.screen_to_ray. Every primary ray starts at the camera, which needs no register here. slope: wide enough for
+    the screen's steepest.
     """
+    slope_bits = len(slope.dx)
     units = config.units
     centre_column = config.screen_geometry.centre_column
     horizon_row = config.screen_geometry.horizon_row
@@ -22,9 +24,9 @@ def ray_generator(clk, steps, row, column_base, column_offset, initial_signs, sl
 
     group_start = unsigned(column_width)
     column = unsigned(column_width)
-    dy, opposite_dy = (signed(max(column_width, SLOPE_BITS) + 1) for _ in range(2))
-    dz, opposite_dz = (signed(max(row_bits(config), SLOPE_BITS) + 1) for _ in range(2))
-    dy_magnitude, dz_magnitude = unsigned(SLOPE_BITS), unsigned(SLOPE_BITS)
+    dy, opposite_dy = (signed(max(column_width, slope_bits) + 1) for _ in range(2))
+    dz, opposite_dz = (signed(max(row_bits(config), slope_bits) + 1) for _ in range(2))
+    dy_magnitude, dz_magnitude = unsigned(slope_bits), unsigned(slope_bits)
 
     # The group's first column.
     @always_comb
@@ -52,13 +54,13 @@ def ray_generator(clk, steps, row, column_base, column_offset, initial_signs, sl
     @always_comb
     def take_magnitudes():
         if dy < 0:
-            dy_magnitude.next = opposite_dy[SLOPE_BITS:]
+            dy_magnitude.next = opposite_dy[slope_bits:]
         else:
-            dy_magnitude.next = dy[SLOPE_BITS:]
+            dy_magnitude.next = dy[slope_bits:]
         if dz < 0:
-            dz_magnitude.next = opposite_dz[SLOPE_BITS:]
+            dz_magnitude.next = opposite_dz[slope_bits:]
         else:
-            dz_magnitude.next = dz[SLOPE_BITS:]
+            dz_magnitude.next = dz[slope_bits:]
 
     # Keep the ray.
     @always(clk.posedge)

@@ -3,7 +3,7 @@
 
 from myhdl import Signal, intbv
 
-from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, Configuration
+from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, VIEW_DISTANCE, WORLD_SIZE, Configuration
 
 SLOPE_BITS = 9
 """Magnitude of a slope; the sign is kept beside it."""
@@ -28,6 +28,22 @@ def position_bits(config: Configuration) -> int:
 def product_bits(config: Configuration) -> int:
     """|b * (c - d)|, the dividend."""
     return SLOPE_BITS + position_bits(config)
+
+
+def exact_slope_bits(config: Configuration) -> int:
+    """Magnitude of the steepest slope on the screen, for the engines that need no more."""
+    screen = config.screen_geometry
+    down = screen.rows - 1 - screen.horizon_row
+    return max(VIEW_DISTANCE, screen.centre_column, screen.horizon_row, down).bit_length()
+
+
+def eye_bits(config: Configuration) -> int:
+    """A mirrored eye's coordinate, and its distance from any plane, with the sign: each mirror adds a world's width.
+
+    E' = 2k - E: from 0..511 of the camera, r mirrors lead to -511 r .. 511 (r + 1), which is no further than that from
+    any coordinate of the world.
+    """
+    return ((WORLD_SIZE - 1) * (config.reflections + 1)).bit_length() + 1
 
 
 def unit_bits(config: Configuration) -> int:

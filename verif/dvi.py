@@ -24,7 +24,7 @@ from raycaster.configuration import Screen
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
 from raycaster.fpga.bitstream import BOARDS, DEFAULT_SCENE, find_board, write_project
-from raycaster.golden import seed_engine
+from raycaster.golden import engines
 from raycaster.golden.picture import count_wrong
 from raycaster.golden.tmds import CONTROL_SYMBOLS, decode
 from raycaster.options import add_configuration_options, given_options, run_command
@@ -87,13 +87,11 @@ def golden(design: Design, position: tuple[int, int, int] | None = None) -> np.n
     Returns:
         uint8 (visible lines, visible pixels, 3).
     """
-    scene, config, screen = design.scene, design.configuration, design.configuration.screen_geometry
+    scene, doubling = design.scene, design.configuration.screen_geometry.doubling
     if position is not None:
         scene = scene.model_copy(update={"camera": scene.camera.model_copy(update={"position": position})})
-    picture = seed_engine.render(
-        scene, screen, fraction_bits=config.fraction_bits, rounding=config.rounding, reflections=design.reflections
-    )
-    return picture.repeat(screen.doubling, axis=0).repeat(screen.doubling, axis=1)
+    picture = engines.render(design.configuration, scene, design.reflections)
+    return picture.repeat(doubling, axis=0).repeat(doubling, axis=1)
 
 
 def _record(sources: Sequence[Path], directory: Path, simulator: str, arguments: Sequence[str]) -> np.ndarray:

@@ -11,7 +11,7 @@ from cocotb.handle import HierarchyObject
 from cocotb.triggers import FallingEdge, RisingEdge
 
 from raycaster.configuration import CHANNEL_BITS, CLOCKS_PER_PIXEL
-from raycaster.golden import seed_engine
+from raycaster.golden import engines
 from raycaster.golden.picture import count_wrong
 from raycaster.scene import Scene
 from raycaster.verif.avalon import AvalonBus
@@ -87,14 +87,7 @@ class Harness:
 
     def golden(self, scene: Scene, reflections: int) -> np.ndarray:
         """The visible screen that this design must show of a scene; uint8, visible lines x visible pixels x 3."""
-        picture = seed_engine.render(
-            scene,
-            self.screen,
-            fraction_bits=self.configuration.fraction_bits,
-            rounding=self.configuration.rounding,
-            reflections=reflections,
-        )
-        return self.shown(picture)
+        return self.shown(engines.render(self.configuration, scene, reflections))
 
     def expect_picture(self, seen: np.ndarray, expected: np.ndarray, what: str) -> None:
         """Check every visible pixel.

@@ -15,10 +15,10 @@ from typing import Any
 
 from myhdl import ResetSignal, Simulation, StopSimulation, block, delay, instance
 
-from raycaster.configuration import RESULT_LATENCY, Configuration
+from raycaster.configuration import Configuration
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.hierarchy import Module, Port, convert_hierarchy, port_signals, quick_elaboration
-from raycaster.rtl.interfaces import Steps
+from raycaster.rtl.interfaces import RaySteps, Steps
 
 Cycle = Mapping[str, int]
 
@@ -240,7 +240,7 @@ def sorted_rect(rectangles: Rectangles, index: int, prefix: str) -> dict[str, in
 
 @dataclass
 class TraceCycle:
-    """A cycle of what `ray_control` must do while it traces one group of rays."""
+    """A cycle of what an engine's control must do while it traces one group of rays."""
 
     steps: dict[str, int]
     """Values for the ports of `steps`."""
@@ -252,7 +252,7 @@ class TraceCycle:
     """The rectangle that holds still for the dividers to start on, None where nobody looks."""
 
     finishing: int | None = None
-    """The rectangle whose quotients were stored last."""
+    """The rectangle whose quotients were stored last; of the exact engine the one whose verdict is due."""
 
 
 def trace_cycles(config: Configuration, usable: Sequence[int], reflections: int) -> list[TraceCycle]:
@@ -260,14 +260,15 @@ def trace_cycles(config: Configuration, usable: Sequence[int], reflections: int)
     blocks' contracts state.
 
     Args:
-        config: for its divider.
+        config: for its engine and divider.
         usable: indices of the rectangles that are enabled and have a plane, ascending.
         reflections: of this scene.
     """
-    division = config.divider_steps
+    division = config.slot_cycles
     # Where there is nothing to trace, a pass only looks for it and adds the background.
-    pass_length = len(usable) * division + RESULT_LATENCY if usable else 2
-    idle = {f"steps_{name}": 0 for name in vars(Steps())}
+    pass_length = len(usable) * division + config.result_latency if usable else 2
+    exact = config.engine == "exact"
+    idle = {f"steps_{name}": 0 for name in vars(RaySteps() if exact else Steps())}
     cycles = [TraceCycle(dict(idle), 0) for _ in range(1 + (reflections + 1) * pass_length)]
 
     def strobe(cycle: int, *names: str) -> None:
@@ -282,6 +283,10 @@ def trace_cycles(config: Configuration, usable: Sequence[int], reflections: int)
         for ordinal, index in enumerate(usable):
             start = first + ordinal * division
             strobe(start, "find_intersection")
+            if exact:
+                strobe(start + 3, "write_z_buf")
+                cycles[start].current = cycles[start + 3].finishing = index
+                continue
             strobe(start + 2, "load_divider")
             strobe(start + 2 + division, "store_quotient")
             strobe(start + 4 + division, "write_z_buf")
@@ -289,5 +294,5 @@ def trace_cycles(config: Configuration, usable: Sequence[int], reflections: int)
                 cycle.current = index
             for cycle in cycles[start + 3 + division :]:
                 cycle.finishing = index
-        strobe(first + pass_length - 1, "add_color", "store_ray", "reset_z_buf")
+        strobe(first + pass_length - 1, "add_color", "reset_z_buf", *(["store_ray"] if bounce < reflections else []))
     return cycles

@@ -38,7 +38,7 @@ async def says_what_it_is(bench: HierarchyObject) -> None:
         "id": {"magic": int.from_bytes(b"RAYC", "big")},
         "version": {name: field.reset for name, field in bus.registers["version"].fields.items()},
         "engine": {
-            "engine": 0,
+            "engine": {"seed": 0, "exact": 1}[configuration.engine],
             "fraction_bits": configuration.fraction_bits,
             "nearest": int(configuration.rounding == "nearest"),
             "divider_bits": configuration.divider_bits,
@@ -158,7 +158,7 @@ async def disabled_rectangles_cost_nothing(bench: HierarchyObject) -> None:
     await bus.commit(reflections=reflections)
     harness.expect_picture(await harness.monitor.frame(), harness.golden(few, reflections), "every third rectangle")
     few_cycles = await bus.read("cycles")
-    saved = (len(scene.rect) - len(few.rect)) * (reflections + 1) * configuration.divider_steps
+    saved = (len(scene.rect) - len(few.rect)) * (reflections + 1) * configuration.slot_cycles
     assert all_cycles["group"] - few_cycles["group"] == saved, (all_cycles, few_cycles)
     assert few_cycles["row"] < all_cycles["row"]
 

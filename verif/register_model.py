@@ -94,7 +94,7 @@ class Agent:
             "id": {"magic": int.from_bytes(b"RAYC", "big")},
             "version": {field: value.reset for field, value in registers["version"].fields.items()},
             "engine": {
-                "engine": 0,
+                "engine": {"seed": 0, "exact": 1}[config.engine],
                 "fraction_bits": config.fraction_bits,
                 "nearest": int(config.rounding == "nearest"),
                 "divider_bits": config.divider_bits,

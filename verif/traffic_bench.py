@@ -12,7 +12,7 @@ from cocotb.handle import HierarchyObject
 from cocotb.simtime import get_sim_time
 from cocotb.triggers import FallingEdge
 
-from raycaster.golden import seed_engine
+from raycaster.golden import engines
 from raycaster.golden.rays import primary_slopes
 from raycaster.program import scene_fields
 from raycaster.verif.harness import RESET_CLOCKS, Harness
@@ -172,13 +172,12 @@ def _picture(harness: Harness, scene: LiveScene | None) -> np.ndarray:
     slopes = primary_slopes(harness.screen)
     if scene is None or not scene.run:
         return harness.shown(np.zeros(slopes.shape, dtype=np.uint8))
-    traced = seed_engine.trace(
+    colours = engines.trace(
+        harness.configuration,
         scene.rectangles,
         scene.camera,
         scene.background,
         slopes.reshape(-1, 3),
         scene.reflections,
-        fraction_bits=harness.configuration.fraction_bits,
-        rounding=harness.configuration.rounding,
     )
-    return harness.shown(traced.colours.reshape(slopes.shape))
+    return harness.shown(colours.reshape(slopes.shape))

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from raycaster.configuration import RESULT_LATENCY, Configuration, Screen, Span, configure
+from raycaster.configuration import Configuration, Screen, Span, configure
 from raycaster.registers import address_bits
 from raycaster.rtl.avalon_interface import engine_word, size_word
 from raycaster.rtl.widths import bits_for, index_bits, offset_bits, pixel_bits, position_bits, row_bits, unit_bits
@@ -74,14 +74,14 @@ def _order(config: Configuration, small: bool) -> Property:
         "every usable rectangle once a ray and in order, reflections + 1 rays, done in the budget's cycles",
         config,
         _label(config),
-        ("ray_control",),
+        ("ray_control", "ray_sequencer", "rect_sequencer"),
         {
             "RECTANGLES": config.rectangles,
             "INDEX_BITS": index_bits(config),
             "STEPS": config.divider_steps,
             "SLOT_BITS": bits_for(config.divider_steps),
             "REFLECTIONS": config.reflections,
-            "RESULT_LATENCY": RESULT_LATENCY,
+            "RESULT_LATENCY": config.result_latency,
             "RUN_BOUND": bound,
         },
         induction=2,
@@ -116,7 +116,7 @@ def _counters(config: Configuration, small: bool) -> Property:
         "the renderer's counters stay in range, a group is written once and into its row",
         config,
         _label(config),
-        ("ray_caster_renderer", "ray_caster", "ray_control", *cut),
+        ("ray_caster_renderer", "ray_caster", "ray_control", "ray_sequencer", "rect_sequencer", *cut),
         {
             "RECTANGLES": config.rectangles,
             "INDEX_BITS": index_bits(config),

@@ -75,7 +75,7 @@ always @* if (known && started) begin
         assert (visited < tagged);  // each once, and in ascending order
     end
     if (add_color) assert (tracing && visited == usable && rays <= reflections);
-    assert (store_ray == add_color);
+    assert (store_ray == (add_color && rays != reflections));
     assert (reset_color == screen_to_ray);
     assert (reset_z_buf == (screen_to_ray || add_color));
     assert (screen_to_ray == (cycles == 1));
@@ -130,30 +130,30 @@ always @(posedge clk) since_load <= reset || (since_load >= STEPS && !load_divid
 always @* if (known && load_divider) assert (since_load >= STEPS);
 
 // Counters in range.
-(* hierconn *) wire [SLOT_BITS-1:0] \dut.slot ;
-(* hierconn *) wire [1:0] \dut.bounce ;
+(* hierconn *) wire [SLOT_BITS-1:0] \dut.ray_sequencer_i.rect_sequencer_i.slot ;
+(* hierconn *) wire [1:0] \dut.ray_sequencer_i.bounce ;
 always @* if (known && tracing) begin
-    assert (\dut.slot < STEPS);
-    assert (\dut.bounce <= reflections);
+    assert (\dut.ray_sequencer_i.rect_sequencer_i.slot < STEPS);
+    assert (\dut.ray_sequencer_i.bounce <= reflections);
 end
 
 // Invariants: the state machine is where the counts say, what waits follows what was visited, and everything in flight
 // started at a slot's begin.
-(* hierconn *) wire [2:0] \dut.state ;
-(* hierconn *) wire \dut.fetched ;
-(* hierconn *) wire \dut.offered ;
-(* hierconn *) wire [INDEX_BITS-1:0] \dut.upcoming ;
-(* hierconn *) wire [RECTANGLES-1:0] \dut.waiting ;
+(* hierconn *) wire [2:0] \dut.ray_sequencer_i.state ;
+(* hierconn *) wire \dut.ray_sequencer_i.rect_sequencer_i.fetched ;
+(* hierconn *) wire \dut.ray_sequencer_i.rect_sequencer_i.offered ;
+(* hierconn *) wire [INDEX_BITS-1:0] \dut.ray_sequencer_i.rect_sequencer_i.upcoming ;
+(* hierconn *) wire [RECTANGLES-1:0] \dut.ray_sequencer_i.rect_sequencer_i.waiting ;
 (* hierconn *) wire [TRAVEL-1:0] \dut.in_flight ;
 (* hierconn *) wire [8:0] \dut.dividing_rect_position ;
 localparam IDLE = 0, GENERATE = 1, TRACE = 2, BLEND = 3, DONE = 4;
-wire [2:0] state = \dut.state ;
-wire [SLOT_BITS-1:0] slot = \dut.slot ;
-wire [RECTANGLES-1:0] waiting = \dut.waiting ;
+wire [2:0] state = \dut.ray_sequencer_i.state ;
+wire [SLOT_BITS-1:0] slot = \dut.ray_sequencer_i.rect_sequencer_i.slot ;
+wire [RECTANGLES-1:0] waiting = \dut.ray_sequencer_i.rect_sequencer_i.waiting ;
 wire [RECTANGLES-1:0] lowest_waiting = waiting & -waiting;
-wire [RECTANGLES-1:0] offered = {{RECTANGLES-1{1'b0}}, \dut.offered } << \dut.upcoming ;
+wire [RECTANGLES-1:0] offered = {{RECTANGLES-1{1'b0}}, \dut.ray_sequencer_i.rect_sequencer_i.offered } << \dut.ray_sequencer_i.rect_sequencer_i.upcoming ;
 wire [RECTANGLES-1:0] left = offered | waiting;
-wire starting = state == TRACE && \dut.fetched && slot == 0;
+wire starting = state == TRACE && \dut.ray_sequencer_i.rect_sequencer_i.fetched && slot == 0;
 wire [RECTANGLES-1:0] taken = starting ? visited | tagged : visited;
 wire [15:0] started_slots = count(visited) * STEPS;
 wire [15:0] extra = place - started_slots;  // cycles since the last rectangle's slot, once nothing is fetched
@@ -164,17 +164,17 @@ always @* if (known) begin
     assert (tracing == (started && (state == TRACE || state == BLEND)));
     if (started && state == GENERATE) assert (cycles == 1 && starts == 0);
     if (started && state == DONE) assert (starts == 0);
-    if (state == IDLE || state == GENERATE) assert (!\dut.fetched );
-    if (state == GENERATE || state == BLEND && usable != 0) assert (!\dut.fetched && left == usable);
+    if (state == IDLE || state == GENERATE) assert (!\dut.ray_sequencer_i.rect_sequencer_i.fetched );
+    if (state == GENERATE || state == BLEND && usable != 0) assert (!\dut.ray_sequencer_i.rect_sequencer_i.fetched && left == usable);
     if (state != IDLE) assert (waiting == 0 || offered < lowest_waiting && offered != 0 && (offered & waiting) == 0);
     if (tracing) begin
-        assert (rays == \dut.bounce );
+        assert (rays == \dut.ray_sequencer_i.bounce );
         assert (cycles == 2 + rays_cycles + place);
         assert (place < pass);
         assert ((state == BLEND) == (place == pass - 1));
     end
     if (state == TRACE) begin
-        if (\dut.fetched ) begin
+        if (\dut.ray_sequencer_i.rect_sequencer_i.fetched ) begin
             assert ((taken | left) == usable && (taken & left) == 0);
             assert (left == 0 || taken < offered);
             assert (tag < RECTANGLES);
@@ -203,11 +203,11 @@ generate
         end
     end
     for (age = 1; age < STEPS; age = age + 1) begin: slots
-        always @* if (known && state == TRACE && \dut.fetched && slot == age)
+        always @* if (known && state == TRACE && \dut.ray_sequencer_i.rect_sequencer_i.fetched && slot == age)
             assert (starts[age-1] && (starts & ((1 << (age - 1)) - 1)) == 0);
     end
     for (age = 0; age <= 4; age = age + 1) begin: extras
-        always @* if (known && state == TRACE && !\dut.fetched && usable != 0 && extra == age) begin
+        always @* if (known && state == TRACE && !\dut.ray_sequencer_i.rect_sequencer_i.fetched && usable != 0 && extra == age) begin
             assert (slot == age % STEPS);
             assert (starts[STEPS+age-1] && (starts & ((1 << (STEPS + age - 1)) - 1)) == 0);
         end

@@ -78,8 +78,8 @@ always @* if (known && last_done) assert (!\dut.done );
 
 // Invariants: the control is at work, or done, only where the renderer still wants a group; its reset is over when it
 // is done for the first time.
-(* hierconn *) wire [2:0] \dut.ray_caster_i.ray_control_i.state ;
-always @* if (known && \dut.ray_caster_i.ray_control_i.state != 0) assert (\dut.enable && !\dut.reset_delay );
+(* hierconn *) wire [2:0] \dut.ray_caster_i.ray_control_i.ray_sequencer_i.state ;
+always @* if (known && \dut.ray_caster_i.ray_control_i.ray_sequencer_i.state != 0) assert (\dut.enable && !\dut.reset_delay );
 
 // Two groups are written, and a row is handed over.
 reg groups_seen = 0;

@@ -19,9 +19,9 @@ from raycaster.rtl.convert import write_verilog
 YOSYS = "0.70.0.0.post1259"
 SMALL = configure(screen="tiny", units=2, rectangles=2, divider_bits=1, allow_underrun=True)
 AREAS = {
-    "ecp5": Area(tables=2569, registers=1806, elements=2569, multipliers=4, memories=0),
-    "cycloneive": Area(tables=2827, registers=1740, elements=3259, multipliers=4, memories=2),
-    "cyclonev": Area(tables=1914, registers=1781, elements=1015, multipliers=4, memories=2),
+    "ecp5": Area(tables=2438, registers=1808, elements=2438, multipliers=4, memories=0),
+    "cycloneive": Area(tables=2848, registers=1742, elements=3280, multipliers=4, memories=2),
+    "cyclonev": Area(tables=1920, registers=1783, elements=1020, multipliers=4, memories=2),
 }
 
 families = pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES)
@@ -36,7 +36,8 @@ def test_the_counts_of_a_small_design(family, tmp_path):
 INSTANCES = {
     "ray_caster_module": 1, "avalon_interface": 1, "camera_mem": 1, "rect_mem": 1, "rect_sorter": 1, "rect_slot": 2,
     "scene_word": 9, "ray_caster_renderer": 1, "video_generator": 1, "line_buffer": 2, "ray_caster": 1,
-    "ray_control": 1, "ray_unit": 2, "ray_generator": 2, "intersection_finder": 2, "intersection_helper": 4,
+    "ray_control": 1, "ray_sequencer": 1, "rect_sequencer": 1, "ray_unit": 2, "ray_generator": 2,
+    "intersection_finder": 2, "intersection_helper": 4,
     "divider": 4, "divider_step": 4, "z_buffer": 2, "ray_mem": 2, "color_combiner": 2, "color_channel": 6,
 }  # fmt: skip
 

@@ -19,25 +19,39 @@ SCENES = sorted((ROOT / "scenes").glob("*.toml"))
 @pytest.mark.parametrize("scene", SCENES, ids=lambda path: path.stem)
 def test_full_size(bench: Bench, scene):
     """Every scene, as `make sim` shows it."""
+    check_full_size(bench, scene, "seed")
+
+
+def test_full_size_exact(bench: Bench):
+    """As `make sim ENGINE=exact` shows it."""
+    result = check_full_size(bench, ROOT / "scenes" / "mirror_room.toml", "exact")
+    assert result["wrong_vs_exact"] == 0
+
+
+def check_full_size(bench: Bench, scene, engine: str) -> dict:
     contents = load_scene(scene)
-    configuration = configure(rows=contents.rows, reflections=contents.reflections)
+    configuration = configure(engine=engine, rows=contents.rows, reflections=contents.reflections)
     result = json.loads((bench("frame_bench", configuration, "verilator", scene) / "result.json").read_text())
     assert result["pixels"] == 640 * 2 * configuration.rows
     assert result["wrong_vs_golden"] == 0
     assert not result["underrun"]
     assert result["worst_group_cycles"] <= configuration.group_budget
-    assert result["worst_row_cycles"] <= configuration.screen_geometry.row_cycles
+    assert result["worst_row_cycles"] < configuration.screen_geometry.row_cycles
+    return result
 
 
-def test_tiny_in_icarus():
+@pytest.mark.parametrize("engine", ["seed", "exact"])
+def test_tiny_in_icarus(engine):
     """Every scene on the small screen in Icarus, through the command itself."""
-    build = BUILD / "test" / "tiny_in_icarus"
-    options = ("--screen", "tiny", "--simulator", "icarus", "--build", str(build))
+    build = BUILD / "test" / f"tiny_in_icarus_{engine}"
+    options = ("--engine", engine, "--screen", "tiny", "--simulator", "icarus", "--build", str(build))
     subprocess.run([sys.executable, "-m", "raycaster.verif.simulate", *options], cwd=ROOT, check=True)
     for scene in SCENES:
         result = json.loads((build / "sim" / scene.stem / "result.json").read_text())
         assert result["pixels"] == 128 * 96
         assert result["wrong_vs_golden"] == 0
+        if engine == "exact":
+            assert result["wrong_vs_exact"] == 0
 
 
 @pytest.mark.parametrize(
@@ -52,6 +66,9 @@ def test_tiny_in_icarus():
         {"units": 8, "fraction_bits": 4},
         {"units": 8, "fraction_bits": 4, "rounding": "nearest", "divider_bits": 2},
         {"units": 8, "fraction_bits": 8, "rounding": "nearest", "reflections": 2},
+        {"engine": "exact", "reflections": 2},
+        {"engine": "exact", "reflections": 0, "rectangles": 1, "colour_bits": 4},
+        {"engine": "exact", "rectangles": 32, "units": 16},
     ],
     ids=lambda options: "-".join(f"{name}={value}" for name, value in options.items()),
 )

@@ -154,7 +154,10 @@ def test_an_explanation_fits_what_it_names():
 
 def test_every_module_is_mutated(tmp_path):
     scene = load_scene(SMALL_SCENE)
-    files = write_system(configure(units=1, rectangles=4, allow_underrun=True), scene, tmp_path / "verilog")
+    files = []
+    for engine in ("seed", "exact"):
+        config = configure(engine=engine, units=1, rectangles=4, allow_underrun=True)
+        files += write_system(config, scene, tmp_path / engine)
     known = expectations()
     # The system's scene is fixed when it is generated, so its leaf test cannot vary what goes over its wires.
     assert set(known) == {path.stem for path in files} - {"ray_caster_system"}

@@ -25,6 +25,8 @@ CONFIGURATIONS = [
     ),
     configure(units=64, rectangles=3, reflections=0, divider_bits=2),
     configure(screen="tiny", units=1, rectangles=1, fraction_bits=3, colour_bits=1, allow_underrun=True),
+    configure(engine="exact"),
+    configure(engine="exact", screen="tiny", reflections=2, rectangles=1),
 ]
 SMALL = configure(screen="tiny", units=2, rectangles=2, allow_underrun=True)
 

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: MIT
+"""The golden model of whatever engine a design has."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from raycaster.configuration import Configuration
+from raycaster.golden import exact, seed_engine
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import Rectangles
+from raycaster.scene import Scene
+
+
+def render(config: Configuration, scene: Scene, reflections: int) -> np.ndarray:
+    """The picture that a design must draw of a scene: uint8 (rows, columns, 3)."""
+    slopes = primary_slopes(config.screen_geometry)
+    colours = trace(
+        config,
+        Rectangles.of_scene(scene),
+        scene.camera.position,
+        scene.background,
+        slopes.reshape(-1, 3),
+        reflections,
+    )
+    return colours.reshape(slopes.shape)
+
+
+def trace(
+    config: Configuration,
+    rectangles: Rectangles,
+    camera: Sequence[int] | np.ndarray,
+    background: Sequence[int],
+    slopes: np.ndarray,
+    reflections: int,
+) -> np.ndarray:
+    """The colours of rays, uint8 (rays, 3); the arguments are those of `raycaster.golden.exact.trace`."""
+    if config.engine == "exact":
+        return exact.trace(rectangles, camera, background, slopes, reflections).colours
+    return seed_engine.trace(
+        rectangles, camera, background, slopes, reflections,
+        fraction_bits=config.fraction_bits, rounding=config.rounding,
+    ).colours  # fmt: skip

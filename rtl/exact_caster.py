@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: MIT
+"""The exact engine: one control, a few units, and never a wrong pixel."""
+
+from myhdl import ConcatSignal, always_comb, block
+
+from raycaster.configuration import Configuration
+from raycaster.rtl.exact_control import exact_control
+from raycaster.rtl.exact_unit import exact_unit
+from raycaster.rtl.hierarchy import constant
+from raycaster.rtl.interfaces import RaySteps, Surface
+from raycaster.rtl.widths import pixel_bits, unit_bits, unsigned
+
+
+@block
+def exact_caster(
+    clk,
+    reset_ray_caster,
+    enable,
+    row,
+    column_offset,
+    camera,
+    background,
+    reflections,
+    rects,
+    done,
+    colors,
+    config: Configuration,
+):
+    """Compute the colours of config.units neighbouring pixels at once; the ports are ray_caster's."""
+    steps = RaySteps()
+    offered = Surface()
+    bases = [constant(unit, unit_bits(config)) for unit in range(config.units)]
+    pixels = [unsigned(pixel_bits(config)) for _ in range(config.units)]
+    together = ConcatSignal(*reversed(pixels)) if config.units > 1 else pixels[0]
+
+    control = exact_control(clk, reset_ray_caster, enable, reflections, rects, steps, offered, done, config)
+    units = [
+        exact_unit(
+            clk, steps, row, bases[unit], column_offset, camera, rects.rect, offered, background, reflections,
+            pixels[unit], config,
+        )
+        for unit in range(config.units)
+    ]  # fmt: skip
+
+    # All pixels leave side by side.
+    @always_comb
+    def join():
+        colors.next = together
+
+    return control, units, join

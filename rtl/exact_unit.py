@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: MIT
+"""One of the exact engine's parallel units: a ray, its nearest hit, its reflections, and the colour of its pixel."""
+
+from myhdl import block
+
+from raycaster.configuration import Configuration
+from raycaster.rtl.color_combiner import color_combiner
+from raycaster.rtl.eye_mem import eye_mem
+from raycaster.rtl.interfaces import Eye, Mirror, Signs, Slope, Surface
+from raycaster.rtl.nearest_hit import nearest_hit
+from raycaster.rtl.ray_generator import ray_generator
+from raycaster.rtl.rect_tester import rect_tester
+from raycaster.rtl.widths import bit, exact_slope_bits, eye_bits, unsigned
+
+
+@block
+def exact_unit(
+    clk,
+    steps,
+    row,
+    column_base,
+    column_offset,
+    camera,
+    rect,
+    offered,
+    background,
+    reflections,
+    pixel,
+    config: Configuration,
+):
+    """Trace the pixel at (row, column_offset * units + column_base) as the steps say; pixel stands after the last.
+
+    It holds no control of its own: one exact_control operates all units in step. rect: the rectangle at hand, a new one
+    each clock; offered: the one whose verdict is due. camera: whole world units.
+    """
+    initial_signs, signs = Signs(), Signs()
+    slope = Slope(exact_slope_bits(config))
+    eye = Eye(eye_bits(config))
+    mirror = Mirror()
+    found_surface = Surface()
+    hit, found = bit(), bit()
+    numerator = unsigned(eye_bits(config) - 1)
+    denominator = unsigned(exact_slope_bits(config))
+
+    generator = ray_generator(clk, steps, row, column_base, column_offset, initial_signs, slope, config)
+    memory = eye_mem(clk, steps, camera, initial_signs, found_surface, eye, signs, mirror)
+    tester = rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, numerator, denominator)
+    nearest = nearest_hit(clk, steps, offered, hit, numerator, denominator, found, found_surface)
+    combiner = color_combiner(clk, steps, found, found_surface.colour, background, reflections, pixel, config)
+
+    return generator, memory, tester, nearest, combiner

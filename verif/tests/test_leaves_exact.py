@@ -1,0 +1,678 @@
+# SPDX-License-Identifier: MIT
+"""The exact engine's blocks: MyHDL's simulator, the converted Verilog and exact arithmetic on one set of vectors."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hard_scenes import traced_scene
+
+from raycaster.configuration import CHANNEL_BITS, WORLD_SIZE, Configuration, ConfigurationError, configure
+from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.rtl.exact_caster import exact_caster
+from raycaster.rtl.exact_control import exact_control
+from raycaster.rtl.exact_unit import exact_unit
+from raycaster.rtl.eye_mem import eye_mem
+from raycaster.rtl.interfaces import Eye, Mirror, Point, RaySteps, Rect, SequentialRects, Signs, Slope, Surface
+from raycaster.rtl.nearest_hit import nearest_hit
+from raycaster.rtl.ray_sequencer import ray_sequencer
+from raycaster.rtl.rect_sequencer import rect_sequencer
+from raycaster.rtl.rect_tester import rect_tester
+from raycaster.rtl.widths import (
+    COLOUR_BITS,
+    bit,
+    exact_slope_bits,
+    eye_bits,
+    offset_bits,
+    pixel_bits,
+    row_bits,
+    unit_bits,
+    unsigned,
+)
+from raycaster.verif.leaf import Leaf, sorted_rect, trace_cycles
+from raycaster.verif.seeds import repeat, seed
+
+AXES = "xyz"
+LAST = WORLD_SIZE - 1
+LATENCY = 3
+
+
+def config_id(config: Configuration) -> str:
+    return config.name
+
+
+def exact_config(**options) -> Configuration:
+    return configure(engine="exact", **{"allow_underrun": True} | options)
+
+
+by_reflections = pytest.mark.parametrize("reflections", [0, 1, 2])
+
+
+def two_complement(values, bits: int, prefix: str) -> dict[str, int]:
+    return {f"{prefix}_{axis}": int(value) % (1 << bits) for axis, value in zip(AXES, values, strict=True)}
+
+
+def slope_inputs(slope) -> dict[str, int]:
+    inputs = {f"slope_d{axis}": abs(int(value)) for axis, value in zip(AXES, slope, strict=True)}
+    return inputs | {f"signs_d{axis}": int(value < 0) for axis, value in zip(AXES, slope, strict=True)}
+
+
+# The configuration ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("options", "units", "cycles"),
+    [
+        ({"reflections": 0}, 4, 20),
+        ({}, 4, 36),
+        ({"reflections": 2}, 8, 52),
+        ({"rectangles": 32}, 8, 76),
+        ({"screen": "tiny"}, 4, 36),
+        ({"units": 16}, 16, 36),
+    ],
+)
+def test_as_few_units_as_meet_the_row_budget(options, units, cycles):
+    config = configure(engine="exact", **options)
+    assert (config.units, config.group_cycles) == (units, cycles)
+    assert config.groups * config.group_cycles < config.screen_geometry.row_cycles
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        ({"fraction_bits": 4}, "^fraction_bits: the exact engine has none, not 4$"),
+        ({"rounding": "nearest"}, "^rounding: the exact engine does not round; leave out nearest$"),
+        ({"divider_bits": 2}, "^divider_bits: the exact engine has no divider; leave out 2$"),
+        (
+            {"units": 2},
+            "^row budget: a group of 2 columns takes 36 cycles with 12 rectangles, 1 reflections and 1 cycles a",
+        ),
+        ({"reflections": 0, "units": 2}, "leaves it 19 .less than 3200 cycles over 160 groups.; take more units"),
+    ],
+)
+def test_what_an_engine_without_quotients_has_not(options, complaint):
+    with pytest.raises(ConfigurationError, match=complaint):
+        configure(engine="exact", **options)
+
+
+# rect_tester ----------------------------------------------------------------------------------------------------------
+
+
+def verdict(table: Rectangles, index: int, eye, slope, mirror) -> tuple[bool, int, int]:
+    """The definition, in fractions: hit, n and e.
+
+    Args:
+        table: sorted.
+        index: of the rectangle.
+        eye: where the ray seems to start.
+        slope: with signs.
+        mirror: axis and coordinate of the plane that it left last, or None.
+    """
+    axis = int(table.axes[index])
+    if slope[axis] == 0:
+        return False, 0, 0
+    t = Fraction(int(table.low[index, axis] - eye[axis]), int(slope[axis]))
+    point = [int(eye[u]) + int(slope[u]) * t for u in range(3)]
+    hit = t > 0 and all(table.low[index, u] <= point[u] <= table.high[index, u] for u in OTHER_AXES[axis])
+    if mirror is not None:
+        hit = hit and (point[mirror[0]] - mirror[1]) * int(slope[mirror[0]]) > 0
+    return hit, abs(int(table.low[index, axis] - eye[axis])), abs(int(slope[axis]))
+
+
+def leaf_of_tester(config: Configuration, directory) -> Leaf:
+    return Leaf(
+        rect_tester,
+        lambda: {
+            "clk": bit(),
+            "steps": RaySteps(),
+            "rect": Rect(),
+            "eye": Eye(eye_bits(config)),
+            "signs": Signs(),
+            "slope": Slope(exact_slope_bits(config)),
+            "mirror": Mirror(),
+            "hit": bit(),
+            "numerator": unsigned(eye_bits(config) - 1),
+            "denominator": unsigned(exact_slope_bits(config)),
+        },
+        directory,
+    )
+
+
+def mirrored_rays(random: np.random.Generator, config: Configuration, count: int):
+    """Tables, rectangles of them to look at, eyes, slopes and mirrors: as the engine meets them, and as extreme as its
+    widths allow."""
+    reflections, steepest = config.reflections, (1 << exact_slope_bits(config)) - 1
+    while count > 0:
+        table = random_rectangles(random, count=8, closed=True)
+        eye = random_camera(random, table).astype(np.int64)
+        steep = random.choice([0, 1, 2, 99, 100, 160, 190, steepest, int(random.integers(steepest))], 3)
+        # Equal slopes lead to points with whole coordinates.
+        slope = (steep if random.random() < 0.6 else steep[[0, 0, 0]]) * random.choice([-1, 1], 3)
+        mirror = None
+        for _ in range(int(random.integers(reflections + 1))):
+            axis = int(random.integers(3))
+            slope[axis] = slope[axis] or 1
+            plane = int(random.choice([random.choice(EXTREMES), random.integers(WORLD_SIZE)]))
+            if mirror is not None and random.random() < 0.5:
+                # From corner to corner the image runs as far away as it can.
+                axis, plane = mirror[0], LAST - mirror[1]
+            eye[axis], slope[axis], mirror = 2 * plane - eye[axis], -slope[axis], (axis, plane)
+        chosen = random.choice(np.flatnonzero(table.visible), 4)
+        for index in chosen:
+            table = sharpened(random, table, int(index), eye, slope, mirror)
+        count -= 1
+        yield table, set(chosen.tolist()), eye, slope, mirror
+
+
+def beside(random: np.random.Generator, place: int) -> int:
+    """As far from a coordinate as one of its bits is worth, or not at all."""
+    return int(np.clip(place + int(random.choice([-1, 0, 1])) * (1 << int(random.integers(9))), 0, LAST))
+
+
+def sharpened(random: np.random.Generator, table: Rectangles, index: int, eye, slope, mirror) -> Rectangles:
+    """The table with a rectangle moved to where it is hard to tell: an edge to the hit point or next to it, or the
+    plane to where the ray left the mirror."""
+    axis, corners = int(table.axes[index]), table.corners.copy()
+    if slope[axis] == 0:
+        return table
+    if mirror is not None and mirror[0] != axis and random.random() < 0.5:
+        at_mirror = Fraction(int(mirror[1] - eye[mirror[0]]), int(slope[mirror[0]]))
+        corners[index, :, axis] = np.clip(int(eye[axis] + int(slope[axis]) * at_mirror), 0, LAST)
+    if mirror is not None and mirror[0] == axis and random.random() < 0.3:
+        corners[index, :, axis] = beside(random, mirror[1])
+    t = Fraction(int(corners[index, 0, axis] - eye[axis]), int(slope[axis]))
+    for u in OTHER_AXES[axis]:
+        edge, past = int(random.integers(2)), int(random.integers(-1, 2))
+        corners[index, edge, u] = np.clip(int(eye[u] + int(slope[u]) * t) + past, 0, LAST)
+        if random.random() < 0.7:
+            corners[index, 1 - edge, u] = int(random.choice([0, LAST]))
+        if mirror is not None and mirror[0] == u and random.random() < 0.6:
+            corners[index, edge, u] = beside(random, mirror[1])
+    return Rectangles(corners, table.colours, table.enabled)
+
+
+@by_reflections
+def test_rect_tester(reflections, tmp_path):
+    config = exact_config(reflections=reflections)
+    leaf = leaf_of_tester(config, tmp_path)
+    random = np.random.default_rng(seed())
+    stimulus, expected = [], []
+    for table, chosen, eye, slope, mirror in mirrored_rays(random, config, 5000):
+        for index in chosen:
+            started = int(not stimulus or random.random() < 0.9)
+            stimulus.append(
+                {
+                    **sorted_rect(table, index, "rect"), **two_complement(eye, eye_bits(config), "eye"),
+                    **slope_inputs(slope), "mirror_active": int(mirror is not None),
+                    "mirror_axis": mirror[0] if mirror else int(random.integers(3)),
+                    "mirror_position": mirror[1] if mirror else int(random.integers(WORLD_SIZE)),
+                    "steps_find_intersection": started,
+                }
+            )  # fmt: skip
+            stimulus[-1].pop("rect_colour")
+            expected.append(verdict(table, index, eye, slope, mirror) if started else None)
+    seen = set()
+    outputs = leaf.run_both([*stimulus, *[{"steps_find_intersection": 0}] * LATENCY], settled=LATENCY)
+    for cycle, wanted in enumerate(expected):
+        if wanted is None:
+            continue
+        output = outputs[cycle + LATENCY]
+        assert bool(output["hit"]) == wanted[0], (stimulus[cycle], repeat())
+        if wanted[0]:
+            assert (output["numerator"], output["denominator"]) == wanted[1:], (stimulus[cycle], repeat())
+        seen.add((wanted[0], stimulus[cycle]["rect_axis"], stimulus[cycle]["mirror_active"]))
+    assert len(seen) == (12 if reflections else 6), "hits and misses on each axis, with a mirror and without"
+
+
+@by_reflections
+def test_the_widths_are_just_wide_enough(reflections, tmp_path):
+    """The furthest image of a camera, its greatest products, and a bit that each of them needs."""
+    config = exact_config(reflections=reflections)
+    far = LAST * (reflections + 1)
+    assert eye_bits(config) == far.bit_length() + 1
+    greatest = far * 190
+    assert greatest.bit_length() == (17, 18, 19)[reflections]
+    leaf = leaf_of_tester(config, tmp_path)
+    steepest = (1 << exact_slope_bits(config)) - 1
+    corners = np.array([[[0, 0, 0], [0, LAST, LAST]], [[0, 0, 0], [LAST, 0, LAST]], [[0, 0, LAST], [LAST, LAST, LAST]]])
+    table = Rectangles(corners, np.zeros((3, 3), dtype=np.uint8), np.ones(3, dtype=bool))
+    stimulus, expected = [], []
+    for place in (far, -LAST * reflections):
+        for other in (far, -LAST * reflections, 0):
+            for sign in (1, -1):
+                for axis in range(3):
+                    eye = [other] * 3
+                    eye[axis] = place
+                    slope = [sign * steepest] * 3
+                    slope[axis] = -steepest if place > 0 else steepest
+                    for index in range(3):
+                        rect = sorted_rect(table, index, "rect")
+                        rect.pop("rect_colour")
+                        eyes = two_complement(eye, eye_bits(config), "eye")
+                        stimulus.append({**rect, **eyes, **slope_inputs(slope), "steps_find_intersection": 1})
+                        expected.append(verdict(table, index, eye, slope, None))
+    outputs = leaf.run_both([*stimulus, *[{}] * LATENCY], settled=LATENCY)
+    for cycle, wanted in enumerate(expected):
+        assert bool(outputs[cycle + LATENCY]["hit"]) == wanted[0], stimulus[cycle]
+        if wanted[0]:
+            assert (outputs[cycle + LATENCY]["numerator"], outputs[cycle + LATENCY]["denominator"]) == wanted[1:]
+    assert any(wanted[0] for wanted in expected)
+
+
+# nearest_hit ----------------------------------------------------------------------------------------------------------
+
+
+@by_reflections
+def test_nearest_hit(reflections, tmp_path):
+    config = exact_config(reflections=reflections)
+    numerator_bits, denominator_bits = eye_bits(config) - 1, exact_slope_bits(config)
+    leaf = Leaf(
+        nearest_hit,
+        lambda: {
+            "clk": bit(),
+            "steps": RaySteps(),
+            "offered": Surface(),
+            "hit": bit(),
+            "numerator": unsigned(numerator_bits),
+            "denominator": unsigned(denominator_bits),
+            "found": bit(),
+            "found_surface": Surface(),
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    stimulus, expected = [{"steps_reset_z_buf": 1}], [None]
+    best, surface, settled = None, None, None
+    for _ in range(12000):
+        reset, write, hit = (int(random.random() < chance) for chance in (0.1, 0.8, 0.6))
+        factor = int(random.integers(1, 4))
+        n, e = (
+            int(random.choice([1, 2, 3, 100, random.integers(1, 1 << bits - 2), (1 << bits) - 1]))
+            for bits in (numerator_bits, denominator_bits)
+        )
+        if best is not None and random.random() < 0.6:
+            # As near as the nearest, by other numbers.
+            n, e = best.numerator * factor, best.denominator * factor
+            if n >= 1 << numerator_bits or e >= 1 << denominator_bits:
+                n, e = best.numerator, best.denominator
+            if random.random() < 0.5:
+                # Next to it, over another denominator.
+                e = int(random.integers(1, 1 << denominator_bits))
+                n = int(best * e)
+            n = min(max(n + int(random.integers(-1, 2)), 1), (1 << numerator_bits) - 1)
+        offered = {
+            "axis": int(random.integers(3)),
+            "position": int(random.integers(512)),
+            "colour": int(random.integers(1 << 24)),
+        }
+        stimulus.append(
+            {
+                "steps_reset_z_buf": reset, "steps_write_z_buf": write, "hit": hit, "numerator": n, "denominator": e,
+                **{f"offered_{name}": value for name, value in offered.items()},
+            }
+        )  # fmt: skip
+        expected.append((best is not None, surface))
+        if reset:
+            best = None
+        elif write and hit and (best is None or Fraction(n, e) < best):
+            best, surface = Fraction(n, e), offered
+            settled = settled or len(stimulus)
+    outputs = leaf.run_both(stimulus, settled=settled)
+    for cycle, wanted in enumerate(expected):
+        if wanted is not None:
+            assert bool(outputs[cycle]["found"]) == wanted[0], (cycle, repeat())
+            if wanted[0]:
+                assert {name: outputs[cycle][f"found_surface_{name}"] for name in wanted[1]} == wanted[1], repeat()
+
+
+# eye_mem --------------------------------------------------------------------------------------------------------------
+
+
+@by_reflections
+def test_eye_mem(reflections, tmp_path):
+    config = exact_config(reflections=reflections)
+    leaf = Leaf(
+        eye_mem,
+        lambda: {
+            "clk": bit(),
+            "steps": RaySteps(),
+            "camera": Point(),
+            "initial_signs": Signs(),
+            "found_surface": Surface(),
+            "eye": Eye(eye_bits(config)),
+            "signs": Signs(),
+            "mirror": Mirror(),
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    stimulus, expected = [{"steps_screen_to_ray": 1}, {"steps_screen_to_ray": 0, "steps_store_ray": 1}], [None, None]
+    for _ in range(400):
+        camera = random.choice([0, LAST, int(random.integers(WORLD_SIZE))], 3)
+        initial = random.integers(2, size=3)
+        sight = {f"initial_signs_d{axis}": int(value) for axis, value in zip(AXES, initial, strict=True)}
+        stimulus.append({**two_complement(camera, 9, "camera"), "steps_screen_to_ray": 1, "steps_store_ray": 0})
+        expected.append(None)
+        eye, signs, mirror = [int(value) for value in camera], [bool(value) for value in initial], None
+        for bounce in range(reflections + 1):
+            for _ in range(int(random.integers(1, 3))):
+                axis, plane = int(random.integers(3)), int(random.choice([0, LAST, random.integers(WORLD_SIZE)]))
+                if mirror is not None and random.random() < 0.5:
+                    # From corner to corner the image runs as far away as it can.
+                    axis, plane = mirror[0], LAST - mirror[1]
+                surface = {"found_surface_axis": axis, "found_surface_position": plane}
+                noise = two_complement(random.integers(WORLD_SIZE, size=3), 9, "camera")
+                stimulus.append({**noise, **sight, **surface, "steps_screen_to_ray": 0, "steps_store_ray": 0})
+                expected.append((list(eye), list(signs), mirror))
+            if bounce < reflections:
+                stimulus[-1]["steps_store_ray"] = 1
+                eye[axis], signs[axis], mirror = 2 * plane - eye[axis], not signs[axis], (axis, plane)
+    outputs = leaf.run_both(stimulus, settled=2)
+    bits = eye_bits(config)
+    for cycle, wanted in enumerate(expected):
+        if wanted is None:
+            continue
+        eye, signs, mirror = wanted
+        output = outputs[cycle]
+        assert {name: output[name] for name in two_complement(eye, bits, "eye")} == two_complement(eye, bits, "eye")
+        assert [bool(output[f"signs_d{axis}"]) for axis in AXES] == signs, repeat()
+        assert bool(output["mirror_active"]) == (mirror is not None), repeat()
+        if mirror is not None:
+            assert (output["mirror_axis"], output["mirror_position"]) == mirror, repeat()
+
+
+# rect_sequencer, ray_sequencer, exact_control -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("slot_cycles", [1, 3, 9])
+@pytest.mark.parametrize("count", [1, 5, 12])
+def test_rect_sequencer(count, slot_cycles, tmp_path):
+    config = exact_config(rectangles=count)
+    leaf = Leaf(
+        rect_sequencer,
+        lambda: {
+            "clk": bit(),
+            "reset_ray_caster": bit(),
+            "start_ray": bit(),
+            "rects": SequentialRects(config),
+            "fetched": bit(),
+            "starting": bit(),
+            "slot_cycles": slot_cycles,
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    stimulus, expected = [], []
+
+    def drive(reset, start, mask, current=None, first=False):
+        """A cycle in which `current` is at hand."""
+        stimulus.append({"reset_ray_caster": reset, "start_ray": start, "rects_usable": mask})
+        expected.append((current, first))
+
+    every = (1 << count) - 1
+    for number in range(60):
+        mask = every if number % 7 == 0 else int(random.integers(1 << count)) & int(random.integers(1 << count))
+        if number % 3 == 1:
+            mask = 1 << number // 3 % count
+        if number % 5 == 0:
+            drive(1, 0, mask)
+        for _ in range(int(random.integers(1, 3))):
+            drive(0, 0, mask)
+        drive(0, 1, mask)
+        slots = [(index, cycle == 0) for index in range(count) if mask >> index & 1 for cycle in range(slot_cycles)]
+        # Only a reset comes before the end.
+        for current, first in slots[: int(random.integers(len(slots) + 1))] if number % 5 == 4 else slots:
+            drive(0, 0, mask, current, first)
+        if number % 5 != 4:
+            drive(0, 0, mask)
+    outputs = leaf.run_both(stimulus, settled=4)
+    held_by_memory = None
+    for cycle, (output, (current, first)) in enumerate(zip(outputs, expected, strict=True)):
+        if cycle >= 4 and not stimulus[cycle]["reset_ray_caster"]:
+            assert (bool(output["fetched"]), bool(output["starting"])) == (current is not None, first), (
+                cycle,
+                repeat(),
+            )
+            assert current is None or held_by_memory == current, (cycle, repeat())
+        if output["rects_fetch"]:
+            held_by_memory = output["rects_index"]
+
+
+def seed_config(**options) -> Configuration:
+    return configure(allow_underrun=True, **options)
+
+
+@pytest.mark.parametrize(
+    ("function", "config"),
+    [
+        *(
+            (exact_control, exact_config(rectangles=n, reflections=r))
+            for n, r in ((1, 0), (1, 2), (3, 2), (12, 2), (32, 0))
+        ),
+        *((ray_sequencer, exact_config(rectangles=n, reflections=r)) for n, r in ((2, 1), (12, 2))),
+        *((ray_sequencer, seed_config(rectangles=n, reflections=2, divider_bits=b)) for n, b in ((3, 3), (12, 3))),
+    ],
+    ids=lambda value: value.name if isinstance(value, Configuration) else value.__name__,
+)
+def test_controls(function, config, tmp_path):
+    arguments = {"offered": Surface} if function is exact_control else {"in_flight": lambda: unsigned(write_at + 1)}
+    write_at = 2 if config.engine == "exact" else config.divider_steps + 3
+    leaf = Leaf(
+        function,
+        lambda: {
+            "clk": bit(),
+            "reset_ray_caster": bit(),
+            "enable": bit(),
+            "reflections": unsigned(2),
+            "rects": SequentialRects(config),
+            "steps": RaySteps(),
+            **{name: make() for name, make in arguments.items()},
+            "done": bit(),
+            **({"slot_cycles": config.slot_cycles} if function is ray_sequencer else {}),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    count = config.rectangles
+    every = (1 << count) - 1
+    masks = [every, 0, 1, 1 << (count - 1), every]
+    masks += [int(random.integers(1 << count)) & int(random.integers(1 << count)) for _ in range(6)]
+    masks += [1 << index for index in range(count)] + [1 | 1 << index for index in range(count)]
+    table = Rectangles(
+        random.integers(WORLD_SIZE, size=(count, 2, 3)),
+        random.integers(256, size=(count, 3)).astype(np.uint8),
+        np.ones(count, dtype=bool),
+    )
+    flat = random.integers(3, size=count)
+    table.corners[np.arange(count), 1, flat] = table.corners[np.arange(count), 0, flat]
+    quiet = {name: 0 for name in leaf.outputs if name.startswith("steps_") and name != "steps_initial_ray"}
+    quiet["done"] = 0
+    stimulus, expected = [], []
+
+    def drive(inputs, wanted=None, current=None, finishing=None):
+        rect = sorted_rect(table, int(random.integers(count)) if current is None else current, "rects_rect")
+        stimulus.append({**inputs, **{name: value for name, value in rect.items() if name in leaf.inputs}})
+        expected.append((wanted, current, finishing))
+
+    for number, mask in enumerate(masks):
+        usable = [index for index in range(count) if mask >> index & 1]
+        reflections = config.reflections if number < 2 else int(random.integers(config.reflections + 1))
+        held = {"rects_usable": mask, "reflections": reflections}
+        for _ in range(2):
+            drive({**held, "reset_ray_caster": 1, "enable": int(random.integers(2))})
+        for _ in range(int(random.integers(3))):
+            drive({**held, "reset_ray_caster": 0, "enable": 0}, quiet)
+        drive({**held, "reset_ray_caster": 0, "enable": 1}, quiet)
+        trace = trace_cycles(config, usable, reflections)
+        if mask == every and reflections == config.reflections:
+            assert len(trace) + 3 == config.group_cycles, "with done and the reset of two cycles"
+        # A row may be abandoned at any moment; what was under way must not come out later.
+        abandoned = number > 4 and number % 2
+        for cycle in trace[: int(random.integers(len(trace))) if abandoned else None]:
+            wanted = {name: value for name, value in cycle.steps.items() if name in leaf.outputs} | {"done": 0}
+            if cycle.steps["steps_screen_to_ray"]:
+                del wanted["steps_initial_ray"]
+            inputs = {**held, "reset_ray_caster": 0, "enable": int(random.integers(2))}
+            drive(inputs, wanted, cycle.current, cycle.finishing)
+        if not abandoned:
+            for _ in range(int(random.integers(1, 4))):
+                drive({**held, "reset_ray_caster": 0, "enable": int(random.integers(2))}, {**quiet, "done": 1})
+
+    settled = next(cycle for cycle, (_, _, finishing) in enumerate(expected) if finishing is not None)
+    outputs = leaf.run_both(stimulus, settled=settled)
+    held_by_memory = None
+    for cycle, (output, (wanted, current, finishing)) in enumerate(zip(outputs, expected, strict=True)):
+        if wanted is not None:
+            assert {name: output[name] for name in wanted} == wanted, (cycle, repeat())
+        if current is not None:
+            assert held_by_memory == current, f"cycle {cycle}: it fetched another rectangle; {repeat()}"
+        if function is ray_sequencer and wanted is not None:
+            # Bit i follows find_intersection by i + 1 cycles, unless a reset came between.
+            started = [
+                outputs[before]["steps_find_intersection"] for before in range(cycle - 1, cycle - write_at - 2, -1)
+            ]
+            resets = [stimulus[before]["reset_ray_caster"] for before in range(cycle - 1, cycle - write_at - 2, -1)]
+            alive = started[: resets.index(1)] if 1 in resets else started
+            assert output["in_flight"] == sum(bit << place for place, bit in enumerate(alive)), (cycle, repeat())
+        elif finishing is not None:
+            rect = sorted_rect(table, finishing, "offered")
+            surface = {name: rect[name] for name in ("offered_axis", "offered_position", "offered_colour")}
+            assert {name: output[name] for name in surface} == surface, (cycle, repeat())
+        if output["rects_fetch"]:
+            held_by_memory = output["rects_index"]
+
+
+# exact_unit and exact_caster ------------------------------------------------------------------------------------------
+
+
+def pixel_word(config: Configuration, colour) -> int:
+    word = 0
+    for channel in colour:
+        word = word << config.colour_bits | int(channel) >> (CHANNEL_BITS - config.colour_bits)
+    return word
+
+
+def held_inputs(camera, background, reflections) -> dict[str, int]:
+    colour = int.from_bytes(bytes(background.astype(np.uint8)))
+    return {**two_complement(camera, 9, "camera"), "background": colour, "reflections": reflections}
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        exact_config(screen=screen, units=units, rectangles=rectangles, reflections=reflections, colour_bits=bits)
+        for screen, units, rectangles, reflections, bits in (
+            ("vga", 4, 8, 1, 8), ("vga", 5, 8, 2, 4), ("tiny", 2, 8, 0, 1), ("vga", 320, 8, 2, 8), ("vga", 1, 4, 2, 8),
+        )
+    ],
+    ids=config_id,
+)  # fmt: skip
+def test_exact_unit(config, tmp_path):
+    leaf = Leaf(
+        exact_unit,
+        lambda: {
+            "clk": bit(),
+            "steps": RaySteps(),
+            "row": unsigned(row_bits(config)),
+            "column_base": unsigned(unit_bits(config)),
+            "column_offset": unsigned(offset_bits(config)),
+            "camera": Point(),
+            "rect": Rect(),
+            "offered": Surface(),
+            "background": unsigned(COLOUR_BITS),
+            "reflections": unsigned(2),
+            "pixel": unsigned(pixel_bits(config)),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    slopes = primary_slopes(config.screen_geometry)
+    rows, columns, _ = slopes.shape
+    stimulus, results, fates = [], [], set()
+    for _ in range(300):
+        row = int(random.choice([0, 1, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))
+        column = int(random.choice([0, 1, columns // 2, columns - 1, random.integers(columns)]))
+        camera, table, background, reflections, traced = traced_scene(random, config, slopes[row, column][None])
+        fates.add((reflections, sum(int(winner[0]) >= 0 for winner in traced.winners)))
+        place = {"row": row, "column_base": column % config.units, "column_offset": column // config.units}
+        held = {**held_inputs(camera, background, reflections), **place}
+        usable = [int(index) for index in np.flatnonzero(table.visible)]
+        if not usable:
+            continue
+        for cycle in trace_cycles(config, usable, reflections):
+            inputs = {**held, **cycle.steps}
+            other = int(random.choice(usable))
+            rect = sorted_rect(table, other if cycle.current is None else cycle.current, "rect")
+            inputs |= {name: value for name, value in rect.items() if name != "rect_colour"}
+            offered = sorted_rect(table, other if cycle.finishing is None else cycle.finishing, "offered")
+            inputs |= {f"offered_{name}": offered[f"offered_{name}"] for name in ("axis", "position", "colour")}
+            stimulus.append(inputs)
+        case = f"row {row}, column {column}, camera {camera}, corners {table.corners.tolist()}; {repeat()}"
+        results.append((len(stimulus), pixel_word(config, traced.colours[0]), case))
+        stimulus.append({**held, **dict.fromkeys(cycle.steps, 0)})
+    assert len(fates) >= 2 + 2 * config.reflections, repeat()
+    outputs = leaf.run_both(stimulus, settled=results[0][0])
+    for cycle, pixel, case in results:
+        assert outputs[cycle]["pixel"] == pixel, case
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        exact_config(units=1, rectangles=4, reflections=2),
+        exact_config(units=2, rectangles=8, reflections=2),
+        exact_config(units=5, rectangles=7, reflections=0, colour_bits=4),
+    ],
+    ids=config_id,
+)
+def test_exact_caster(config, tmp_path):
+    leaf = Leaf(
+        exact_caster,
+        lambda: {
+            "clk": bit(),
+            "reset_ray_caster": bit(),
+            "enable": bit(),
+            "row": unsigned(row_bits(config)),
+            "column_offset": unsigned(offset_bits(config)),
+            "camera": Point(),
+            "background": unsigned(COLOUR_BITS),
+            "reflections": unsigned(2),
+            "rects": SequentialRects(config),
+            "done": bit(),
+            "colors": unsigned(config.units * pixel_bits(config)),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    slopes = primary_slopes(config.screen_geometry)
+    stimulus, results = [], []
+    for _ in range(200 if config.units == 1 else 20):
+        row, offset = int(random.integers(len(slopes))), int(random.integers(config.groups))
+        group = slopes[row, offset * config.units : (offset + 1) * config.units]
+        camera, table, background, reflections, traced = traced_scene(random, config, group)
+        mask = sum(1 << int(index) for index in np.flatnonzero(table.visible))
+        held = {"row": row, "column_offset": offset, "rects_usable": mask}
+        held |= held_inputs(camera, background, reflections)
+        stimulus += [{**held, "reset_ray_caster": 1, "enable": 1}] * 2
+        stimulus += [{**held, "reset_ray_caster": 0, "enable": 0}] * int(random.integers(3))
+        stimulus.append({**held, "reset_ray_caster": 0, "enable": 1})
+        for cycle in trace_cycles(config, [int(index) for index in np.flatnonzero(table.visible)], reflections):
+            rect = {} if cycle.current is None else sorted_rect(table, cycle.current, "rects_rect")
+            stimulus.append({**held, **rect, "enable": int(random.integers(2))})
+        colours = [pixel_word(config, colour) for colour in traced.colours]
+        case = f"row {row}, group {offset}, camera {camera}, corners {table.corners.tolist()}; {repeat()}"
+        results.append((len(stimulus), colours, case))
+        stimulus += [{}] * 2
+    outputs = leaf.run_both(stimulus, settled=results[0][0])
+    width = pixel_bits(config)
+    for cycle, colours, case in results:
+        for shown in outputs[cycle : cycle + 2]:
+            assert shown["done"], case
+            assert [shown["colors"] >> width * unit & (1 << width) - 1 for unit in range(config.units)] == colours, case
+        assert not outputs[cycle - 1]["done"], case
