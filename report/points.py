@@ -36,7 +36,9 @@ CASE = "case:"
 """Before the name of a scene of the catalogue, where a scene file's path would stand."""
 
 FAMILY = FAMILIES["ecp5"]
-UNIT = "ray_unit"
+UNITS = {"seed": "ray_unit", "exact": "exact_unit"}
+"""By engine, the module of which there are as many as the configuration's units."""
+
 ROOT = Path(__file__).parent.parent
 
 
@@ -133,7 +135,7 @@ def _screen(name: str, rows: int) -> Screen:
 
 @dataclass(frozen=True)
 class CellsPoint:
-    """LUT4 of an ECP5 that a design or one module of it takes, by itself."""
+    """LUT4 and multipliers of an ECP5 that a design or one module of it takes, by itself."""
 
     config: Configuration
     top: str = TOP
@@ -146,9 +148,10 @@ class CellsPoint:
         return " ".join(["cells", self.top, *as_options(self.config)])
 
     def compute(self) -> dict[str, Any]:
-        """The count."""
+        """The counts."""
         with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
-            return {"cells": measure(self.config, FAMILY, Path(scratch) / "area", self.top).tables}
+            area = measure(self.config, FAMILY, Path(scratch) / "area", self.top)
+        return {"cells": area.tables, "multipliers": area.multipliers}
 
 
 @dataclass(frozen=True)

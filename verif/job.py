@@ -34,6 +34,9 @@ class Job:
     seeds: tuple[int, ...] = ()
     """Of random scenes, for a bench that shows them."""
 
+    stiff: bool = False
+    """The seeds are places in the stiff catalogue instead."""
+
     def environment(self) -> dict[str, str]:
         """The environment in which a simulation finds this job."""
         return {JOB_VARIABLE: json.dumps(dataclasses.asdict(self))}

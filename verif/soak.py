@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Random scenes through the converted hardware at full size, every pixel held against golden: `make soak`."""
+"""Random or stiff scenes through the converted hardware at full size, every pixel held against golden: `make soak`."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from rich.table import Table
 
 from raycaster.configuration import Configuration, configure
 from raycaster.errors import UserError
+from raycaster.golden.catalogue import catalogue
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.verif.job import Job
 from raycaster.verif.random_scenes import style_of
@@ -25,7 +26,9 @@ from raycaster.verif.simulator import BUILD, SIMULATORS, Model, SimulationError,
 POLL_SECONDS = 0.2
 
 
-def soak(model: Model, seeds: range, output: Path, jobs: int, console: Console) -> tuple[list[dict], list[str]]:
+def soak(
+    model: Model, seeds: range, output: Path, jobs: int, console: Console, *, stiff: bool = False
+) -> tuple[list[dict], list[str]]:
     """Show the scenes of all seeds, some at a time.
 
     Args:
@@ -34,6 +37,7 @@ def soak(model: Model, seeds: range, output: Path, jobs: int, console: Console) 
         output: replaced; `results.jsonl` is all results, failing scenes are `<seed>.toml` and `<seed>-shrunk.toml`.
         jobs: simulations at a time.
         console: for the progress bar.
+        stiff: the seeds are places in the stiff catalogue.
 
     Returns:
         The results by seed, and what each failed simulation said.
@@ -46,7 +50,8 @@ def soak(model: Model, seeds: range, output: Path, jobs: int, console: Console) 
     with Progress(*columns, console=console, transient=True) as bars, ThreadPoolExecutor(jobs) as pool:
         bar = bars.add_task("scenes", total=len(seeds))
         futures = [
-            pool.submit(_run, model, share, directory) for share, directory in zip(shares, directories, strict=True)
+            pool.submit(_run, model, share, directory, stiff)
+            for share, directory in zip(shares, directories, strict=True)
         ]
         pending = set(futures)
         while pending:
@@ -64,13 +69,14 @@ def soak(model: Model, seeds: range, output: Path, jobs: int, console: Console) 
     return results, failures
 
 
-def _run(model: Model, seeds: range, directory: Path) -> None:
+def _run(model: Model, seeds: range, directory: Path, stiff: bool) -> None:
     directory.mkdir(parents=True)
     job = Job(
         configuration=model.configuration,
         output=str(directory.resolve()),
         progress=str((directory / "progress").resolve()),
         seeds=tuple(seeds),
+        stiff=stiff,
     )
     run_bench(model, "raycaster.verif.soak_bench", job, directory)
 
@@ -79,11 +85,13 @@ def _lines(path: Path) -> list[str]:
     return path.read_text().splitlines() if path.exists() else []
 
 
-def show(results: list[dict], seconds: float, configuration: Configuration, console: Console) -> None:
+def show(
+    results: list[dict], seconds: float, configuration: Configuration, console: Console, *, stiff: bool = False
+) -> None:
     """Print what was checked, by style and reflections."""
     rows: dict[tuple[str, int], list[dict]] = defaultdict(list)
     for result in results:
-        rows[style_of(result["seed"]), result["reflections"]].append(result)
+        rows["stiff" if stiff else style_of(result["seed"]), result["reflections"]].append(result)
     table = Table(title=f"{configuration.name}, {len(results)} scenes in {seconds:.0f} s")
     table.add_column("style")
     for heading in ("reflections", "scenes", "pixels", "wrong", "against exact"):
@@ -102,6 +110,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m raycaster.verif.soak", description=__doc__)
     parser.add_argument("--seeds", type=int, default=100, metavar="N", help="how many scenes (default: %(default)s)")
     parser.add_argument("--first", type=int, default=0, metavar="SEED", help="the first one's (default: %(default)s)")
+    parser.add_argument("--stiff", action="store_true", help="all cases of the stiff catalogue instead")
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="simulations at a time (default: %(default)s)")
     parser.add_argument("--simulator", default="verilator", choices=SIMULATORS)
     parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes")
@@ -116,13 +125,17 @@ def main() -> int:
     started = time.perf_counter()
     output = arguments.build / "soak"
     seeds = range(arguments.first, arguments.first + arguments.seeds)
-    results, failures = soak(model, seeds, output, arguments.jobs, console)
-    show(results, time.perf_counter() - started, configuration, console)
+    if arguments.stiff:
+        seeds = range(len(catalogue()))
+    results, failures = soak(model, seeds, output, arguments.jobs, console, stiff=arguments.stiff)
+    show(results, time.perf_counter() - started, configuration, console, stiff=arguments.stiff)
+    options = " ".join(f"{name.upper()}={value}" for name, value in given_options(arguments).items())
+    repeat = f"STIFF=1 {options}" if arguments.stiff else f"SEEDS=1 FIRST={{}} {options}"
     for result in results:
         if result["wrong_vs_golden"]:
             console.print(
                 f"seed {result['seed']}: {result['wrong_vs_golden']} wrong pixels; the scene, and what it shrinks to, "
-                f"is in {output}/job*/{result['seed']}*.toml; repeat with: make soak SEEDS=1 FIRST={result['seed']}",
+                f"is in {output}/job*/{result['seed']}*.toml; repeat with: make soak {repeat.format(result['seed'])}",
                 style="red",
                 soft_wrap=True,
             )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: one random scene after the other, a frame each, held against golden in every pixel."""
+"""cocotb: one random or stiff scene after the other, a frame each, held against golden in every pixel."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import cocotb
 from cocotb.handle import HierarchyObject
 
 from raycaster.golden import exact
+from raycaster.golden.catalogue import catalogue
 from raycaster.golden.picture import count_wrong
 from raycaster.scene import Scene, dump_scene
 from raycaster.verif.harness import Harness
@@ -23,10 +24,13 @@ async def soak(bench: HierarchyObject) -> None:
     job, configuration = harness.job, harness.configuration
     output = Path(job.output)
     await harness.reset()
-    failed = []
+    failed, cases = [], catalogue()
     with (output / "results.jsonl").open("w") as results:
         for number, seed in enumerate(job.seeds):
-            scene = random_scene(seed, configuration.rectangles, configuration.reflections)
+            if job.stiff:
+                scene = cases[seed].scene
+            else:
+                scene = random_scene(seed, configuration.rectangles, configuration.reflections)
             result = {"seed": seed, "title": scene.title} | await show(harness, scene)
             if result["wrong_vs_golden"]:
                 failed.append(seed)

@@ -7,7 +7,7 @@ from raycaster.configuration import Configuration, Screen, Span, configure
 from raycaster.registers import address_bits
 from raycaster.rtl.avalon_interface import engine_word, size_word
 from raycaster.rtl.widths import bits_for, index_bits, offset_bits, pixel_bits, position_bits, row_bits, unit_bits
-from raycaster.verif.formal.prover import Property
+from raycaster.verif.formal.prover import Property, TesterWidths
 
 TOY_SCREEN = Screen(3, 2, 1, 3, Span(9, 1, 2, 1, active_high=True), Span(6, 1, 1, 3, active_high=True))
 """Tripled pixels, and a frame short enough to be walked through whole."""
@@ -155,6 +155,27 @@ def _divider(config: Configuration, part: int, small: bool) -> Property:
     )
 
 
+def _tester(coordinate_bits: int, reflections: int, small: bool) -> Property:
+    last = (1 << coordinate_bits) - 1
+    widths = TesterWidths(coordinate_bits, coordinate_bits, (last * (reflections + 1)).bit_length() + 1)
+    return Property(
+        "tester-exact",
+        "a rectangle is hit where the quotient's point is within it and beyond the mirror",
+        widths,
+        f"{coordinate_bits} bits, {reflections} mirrors",
+        ("rect_tester",),
+        {
+            "COORDINATE_BITS": widths.coordinate,
+            "SLOPE_BITS": widths.slope,
+            "EYE_BITS": widths.eye,
+            "REFLECTIONS": reflections,
+        },
+        induction=4,
+        reach=5,
+        small=small,
+    )
+
+
 def _label(config: Configuration) -> str:
     return config.name.removeprefix(f"{config.engine}-")
 
@@ -198,6 +219,9 @@ PROPERTIES: list[Property] = [
     _counters(configure(rows=200, reflections=2), small=False),
     _counters(_tiny(rectangles=2), small=True),
     _counters(configure(units=16, rectangles=4), small=False),
+    _tester(2, 1, small=True),
+    _tester(2, 2, small=False),
+    _tester(3, 1, small=False),
     *(
         _divider(_tiny(rectangles=2, divider_bits=bits, rounding=rounding), part, small=False)
         for bits, rounding in ((3, "truncate"), (3, "nearest"), (2, "truncate"), (1, "truncate"))

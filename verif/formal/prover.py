@@ -17,6 +17,8 @@ from raycaster.configuration import Configuration, Screen
 from raycaster.errors import UserError
 from raycaster.rtl.convert import write_verilog
 from raycaster.rtl.hierarchy import convert_hierarchy, quick_elaboration
+from raycaster.rtl.interfaces import Eye, Mirror, RaySteps, Rect, Signs, Slope
+from raycaster.rtl.rect_tester import rect_tester
 from raycaster.rtl.video_generator import video_generator
 from raycaster.rtl.widths import bit, unsigned
 from raycaster.tools import TIMEOUT, find_program, run_program, run_yosys
@@ -34,13 +36,26 @@ class ProofError(UserError):
 
 
 @dataclass(frozen=True)
+class TesterWidths:
+    """`rect_tester` alone, for narrow coordinates, slopes and eyes."""
+
+    coordinate: int
+    slope: int
+    eye: int
+
+
+Design = Configuration | Screen | TesterWidths
+
+
+@dataclass(frozen=True)
 class Property:
     """What is claimed of some modules of one design.
 
     Attributes:
         name: of the claim, and of its wrapper `<name>.v` with dashes for underscores.
         claim: in a few words.
-        design: the configuration whose Verilog is read; or a screen, for the video generator alone.
+        design: the configuration whose Verilog is read; a screen, for the video generator alone; or widths, for the
+            rectangle test alone.
         label: the design in a few characters.
         modules: the generated modules that are part of the proof.
         cut: of these, those whose outputs become arbitrary.
@@ -52,7 +67,7 @@ class Property:
 
     name: str
     claim: str
-    design: Configuration | Screen
+    design: Design
     label: str
     modules: tuple[str, ...]
     parameters: Mapping[str, int]
@@ -138,7 +153,7 @@ def prove(
     return Result(proof, "proved", depth, time.monotonic() - start)
 
 
-def _generate(design: Configuration | Screen, directory: Path) -> None:
+def _generate(design: Design, directory: Path) -> None:
     with _CONVERSION:
         sources = _verilog(design)
     directory.mkdir()
@@ -147,7 +162,7 @@ def _generate(design: Configuration | Screen, directory: Path) -> None:
 
 
 @cache
-def _verilog(design: Configuration | Screen) -> dict[str, str]:
+def _verilog(design: Design) -> dict[str, str]:
     """The generated files by name: a design stands behind several properties."""
     with tempfile.TemporaryDirectory() as scratch:
         directory = Path(scratch) / "verilog"
@@ -155,7 +170,8 @@ def _verilog(design: Configuration | Screen) -> dict[str, str]:
             write_verilog(design, directory)
         else:
             directory.mkdir()
-            _convert_video_generator(design, directory)
+            convert = _convert_rect_tester if isinstance(design, TesterWidths) else _convert_video_generator
+            convert(design, directory)
         return {path.name: path.read_text() for path in directory.glob("*.v")}
 
 
@@ -166,6 +182,19 @@ def _convert_video_generator(screen: Screen, directory: Path) -> None:
     signals = {name: bit() for name in ["clk", *bits]} | {name: unsigned(8) for name in colours}
     with quick_elaboration():
         top = video_generator(**signals, reset=reset_signal(), screen=screen)
+    convert_hierarchy(top, directory, "// {module}")
+
+
+def _convert_rect_tester(widths: TesterWidths, directory: Path) -> None:
+    rect, mirror = Rect(), Mirror()
+    for name in ("position", "u_low", "u_high", "v_low", "v_high"):
+        setattr(rect, name, unsigned(widths.coordinate))
+    mirror.position = unsigned(widths.coordinate)
+    with quick_elaboration():
+        top = rect_tester(
+            bit(), RaySteps(), rect, Eye(widths.eye), Signs(), Slope(widths.slope), mirror, bit(),
+            unsigned(widths.eye - 1), unsigned(widths.slope),
+        )  # fmt: skip
     convert_hierarchy(top, directory, "// {module}")
 
 

@@ -26,6 +26,7 @@ AGENT = chosen("avalon-agent", "vga240-u1-r2-m1-f0t-d3-c8")
 ORDER = chosen("ray-order", "tiny48-u2-r2-m1-f0t-d3-c8")
 SECTIONS = chosen("line-sections", "tiny48-u2-r2-m1-f0t-d3-c8")
 COUNTERS = chosen("render-counters", "vga240-u16-r4-m1-f0t-d1-c8")
+TESTER = chosen("tester-exact", "2 bits, 1 mirrors")
 DIVIDER = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d3-c8 digits")
 
 FAULTS = {
@@ -67,12 +68,16 @@ FAULTS = {
     "control-runs-on": (COUNTERS, "ray_caster_renderer", "start_screen || start_row || done;", "start_screen || done;"),
     "read-too-far": (COUNTERS, "ray_caster_renderer", "read_offset}) != 19)", "read_offset}) != 20)"),
     "divisor-equal": (DIVIDER, "divider_step", "if (difference < 0) begin", "if (difference <= 0) begin"),
+    "mirror-hits-itself": (TESTER, "rect_tester", "open_low_u = 1'b1;", "open_low_u = 1'b0;"),
+    "behind-the-mirror": (TESTER, "rect_tester", "(rect_position > mirror_position)",
+                          "(rect_position >= mirror_position)"),
+    "edge-missed": (TESTER, "rect_tester", "(!open_high_u_2 && (way_u_2 == way_to_high_u_2))", "1'b0"),
     "overflow-missed": (DIVIDER, "divider", "overflow <= too_large;", "overflow <= too_large && (quotient != 0);"),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize(
-    "proof", [TIMING, AGENT, ORDER, SECTIONS, COUNTERS], ids=lambda proof: f"{proof.name}-{proof.label}"
+    "proof", [TIMING, AGENT, ORDER, SECTIONS, COUNTERS, TESTER], ids=lambda proof: f"{proof.name}-{proof.label}"
 )
 def test_holds(proof, output):
     """What the faults below are planted in is proved without them."""

@@ -41,7 +41,7 @@ from raycaster.options import add_configuration_options, as_options, given_optio
 from raycaster.report import __main__ as report
 from raycaster.report import conclusions, hardware
 from raycaster.report.page import Section, write_html, write_markdown
-from raycaster.report.points import CASE, UNIT, CellsPoint, HitsPoint, PicturePoint, View, command
+from raycaster.report.points import CASE, UNITS, CellsPoint, HitsPoint, PicturePoint, View, command
 from raycaster.report.sweep import Store, executor, run
 from raycaster.verif.seeds import repeat, seed
 
@@ -188,7 +188,7 @@ SMALL = configure(screen="tiny", units=1, rectangles=1, reflections=0, allow_und
     [
         PicturePoint(View.of("case:facing_x"), 4, "nearest", 2, "tiny"),
         PicturePoint(View.of(str(ROOT / "scenes" / "letterbox.toml")), 1, "truncate", 0),
-        CellsPoint(SMALL, UNIT),
+        CellsPoint(SMALL, UNITS["seed"]),
     ],
     ids=["case", "scene", "cells"],
 )
@@ -376,18 +376,19 @@ def test_a_dask_cluster_whose_worker_is_killed(tmp_path):
 
 def test_the_frontier():
     config = configure()
-    best, dear = hardware.Candidate(config, 0.01, 100), hardware.Candidate(config, 0.01, 101)
-    exacter = hardware.Candidate(config, 0.001, 200)
-    slower = hardware.Candidate(replace(config, rectangles=13), 0.0005, 200)
-    slowest = hardware.Candidate(replace(config, rectangles=14), 0.0005, 200)
+    best, dear = hardware.Candidate(config, 0.01, 100, 64), hardware.Candidate(config, 0.01, 101, 64)
+    exacter = hardware.Candidate(config, 0.001, 200, 64)
+    slower = hardware.Candidate(replace(config, rectangles=13), 0.0005, 200, 64)
+    slowest = hardware.Candidate(replace(config, rectangles=14), 0.0005, 200, 64)
     assert hardware.frontier([dear, slowest, slower, exacter, best, best]) == [exacter, best, best, slower]
 
 
 def test_designs_meet_the_row_budget():
-    found = hardware.designs((0, 8), (20, 32), 1, "vga")
+    found = hardware.seed_designs((0, 8), (20, 32), "vga") + hardware.exact_designs((2, 4, 8), "vga")
     assert all(config.group_cycles * config.groups <= config.screen_geometry.row_cycles for config in found)
     assert not any((config.units, config.divider_bits) == (20, 1) for config in found)
     assert any(config.fraction_bits == 8 for config in found)
+    assert [config.units for config in found if config.engine == "exact"] == [4, 8]
 
 
 def test_pages_need_nothing_else(tmp_path):
@@ -432,8 +433,9 @@ def test_a_small_report(tmp_path, monkeypatch):
     """Everything in it once, simulations included; cells are invented."""
 
     def cells(config, family, directory, top):
-        units = 1 if top == UNIT else config.units
-        return Area(units * (600 + 20 * config.fraction_bits) + (0 if top == UNIT else 3000), 0, 0, 0, 0)
+        alone = top in UNITS.values()
+        units = 1 if alone else config.units
+        return Area(units * (600 + 20 * config.fraction_bits) + (0 if alone else 3000), 0, 0, 2 * units, 0)
 
     monkeypatch.setattr("raycaster.report.points.measure", cells)
     scenes = tmp_path / "scenes"
@@ -444,7 +446,7 @@ def test_a_small_report(tmp_path, monkeypatch):
     monkeypatch.setattr(report, "GROWING", ("facing_x",))
     cases = catalogue()[::20]
     probed = configure(screen="tiny", units=16, reflections=2, divider_bits=3)
-    extent = report.Extent((0, 4), (0, 1), (0,), (16,), cases, (0,), "tiny", cases[:1], [probed], "tiny", 1)
+    extent = report.Extent((0, 4), (0, 1), (0,), (16,), (4,), cases, (0,), "tiny", cases[:1], [probed], "tiny", 1)
     output = tmp_path / "report"
     output.mkdir()
     sweeper = report.Sweeper(Store(output / "points"), lambda: ProcessPoolExecutor(2), QUIET)
@@ -465,7 +467,9 @@ def test_a_small_report(tmp_path, monkeypatch):
         "points picture scenes/matte.toml --fraction-bits 4 --rounding nearest --reflections 0 --screen vga"
     )
     with (output / "frontier.csv").open() as file:
-        [first, *_] = csv.DictReader(file)
+        [first, *others] = csv.DictReader(file)
+    assert (first["engine"], first["wrong, mean share"], first["on the frontier of all"]) == ("exact", "0.0", "yes")
+    assert {other["engine"] for other in others} == {"seed"}
     assert first["cycles a group: a pixel and unit"] == first["cycles a group, foretold"]
     assert "raycaster.report.points time scenes/mirror_room.toml" in first["command"]
     with (output / "catalogue_hardware.csv").open() as file:

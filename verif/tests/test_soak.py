@@ -11,6 +11,7 @@ import pytest
 from conftest import BUILD, ROOT
 
 from raycaster.configuration import configure
+from raycaster.golden.catalogue import catalogue
 from raycaster.scene import dump_scene, load_scene
 from raycaster.verif.job import Job
 from raycaster.verif.random_scenes import STYLES, random_scene
@@ -41,6 +42,19 @@ def test_soak():
     results = [json.loads(line) for line in (build / "soak" / "results.jsonl").read_text().splitlines()]
     assert [result["seed"] for result in results] == list(range(6))
     assert all(result["pixels"] == 640 * 480 and result["wrong_vs_golden"] == 0 for result in results)
+
+
+def test_the_exact_engine_draws_the_stiff_catalogue():
+    """On the small screen; `make soak STIFF=1 ENGINE=exact` does it at full size."""
+    build = BUILD / "test" / "stiff"
+    options = ("--stiff", "--engine", "exact", "--screen", "tiny", "--build", str(build))
+    ran = subprocess.run(
+        [sys.executable, "-m", "raycaster.verif.soak", *options], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    results = [json.loads(line) for line in (build / "soak" / "results.jsonl").read_text().splitlines()]
+    assert len(results) == len(catalogue()) >= 50
+    assert all(result["wrong_vs_golden"] == result["wrong_vs_exact"] == 0 for result in results)
 
 
 def test_a_wrong_scene_shrinks(tmp_path):

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// The rectangle test against its definition, with a division: the point P = E + D (k - E[a]) / D[a] is ahead of the eye,
+// within the bounds, and strictly beyond the mirror on the side that the slope points to.
+//
+// Assumed, as the engine has it: bounds in order, an axis of three, an eye as far away as so many mirrors can put it, and
+// no mirror on an axis along which the ray does not move. The ray and the rectangle may change in every cycle.
+
+module tester_exact #(
+    parameter COORDINATE_BITS = 3, parameter SLOPE_BITS = 3, parameter EYE_BITS = 5, parameter REFLECTIONS = 1
+) (
+    input clk, input started, input [1:0] axis, input [COORDINATE_BITS-1:0] position, input [COORDINATE_BITS-1:0] u_low,
+    input [COORDINATE_BITS-1:0] u_high, input [COORDINATE_BITS-1:0] v_low, input [COORDINATE_BITS-1:0] v_high,
+    input signed [EYE_BITS-1:0] x, input signed [EYE_BITS-1:0] y, input signed [EYE_BITS-1:0] z,
+    input [SLOPE_BITS-1:0] dx, input [SLOPE_BITS-1:0] dy, input [SLOPE_BITS-1:0] dz, input [2:0] backward,
+    input mirrored, input [1:0] mirror_axis, input [COORDINATE_BITS-1:0] mirror
+);
+localparam LAST = (1 << COORDINATE_BITS) - 1, WIDE = EYE_BITS + SLOPE_BITS + 2;
+
+wire hit;
+wire [EYE_BITS-2:0] numerator;
+wire [SLOPE_BITS-1:0] denominator;
+
+rect_tester dut (
+    .clk(clk), .steps_find_intersection(started), .rect_axis(axis), .rect_position(position), .rect_u_low(u_low),
+    .rect_u_high(u_high), .rect_v_low(v_low), .rect_v_high(v_high), .eye_x(x), .eye_y(y), .eye_z(z),
+    .signs_dx(backward[0]), .signs_dy(backward[1]), .signs_dz(backward[2]), .slope_dx(dx), .slope_dy(dy), .slope_dz(dz),
+    .mirror_active(mirrored), .mirror_axis(mirror_axis), .mirror_position(mirror), .hit(hit), .numerator(numerator),
+    .denominator(denominator)
+);
+
+wire [SLOPE_BITS-1:0] mirror_slope = mirror_axis == 0 ? dx : mirror_axis == 1 ? dy : dz;
+function in_reach(input signed [EYE_BITS-1:0] place);
+    in_reach = place >= -LAST * REFLECTIONS && place <= LAST * (REFLECTIONS + 1);
+endfunction
+always @* begin
+    assume (axis < 3 && mirror_axis < 3 && u_low <= u_high && v_low <= v_high);
+    assume (in_reach(x) && in_reach(y) && in_reach(z));
+    if (mirrored) assume (mirror_slope != 0);
+end
+
+// The axes as the rectangle has them; all that follows is wide enough for any value.
+wire signed [WIDE-1:0] eye_a = axis == 0 ? x : axis == 1 ? y : z;
+wire signed [WIDE-1:0] eye_u = axis == 0 ? y : x;
+wire signed [WIDE-1:0] eye_v = axis == 2 ? y : z;
+wire [WIDE-1:0] e = axis == 0 ? dx : axis == 1 ? dy : dz;
+wire [WIDE-1:0] slope_u = axis == 0 ? dy : dx;
+wire [WIDE-1:0] slope_v = axis == 2 ? dy : dz;
+wire back = axis == 0 ? backward[0] : axis == 1 ? backward[1] : backward[2];
+wire back_u = axis == 0 ? backward[1] : backward[0];
+wire back_v = axis == 2 ? backward[1] : backward[2];
+wire on_a = mirrored && mirror_axis == axis;
+wire on_u = mirrored && mirror_axis == (axis == 0 ? 1 : 0);
+wire on_v = mirrored && mirror_axis == (axis == 2 ? 1 : 2);
+
+// t = n / e, and the whole part and the rest of the way on u and on v.
+wire signed [WIDE-1:0] plane = {1'b0, position};
+wire signed [WIDE-1:0] n = back ? eye_a - plane : plane - eye_a;
+wire ahead = e != 0 && n > 0;
+wire [WIDE-1:0] way_u = slope_u * n, way_v = slope_v * n;
+wire signed [WIDE-1:0] whole_u = ahead ? way_u / e : 0, whole_v = ahead ? way_v / e : 0;
+wire more_u = ahead && way_u % e != 0, more_v = ahead && way_v % e != 0;
+
+// P is base + more, or base - more, with 0 <= more < 1.
+function within(input signed [WIDE-1:0] base, input more, input negative, input signed [WIDE-1:0] low,
+                input signed [WIDE-1:0] high);
+    if (negative) within = (more ? base > low : base >= low) && base <= high;
+    else within = base >= low && (more ? base < high : base <= high);
+endfunction
+function beyond(input signed [WIDE-1:0] base, input more, input negative, input signed [WIDE-1:0] place);
+    beyond = negative ? base < place || base == place && more : base > place || base == place && more;
+endfunction
+wire signed [WIDE-1:0] base_u = back_u ? eye_u - whole_u : eye_u + whole_u;
+wire signed [WIDE-1:0] base_v = back_v ? eye_v - whole_v : eye_v + whole_v;
+wire signed [WIDE-1:0] low_u = {1'b0, u_low}, high_u = {1'b0, u_high}, low_v = {1'b0, v_low}, high_v = {1'b0, v_high};
+wire signed [WIDE-1:0] mirror_place = {1'b0, mirror};
+wire defined = ahead && within(base_u, more_u, back_u, low_u, high_u) && within(base_v, more_v, back_v, low_v, high_v)
+    && (!on_a || beyond(plane, 1'b0, back, mirror_place)) && (!on_u || beyond(base_u, more_u, back_u, mirror_place))
+    && (!on_v || beyond(base_v, more_v, back_v, mirror_place));
+
+// It comes three cycles later.
+reg [2:0] valid = 3'b000, hits;
+reg [WIDE-1:0] n_1, n_2, n_3, e_1, e_2, e_3;
+always @(posedge clk) begin
+    valid <= {valid, started};
+    hits <= {hits, defined};
+    n_1 <= n; n_2 <= n_1; n_3 <= n_2;
+    e_1 <= e; e_2 <= e_1; e_3 <= e_2;
+end
+always @* if (valid[2]) begin
+    assert (hit == hits[2]);
+    if (hit) assert (numerator == n_3 && denominator == e_3);
+end
+
+// Hits in front of a mirror that stands on the same axis, and on another.
+always @* cover (valid[2] && hit);
+endmodule
