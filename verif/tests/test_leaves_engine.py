@@ -16,8 +16,8 @@ from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.registers import register_map
 from raycaster.rtl.camera_axis import STEP
+from raycaster.rtl.engines import ENGINES
 from raycaster.rtl.interfaces import Plane, Point, Rect, SequentialRects, Steps
-from raycaster.rtl.ray_caster import ray_caster
 from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
 from raycaster.rtl.ray_caster_renderer import ray_caster_renderer
 from raycaster.rtl.ray_caster_system import SystemPorts, ray_caster_system
@@ -295,12 +295,16 @@ def test_ray_unit(config, tmp_path):
         any_config(units=1, rectangles=4, reflections=1, divider_bits=3),
         any_config(units=2, rectangles=8, reflections=2, fraction_bits=4, rounding="nearest", divider_bits=3),
         any_config(units=5, rectangles=5, reflections=1, fraction_bits=1, divider_bits=2, colour_bits=4),
+        any_config(engine="exact", units=1, rectangles=4, reflections=2),
+        any_config(engine="exact", units=2, rectangles=8, reflections=1),
+        any_config(engine="exact", units=5, rectangles=7, reflections=0, colour_bits=4),
     ],
     ids=config_id,
 )
 def test_ray_caster(config, tmp_path):
+    """Of either engine, whose ports are the same."""
     leaf = Leaf(
-        ray_caster,
+        ENGINES[config.engine],
         lambda: {
             "clk": bit(),
             "reset_ray_caster": bit(),
