@@ -324,7 +324,7 @@ def test_ray_caster(config, tmp_path):
     random = np.random.default_rng(seed())
     slopes = primary_slopes(config.screen_geometry)
     stimulus, results = [], []
-    for _ in range(80 if config.units == 1 else 12):
+    for _ in range((160 if config.engine == "exact" else 80) if config.units == 1 else 12):
         row, offset = int(random.integers(len(slopes))), int(random.integers(config.groups))
         group = slopes[row, offset * config.units : (offset + 1) * config.units]
         camera, table, background, reflections, golden = traced_scene(random, config, group)
