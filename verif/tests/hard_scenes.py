@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 
-from raycaster.configuration import WORLD_SIZE, Configuration
+from raycaster.configuration import CHANNEL_BITS, WORLD_SIZE, Configuration
 from raycaster.golden import exact, seed_engine
 from raycaster.golden.random_world import random_camera, random_rectangles
 from raycaster.golden.world import OTHER_AXES, Rectangles
@@ -74,3 +74,11 @@ def traced_scene(random: np.random.Generator, config: Configuration, slopes: np.
         if not rich:
             break
     return camera, table, background, reflections, golden
+
+
+def pixel_word(config: Configuration, colour) -> int:
+    """A pixel of 8 bits a channel as the design puts it out."""
+    word = 0
+    for channel in colour:
+        word = word << config.colour_bits | int(channel) >> (CHANNEL_BITS - config.colour_bits)
+    return word

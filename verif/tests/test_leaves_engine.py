@@ -8,9 +8,9 @@ from unittest import mock
 
 import numpy as np
 import pytest
-from hard_scenes import edged, rectangles_in_view, traced_scene
+from hard_scenes import edged, pixel_word, rectangles_in_view, traced_scene
 
-from raycaster.configuration import CHANNEL_BITS, SCREENS, WORLD_SIZE, Configuration, Screen, Span, configure
+from raycaster.configuration import SCREENS, WORLD_SIZE, Configuration, Screen, Span, configure
 from raycaster.golden import seed_engine
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
@@ -77,13 +77,6 @@ def usable_mask(table: Rectangles) -> int:
 
 def colour_word(colour) -> int:
     return int.from_bytes(bytes(np.asarray(colour, dtype=np.uint8)))
-
-
-def pixel_word(config: Configuration, colour) -> int:
-    word = 0
-    for channel in colour:
-        word = word << config.colour_bits | int(channel) >> (CHANNEL_BITS - config.colour_bits)
-    return word
 
 
 # ray_control ---------------------------------------------------------------------------------------------------------

@@ -5,9 +5,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hard_scenes import traced_scene
+from hard_scenes import pixel_word, traced_scene
 
-from raycaster.configuration import CHANNEL_BITS, WORLD_SIZE, Configuration, ConfigurationError, configure
+from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
@@ -546,13 +546,6 @@ def test_controls(function, config, tmp_path):
 
 
 # exact_unit ---------------------------------------------------------------------------------------------------------
-
-
-def pixel_word(config: Configuration, colour) -> int:
-    word = 0
-    for channel in colour:
-        word = word << config.colour_bits | int(channel) >> (CHANNEL_BITS - config.colour_bits)
-    return word
 
 
 def held_inputs(camera, background, reflections) -> dict[str, int]:
