@@ -92,6 +92,8 @@ def work_precision(
     axes.set(xlabel="time to render a frame at 50 MHz, ms", ylabel="wrong pixels, mean over scenes, %", yscale="log")
     axes.set_title(f"Work and precision; {FLOOR:g} % stands for none")
     axes.grid(alpha=0.3, which="both")
+    # Room for the words at the uppermost dots.
+    axes.margins(y=0.12)
     axes.legend()
     _save(figure, path)
 
