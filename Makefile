@@ -12,7 +12,8 @@ switch = $(if $(filter-out 0,$($(1))),--$(2))
 
 CONFIGURATION = $(strip \
     $(call option,ENGINE,engine) $(call option,UNITS,units) $(call option,RECTANGLES,rectangles) \
-    $(call option,REFLECTIONS,reflections) $(call option,ROWS,rows) $(call option,FRACTION_BITS,fraction-bits) \
+    $(call option,REFLECTIONS,reflections) $(call option,ROWS,rows) $(call option,SCALE,scale) \
+    $(call option,FRACTION_BITS,fraction-bits) \
     $(call option,ROUNDING,rounding) $(call option,DIVIDER_BITS,divider-bits) \
     $(call option,COLOUR_BITS,colour-bits) $(call option,SCREEN,screen) $(call switch,ALLOW_UNDERRUN,allow-underrun))
 
@@ -42,8 +43,8 @@ help:
 	@echo "  (GATES=1 simulates the netlist that Yosys makes of a small design; pictures in build/gates/)"
 	@echo "make quartus and make bitstream take  SCENE=path (default: scenes/mirror_room.toml)"
 	@echo "sim, verilog, quartus, bitstream and area take the configuration:"
-	@echo "  UNITS= RECTANGLES= REFLECTIONS= ROWS=240|200 FRACTION_BITS= ROUNDING=truncate|nearest"
-	@echo "  DIVIDER_BITS=auto|1|2|3 COLOUR_BITS= SCREEN=vga|tiny ALLOW_UNDERRUN=1"
+	@echo "  ENGINE=seed|exact|beam UNITS= RECTANGLES= REFLECTIONS= ROWS=240|200|180 SCALE=1|2|4"
+	@echo "  FRACTION_BITS= ROUNDING=truncate|nearest DIVIDER_BITS=auto|1|2|3 COLOUR_BITS= SCREEN=vga|tiny ALLOW_UNDERRUN=1"
 	@echo "  (rows and reflections come from the scene where they are not given)"
 	@echo "PYTHON3= is the Python, 3.11 or newer, that the environment is made with."
 

@@ -291,7 +291,8 @@ def route(config: Configuration, directory: Path) -> float:
         raise UserError(f"{NEXTPNR} is missing; pip install 'raycaster[fpga]'")
     measure(config, FAMILIES["ecp5"], directory)
     prepare_wasm(nextpnr)
-    command = [nextpnr, "--85k", "--package", "CABGA381", "--speed", "6", "--json", "netlist.json", "--freq", "50"]
+    command = [nextpnr, "--85k", "--package", "CABGA381", "--speed", "6", "--json", "netlist.json"]
+    command += ["--freq", f"{config.screen_geometry.clock_hz / 1e6:g}"]
     command += ["--lpf-allow-unconstrained", "--timing-allow-fail", "--report", "report.json", "-q"]
     done = run_program(command, directory, 3 * TIMEOUT)
     if done.returncode:
@@ -332,11 +333,11 @@ def show_chips(areas: Mapping[str, Area], models: Mapping[str, Model], config: C
     """Print how many units the boards' chips have room for."""
     table = _table("what fits", "board", "chip", "has", f"{config.units} units", "share", "multipliers", "most units")
     for chip in CHIPS:
-        if model := models.get(chip.family):
-            area = areas[chip.family]
+        if area := areas.get(chip.family):
+            model = models.get(chip.family)
             share = f"{area.elements / chip.elements:.0%}"
             multipliers = f"{area.multipliers} of {chip.multipliers}"
-            most = str(model.fitting(chip, config.screen_geometry.columns))
+            most = str(model.fitting(chip, config.screen_geometry.columns)) if model else ""
             table.add_row(chip.board, chip.name, f"{chip.elements:,}", f"{area.elements:,}", share, multipliers, most)
     console.print(table)
 

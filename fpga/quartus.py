@@ -17,13 +17,13 @@ import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 
-from raycaster.configuration import CLOCKS_PER_PIXEL, Configuration
+from raycaster.configuration import Configuration
 from raycaster.design import design_for
 from raycaster.errors import UserError
 from raycaster.fpga.board import BOARDS, TOP, Board, check_project, find_board, top_ports
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.rtl.convert import write_system
-from raycaster.rtl.take_home import CLOCK_NS
+from raycaster.rtl.take_home import clock_period
 from raycaster.scene import Scene
 from raycaster.tools import find_program, run_program
 
@@ -61,6 +61,11 @@ def write_project(board: Board, config: Configuration, scene: Scene, directory: 
     ports = top_ports(top)
     pins = _pin_assignments(board, ports)
     check_project(board, top, pins)
+    if config.screen_geometry.clocks_per_pixel == 1:
+        raise UserError(
+            f"engine: the boards' projects run at 50 MHz, and the {config.engine} engine at the pixel clock; take "
+            "make verilog, and a PLL"
+        )
     directory.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=directory.parent, prefix=f".{directory.name}-") as scratch:
         written = Path(scratch) / directory.name
@@ -142,18 +147,19 @@ def _constraints(board: Board, config: Configuration, ports: dict[str, str]) -> 
     asynchronous = _patterns(bit for bit, direction in ports.items() if direction == "input" and bit != board.clock)
     start = f"""# SPDX-License-Identifier: MIT
 # RayCaster, {config.name}, on the {board.title}.
-create_clock -name clk -period {CLOCK_NS}.000 [get_ports {board.clock}]
+create_clock -name clk -period {clock_period(config)} [get_ports {board.clock}]
 derive_clock_uncertainty
 
 # Buttons and switches know no clock, and are synchronised.
 set_false_path -from [get_ports {{{asynchronous}}}]
 """
     sync = ["VGA_HS", "VGA_VS"]
+    divided = config.screen_geometry.clocks_per_pixel
     if board.dac_clock is None:
         pins = _patterns(bit for bit, direction in ports.items() if direction == "output")
         return f"""{start}
 # Nothing takes these at a clock: the monitor sees them change. Half a pixel keeps them together.
-set_max_delay -to [get_ports {{{pins}}}] {CLOCK_NS}.000
+set_max_delay -to [get_ports {{{pins}}}] {clock_period(config)}
 set_min_delay -to [get_ports {{{pins}}}] 0.000
 """
     taken = _patterns(
@@ -161,7 +167,7 @@ set_min_delay -to [get_ports {{{pins}}}] 0.000
     )
     return f"""{start}
 # The pixel clock is a register, and goes to the DAC's pin.
-create_generated_clock -name vga_clk -divide_by {CLOCKS_PER_PIXEL} -source [get_ports {board.clock}] \\
+create_generated_clock -name vga_clk -divide_by {divided} -source [get_ports {board.clock}] \\
     [get_registers {{{_CLOCK_REGISTER}}}]
 create_generated_clock -name dac_clk -source [get_registers {{{_CLOCK_REGISTER}}}] [get_ports {board.dac_clock}]
 
@@ -169,10 +175,10 @@ create_generated_clock -name dac_clk -source [get_registers {{{_CLOCK_REGISTER}}
 # that takes it, and again only a pixel later: hold is not at the edge that the clocks alone suggest.
 set_output_delay -clock dac_clk -max {_SETUP_NS:.3f} [get_ports {{{taken}}}]
 set_output_delay -clock dac_clk -min {-_HOLD_NS:.3f} [get_ports {{{taken}}}]
-set_multicycle_path -hold -start -from [get_clocks clk] -to [get_clocks dac_clk] {CLOCKS_PER_PIXEL - 1}
+set_multicycle_path -hold -start -from [get_clocks clk] -to [get_clocks dac_clk] {divided - 1}
 
 # The sync goes past the DAC to the monitor: half a pixel keeps it with the picture.
-set_max_delay -to [get_ports {{{" ".join(sync)}}}] {CLOCK_NS}.000
+set_max_delay -to [get_ports {{{" ".join(sync)}}}] {clock_period(config)}
 set_min_delay -to [get_ports {{{" ".join(sync)}}}] 0.000
 """
 

@@ -37,7 +37,7 @@ def trace(
     reflections: int,
 ) -> np.ndarray:
     """The colours of rays, uint8 (rays, 3); the arguments are those of `raycaster.golden.exact.trace`."""
-    if config.engine == "exact":
+    if config.engine != "seed":
         return exact.trace(rectangles, camera, background, slopes, reflections).colours
     return seed_engine.trace(
         rectangles, camera, background, slopes, reflections,

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any, Literal
 
@@ -23,11 +23,6 @@ VIEW_DISTANCE = 100
 CHANNEL_BITS = 8
 """Bits a colour channel has until it leaves for the monitor."""
 
-CLOCKS_PER_PIXEL = 2
-"""System clocks a VGA pixel: 50 MHz over 25 MHz."""
-
-CLOCK_HZ = 50_000_000
-
 RESULT_LATENCY = {"seed": 6, "exact": 4}
 """By engine, cycles from the end of a pass's last slot to the first cycle of the next pass. Seed: slope and plane
 latched, product, divider loaded, hit point, depth compared, ray stored (see `rtl/ray_control.py`). Exact: two more
@@ -43,7 +38,7 @@ class ConfigurationError(UserError):
 
 @dataclass(frozen=True)
 class Span:
-    """One direction of a video timing, in pixels or lines, in the order in which a monitor sees it."""
+    """One direction of a video timing, in pixels or lines."""
 
     visible: int
     front: int
@@ -73,6 +68,11 @@ class Screen:
     doubling: int
     horizontal: Span
     vertical: Span
+    clocks_per_pixel: int = 2
+    """System clocks a pixel of the monitor; two give the line-buffered engines twice the time."""
+    pixel_hz: int = 25_000_000
+    scale: int = 1
+    """Samples a unit of slope: the resolution scale."""
 
     @property
     def centre_column(self) -> int:
@@ -80,44 +80,95 @@ class Screen:
         return self.columns // 2
 
     @property
+    def view_distance(self) -> int:
+        """Slope along x of every primary ray."""
+        return VIEW_DISTANCE * self.scale
+
+    @property
+    def clock_hz(self) -> int:
+        """Of the system clock."""
+        return self.pixel_hz * self.clocks_per_pixel
+
+    @property
     def row_cycles(self) -> int:
         """System cycles in which one row of rays is shown, and the next must be ready."""
-        return self.doubling * self.horizontal.total * CLOCKS_PER_PIXEL
+        return self.doubling * self.horizontal.total * self.clocks_per_pixel
 
     @property
     def frame_cycles(self) -> int:
         """System cycles of a frame, blanking included."""
-        return self.horizontal.total * self.vertical.total * CLOCKS_PER_PIXEL
+        return self.horizontal.total * self.vertical.total * self.clocks_per_pixel
+
+    def scaled(self, scale: int) -> Screen:
+        """The same view on the same monitor, sampled `scale` times finer in both directions."""
+        if scale == 1:
+            return self
+        return replace(
+            self,
+            columns=self.columns * scale,
+            rows=self.rows * scale,
+            horizon_row=self.horizon_row * scale,
+            doubling=self.doubling // scale,
+            scale=scale,
+        )
 
 
 _VGA_LINE = Span(visible=640, front=16, sync=96, back=48, active_high=False)
+_VGA_240 = Screen(320, 240, 190, 2, _VGA_LINE, Span(480, 10, 2, 33, active_high=False))
+_VGA_200 = Screen(320, 200, 150, 2, _VGA_LINE, Span(400, 12, 2, 35, active_high=True))
+_HD_180 = Screen(
+    320, 180, 130, 4, Span(1280, 110, 40, 220, active_high=True), Span(720, 5, 5, 20, active_high=True),
+    pixel_hz=74_250_000,
+)  # fmt: skip
+_TINY_LINES = Span(96, 2, 2, 4, active_high=False)
+# The line is just long enough for 32 units to have the same 320 cycles a group as on the full screen.
+_TINY_48 = Screen(64, 48, 38, 2, Span(128, 8, 16, 8, active_high=False), _TINY_LINES)
+# And this one for the beam engine to take up to 32 rectangles in its blanking.
+_TINY_BEAM_48 = replace(_TINY_48, horizontal=Span(128, 16, 32, 64, active_high=False))
+
 SCREENS: Mapping[tuple[str, int], Screen] = {
-    ("vga", 240): Screen(320, 240, 190, 2, _VGA_LINE, Span(480, 10, 2, 33, active_high=False)),
-    ("vga", 200): Screen(320, 200, 150, 2, _VGA_LINE, Span(400, 12, 2, 35, active_high=True)),
-    # The line is just long enough for 32 units to have the same 320 cycles a group as on the full screen.
-    ("tiny", 48): Screen(64, 48, 38, 2, Span(128, 8, 16, 8, active_high=False), Span(96, 2, 2, 4, active_high=False)),
+    ("vga", 240): _VGA_240,
+    ("vga", 200): _VGA_200,
+    ("tiny", 48): _TINY_48,
 }
-"""By screen name and rows."""
+"""By screen name and rows, at scale 1, for the engines with a line buffer."""
+
+BEAM_SCREENS: Mapping[tuple[str, int], Screen] = {
+    place: replace(screen, clocks_per_pixel=1)
+    for place, screen in {
+        ("vga", 240): _VGA_240,
+        ("vga", 200): _VGA_200,
+        ("vga", 180): _HD_180,
+        ("tiny", 48): _TINY_BEAM_48,
+    }.items()
+}
+"""By screen name and rows, at scale 1, for the beam engine, which takes a clock a pixel."""
 
 
 @validated_dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid"))
 class Configuration:
     """Everything that distinguishes one generated design from another.
 
-    `rows`, `units` and `divider_bits` may be left to the default (`None`, `"auto"`); a constructed configuration holds
-    the numbers that were chosen, so that equal designs compare equal. An engine without quotients has no fraction, no
-    rounding and no divider bits.
+    `rows`, `scale`, `units` and `divider_bits` may be left to the default (`None`, `"auto"`); a constructed
+    configuration holds the numbers that were chosen, so that equal designs compare equal. An engine without quotients
+    has no fraction, no rounding and no divider bits; the beam engine has one unit, a pixel a clock and every scale that
+    its monitor has pixels for.
 
     Raises `ConfigurationError` through `configure`; constructed directly, pydantic's `ValidationError`.
     """
 
-    engine: Literal["seed", "exact"] = Field("seed", description="what computes the rays: seed or exact")
+    engine: Literal["seed", "exact", "beam"] = Field("seed", description="what computes the rays: seed, exact or beam")
     units: int | None = Field(
-        None, ge=1, description="ray units in parallel, a divisor of the columns: 32, or the fewest of the exact engine"
+        None, ge=1, description="ray units in parallel, a divisor of the columns: 32; the fewest of the exact engine; 1"
     )
     rectangles: int = Field(12, ge=1, le=32, description="rectangles that the scene memory holds")
     reflections: int = Field(1, ge=0, le=2, description="reflections a ray may have")
-    rows: int | None = Field(None, description="rows of rays: 240 (640x480@60) or 200 (640x400@70)")
+    rows: int | None = Field(
+        None, description="rows of rays: 240 (640x480@60), 200 (640x400@70) or, beam only, 180 (1280x720@60)"
+    )
+    scale: int | None = Field(
+        None, description="resolution scale: 1; beam: 1, 2 or 4, and as fine as the monitor where it is left out"
+    )
     fraction_bits: int = Field(0, ge=0, le=8, description="fraction bits of origins, planes and quotients")
     rounding: Literal["truncate", "nearest"] = Field("truncate", description="of quotients")
     divider_bits: int | Literal["auto"] = Field("auto", description="quotient bits a cycle: auto, 1, 2 or 3")
@@ -128,10 +179,13 @@ class Configuration:
     @model_validator(mode="after")
     def _complete(self) -> Configuration:
         self._choose_rows()
-        if self.engine == "exact":
+        self._choose_scale()
+        if self.engine != "seed":
             self._refuse_quotients()
         if self.units is None:
             self._choose_units()
+        elif self.engine == "beam" and self.units != 1:
+            raise ValueError(f"units: the beam engine is one unit that draws a pixel a clock, not {self.units}")
         if self.screen_geometry.columns % self.units:
             columns = self.screen_geometry.columns
             divisors = ", ".join(str(n) for n in range(1, columns + 1) if columns % n == 0)
@@ -140,26 +194,44 @@ class Configuration:
         self._check_budget()
         return self
 
+    @property
+    def _screens(self) -> Mapping[tuple[str, int], Screen]:
+        return BEAM_SCREENS if self.engine == "beam" else SCREENS
+
     def _choose_rows(self) -> None:
-        allowed = [rows for screen, rows in SCREENS if screen == self.screen]
+        allowed = [rows for screen, rows in self._screens if screen == self.screen]
         if self.rows is None:
             object.__setattr__(self, "rows", allowed[0])
         elif self.rows not in allowed:
             choices = " or ".join(map(str, allowed))
-            beam = "; 180 rows need the beam engine" if self.rows == 180 else ""
+            beam = "; 180 rows need the beam engine, ENGINE=beam" if self.rows == 180 and self.screen == "vga" else ""
             raise ValueError(f"rows: the {self.screen} screen has {choices} rows, not {self.rows}{beam}")
+
+    def _choose_scale(self) -> None:
+        """The finest that the monitor shows, where the engine is one that has scales."""
+        finest = self._screens[self.screen, self.rows].doubling if self.engine == "beam" else 1
+        if self.scale is None:
+            object.__setattr__(self, "scale", finest)
+        elif self.scale < 1 or finest % self.scale:
+            scales = " or ".join(str(scale) for scale in range(1, finest + 1) if finest % scale == 0)
+            beam = "; scales need the beam engine, ENGINE=beam" if self.engine != "beam" else ""
+            shown = f"the {self.engine} engine shows {self.rows} rows at {scales}"
+            raise ValueError(f"scale: {shown}, not {self.scale}{beam}")
 
     def _refuse_quotients(self) -> None:
         if self.fraction_bits:
-            raise ValueError(f"fraction_bits: the exact engine has none, not {self.fraction_bits}")
+            raise ValueError(f"fraction_bits: the {self.engine} engine has none, not {self.fraction_bits}")
         if self.rounding != "truncate":
-            raise ValueError(f"rounding: the exact engine does not round; leave out {self.rounding}")
+            raise ValueError(f"rounding: the {self.engine} engine does not round; leave out {self.rounding}")
         if self.divider_bits not in ("auto", 0):
-            raise ValueError(f"divider_bits: the exact engine has no divider; leave out {self.divider_bits}")
+            raise ValueError(f"divider_bits: the {self.engine} engine has no divider; leave out {self.divider_bits}")
         object.__setattr__(self, "divider_bits", 0)
 
     def _choose_units(self) -> None:
-        """The seed's 32; of the exact engine as few as meet the row budget, or all columns where none do."""
+        """The seed's 32; of the exact engine as few as meet the row budget, or all columns where none do; one beam."""
+        if self.engine == "beam":
+            object.__setattr__(self, "units", 1)
+            return
         columns = self.screen_geometry.columns
         fitting = (
             units
@@ -169,7 +241,7 @@ class Configuration:
         object.__setattr__(self, "units", 32 if self.engine == "seed" else next(fitting, columns))
 
     def _choose_divider_bits(self) -> None:
-        if self.engine == "exact":
+        if self.engine != "seed":
             return
         if self.divider_bits == "auto":
             costs = {bits: self._group_cycles(bits) for bits in (1, 2, 3)}
@@ -190,8 +262,8 @@ class Configuration:
 
     @cached_property
     def screen_geometry(self) -> Screen:
-        """The screen of this name and these rows."""
-        return SCREENS[self.screen, self.rows]
+        """The screen of this name, these rows and this scale."""
+        return self._screens[self.screen, self.rows].scaled(self.scale)
 
     @property
     def groups(self) -> int:
@@ -218,10 +290,12 @@ class Configuration:
 
     @property
     def result_latency(self) -> int:
-        """As `RESULT_LATENCY`."""
+        """As `RESULT_LATENCY`, of the engines that are there."""
         return RESULT_LATENCY[self.engine]
 
     def _group_cycles(self, divider_bits: int) -> int:
+        if self.engine == "beam":
+            return 1
         passes = self.reflections + 1
         return passes * (self.rectangles * self._slot_cycles(divider_bits) + self.result_latency) + GROUP_OVERHEAD
 
@@ -243,8 +317,9 @@ class Configuration:
         """A short file name that differs wherever the generated hardware does."""
         rounding = "n" if self.rounding == "nearest" else "t"
         quotients = f"-f{self.fraction_bits}{rounding}-d{self.divider_bits}" if self.engine == "seed" else ""
+        scale = f"-s{self.scale}" if self.engine == "beam" else ""
         return (
-            f"{self.engine}-{self.screen}{self.rows}-u{self.units}-r{self.rectangles}-m{self.reflections}"
+            f"{self.engine}-{self.screen}{self.rows}{scale}-u{self.units}-r{self.rectangles}-m{self.reflections}"
             f"{quotients}-c{self.colour_bits}"
         )
 

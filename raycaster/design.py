@@ -47,8 +47,8 @@ def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, An
     scene = load_scene(path)
     chosen = {**(defaults or {}), **options}
     if "rows" not in chosen and chosen.get("screen", "vga") == "vga":
-        if scene.rows == 180:
-            raise UserError(f"{path}: rows: 180 rows need the beam engine; give 240 or 200, or ROWS=240")
+        if scene.rows == 180 and chosen.get("engine") != "beam":
+            raise UserError(f"{path}: rows: 180 rows need the beam engine; give ENGINE=beam, or ROWS=240 or 200")
         chosen["rows"] = scene.rows
     chosen.setdefault("reflections", scene.reflections)
     configuration = configure(**chosen)

@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
-from raycaster.configuration import CLOCK_HZ, Configuration, ConfigurationError, configure
+from raycaster.configuration import Configuration, ConfigurationError, configure
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Candidate:
 
 def frame_ms(config: Configuration, row_cycles: int) -> float:
     """Milliseconds that all rows of a frame take at the system's clock."""
-    return 1000 * config.screen_geometry.rows * row_cycles / CLOCK_HZ
+    return 1000 * config.screen_geometry.rows * row_cycles / config.screen_geometry.clock_hz
 
 
 def seed_designs(fractions: Iterable[int], units: Iterable[int], screen: str) -> list[Configuration]:

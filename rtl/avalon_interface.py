@@ -9,7 +9,7 @@ from raycaster.rtl.hierarchy import constant
 from raycaster.rtl.scene_word import scene_word
 from raycaster.rtl.widths import COLOUR_BITS, CYCLE_BITS, WORD_BITS, bit, unsigned
 
-ENGINE_CODES = {"seed": 0, "exact": 1}
+ENGINE_CODES = {"seed": 0, "exact": 1, "beam": 2}
 
 
 def engine_word(config: Configuration) -> int:
@@ -20,7 +20,7 @@ def engine_word(config: Configuration) -> int:
         nearest=int(config.rounding == "nearest"),
         divider_bits=config.divider_bits,
         reflections=config.reflections,
-        scale=1,
+        scale=config.scale,
         colour_bits=config.colour_bits,
     )
 

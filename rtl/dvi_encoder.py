@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """From the VGA output to the symbols of a DVI link."""
 
-from myhdl import Signal, always_comb, always_seq, block
+from myhdl import Signal, always, always_comb, block
 
 from raycaster.configuration import CHANNEL_BITS
 from raycaster.rtl.hierarchy import constant
@@ -13,9 +13,9 @@ class DviPorts:
     """Signals for every port of dvi_encoder; `all()` are its arguments, by name."""
 
     def __init__(self):
-        self.clk = bit()
+        self.clk, self.ready, self.pixel_end = bit(), bit(), bit()
         self.vga_r, self.vga_g, self.vga_b = (unsigned(CHANNEL_BITS) for _ in range(3))
-        self.vga_hs, self.vga_vs, self.vga_blank_n, self.vga_clk = (bit() for _ in range(4))
+        self.vga_hs, self.vga_vs, self.vga_blank_n = (bit() for _ in range(3))
         self.blue, self.green, self.red = (unsigned(SYMBOL_BITS) for _ in range(3))
         self.pixel = bit()
 
@@ -25,18 +25,20 @@ class DviPorts:
 
 
 @block
-def dvi_encoder(clk, vga_r, vga_g, vga_b, vga_hs, vga_vs, vga_blank_n, vga_clk, blue, green, red, pixel):
+def dvi_encoder(clk, ready, pixel_end, vga_r, vga_g, vga_b, vga_hs, vga_vs, vga_blank_n, blue, green, red, pixel):
     """Channel 0 carries blue and the syncs, 1 green, 2 red, as DVI 1.0 has it, section 2.2.3.
 
-    vga_*: as ray_caster_module has them, 8 bits a colour, two cycles of clk a pixel; blue, green, red: symbols, each
-    stable for a pixel, from the second rise of vga_clk after their pixel on; pixel: rises with them.
+    vga_*: as ray_caster_module has them, 8 bits a colour, one or two cycles of clk a pixel; pixel_end: high in the last
+    of them; blue, green, red: symbols, each stable for a pixel, from the second end of a pixel after their own on;
+    pixel: changes with them, and is low while ready is, which may change at any time.
     """
     syncs = unsigned(2)
     none = constant(0, 2)
+    marked = bit()
 
-    blue_channel = tmds_encoder(clk, vga_clk, vga_b, syncs, vga_blank_n, blue)
-    green_channel = tmds_encoder(clk, vga_clk, vga_g, none, vga_blank_n, green)
-    red_channel = tmds_encoder(clk, vga_clk, vga_r, none, vga_blank_n, red)
+    blue_channel = tmds_encoder(clk, pixel_end, vga_b, syncs, vga_blank_n, blue)
+    green_channel = tmds_encoder(clk, pixel_end, vga_g, none, vga_blank_n, green)
+    red_channel = tmds_encoder(clk, pixel_end, vga_r, none, vga_blank_n, red)
 
     # Control bits of channel 0.
     @always_comb
@@ -44,9 +46,17 @@ def dvi_encoder(clk, vga_r, vga_g, vga_b, vga_hs, vga_vs, vga_blank_n, vga_clk, 
         syncs.next[0] = vga_hs
         syncs.next[1] = vga_vs
 
-    # Symbols change where vga_clk is high, which is the second half of a pixel.
-    @always_seq(clk.posedge, reset=None)
+    # Symbols change at the end of a pixel, and the mark with them.
+    @always(clk.posedge)
     def mark():
-        pixel.next = vga_clk
+        if not ready:
+            marked.next = False
+        elif pixel_end:
+            marked.next = not marked
 
-    return blue_channel, green_channel, red_channel, place_syncs, mark
+    # The port cannot be read back.
+    @always_comb
+    def show_mark():
+        pixel.next = marked
+
+    return blue_channel, green_channel, red_channel, place_syncs, mark, show_mark

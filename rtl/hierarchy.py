@@ -287,3 +287,8 @@ def unconnected(width: int) -> _Signal:
 def constant(value: int, width: int) -> Constant:
     """A signal for an instance's input that never changes; of one bit it is a bool, as such inputs are."""
     return Constant(intbv(value)[width:] if width > 1 else bool(value))
+
+
+def signed_constant(value: int, width: int) -> Constant:
+    """The same in two's complement."""
+    return Constant(intbv(value, min=-(1 << (width - 1)), max=1 << (width - 1)))

@@ -5,13 +5,19 @@ from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, Configuration
 from raycaster.rtl.widths import (
     AXIS_BITS,
     COLOUR_BITS,
+    DISTANCE_BITS,
     SLOPE_BITS,
+    TURN_BITS,
     WORD_BITS,
     bit,
+    exact_slope_bits,
+    eye_bits,
+    fold_bits,
     index_bits,
     position_bits,
     signed,
     unsigned,
+    walk_bits,
 )
 
 
@@ -119,6 +125,64 @@ class Surface(Interface):
         self.colour = unsigned(COLOUR_BITS)
 
 
+class Facet(Interface):
+    """A rectangle as one row's rays from the camera see it, u being y unless the plane is on y, then x, and v the rest.
+
+    distance: n = k - E[a] from the camera to its plane; way_v: n D[v], the same for all columns. usable: it may be hit.
+    """
+
+    def __init__(self, config: Configuration):
+        self.usable = bit()
+        self.axis = unsigned(AXIS_BITS)
+        self.distance = signed(DISTANCE_BITS)
+        self.way_v = signed(walk_bits(config))
+        self.colour = unsigned(COLOUR_BITS)
+
+
+class Walk(Interface):
+    """What cross-multiplication compares, and the column changes: n D[u], and (bound - E) D[a] for the four bounds."""
+
+    def __init__(self, bits: int):
+        self.way_u, self.low_u, self.high_u, self.low_v, self.high_v = (signed(bits) for _ in range(5))
+
+
+class Reflector(Interface):
+    """A mirror that a ray left, if `active`: its axis, and the distance from the camera to its plane."""
+
+    def __init__(self):
+        self.active = bit()
+        self.axis = unsigned(AXIS_BITS)
+        self.distance = signed(DISTANCE_BITS)
+
+
+class Fold(Interface):
+    """How a straight ray through all mirrors so far folds back into the room; see `ray_fold`.
+
+    back_x, back_y, back_z: the folded ray runs the other way there; turn_x ...: T, what is added to it there; u_x ...,
+    v_x ...: for a rectangle on the axis, what is added to its way along u, and v, one more where that is complemented;
+    border_x ...: n D of the last mirror's n. mirror: the last one; mirror_back: the folded ray runs down from it.
+    """
+
+    def __init__(self, config: Configuration):
+        self.back_x, self.back_y, self.back_z, self.mirror_back = (bit() for _ in range(4))
+        self.turn_x, self.turn_y, self.turn_z = (signed(TURN_BITS) for _ in range(3))
+        self.u_x, self.u_y, self.u_z, self.v_x, self.v_y, self.v_z = (signed(fold_bits(config)) for _ in range(6))
+        self.border_x, self.border_y, self.border_z = (signed(walk_bits(config)) for _ in range(3))
+        self.active = bit()
+        self.axis = unsigned(AXIS_BITS)
+        self.distance = signed(DISTANCE_BITS)
+
+
+class Candidate(Interface):
+    """A hit, if `valid`, at t = numerator / denominator, on the rectangle `index`."""
+
+    def __init__(self, config: Configuration):
+        self.valid = bit()
+        self.numerator = unsigned(eye_bits(config) - 1)
+        self.denominator = unsigned(exact_slope_bits(config))
+        self.index = unsigned(index_bits(config))
+
+
 class SceneBus(Interface):
     """What the registers tell the scene memories: a write, or where to read, and when the shadow moves on.
 
@@ -143,6 +207,10 @@ class SequentialRects(Interface):
         self.index = unsigned(index_bits(config))
         self.fetch = bit()
         self.rect = Rect()
+
+
+class PipelinedRects(SequentialRects):
+    """The same, but the rectangle comes two cycles after fetch with its index; a new one may be fetched each cycle."""
 
 
 class ParallelRects(Interface):

@@ -7,7 +7,7 @@ import dataclasses
 from collections.abc import Sequence
 from importlib.metadata import version
 
-from raycaster.configuration import CLOCK_HZ, Configuration
+from raycaster.configuration import Configuration
 from raycaster.registers import compile_registers
 from raycaster.rtl.hierarchy import Port
 
@@ -48,7 +48,7 @@ class Interface:
 
 _IN_CLOCK = {"associatedClock": "clock", "associatedReset": "reset"}
 INTERFACES = (
-    Interface("clock", "clock end", {"clockRate": CLOCK_HZ}, roles={"clk": "clk"}),
+    Interface("clock", "clock end", {}, roles={"clk": "clk"}),
     Interface("reset", "reset end", {"associatedClock": "clock", "synchronousEdges": "BOTH"}, roles={"reset": "reset"}),
     Interface(
         "s0",
@@ -111,6 +111,8 @@ def component(config: Configuration, ports: Sequence[Port], sources: Sequence[st
         lines += ["", f"add_interface {interface.name} {interface.kind}"]
         for name, value in interface.properties.items():
             lines.append(f"set_interface_property {interface.name} {name} {value}")
+        if interface.name == "clock":
+            lines.append(f"set_interface_property clock clockRate {config.screen_geometry.clock_hz}")
         for port in ports:
             if role := interface.role(port.name):
                 direction = "Output" if port.output else "Input"

@@ -7,9 +7,9 @@ from raycaster.configuration import Configuration
 from raycaster.registers import address_bits
 from raycaster.rtl.avalon_interface import avalon_interface
 from raycaster.rtl.camera_mem import camera_mem
-from raycaster.rtl.interfaces import Point, SceneBus, SequentialRects
-from raycaster.rtl.ray_caster_renderer import ray_caster_renderer
+from raycaster.rtl.interfaces import Point, SceneBus
 from raycaster.rtl.rect_mem import rect_mem
+from raycaster.rtl.renderers import RECTS, RENDERERS
 from raycaster.rtl.widths import COLOUR_BITS, CYCLE_BITS, WORD_BITS, bit, unsigned
 
 
@@ -58,12 +58,12 @@ def ray_caster_module(
     vga_clk,
     config: Configuration,
 ):
-    """Registers, scene memories and renderer in one clock domain of 50 MHz; reset is synchronous and active high.
+    """Registers, scene memories and renderer in one clock domain, screen.clock_hz; reset is synchronous, active high.
 
-    The bus counts 32-bit words. The interrupt is a level. Video data changes at the falling edge of vga_clk, 25 MHz.
+    The bus counts 32-bit words. The interrupt is a level. Video data changes at the falling edge of vga_clk, a pixel's.
     """
     bus = SceneBus(len(avs_s0_address))
-    rects = SequentialRects(config)
+    rects = RECTS[config.engine](config)
     camera = Point()
     camera_word, rect_word = unsigned(WORD_BITS), unsigned(WORD_BITS)
     bad_rectangle = bit()
@@ -79,7 +79,7 @@ def ray_caster_module(
     )  # fmt: skip
     camera_memory = camera_mem(clk, reset, bus, camera_word, camera)
     rect_memory = rect_mem(clk, reset, bus, rect_word, bad_rectangle, rects, config)
-    renderer = ray_caster_renderer(
+    renderer = RENDERERS[config.engine](
         clk, reset, run, reflections, background, camera, rects, start_screen, busy, underrun, row_cycles,
         group_cycles, vga_r, vga_g, vga_b, vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_clk, config,
     )  # fmt: skip

@@ -3,7 +3,7 @@
 
 from myhdl import always, always_comb, block
 
-from raycaster.configuration import VIEW_DISTANCE, Configuration
+from raycaster.configuration import Configuration
 from raycaster.rtl.widths import row_bits, signed, unsigned
 
 
@@ -17,6 +17,7 @@ def ray_generator(clk, steps, row, column_base, column_offset, initial_signs, sl
     """
     slope_bits = len(slope.dx)
     units = config.units
+    view_distance = config.screen_geometry.view_distance
     centre_column = config.screen_geometry.centre_column
     horizon_row = config.screen_geometry.horizon_row
     # One group past the last is legal: the counter rests there.
@@ -66,7 +67,7 @@ def ray_generator(clk, steps, row, column_base, column_offset, initial_signs, sl
     @always(clk.posedge)
     def load():
         if steps.screen_to_ray:
-            slope.dx.next = VIEW_DISTANCE
+            slope.dx.next = view_distance
             slope.dy.next = dy_magnitude
             slope.dz.next = dz_magnitude
             initial_signs.dx.next = False

@@ -6,7 +6,7 @@ from myhdl import ConcatSignal, always, always_comb, block
 from raycaster.configuration import Configuration
 from raycaster.registers import register_map
 from raycaster.rtl.hierarchy import constant
-from raycaster.rtl.interfaces import ParallelRects, Rect
+from raycaster.rtl.interfaces import ParallelRects, PipelinedRects, Rect
 from raycaster.rtl.rect_slot import rect_slot
 from raycaster.rtl.rect_sorter import rect_sorter
 from raycaster.rtl.widths import WORD_BITS, bit, index_bits, signed, unsigned
@@ -17,7 +17,7 @@ def rect_mem(clk, reset, bus, read_word, bad_rectangle, rects, config: Configura
     """config.rectangles slots, and the view of the live ones that the engine asks for.
 
     read_word: the shadow's word at bus.address, combinational, 0 where there is none. bad_rectangle: the shadow holds
-    an enabled rectangle without a plane. rects: SequentialRects or ParallelRects.
+    an enabled rectangle without a plane. rects: Sequential-, Pipelined- or ParallelRects.
     """
     count = config.rectangles
     table_slot = register_map(1)["rectangle[0].corner_0"].address // 4
@@ -94,6 +94,28 @@ def rect_mem(clk, reset, bus, read_word, bad_rectangle, rects, config: Configura
     chosen_corner_0, chosen_corner_1, chosen_surface = (unsigned(WORD_BITS) for _ in range(3))
     sorted_rect = Rect()
     sorter = rect_sorter(chosen_corner_0, chosen_corner_1, chosen_surface, sorted_rect)
+
+    if isinstance(rects, PipelinedRects):
+        # Held until the next one is asked for.
+        @always(clk.posedge)
+        def choose_and_hold():
+            if rects.fetch:
+                chosen_corner_0.next = live_corners_0[rects.index]
+                chosen_corner_1.next = live_corners_1[rects.index]
+                chosen_surface.next = live_surfaces[rects.index]
+
+        # Sorted a cycle later.
+        @always(clk.posedge)
+        def present_each():
+            rects.rect.axis.next = sorted_rect.axis
+            rects.rect.position.next = sorted_rect.position
+            rects.rect.u_low.next = sorted_rect.u_low
+            rects.rect.u_high.next = sorted_rect.u_high
+            rects.rect.v_low.next = sorted_rect.v_low
+            rects.rect.v_high.next = sorted_rect.v_high
+            rects.rect.colour.next = sorted_rect.colour
+
+        return common, sorter, choose_and_hold, present_each
 
     # The rectangle that is asked for.
     @always_comb

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from raycaster.configuration import CLOCKS_PER_PIXEL, Configuration
+from raycaster.configuration import Configuration
 from raycaster.register_views import HEADER, write_header
 from raycaster.registers import address_bits
 from raycaster.rtl.avalon_interface import size_word
@@ -18,9 +18,6 @@ from raycaster.rtl.platform_designer import COMPONENT, component
 
 TOP = "ray_caster_module"
 FILE_LIST = f"{TOP}.f"
-CLOCK_NS = 20
-"""Period of the one clock, 50 MHz."""
-
 SMOKE_BENCH = Path(__file__).with_name("smoke_bench.v")
 BENCHES = "bench"
 """Folder of what is not hardware, so that all Verilog files beside it are."""
@@ -50,18 +47,29 @@ def write_take_home(config: Configuration, modules: Sequence[Module], directory:
 
 
 def _description(config: Configuration) -> str:
-    """The configuration as comment lines."""
+    """The configuration as comment lines; only the beam engine has a scale."""
     values = {field.name: getattr(config, field.name) for field in dataclasses.fields(config)}
+    if config.engine != "beam":
+        del values["scale"]
     pad = max(map(len, values))
     return "".join(f"//     {name:<{pad}}  {value}\n" for name, value in values.items())
 
 
+def clock_period(config: Configuration) -> str:
+    """Of the one clock, in ns."""
+    return f"{1e9 / config.screen_geometry.clock_hz:.3f}"
+
+
 def _constraints(config: Configuration) -> str:
+    screen = config.screen_geometry
+    divided = screen.clocks_per_pixel > 1
+    made = f"divided by {screen.clocks_per_pixel}" if divided else "inverted"
+    relation = f"-divide_by {screen.clocks_per_pixel}" if divided else "-invert"
     return f"""# SPDX-License-Identifier: MIT
 # {TOP}, {config.name}. One clock; the VGA outputs are registers that change at the falling edge of
-# vga_clk, which is clk divided by {CLOCKS_PER_PIXEL}, and are taken at its rising edge half a pixel later.
-create_clock -name clk -period {CLOCK_NS}.000 [get_ports clk]
-create_generated_clock -name vga_clk -source [get_ports clk] -divide_by {CLOCKS_PER_PIXEL} [get_ports vga_clk]
+# vga_clk, which is clk {made}, and are taken at its rising edge half a pixel later.
+create_clock -name clk -period {clock_period(config)} [get_ports clk]
+create_generated_clock -name vga_clk -source [get_ports clk] {relation} [get_ports vga_clk]
 
 # Where the ports are pins, say here what the board takes; inside a system the other side's constraints hold.
 # set_output_delay -clock vga_clk -max 2.0 [get_ports {{vga_r[*] vga_g[*] vga_b[*] vga_hs vga_vs vga_blank_n}}]

@@ -27,6 +27,7 @@ def video_generator(
     vga_sync_n,
     vga_clk,
     screen: Screen,
+    lead: int = 0,
 ):
     """Free-running sync, whatever the inputs; a pixel takes two clocks, and reaches the outputs a pixel after its turn.
 
@@ -53,26 +54,46 @@ def video_generator(
     x = Signal(intbv(first_pixel, min=first_pixel, max=horizontal.visible))
     y = Signal(intbv(first_line, min=first_line, max=vertical.visible))
     hs, vs = Signal(bool(not hsync_active)), Signal(bool(not vsync_active))
-    pixel_end = bit()
+    pixel_end = Signal(bool(screen.clocks_per_pixel == 1))
     line_end, line_start = bit(), bit()
     pixel_repeat, line_repeat = unsigned(bits_for(doubling)), unsigned(bits_for(doubling))
 
-    # Two clocks a pixel; the second half is the high one.
-    @always_seq(clk.posedge, reset=reset)
-    def divide_clock():
-        pixel_end.next = not pixel_end
+    # With a clock a pixel vga_clk is clk inverted.
+    if screen.clocks_per_pixel == 1:
+        # Each clock is a pixel's first and last.
+        @always_seq(clk.posedge, reset=reset)
+        def divide_clock():
+            pixel_end.next = True
 
-    # The monitor's clock: low in a pixel's first half.
-    @always_comb
-    def drive_clock():
-        vga_clk.next = pixel_end
-        vga_sync_n.next = False
+        # The monitor's clock: low in a pixel's first half.
+        @always_comb
+        def drive_clock():
+            vga_clk.next = not clk
+            vga_sync_n.next = False
 
-    # The line's last clock and first.
-    @always_comb
-    def find_line_ends():
-        line_end.next = pixel_end and (x == last_pixel)
-        line_start.next = (not pixel_end) and (x == first_pixel)
+        # The line's last clock and first.
+        @always_comb
+        def find_line_ends():
+            line_end.next = pixel_end and (x == last_pixel)
+            line_start.next = pixel_end and (x == first_pixel)
+
+    else:
+        # Two clocks a pixel; the second half is the high one.
+        @always_seq(clk.posedge, reset=reset)
+        def divide_clock():
+            pixel_end.next = not pixel_end
+
+        # The monitor's clock: low in a pixel's first half.
+        @always_comb
+        def drive_clock():
+            vga_clk.next = pixel_end
+            vga_sync_n.next = False
+
+        # The line's last clock and first.
+        @always_comb
+        def find_line_ends():
+            line_end.next = pixel_end and (x == last_pixel)
+            line_start.next = (not pixel_end) and (x == first_pixel)
 
     # The position on the screen.
     @always_seq(clk.posedge, reset=reset)
@@ -87,27 +108,63 @@ def video_generator(
             else:
                 x.next = x + 1
 
-    # Which of a row's lines, and of a column's pixels, this is.
-    @always_seq(clk.posedge, reset=reset)
-    def count_repeats():
-        if line_end:
-            if y < 0 or line_repeat == last_repeat:
-                line_repeat.next = 0
-            else:
-                line_repeat.next = line_repeat + 1
-        if pixel_end:
-            if x < 0 or pixel_repeat == last_repeat:
+    # With a clock a pixel columns are announced lead pixels early, at most the horizontal blanking.
+    if screen.clocks_per_pixel == 1:
+        first_ahead, end_ahead = -lead, horizontal.visible - lead
+        in_columns = bit()
+
+        # Where the columns are announced.
+        @always_comb
+        def look_ahead():
+            in_columns.next = (x >= first_ahead) and (x < end_ahead)
+
+        # Which of a row's lines, and of the announced column's pixels, this is.
+        @always_seq(clk.posedge, reset=reset)
+        def count_repeats():
+            if line_end:
+                if y < 0 or line_repeat == last_repeat:
+                    line_repeat.next = 0
+                else:
+                    line_repeat.next = line_repeat + 1
+            if (not in_columns) or pixel_repeat == last_repeat:
                 pixel_repeat.next = 0
             else:
                 pixel_repeat.next = pixel_repeat + 1
 
-    # Tell the renderer where the monitor is.
-    @always_comb
-    def announce():
-        start_screen.next = line_start and (y == -doubling)
-        start_row.next = line_start and (y >= 0) and (line_repeat == 0)
-        visible_line.next = x >= 0
-        next_column.next = pixel_end and (x >= 0) and (pixel_repeat == last_repeat)
+        # Tell the renderer where the monitor is, and will be.
+        @always_comb
+        def announce():
+            start_screen.next = line_start and (y == -doubling)
+            start_row.next = line_start and (y >= 0) and (line_repeat == 0)
+            visible_line.next = in_columns
+            next_column.next = in_columns and (pixel_repeat == last_repeat)
+
+        follow = look_ahead, count_repeats, announce
+
+    else:
+        # Which of a row's lines, and of a column's pixels, this is.
+        @always_seq(clk.posedge, reset=reset)
+        def count_repeats():
+            if line_end:
+                if y < 0 or line_repeat == last_repeat:
+                    line_repeat.next = 0
+                else:
+                    line_repeat.next = line_repeat + 1
+            if pixel_end:
+                if x < 0 or pixel_repeat == last_repeat:
+                    pixel_repeat.next = 0
+                else:
+                    pixel_repeat.next = pixel_repeat + 1
+
+        # Tell the renderer where the monitor is.
+        @always_comb
+        def announce():
+            start_screen.next = line_start and (y == -doubling)
+            start_row.next = line_start and (y >= 0) and (line_repeat == 0)
+            visible_line.next = x >= 0
+            next_column.next = pixel_end and (x >= 0) and (pixel_repeat == last_repeat)
+
+        follow = count_repeats, announce
 
     # Sync and blanking for the pixel that now ends.
     @always_seq(clk.posedge, reset=reset)
@@ -143,4 +200,4 @@ def video_generator(
                 vga_g.next = 0
                 vga_b.next = 0
 
-    return divide_clock, drive_clock, find_line_ends, scan, count_repeats, announce, synchronise, drive_sync, color
+    return divide_clock, drive_clock, find_line_ends, scan, follow, synchronise, drive_sync, color

@@ -3,10 +3,16 @@
 
 from myhdl import Signal, intbv
 
-from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, VIEW_DISTANCE, WORLD_SIZE, Configuration
+from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, WORLD_SIZE, Configuration
 
 SLOPE_BITS = 9
 """Magnitude of a slope; the sign is kept beside it."""
+
+DISTANCE_BITS = COORDINATE_BITS + 1
+"""From the camera to a plane, with the sign."""
+
+TURN_BITS = COORDINATE_BITS + 2
+"""Twice a distance, or the difference of two mirrors doubled, with the sign: at most 2 * 511."""
 
 AXIS_BITS = 2
 COLOUR_BITS = 3 * CHANNEL_BITS
@@ -30,11 +36,16 @@ def product_bits(config: Configuration) -> int:
     return SLOPE_BITS + position_bits(config)
 
 
-def exact_slope_bits(config: Configuration) -> int:
-    """Magnitude of the steepest slope on the screen, for the engines that need no more."""
+def steepest_slope(config: Configuration) -> int:
+    """The largest magnitude of a slope's component on the screen."""
     screen = config.screen_geometry
     down = screen.rows - 1 - screen.horizon_row
-    return max(VIEW_DISTANCE, screen.centre_column, screen.horizon_row, down).bit_length()
+    return max(screen.view_distance, screen.centre_column, screen.horizon_row, down)
+
+
+def exact_slope_bits(config: Configuration) -> int:
+    """Magnitude of the steepest slope on the screen, for the engines that need no more."""
+    return steepest_slope(config).bit_length()
 
 
 def eye_bits(config: Configuration) -> int:
@@ -44,6 +55,21 @@ def eye_bits(config: Configuration) -> int:
     any coordinate of the world.
     """
     return ((WORLD_SIZE - 1) * (config.reflections + 1)).bit_length() + 1
+
+
+def walk_bits(config: Configuration) -> int:
+    """A product of a slope and a distance within the world, with the sign: |n D| <= 511 * the steepest slope."""
+    return ((WORLD_SIZE - 1) * steepest_slope(config)).bit_length() + 1
+
+
+def fold_bits(config: Configuration) -> int:
+    """A product at the folded ray, with the sign.
+
+    (n - T[a]) D[u] and T[u] D[a] add up, where each of at most two mirrors makes one component of T not 0, and T is
+    kept in `TURN_BITS`: |.| <= (511 + 1024 * mirrors) * the steepest slope.
+    """
+    offsets = min(config.reflections, 2) << (TURN_BITS - 1)
+    return ((WORLD_SIZE - 1 + offsets) * steepest_slope(config)).bit_length() + 1
 
 
 def unit_bits(config: Configuration) -> int:

@@ -10,7 +10,8 @@ module bench #(
     parameter ADDRESS_BITS = 8,     // of the bus's word address
     parameter COLOUR_BITS = 8,      // of a channel
     parameter H_TOTAL = 800,        // pixels a line, blanking included
-    parameter HS_ACTIVE = 0         // level of HS in its pulse
+    parameter HS_ACTIVE = 0,        // level of HS in its pulse
+    parameter CLOCKS_PER_PIXEL = 2  // 1 or 2
 ) ();
     localparam SAMPLE_BITS = 4 + 3 * COLOUR_BITS;
     localparam CAPACITY = H_TOTAL + 1;      // one more, so that a line that is too long shows
@@ -93,7 +94,7 @@ module bench #(
 
     // A monitor samples at the pixel clock's rising edge, so there the data must not change.
     reg [31:0] unstable_samples /*verilator public_flat_rw*/;
-    reg [31:0] clock_faults /*verilator public_flat_rw*/;     // vga_clk must be clk halved
+    reg [31:0] clock_faults /*verilator public_flat_rw*/;     // vga_clk must be clk halved, or inverted
     reg [SAMPLE_BITS-1:0] sample_before;
     reg vga_clk_before;
     initial begin
@@ -102,12 +103,16 @@ module bench #(
     end
     always @(negedge clk) begin
         if (!reset) begin
-            if (vga_clk === vga_clk_before)
+            if (vga_clk !== (CLOCKS_PER_PIXEL == 1 ? 1'b1 : ~vga_clk_before))
                 clock_faults = clock_faults + 1;
-            if (vga_clk && sample !== sample_before)
+            if (CLOCKS_PER_PIXEL == 2 && vga_clk && sample !== sample_before)
                 unstable_samples = unstable_samples + 1;
         end
         vga_clk_before = vga_clk;
         sample_before = sample;
     end
+    // With a clock a pixel data changes at each clk, so what was taken must still stand just before the next one.
+    always @(posedge clk)
+        if (!reset && CLOCKS_PER_PIXEL == 1 && sample !== sample_before)
+            unstable_samples = unstable_samples + 1;
 endmodule

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The ULX3S with nothing but its clock and its buttons; what its DVI connector sends goes into a file, a hexadecimal
-// digit for each bit time of 4 ns: clock, red, green, blue.
+// digit for each bit time, half a cycle of shift_clk: clock, red, green, blue.
 
 `timescale 1ns / 1ps
 
 module dvi_bench;
-    // Symbols must hold still for so long before and after they are taken.
-    localparam real STILL_NS = 12.0;
+    // Symbols must hold still for so many cycles of shift_clk before and after they are taken.
+    localparam real STILL_CYCLES = 1.5;
 
     reg clk_25mhz = 1'b0;
     reg [6:0] btn = 7'b0000000;         // the power button is pressed, which resets
@@ -15,7 +15,7 @@ module dvi_bench;
     wire wifi_gpio0;
     reg [6:0] held;
     reg recording = 1'b0;
-    realtime changed = 0, taken = 0;
+    realtime changed = 0, taken = 0, rose = 0, still = 0;
     integer bits, late_ns, file, count;
     integer unsteady = 0;
 
@@ -31,14 +31,14 @@ module dvi_bench;
 
     always @(board.blue, board.green, board.red) begin
         changed = $realtime;
-        if (recording && changed - taken < STILL_NS)
+        if (recording && changed - taken < still)
             unsteady = unsteady + 1;
     end
 
     always @(posedge board.shift_clk)
         if (recording && board.serialiser.phase == 3'd0) begin
             taken = $realtime;
-            if (taken - changed < STILL_NS)
+            if (taken - changed < still)
                 unsteady = unsteady + 1;
         end
 
@@ -52,14 +52,15 @@ module dvi_bench;
             late_ns = 0;
         #1000 #(late_ns) btn = held | 7'b0000001;
         file = $fopen("gpdi.txt", "w");
-        // Reset has ended by then, and the serialiser found the pixels. In the middle of a bit, whose edges are those of
-        // 125 MHz.
+        // Reset has ended by then, and the serialiser found the pixels.
         #5000;
-        @(posedge board.shift_clk) #2;
+        @(posedge board.shift_clk) rose = $realtime;
+        @(posedge board.shift_clk) still = STILL_CYCLES * ($realtime - rose);
         recording = 1'b1;
+        // Within a bit, soon after its edge.
         for (count = 0; count < bits; count = count + 1) begin
+            @(board.shift_clk) #0.5;
             $fwrite(file, "%h", gpdi_dp);
-            #4;
         end
         $fclose(file);
         $display("unsteady %0d", unsteady);

@@ -33,33 +33,24 @@ module EHXPLLL #(
 );
     localparam real OSCILLATOR_NS = CLKI_NS * CLKI_DIV / CLKFB_DIV / CLKOP_DIV;
 
-    // Rising edges together where each phase is its divider less one.
+    // Halves of the oscillator's period. Both outputs count the same ones, so that no rounding pulls them apart; rising
+    // edges are together where each phase is its divider less one.
+    integer op_count = 2 * (CLKOP_DIV - 1 - CLKOP_CPHASE);
+    integer os_count = 2 * (CLKOS_DIV - 1 - CLKOS_CPHASE);
     initial begin
         @(posedge CLKI);
-        fork
-            begin
-                #((CLKOP_CPHASE + 1 - CLKOP_DIV) * OSCILLATOR_NS);
-                forever begin
-                    CLKOP = 1'b1;
-                    #(CLKOP_DIV * OSCILLATOR_NS / 2);
-                    CLKOP = 1'b0;
-                    #(CLKOP_DIV * OSCILLATOR_NS / 2);
-                end
-            end
-            begin
-                #((CLKOS_CPHASE + 1 - CLKOS_DIV) * OSCILLATOR_NS);
-                forever begin
-                    CLKOS = 1'b1;
-                    #(CLKOS_DIV * OSCILLATOR_NS / 2);
-                    CLKOS = 1'b0;
-                    #(CLKOS_DIV * OSCILLATOR_NS / 2);
-                end
-            end
-            begin
-                repeat (8) @(posedge CLKI);
-                LOCK = 1'b1;
-            end
-        join
+        forever begin
+            op_count = op_count == 2 * CLKOP_DIV - 1 ? 0 : op_count + 1;
+            os_count = os_count == 2 * CLKOS_DIV - 1 ? 0 : os_count + 1;
+            CLKOP = op_count < CLKOP_DIV;
+            CLKOS = os_count < CLKOS_DIV;
+            #(OSCILLATOR_NS / 2);
+        end
+    end
+
+    initial begin
+        repeat (8) @(posedge CLKI);
+        LOCK = 1'b1;
     end
 endmodule
 

@@ -10,7 +10,7 @@ import numpy as np
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import FallingEdge, RisingEdge
 
-from raycaster.configuration import CHANNEL_BITS, CLOCKS_PER_PIXEL
+from raycaster.configuration import CHANNEL_BITS
 from raycaster.golden import engines
 from raycaster.golden.picture import count_wrong
 from raycaster.scene import Scene
@@ -58,9 +58,9 @@ class Harness:
             AssertionError: HS or VS came too early or too late.
         """
         horizontal, vertical = self.screen.horizontal, self.screen.vertical
-        line_ns = horizontal.total * CLOCKS_PER_PIXEL * CLOCK_NS
+        line_ns = horizontal.total * self.screen.clocks_per_pixel * CLOCK_NS
         porch_end = await self.monitor.line()
-        late = (porch_end.end_ns - released_ns) // CLOCK_NS - horizontal.front * CLOCKS_PER_PIXEL
+        late = (porch_end.end_ns - released_ns) // CLOCK_NS - horizontal.front * self.screen.clocks_per_pixel
         assert 0 <= late <= RESET_TOLERANCE, f"HS's leading edge came {late} clocks after the front porch since reset"
         frame = await self.monitor.frame(on_row)
         lines = (self.monitor.frame_lines[0].end_ns - line_ns - porch_end.end_ns) / line_ns

@@ -10,7 +10,6 @@ from cocotb.handle import HierarchyObject, LogicObject
 from cocotb.simtime import get_sim_time
 from cocotb.triggers import ClockCycles, Event, RisingEdge
 
-from raycaster.configuration import CLOCKS_PER_PIXEL
 from raycaster.scene import Scene, load_scene
 from raycaster.verif.harness import Harness
 from raycaster.verif.monitor import CLOCK_NS
@@ -101,9 +100,9 @@ async def start_screen_interrupts(bench: HierarchyObject) -> None:
     assert not raised.done(), "irq before the second StartScreen"
 
     await monitor.frame()
-    line_ns = screen.horizontal.total * CLOCKS_PER_PIXEL * CLOCK_NS
+    line_ns = screen.horizontal.total * screen.clocks_per_pixel * CLOCK_NS
     first_visible_hs_ns = monitor.frame_lines[screen.vertical.sync + screen.vertical.back - 1].end_ns
-    first_visible_ns = first_visible_hs_ns - screen.horizontal.front * CLOCKS_PER_PIXEL * CLOCK_NS
+    first_visible_ns = first_visible_hs_ns - screen.horizontal.front * screen.clocks_per_pixel * CLOCK_NS
     late = (await raised - first_visible_ns + START_SCREEN_LINES * line_ns) / CLOCK_NS
     assert abs(late) <= START_SCREEN_TOLERANCE, f"StartScreen came {late} clocks late"
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from raycaster.configuration import CLOCKS_PER_PIXEL, Configuration
+from raycaster.configuration import Configuration
 from raycaster.golden.world import Rectangles
 from raycaster.registers import register_map
 
@@ -240,7 +240,7 @@ class RegisterFile:
         self.camera_address = self.agent.registers["camera"].address
         screen = config.screen_geometry
         lines = screen.vertical.blank - screen.doubling
-        self.start_screen_clock = lines * screen.horizontal.total * CLOCKS_PER_PIXEL
+        self.start_screen_clock = lines * screen.horizontal.total * screen.clocks_per_pixel
         """From the end of reset to the first StartScreen."""
         self._frame_cycles = screen.frame_cycles
         self.clocks = 0

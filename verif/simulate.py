@@ -21,7 +21,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from raycaster.configuration import CLOCK_HZ, Configuration
+from raycaster.configuration import Configuration
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
 from raycaster.options import add_configuration_options, given_options, run_command
@@ -201,6 +201,13 @@ def show(outcomes: list[Outcome], console: Console, title: str | None = None) ->
             console.print(f"{outcome.run.path.stem}: {outcome.failure}", style="red", markup=False, soft_wrap=True)
 
 
+def _frames_per_second(configuration: Configuration, row_cycles: int) -> float:
+    """How often a picture could be computed; the beam engine computes each line of a doubled row."""
+    screen = configuration.screen_geometry
+    lines = screen.rows * (screen.doubling if configuration.engine == "beam" else 1)
+    return screen.clock_hz / (lines * row_cycles)
+
+
 def _cells(outcome: Outcome) -> list[str]:
     result, configuration = outcome.result, outcome.run.configuration
     if result is None:
@@ -214,7 +221,7 @@ def _cells(outcome: Outcome) -> list[str]:
         f"{row}/{configuration.screen_geometry.row_cycles}",
         f"{group}/{budget}",
         "[red]underrun[/]" if result["underrun"] else str(budget - group),
-        f"{CLOCK_HZ / (configuration.rows * row):.0f}" if row else "",
+        f"{_frames_per_second(configuration, row):.0f}" if row else "",
         f"{result['sim_seconds']:.2f}",
     ]
 

@@ -226,6 +226,7 @@ def _bench_parameters(configuration: Configuration) -> dict[str, int]:
         "COLOUR_BITS": configuration.colour_bits,
         "H_TOTAL": horizontal.total,
         "HS_ACTIVE": int(horizontal.active_high),
+        "CLOCKS_PER_PIXEL": configuration.screen_geometry.clocks_per_pixel,
     }
 
 

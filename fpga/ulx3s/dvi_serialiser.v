@@ -11,7 +11,7 @@ module dvi_serialiser (
     input  wire [9:0] blue,
     input  wire [9:0] green,
     input  wire [9:0] red,
-    input  wire       pixel,            // rises with the symbols, and is high for half of the pixel
+    input  wire       pixel,            // changes with the symbols, once a pixel
     output wire [3:0] gpdi_dp
 );
 
@@ -19,7 +19,7 @@ localparam [9:0] LINK_CLOCK = 10'b0000011111;
 localparam [2:0] WAITING = 3'd7;        // for the first pixel
 
 reg  [2:0] seen = 3'b000;
-wire       changed = seen[1] && !seen[2];
+wire       changed = seen[1] != seen[2];
 reg  [2:0] phase = WAITING;
 wire       expected = phase == 3'd4 || phase == 3'd0 || phase == 3'd1;
 reg  [9:0] shift_blue, shift_green, shift_red, shift_clock;

@@ -15,16 +15,18 @@ wire [5:0] buttons = {btn[4], btn[3], btn[6], btn[5], btn[2], btn[1]};
 wire [7:0] vga_r, vga_g, vga_b;
 wire vga_hs, vga_vs, vga_blank_n, vga_clk;
 wire [9:0] blue, green, red;
-wire pixel;
+wire pixel, pixel_end;
 
 assign led = {locked, 1'b0, buttons};
 assign wifi_gpio0 = 1'b1;               // low would have the ESP32 load another bitstream
 
-ulx3s_pll pll (
+ulx3s_clocks clocks (
     .clk_25mhz(clk_25mhz),
+    .vga_clk(vga_clk),
     .clk(clk),
     .shift_clk(shift_clk),
-    .locked(locked)
+    .locked(locked),
+    .pixel_end(pixel_end)
 );
 
 ray_caster_system system (
@@ -43,13 +45,14 @@ ray_caster_system system (
 
 dvi_encoder encoder (
     .clk(clk),
+    .ready(locked & btn[0]),
+    .pixel_end(pixel_end),
     .vga_r(vga_r),
     .vga_g(vga_g),
     .vga_b(vga_b),
     .vga_hs(vga_hs),
     .vga_vs(vga_vs),
     .vga_blank_n(vga_blank_n),
-    .vga_clk(vga_clk),
     .blue(blue),
     .green(green),
     .red(red),

@@ -1,29 +1,35 @@
 // SPDX-License-Identifier: MIT
-// From the board's 25 MHz, 50 MHz for the design and 125 MHz for the DVI link, five times the pixel clock.
+// From the board's 25 MHz, shift_clk for the DVI link, five times the pixel clock, and clk for the design, which is the
+// pixel clock or twice that. ulx3s_clocks.v, made with the design, says which.
 
-module ulx3s_pll (
+module ulx3s_pll #(
+    // 25 MHz / CLKI_DIV * CLKFB_DIV is shift_clk, and SHIFT_DIV times that the oscillator's, within its 400 to 800 MHz;
+    // that by CLK_DIV is clk.
+    parameter CLKI_DIV = 1,
+    parameter CLKFB_DIV = 5,
+    parameter SHIFT_DIV = 4,
+    parameter CLK_DIV = 10
+) (
     input  wire clk_25mhz,
-    output wire clk,                    // 50 MHz
-    output wire shift_clk,              // 125 MHz
+    output wire clk,
+    output wire shift_clk,
     output wire locked
 );
 
-// 25 MHz / CLKI_DIV * CLKFB_DIV = 125 MHz at CLKOP, whose divider of 4 makes the oscillator run at 500 MHz, within its
-// 400 to 800 MHz; a tenth of that is 50 MHz. A phase of the divider less one puts the rising edges together.
-//
-// nextpnr takes an analogue setting that is not given as 0, no charge pump among them; these are those of ecppll.
+// A phase of the divider less one puts the rising edges together. nextpnr takes an analogue setting that is not given as
+// 0, no charge pump among them; these are those of ecppll.
 (* ICP_CURRENT="12" *) (* LPF_RESISTOR="8" *) (* MFG_ENABLE_FILTEROPAMP="1" *) (* MFG_GMCREF_SEL="2" *)
 EHXPLLL #(
-    .CLKI_DIV(1),
-    .CLKFB_DIV(5),
+    .CLKI_DIV(CLKI_DIV),
+    .CLKFB_DIV(CLKFB_DIV),
     .FEEDBK_PATH("CLKOP"),
     .CLKOP_ENABLE("ENABLED"),
-    .CLKOP_DIV(4),
-    .CLKOP_CPHASE(3),
+    .CLKOP_DIV(SHIFT_DIV),
+    .CLKOP_CPHASE(SHIFT_DIV - 1),
     .CLKOP_FPHASE(0),
     .CLKOS_ENABLE("ENABLED"),
-    .CLKOS_DIV(10),
-    .CLKOS_CPHASE(9),
+    .CLKOS_DIV(CLK_DIV),
+    .CLKOS_CPHASE(CLK_DIV - 1),
     .CLKOS_FPHASE(0),
     .CLKOS2_ENABLE("DISABLED"),
     .CLKOS3_ENABLE("DISABLED"),

@@ -7,7 +7,7 @@ from raycaster.configuration import Configuration, Screen, Span, configure
 from raycaster.registers import address_bits
 from raycaster.rtl.avalon_interface import engine_word, size_word
 from raycaster.rtl.widths import bits_for, index_bits, offset_bits, pixel_bits, position_bits, row_bits, unit_bits
-from raycaster.verif.formal.prover import Property, TesterWidths
+from raycaster.verif.formal.prover import FoldWidths, Property, TesterWidths
 
 TOY_SCREEN = Screen(3, 2, 1, 3, Span(9, 1, 2, 1, active_high=True), Span(6, 1, 1, 3, active_high=True))
 """Tripled pixels, and a frame short enough to be walked through whole."""
@@ -176,6 +176,29 @@ def _tester(coordinate_bits: int, reflections: int, small: bool) -> Property:
     )
 
 
+def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: int, small: bool) -> Property:
+    widths = FoldWidths(coordinate_bits, slope_bits, view_distance, mirrors)
+    return Property(
+        "fold-exact",
+        "a folded ray hits a rectangle where the mirrored eye's, by a division, is within it and beyond the mirror",
+        widths,
+        f"{coordinate_bits} bits, {mirrors} mirrors",
+        ("ray_fold", "fold_tester"),
+        {
+            "COORDINATE_BITS": widths.coordinate,
+            "SLOPE_BITS": widths.slope,
+            "VIEW_DISTANCE": view_distance,
+            "MIRRORS": mirrors,
+            "WALK_BITS": widths.walk,
+            "FOLD_BITS": widths.fold,
+            "NUMERATOR_BITS": widths.numerator,
+        },
+        induction=8,
+        reach=9,
+        small=small,
+    )
+
+
 def _label(config: Configuration) -> str:
     return config.name.removeprefix(f"{config.engine}-")
 
@@ -222,6 +245,7 @@ PROPERTIES: list[Property] = [
     _tester(2, 1, small=True),
     _tester(2, 2, small=False),
     _tester(3, 1, small=False),
+    _fold(2, 2, 2, 1, small=True),
     *(
         _divider(_tiny(rectangles=2, divider_bits=bits, rounding=rounding), part, small=False)
         for bits, rounding in ((3, "truncate"), (3, "nearest"), (2, "truncate"), (1, "truncate"))

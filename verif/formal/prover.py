@@ -13,14 +13,28 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-from raycaster.configuration import Configuration, Screen
+from raycaster.configuration import Configuration, Screen, configure
 from raycaster.errors import UserError
 from raycaster.rtl.convert import write_verilog
+from raycaster.rtl.fold_tester import fold_tester
 from raycaster.rtl.hierarchy import convert_hierarchy, quick_elaboration
-from raycaster.rtl.interfaces import Eye, Mirror, RaySteps, Rect, Signs, Slope
+from raycaster.rtl.interfaces import (
+    Candidate,
+    Eye,
+    Facet,
+    Fold,
+    Mirror,
+    RaySteps,
+    Rect,
+    Reflector,
+    Signs,
+    Slope,
+    Walk,
+)
+from raycaster.rtl.ray_fold import ray_fold
 from raycaster.rtl.rect_tester import rect_tester
 from raycaster.rtl.video_generator import video_generator
-from raycaster.rtl.widths import bit, unsigned
+from raycaster.rtl.widths import bit, signed, unsigned
 from raycaster.tools import TIMEOUT, find_program, run_program, run_yosys
 from raycaster.verif.leaf import reset_signal
 
@@ -44,7 +58,35 @@ class TesterWidths:
     eye: int
 
 
-Design = Configuration | Screen | TesterWidths
+@dataclass(frozen=True)
+class FoldWidths:
+    """`ray_fold` and `fold_tester` alone, for narrow coordinates and slopes."""
+
+    coordinate: int
+    slope: int
+    view_distance: int
+    mirrors: int
+
+    @property
+    def walk(self) -> int:
+        """As `raycaster.rtl.widths.walk_bits`."""
+        return self._products((1 << self.coordinate) - 1)
+
+    @property
+    def fold(self) -> int:
+        """As `raycaster.rtl.widths.fold_bits`."""
+        return self._products((1 << self.coordinate) - 1 + (self.mirrors << self.coordinate + 1))
+
+    @property
+    def numerator(self) -> int:
+        """As `raycaster.rtl.widths.eye_bits`, without the sign."""
+        return (((1 << self.coordinate) - 1) * (self.mirrors + 1)).bit_length()
+
+    def _products(self, most: int) -> int:
+        return (most * ((1 << self.slope) - 1)).bit_length() + 1
+
+
+Design = Configuration | Screen | TesterWidths | FoldWidths
 
 
 @dataclass(frozen=True)
@@ -54,7 +96,7 @@ class Property:
     Attributes:
         name: of the claim, and of its wrapper `<name>.v` with dashes for underscores.
         claim: in a few words.
-        design: the configuration whose Verilog is read; a screen, for the video generator alone; or widths, for the
+        design: the configuration whose Verilog is read; a screen, for the video generator alone; or widths, for a
             rectangle test alone.
         label: the design in a few characters.
         modules: the generated modules that are part of the proof.
@@ -170,8 +212,10 @@ def _verilog(design: Design) -> dict[str, str]:
             write_verilog(design, directory)
         else:
             directory.mkdir()
-            convert = _convert_rect_tester if isinstance(design, TesterWidths) else _convert_video_generator
-            convert(design, directory)
+            converters = {
+                TesterWidths: _convert_rect_tester, FoldWidths: _convert_fold, Screen: _convert_video_generator,
+            }  # fmt: skip
+            converters[type(design)](design, directory)
         return {path.name: path.read_text() for path in directory.glob("*.v")}
 
 
@@ -196,6 +240,30 @@ def _convert_rect_tester(widths: TesterWidths, directory: Path) -> None:
             unsigned(widths.eye - 1), unsigned(widths.slope),
         )  # fmt: skip
     convert_hierarchy(top, directory, "// {module}")
+
+
+def _convert_fold(widths: FoldWidths, directory: Path) -> None:
+    narrow = configure(engine="beam")
+    distance, turn, product = widths.coordinate + 1, widths.coordinate + 2, widths.walk
+    fold, facet, walk, hit = Fold(narrow), Facet(narrow), Walk(product), Candidate(narrow)
+    earlier, last = Reflector(), Reflector()
+    for owner in (fold, facet, earlier, last):
+        owner.distance = signed(distance)
+    for axis in "xyz":
+        setattr(fold, f"turn_{axis}", signed(turn))
+        setattr(fold, f"border_{axis}", signed(product))
+        for letter in "uv":
+            setattr(fold, f"{letter}_{axis}", signed(widths.fold))
+    facet.way_v = signed(product)
+    hit.numerator, hit.denominator = unsigned(widths.numerator), unsigned(widths.slope)
+    column_slope, row_slope = signed(widths.slope + 1), signed(widths.slope + 1)
+    with quick_elaboration():
+        folder = ray_fold(bit(), earlier, last, column_slope, row_slope, fold, widths.view_distance)
+        tester = fold_tester(
+            bit(), facet, walk, column_slope, row_slope, Slope(widths.slope), fold, hit, widths.view_distance
+        )
+    for top in (folder, tester):
+        convert_hierarchy(top, directory, "// {module}")
 
 
 def _make_model(proof: Property, directory: Path) -> None:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Scenes for leaf tests in which one ray tells a lot: it meets mirrors to its end, and edges where it does."""
 
+from fractions import Fraction
 from functools import partial
 
 import numpy as np
@@ -45,7 +46,7 @@ def edged(random: np.random.Generator, config: Configuration, golden, table: Rec
         corners[other, :, flat] = np.clip(corners[winner, 0, flat] + random.integers(-4, 5), 0, WORLD_SIZE - 1)
     axis = int(random.choice(OTHER_AXES[flat]))
     point = int(bounce.points[winner, 0][axis])
-    whole = point // int(bounce.denominators[winner, 0]) if config.engine == "exact" else point >> config.fraction_bits
+    whole = point // int(bounce.denominators[winner, 0]) if config.engine != "seed" else point >> config.fraction_bits
     place = whole + int(random.integers(-1, 2))
     corners[winner, int(random.integers(2)), axis] = np.clip(place, 0, WORLD_SIZE - 1)
     return Rectangles(corners, table.colours, table.enabled)
@@ -62,7 +63,7 @@ def traced_scene(random: np.random.Generator, config: Configuration, slopes: np.
         background = random.integers(256, size=3)
         reflections = config.reflections if rich else int(random.integers(config.reflections + 1))
         given = {"camera": camera, "background": background, "slopes": slopes, "reflections": reflections, "keep": True}
-        if config.engine == "exact":
+        if config.engine != "seed":
             trace = partial(exact.trace, **given)
         else:
             trace = partial(seed_engine.trace, **given, fraction_bits=config.fraction_bits, rounding=config.rounding)
@@ -82,3 +83,51 @@ def pixel_word(config: Configuration, colour) -> int:
     for channel in colour:
         word = word << config.colour_bits | int(channel) >> (CHANNEL_BITS - config.colour_bits)
     return word
+
+
+def verdict(table: Rectangles, index: int, eye, slope, mirror) -> tuple[bool, int, int]:
+    """The definition, in fractions: hit, n and e.
+
+    Args:
+        table: sorted.
+        index: of the rectangle.
+        eye: where the ray seems to start.
+        slope: with signs.
+        mirror: axis and coordinate of the plane that it left last, or None.
+    """
+    axis = int(table.axes[index])
+    if slope[axis] == 0:
+        return False, 0, 0
+    t = Fraction(int(table.low[index, axis] - eye[axis]), int(slope[axis]))
+    point = [int(eye[u]) + int(slope[u]) * t for u in range(3)]
+    hit = t > 0 and all(table.low[index, u] <= point[u] <= table.high[index, u] for u in OTHER_AXES[axis])
+    if mirror is not None:
+        hit = hit and (point[mirror[0]] - mirror[1]) * int(slope[mirror[0]]) > 0
+    return hit, abs(int(table.low[index, axis] - eye[axis])), abs(int(slope[axis]))
+
+
+def beside(random: np.random.Generator, place: int) -> int:
+    """As far from a coordinate as one of its bits is worth, or not at all."""
+    return int(np.clip(place + int(random.choice([-1, 0, 1])) * (1 << int(random.integers(9))), 0, WORLD_SIZE - 1))
+
+
+def sharpened(random: np.random.Generator, table: Rectangles, index: int, eye, slope, mirror) -> Rectangles:
+    """The table with a rectangle moved to where it is hard to tell: an edge to the hit point or next to it, or the
+    plane to where the ray left the mirror."""
+    axis, corners = int(table.axes[index]), table.corners.copy()
+    if slope[axis] == 0:
+        return table
+    if mirror is not None and mirror[0] != axis and random.random() < 0.5:
+        at_mirror = Fraction(int(mirror[1] - eye[mirror[0]]), int(slope[mirror[0]]))
+        corners[index, :, axis] = np.clip(int(eye[axis] + int(slope[axis]) * at_mirror), 0, WORLD_SIZE - 1)
+    if mirror is not None and mirror[0] == axis and random.random() < 0.3:
+        corners[index, :, axis] = beside(random, mirror[1])
+    t = Fraction(int(corners[index, 0, axis] - eye[axis]), int(slope[axis]))
+    for u in OTHER_AXES[axis]:
+        edge, past = int(random.integers(2)), int(random.integers(-1, 2))
+        corners[index, edge, u] = np.clip(int(eye[u] + int(slope[u]) * t) + past, 0, WORLD_SIZE - 1)
+        if random.random() < 0.7:
+            corners[index, 1 - edge, u] = int(random.choice([0, WORLD_SIZE - 1]))
+        if mirror is not None and mirror[0] == u and random.random() < 0.6:
+            corners[index, edge, u] = beside(random, mirror[1])
+    return Rectangles(corners, table.colours, table.enabled)

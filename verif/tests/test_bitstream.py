@@ -22,7 +22,7 @@ from raycaster.verif.dvi import golden, watch
 from raycaster.verif.monitor import VideoError
 
 ULX3S = BOARDS["ulx3s"]
-PLL, SERIALISER, TOP = "ulx3s_pll.v", "dvi_serialiser.v", "ulx3s.v"
+CLOCKS, SERIALISER, TOP = "ulx3s_clocks.v", "dvi_serialiser.v", "ulx3s.v"
 ENCODERS, ENCODER = "dvi_encoder.v", "tmds_encoder.v"
 
 
@@ -92,7 +92,7 @@ LINKED = ".blue({}),\n    .green(green),\n    .red({}),\n    .pixel(pixel),\n   
         (SERIALISER, "shift_red <= red", "shift_red <= {red[8:0], red[9]}", "different bits"),
         (SERIALISER, "phase <= 3'd1", "phase <= 3'd3", "change when they are taken"),
         (SERIALISER, "10'b0000011111", "10'b0000111111", "five ones and five zeros"),
-        (PLL, ".CLKOS_DIV(10)", ".CLKOS_DIV(8)", "change when they are taken"),
+        (CLOCKS, ".CLK_DIV(10)", ".CLK_DIV(8)", "change when they are taken"),
         (ENCODER, "symbol[9] <= invert", "symbol[9] <= !invert", ""),
         (ENCODERS, "syncs[1] = vga_vs", "syncs[1] = vga_hs", "lines|frames|VS"),
         (ENCODERS, ".data(vga_g)", ".data(vga_r)", ""),

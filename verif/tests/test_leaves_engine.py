@@ -2,6 +2,7 @@
 """The blocks that trace whole rays, from one unit to the whole module: MyHDL's simulator, the converted Verilog and
 golden on one set of scenes, and the control's steps cycle by cycle."""
 
+from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 from unittest import mock
@@ -10,8 +11,8 @@ import numpy as np
 import pytest
 from hard_scenes import edged, pixel_word, rectangles_in_view, traced_scene
 
-from raycaster.configuration import SCREENS, WORLD_SIZE, Configuration, Screen, Span, configure
-from raycaster.golden import seed_engine
+from raycaster.configuration import BEAM_SCREENS, SCREENS, WORLD_SIZE, Configuration, Screen, Span, configure
+from raycaster.golden import engines, exact, seed_engine
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.registers import register_map
@@ -19,10 +20,10 @@ from raycaster.rtl.camera_axis import STEP
 from raycaster.rtl.engines import ENGINES
 from raycaster.rtl.interfaces import Plane, Point, Rect, SequentialRects, Steps
 from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
-from raycaster.rtl.ray_caster_renderer import ray_caster_renderer
 from raycaster.rtl.ray_caster_system import SystemPorts, ray_caster_system
 from raycaster.rtl.ray_control import ray_control
 from raycaster.rtl.ray_unit import ray_unit
+from raycaster.rtl.renderers import RECTS, RENDERERS
 from raycaster.rtl.reset_release import HOLD_CYCLES
 from raycaster.rtl.scene_player import BUTTONS
 from raycaster.rtl.widths import (
@@ -57,9 +58,11 @@ def config_id(config: Configuration) -> str:
 
 def small_config(screen: Screen = SMALL_SCREEN, **options) -> Configuration:
     """A configuration for a screen that no name stands for."""
-    with mock.patch.dict(SCREENS, {("tiny", screen.rows): screen}):
+    beam = options.get("engine") == "beam"
+    screen = replace(screen, clocks_per_pixel=1) if beam else screen
+    with mock.patch.dict(BEAM_SCREENS if beam else SCREENS, {("tiny", screen.rows): screen}):
         config = configure(screen="tiny", rows=screen.rows, **options)
-        assert config.screen_geometry is screen  # looked up once, and kept from here on
+        assert config.screen_geometry == screen.scaled(config.scale)  # looked up once, and kept from here on
     return config
 
 
@@ -352,11 +355,15 @@ def test_ray_caster(config, tmp_path):
 
 
 def monitored(outputs: list[dict[str, int]], config: Configuration) -> list[np.ndarray]:
-    """The frames that a monitor sees, as rows of pixel words; it samples where its clock has risen."""
+    """The frames that a monitor sees, as rows of pixel words; it samples where its clock has risen.
+
+    With a clock a pixel that is before each clock, where outputs are recorded.
+    """
+    every_cycle = config.screen_geometry.clocks_per_pixel == 1
     horizontal, vertical = config.screen_geometry.horizontal, config.screen_geometry.vertical
     words, shift = [], config.colour_bits
     for before, output in pairwise(outputs):
-        if output["vga_clk"] and not before["vga_clk"] and output["vga_blank_n"]:
+        if output["vga_clk"] and (every_cycle or not before["vga_clk"]) and output["vga_blank_n"]:
             words.append((output["vga_r"] << shift | output["vga_g"]) << shift | output["vga_b"])
     size = horizontal.visible * vertical.visible
     return [
@@ -377,12 +384,12 @@ def doubled(config: Configuration, words: np.ndarray) -> np.ndarray:
 
 def start_screen_cycle(screen: Screen) -> int:
     """Cycles from the end of reset to the first StartScreen."""
-    return (screen.vertical.blank - screen.doubling) * screen.horizontal.total * 2
+    return (screen.vertical.blank - screen.doubling) * screen.horizontal.total * screen.clocks_per_pixel
 
 
 def renderer_leaf(config: Configuration, directory) -> Leaf:
     return Leaf(
-        ray_caster_renderer,
+        RENDERERS[config.engine],
         lambda: {
             "clk": bit(),
             "reset": reset_signal(),
@@ -390,7 +397,7 @@ def renderer_leaf(config: Configuration, directory) -> Leaf:
             "reflections": unsigned(2),
             "background": unsigned(COLOUR_BITS),
             "camera": Point(),
-            "rects": SequentialRects(config),
+            "rects": RECTS[config.engine](config),
             "start_screen": bit(),
             "busy": bit(),
             "underrun": bit(),
@@ -487,6 +494,11 @@ TINY_SCREEN = Screen(
 """With many frames in little time."""
 
 
+def seed_engine_of(config: Configuration):
+    """Its golden model, with the fraction and the rounding of a design."""
+    return partial(seed_engine.trace, fraction_bits=config.fraction_bits, rounding=config.rounding)
+
+
 def scene_in_view(random: np.random.Generator, config: Configuration, axis: int) -> tuple:
     """Camera, table, background, reflections and the picture; most show several colours and a plane of this axis."""
     slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
@@ -498,8 +510,8 @@ def scene_in_view(random: np.random.Generator, config: Configuration, axis: int)
         background = random.integers(256, size=3)
         reflections = int(random.integers(config.reflections + 1))
         trace = partial(
-            seed_engine.trace, camera=camera, background=background, reflections=reflections,
-            fraction_bits=config.fraction_bits, rounding=config.rounding, keep=True,
+            exact.trace if config.engine != "seed" else seed_engine_of(config), camera=camera, background=background,
+            reflections=reflections, keep=True,
         )  # fmt: skip
         ray = slopes[random.integers(len(slopes))][None]
         table = edged(random, config, trace(table, slopes=ray), table)
@@ -509,9 +521,16 @@ def scene_in_view(random: np.random.Generator, config: Configuration, axis: int)
     return camera, table, background, reflections, words
 
 
-def test_ray_caster_renderer_scenes(tmp_path):
-    """A scene a frame, of one rectangle, wherever it may stand."""
-    config = small_config(TINY_SCREEN, units=2, rectangles=1, reflections=1, divider_bits=1)
+@pytest.mark.parametrize(
+    "config",
+    [
+        small_config(TINY_SCREEN, units=2, rectangles=1, reflections=1, divider_bits=1),
+        small_config(TINY_SCREEN, engine="beam", rectangles=1, reflections=1, scale=1),
+    ],
+    ids=config_id,
+)
+def test_ray_caster_renderer_scenes(config, tmp_path):
+    """A scene a frame, of one rectangle, wherever it may stand; of either renderer."""
     screen = config.screen_geometry
     random = np.random.default_rng(seed())
     scenes = [scene_in_view(random, config, number % 3) for number in range(30)]
@@ -585,6 +604,8 @@ class Bus:
         small_config(units=4, rectangles=3, reflections=1),
         small_config(units=4, rectangles=2, reflections=2, fraction_bits=4, rounding="nearest", colour_bits=4),
         small_config(units=2, rectangles=5, reflections=0, divider_bits=3, colour_bits=6),
+        small_config(engine="beam", rectangles=3, reflections=1, scale=1),
+        small_config(engine="beam", rectangles=2, reflections=2, scale=2, colour_bits=4),
     ],
     ids=config_id,
 )
@@ -603,13 +624,10 @@ def test_ray_caster_module(config, tmp_path):
             camera = random.integers(WORLD_SIZE, size=3) // [2, 1, 1]
             table = rectangles_in_view(random, camera, slopes, config.rectangles)
             background = random.integers(256, size=3)
-            golden = seed_engine.trace(
-                table, camera, background, slopes, config.reflections,
-                fraction_bits=config.fraction_bits, rounding=config.rounding,
-            )  # fmt: skip
-            if len(np.unique(golden.colours, axis=0)) > config.rectangles:
+            colours = engines.trace(config, table, camera, background, slopes, config.reflections)
+            if len(np.unique(colours, axis=0)) > config.rectangles:
                 break
-        pictures.append(golden_words(config, golden.colours))
+        pictures.append(golden_words(config, colours))
         bus.write_scene(camera, background, config.reflections, table)
         # To the cycle after the next StartScreen.
         so_far = len(bus.stimulus) - 2 - start_screen_cycle(screen) - 1
@@ -635,9 +653,16 @@ def test_ray_caster_module(config, tmp_path):
     assert answers["engine"]["fraction_bits"] == config.fraction_bits
 
 
-def test_ray_caster_module_scenes(tmp_path):
+@pytest.mark.parametrize(
+    "config",
+    [
+        small_config(TINY_SCREEN, units=2, rectangles=3, reflections=1, divider_bits=2),
+        small_config(TINY_SCREEN, engine="beam", rectangles=3, reflections=1, scale=2),
+    ],
+    ids=config_id,
+)
+def test_ray_caster_module_scenes(config, tmp_path):
     """A scene a frame over the bus, which is never idle: words are read back, and written in part."""
-    config = small_config(TINY_SCREEN, units=2, rectangles=3, reflections=1, divider_bits=2)
     screen = config.screen_geometry
     random = np.random.default_rng(seed())
     bus = Bus(config)

@@ -5,12 +5,12 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hard_scenes import pixel_word, traced_scene
+from hard_scenes import pixel_word, sharpened, traced_scene, verdict
 
 from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
-from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.golden.world import Rectangles
 from raycaster.rtl.exact_control import exact_control
 from raycaster.rtl.exact_unit import exact_unit
 from raycaster.rtl.eye_mem import eye_mem
@@ -99,27 +99,6 @@ def test_what_an_engine_without_quotients_has_not(options, complaint):
 # rect_tester ----------------------------------------------------------------------------------------------------------
 
 
-def verdict(table: Rectangles, index: int, eye, slope, mirror) -> tuple[bool, int, int]:
-    """The definition, in fractions: hit, n and e.
-
-    Args:
-        table: sorted.
-        index: of the rectangle.
-        eye: where the ray seems to start.
-        slope: with signs.
-        mirror: axis and coordinate of the plane that it left last, or None.
-    """
-    axis = int(table.axes[index])
-    if slope[axis] == 0:
-        return False, 0, 0
-    t = Fraction(int(table.low[index, axis] - eye[axis]), int(slope[axis]))
-    point = [int(eye[u]) + int(slope[u]) * t for u in range(3)]
-    hit = t > 0 and all(table.low[index, u] <= point[u] <= table.high[index, u] for u in OTHER_AXES[axis])
-    if mirror is not None:
-        hit = hit and (point[mirror[0]] - mirror[1]) * int(slope[mirror[0]]) > 0
-    return hit, abs(int(table.low[index, axis] - eye[axis])), abs(int(slope[axis]))
-
-
 def leaf_of_tester(config: Configuration, directory) -> Leaf:
     return Leaf(
         rect_tester,
@@ -163,33 +142,6 @@ def mirrored_rays(random: np.random.Generator, config: Configuration, count: int
             table = sharpened(random, table, int(index), eye, slope, mirror)
         count -= 1
         yield table, set(chosen.tolist()), eye, slope, mirror
-
-
-def beside(random: np.random.Generator, place: int) -> int:
-    """As far from a coordinate as one of its bits is worth, or not at all."""
-    return int(np.clip(place + int(random.choice([-1, 0, 1])) * (1 << int(random.integers(9))), 0, LAST))
-
-
-def sharpened(random: np.random.Generator, table: Rectangles, index: int, eye, slope, mirror) -> Rectangles:
-    """The table with a rectangle moved to where it is hard to tell: an edge to the hit point or next to it, or the
-    plane to where the ray left the mirror."""
-    axis, corners = int(table.axes[index]), table.corners.copy()
-    if slope[axis] == 0:
-        return table
-    if mirror is not None and mirror[0] != axis and random.random() < 0.5:
-        at_mirror = Fraction(int(mirror[1] - eye[mirror[0]]), int(slope[mirror[0]]))
-        corners[index, :, axis] = np.clip(int(eye[axis] + int(slope[axis]) * at_mirror), 0, LAST)
-    if mirror is not None and mirror[0] == axis and random.random() < 0.3:
-        corners[index, :, axis] = beside(random, mirror[1])
-    t = Fraction(int(corners[index, 0, axis] - eye[axis]), int(slope[axis]))
-    for u in OTHER_AXES[axis]:
-        edge, past = int(random.integers(2)), int(random.integers(-1, 2))
-        corners[index, edge, u] = np.clip(int(eye[u] + int(slope[u]) * t) + past, 0, LAST)
-        if random.random() < 0.7:
-            corners[index, 1 - edge, u] = int(random.choice([0, LAST]))
-        if mirror is not None and mirror[0] == u and random.random() < 0.6:
-            corners[index, edge, u] = beside(random, mirror[1])
-    return Rectangles(corners, table.colours, table.enabled)
 
 
 @by_reflections

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The line buffer and the video timing: MyHDL's simulator, the converted Verilog and a model on one stimulus."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -65,7 +67,7 @@ def test_line_buffer(units, colour_bits, tmp_path):
             halves[inputs["line_buf_sel"]][inputs["write_offset"]] = inputs["pixel_in"]
 
 
-def video_model(screen: Screen, cycle: int, colours: list[tuple[int, int, int]]) -> dict[str, int]:
+def video_model(screen: Screen, lead: int, cycle: int, colours: list[tuple[int, int, int]]) -> dict[str, int]:
     """Every output, from the number of cycles since reset alone; `colours` are those at the inputs so far."""
     horizontal, vertical, doubling = screen.horizontal, screen.vertical, screen.doubling
 
@@ -73,15 +75,19 @@ def video_model(screen: Screen, cycle: int, colours: list[tuple[int, int, int]])
         line, x = divmod(pixel, horizontal.total)
         return x - horizontal.blank, line % vertical.total - vertical.blank
 
-    pixel, second_half = divmod(cycle, 2)
+    clocks = screen.clocks_per_pixel
+    pixel, clock = divmod(cycle, clocks)
     x, y = position(pixel)
-    line_start = x == -horizontal.blank and not second_half
+    line_start = x == -horizontal.blank and clock == 0
+    column = x + lead
+    in_columns = 0 <= column < horizontal.visible
     outputs = {
         "start_screen": line_start and y == -doubling,
         "start_row": line_start and y >= 0 and y % doubling == 0,
-        "visible_line": x >= 0,
-        "next_column": x >= 0 and second_half and x % doubling == doubling - 1,
-        "vga_clk": second_half,
+        "visible_line": in_columns,
+        "next_column": in_columns and clock == clocks - 1 and column % doubling == doubling - 1,
+        # With a clock a pixel it is the clock inverted, and the bench looks while that is low.
+        "vga_clk": clock == clocks - 1,
         "vga_sync_n": 0,
     }
     hs = vs = visible = False
@@ -94,7 +100,7 @@ def video_model(screen: Screen, cycle: int, colours: list[tuple[int, int, int]])
         vs = vertical.front <= line < vertical.front + vertical.sync
         visible = x >= 0 and y >= 0
     outputs |= {"vga_hs": hs == horizontal.active_high, "vga_vs": vs == vertical.active_high, "vga_blank_n": visible}
-    shown = colours[2 * pixel - 1] if visible else (0, 0, 0)
+    shown = colours[clocks * pixel - 1] if visible else (0, 0, 0)
     outputs |= dict(zip(("vga_r", "vga_g", "vga_b"), shown, strict=True))
     return {name: int(value) for name, value in outputs.items()}
 
@@ -106,12 +112,19 @@ SMALL_SCREENS = {
     "threefold": Screen(2, 2, 1, 3, Span(6, 1, 2, 2, active_high=True), Span(6, 1, 1, 3, active_high=False)),
     "tiny": SCREENS["tiny", 48],
 }
+BEAMS = {
+    "one-clock": (replace(SMALL_SCREENS["both-low"], clocks_per_pixel=1), 0),
+    "early": (replace(SMALL_SCREENS["mixed"], clocks_per_pixel=1), 9),
+    "early-doubled": (replace(SMALL_SCREENS["both-high"], clocks_per_pixel=1), 5),
+    "early-threefold": (replace(SMALL_SCREENS["threefold"], clocks_per_pixel=1), 4),
+}
+"""Screens, and how many pixels before their turn the columns are announced."""
 
 
 @pytest.mark.parametrize("colour_bits", [1, 8])
-@pytest.mark.parametrize("name", SMALL_SCREENS)
+@pytest.mark.parametrize("name", [*SMALL_SCREENS, *BEAMS])
 def test_video_generator(name, colour_bits, tmp_path):
-    screen = SMALL_SCREENS[name]
+    screen, lead = BEAMS[name] if name in BEAMS else (SMALL_SCREENS[name], 0)
     channels = ("red", "green", "blue")
     leaf = Leaf(
         video_generator,
@@ -123,6 +136,7 @@ def test_video_generator(name, colour_bits, tmp_path):
             **{f"vga_{channel}": unsigned(colour_bits) for channel in "rgb"},
             **{f"vga_{port}": bit() for port in ("hs", "vs", "blank_n", "sync_n", "clk")},
             "screen": screen,
+            "lead": lead,
         },
         tmp_path,
     )
@@ -143,7 +157,8 @@ def test_video_generator(name, colour_bits, tmp_path):
             colours = []
         colours.append(tuple(inputs[channel] for channel in channels))
         if cycle is not None:
-            assert outputs[number] == video_model(screen, cycle, colours), f"{cycle} cycles after reset; {repeat()}"
+            expected = video_model(screen, lead, cycle, colours)
+            assert outputs[number] == expected, f"{cycle} cycles after reset; {repeat()}"
 
 
 def standard(config: Configuration) -> tuple[tuple[int, ...], tuple[int, ...], bool, bool]:

@@ -155,8 +155,8 @@ def test_an_explanation_fits_what_it_names():
 def test_every_module_is_mutated(tmp_path):
     scene = load_scene(SMALL_SCENE)
     files = []
-    for engine in ("seed", "exact"):
-        config = configure(engine=engine, units=1, rectangles=4, allow_underrun=True)
+    for engine in ("seed", "exact", "beam"):
+        config = configure(engine=engine, units=1, rectangles=5, reflections=2, allow_underrun=True)
         files += write_system(config, scene, tmp_path / engine)
     known = expectations()
     # The system's scene is fixed when it is generated, so its leaf test cannot vary what goes over its wires.

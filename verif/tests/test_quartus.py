@@ -18,7 +18,7 @@ from typing import Any
 import pytest
 from conftest import SMALL_SCENE
 
-from raycaster.configuration import CLOCKS_PER_PIXEL, Configuration, configure
+from raycaster.configuration import Configuration, configure
 from raycaster.fpga import quartus
 from raycaster.fpga.board import BOARDS, TOP, Board, BoardError, assignments, check_project, find_board, load_board
 from raycaster.fpga.quartus import OUTPUT_FILES, VERILOG, write_project
@@ -259,7 +259,7 @@ def test_constraints_are_tcl_of_these_ports(name, tmp_path):
     generator = (directory / VERILOG / "video_generator.v").read_text()
     assert re.search(r"^reg pixel_end;$", generator, re.M)
     assert re.search(r"^assign vga_clk = pixel_end;$", generator, re.M)
-    assert CLOCKS_PER_PIXEL == 2
+    assert configure().screen_geometry.clocks_per_pixel == 2
 
 
 SYSTEM = """
@@ -377,7 +377,7 @@ def test_a_board_shows_what_the_system_does(tmp_path):
     assert (different, seen) == (0, frames)
     assert lines >= frames * screen.vertical.total - 1
     # The small scene has red everywhere, its background included.
-    assert lit >= screen.horizontal.visible * screen.vertical.visible * CLOCKS_PER_PIXEL
+    assert lit >= screen.horizontal.visible * screen.vertical.visible * screen.clocks_per_pixel
 
 
 Command = Callable[..., tuple[int, list[str], list[str]]]

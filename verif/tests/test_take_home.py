@@ -27,6 +27,9 @@ CONFIGURATIONS = [
     configure(screen="tiny", units=1, rectangles=1, fraction_bits=3, colour_bits=1, allow_underrun=True),
     configure(engine="exact"),
     configure(engine="exact", screen="tiny", reflections=2, rectangles=1),
+    configure(engine="beam", rows=180),
+    configure(engine="beam", screen="tiny", reflections=2, rectangles=3, scale=1),
+    configure(engine="beam", reflections=0, rectangles=1, colour_bits=4),
 ]
 SMALL = configure(screen="tiny", units=2, rectangles=2, allow_underrun=True)
 

@@ -6,6 +6,8 @@ from __future__ import annotations
 import random
 from collections import deque
 
+import pytest
+
 from raycaster.golden.tmds import CONTROL_SYMBOLS, Sample, decode, encode, minimise_transitions
 from raycaster.rtl.dvi_encoder import DviPorts, dvi_encoder
 from raycaster.rtl.ones_count import ones_count
@@ -95,7 +97,8 @@ def test_tmds_encoder(tmp_path):
         assert outputs[place + 1]["symbol"] == symbol, (place, repeat())
 
 
-def test_dvi_encoder(tmp_path):
+@pytest.mark.parametrize("clocks_per_pixel", [1, 2])
+def test_dvi_encoder(clocks_per_pixel, tmp_path):
     leaf = Leaf(dvi_encoder, lambda: DviPorts().all(), tmp_path)
     rng = random.Random(seed())
     pixels = []
@@ -104,8 +107,13 @@ def test_dvi_encoder(tmp_path):
             for _ in range(rng.randrange(1, 20)):
                 ports = {f"vga_{name}": rng.randrange(256) for name in "rgb"}
                 pixels.append(ports | {"vga_hs": rng.randrange(2), "vga_vs": rng.randrange(2), "vga_blank_n": visible})
-    stimulus = [{**pixel, "vga_clk": half} for pixel in pixels for half in (0, 1)]
-    outputs = leaf.run_both(stimulus, settled=4)
+    halves = range(clocks_per_pixel)
+    stimulus = [
+        {**pixel, "pixel_end": int(half == halves[-1]), "ready": int(place > 0)}
+        for place, pixel in enumerate(pixels)
+        for half in halves
+    ]
+    outputs = leaf.run_both(stimulus, settled=2 * clocks_per_pixel)
     links = {
         "blue": [Sample(p["vga_blank_n"], p["vga_b"], p["vga_vs"] << 1 | p["vga_hs"]) for p in pixels],
         "green": [Sample(p["vga_blank_n"], p["vga_g"], 0) for p in pixels],
@@ -113,6 +121,7 @@ def test_dvi_encoder(tmp_path):
     }
     for channel, samples in links.items():
         for place, symbol in enumerate(list(encode(samples))[:-2]):
-            first_half, second_half = outputs[2 * place + 4 : 2 * place + 6]
-            assert first_half[channel] == second_half[channel] == symbol, (channel, place, repeat())
-            assert (first_half["pixel"], second_half["pixel"]) == (1, 0)
+            first = clocks_per_pixel * (place + 2)
+            shown = outputs[first : first + clocks_per_pixel]
+            assert all(output[channel] == symbol for output in shown), (channel, place, repeat())
+            assert {output["pixel"] for output in shown} == {(place + 1) % 2}

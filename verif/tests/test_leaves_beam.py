@@ -1,0 +1,709 @@
+# SPDX-License-Identifier: MIT
+"""The beam engine's blocks: MyHDL's simulator, the converted Verilog and exact arithmetic on one set of vectors."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hard_scenes import pixel_word, sharpened, traced_scene, verdict
+
+from raycaster.configuration import BEAM_SCREENS, WORLD_SIZE, Configuration, ConfigurationError, configure
+from raycaster.golden import exact
+from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import Rectangles
+from raycaster.rtl import fold_tester as tester
+from raycaster.rtl import nearest_of_two as contest
+from raycaster.rtl import ray_fold as folder
+from raycaster.rtl import rect_setup as setup
+from raycaster.rtl.beam_caster import beam_caster, beam_latency
+from raycaster.rtl.color_blend import color_blend
+from raycaster.rtl.color_mean import color_mean
+from raycaster.rtl.facet_mem import facet_mem
+from raycaster.rtl.fold_tester import fold_tester
+from raycaster.rtl.interfaces import Candidate, Facet, Fold, PipelinedRects, Point, Reflector, Slope, Walk
+from raycaster.rtl.nearest_of_two import nearest_of_two
+from raycaster.rtl.ray_fold import ray_fold
+from raycaster.rtl.rect_setup import rect_setup
+from raycaster.rtl.rect_walker import rect_walker
+from raycaster.rtl.slope_magnitudes import slope_magnitudes
+from raycaster.rtl.slope_walker import slope_walker
+from raycaster.rtl.unopposed import unopposed
+from raycaster.rtl.widths import (
+    COLOUR_BITS,
+    DISTANCE_BITS,
+    TURN_BITS,
+    bit,
+    exact_slope_bits,
+    fold_bits,
+    signed,
+    steepest_slope,
+    unsigned,
+    walk_bits,
+)
+from raycaster.rtl.winner_delay import winner_delay
+from raycaster.verif.leaf import Leaf, reset_signal, sorted_rect
+from raycaster.verif.seeds import repeat, seed
+
+AXES = "xyz"
+LAST = WORLD_SIZE - 1
+U, V = (1, 0, 1), (2, 2, 0)
+"""By the axis of a plane: u is y unless the plane is on y, v is z unless it is on z."""
+WALK = ("way_u", "low_u", "high_u", "low_v", "high_v")
+
+
+def config_id(config: Configuration) -> str:
+    return config.name
+
+
+def beam_config(**options) -> Configuration:
+    return configure(engine="beam", **options)
+
+
+def word(value: int, bits: int) -> int:
+    """A number as its port has it."""
+    return int(value) % (1 << bits)
+
+
+def number(value: int, bits: int) -> int:
+    """What a port of two's complement says."""
+    return value - (1 << bits) if value >> (bits - 1) else value
+
+
+def any_place(random: np.random.Generator) -> int:
+    return int(random.choice(EXTREMES)) if random.random() < 0.3 else int(random.integers(WORLD_SIZE))
+
+
+by_screen = pytest.mark.parametrize(
+    "config",
+    [
+        beam_config(reflections=0, rows=200, scale=1),
+        beam_config(reflections=1, rows=180),
+        beam_config(reflections=2, rows=240),
+        beam_config(reflections=2, screen="tiny"),
+    ],
+    ids=config_id,
+)
+
+
+# The configuration ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("options", "shown"),
+    [
+        ({}, (640, 480, 2, 1, 25_000_000)),
+        ({"scale": 1}, (320, 240, 1, 2, 25_000_000)),
+        ({"rows": 200}, (640, 400, 2, 1, 25_000_000)),
+        ({"rows": 180}, (1280, 720, 4, 1, 74_250_000)),
+        ({"rows": 180, "scale": 1}, (320, 180, 1, 4, 74_250_000)),
+        ({"screen": "tiny"}, (128, 96, 2, 1, 25_000_000)),
+    ],
+)
+def test_a_beam_is_as_fine_as_its_monitor(options, shown):
+    config = beam_config(**options)
+    screen = config.screen_geometry
+    assert (screen.columns, screen.rows, screen.scale, screen.doubling, screen.clock_hz) == shown
+    assert (config.scale, config.units, config.group_cycles) == (screen.scale, 1, 1)
+
+
+@pytest.mark.parametrize("options", [{"rows": 240}, {"rows": 200}, {"rows": 180}, {"screen": "tiny"}])
+def test_a_finer_view_is_the_same_view(options):
+    """The pixel (s row, s column) at scale s is the pixel (row, column) at scale 1."""
+    fine = beam_config(**options)
+    scale = fine.scale
+    coarse = primary_slopes(beam_config(**options, scale=1).screen_geometry)
+    assert np.array_equal(primary_slopes(fine.screen_geometry)[::scale, ::scale], scale * coarse)
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        ({"units": 4}, "^units: the beam engine is one unit that draws a pixel a clock, not 4$"),
+        ({"scale": 3}, "^scale: the beam engine shows 240 rows at 1 or 2, not 3$"),
+        ({"rows": 180, "scale": 8}, "^scale: the beam engine shows 180 rows at 1 or 2 or 4, not 8$"),
+        ({"fraction_bits": 1}, "^fraction_bits: the beam engine has none, not 1$"),
+        ({"engine": "seed", "scale": 2}, "^scale: the seed engine shows 240 rows at 1, not 2; scales need the beam"),
+        ({"engine": "exact", "rows": 180}, "180 rows need the beam engine, ENGINE=beam$"),
+    ],
+)
+def test_what_the_beam_engine_has_not(options, complaint):
+    with pytest.raises(ConfigurationError, match=complaint):
+        configure(**{"engine": "beam"} | options)
+
+
+@pytest.mark.parametrize("place", BEAM_SCREENS, ids=str)
+@pytest.mark.parametrize("rectangles", [1, 2, 12, 32])
+@pytest.mark.parametrize("reflections", [0, 1, 2])
+def test_every_row_is_set_up_in_its_blanking(place, rectangles, reflections):
+    """The latest column has left, and all rectangles are loaded, before the first column's turn."""
+    screen, rows = place
+    config = beam_config(screen=screen, rows=rows, rectangles=rectangles, reflections=reflections)
+    horizontal = config.screen_geometry.horizontal
+    # The horizontal sync is seen a pixel after its turn, and the columns start before theirs.
+    assert 1 + setup.LATENCY + rectangles <= horizontal.blank - horizontal.front - beam_latency(config)
+
+
+# rect_setup -----------------------------------------------------------------------------------------------------------
+
+
+def products(table: Rectangles, index: int, camera, slope) -> dict[str, int]:
+    """What cross-multiplication compares, and the distance and way_v."""
+    axis = int(table.axes[index])
+    low, high = (bound[index].astype(object) - camera for bound in (table.low, table.high))
+    n, e = int(low[axis]), int(slope[axis])
+    u, v = U[axis], V[axis]
+    return {
+        "distance": n,
+        "way_u": n * int(slope[u]),
+        "way_v": n * int(slope[v]),
+        "low_u": int(low[u]) * e,
+        "high_u": int(high[u]) * e,
+        "low_v": int(low[v]) * e,
+        "high_v": int(high[v]) * e,
+    }
+
+
+def flat_tables(random: np.random.Generator, count: int) -> Rectangles:
+    """Rectangles that all have a plane; corners of the world are common."""
+    corners = np.array([[[any_place(random) for _ in AXES] for _ in range(2)] for _ in range(count)])
+    axis = random.integers(3, size=count)
+    corners[np.arange(count), 1, axis] = corners[np.arange(count), 0, axis]
+    return Rectangles(corners, random.integers(256, size=(count, 3)).astype(np.uint8), random.random(count) < 0.8)
+
+
+@by_screen
+def test_rect_setup(config, tmp_path):
+    count = config.rectangles
+    leaf = Leaf(
+        rect_setup,
+        lambda: {
+            "clk": bit(),
+            "reset": reset_signal(),
+            "start_line": bit(),
+            "rects": PipelinedRects(config),
+            "camera": Point(),
+            "row_slope": signed(exact_slope_bits(config) + 1),
+            "load": unsigned(count),
+            "facet": Facet(config),
+            "growth": Walk(DISTANCE_BITS),
+            "start": Walk(walk_bits(config)),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    slopes = primary_slopes(config.screen_geometry)
+    stimulus = [{"reset": 1}] * 2
+    loads = {}
+    for line in range(12):
+        table = flat_tables(random, count)
+        camera = np.array([any_place(random) for _ in AXES])
+        row = 0 if line == 0 else len(slopes) - 1 if line == 1 else int(random.integers(len(slopes)))
+        held = {f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)}
+        held |= {"reset": 0, "start_line": 0, "rects_usable": sum(int(one) << i for i, one in enumerate(table.enabled))}
+        start = len(stimulus)
+        stimulus += [{**held, "start_line": 1}, held, held]
+        held["row_slope"] = word(slopes[row, 0, 2], exact_slope_bits(config) + 1)
+        for index in range(count):
+            # Two cycles after it was asked for.
+            stimulus.append({**held, **sorted_rect(table, index, "rects_rect")})
+            loads[start + setup.LATENCY + index] = table, index, camera, slopes[row, :2]
+        stimulus += [held] * (setup.LATENCY + int(random.integers(5)))
+    outputs = leaf.run_both(stimulus, settled=2 + setup.LATENCY)
+    width = walk_bits(config)
+    for cycle, output in enumerate(outputs[2:], 2):
+        assert output["load"] == (1 << loads[cycle][1] if cycle in loads else 0), (cycle, repeat())
+    for cycle, (table, index, camera, (first, second)) in loads.items():
+        output = outputs[cycle]
+        now, then = (products(table, index, camera, slope) for slope in (first, second))
+        case = cycle, index, camera, table.corners[index].tolist(), repeat()
+        assert output["facet_usable"] == table.enabled[index], case
+        assert output["facet_axis"] == table.axes[index], case
+        assert number(output["facet_distance"], DISTANCE_BITS) == now["distance"], case
+        assert number(output["facet_way_v"], width) == now["way_v"] == then["way_v"], case
+        assert output["facet_colour"] == int.from_bytes(bytes(table.colours[index])), case
+        for name in WALK:
+            assert number(output[f"start_{name}"], width) == now[name], (name, case)
+            assert number(output[f"growth_{name}"], DISTANCE_BITS) == then[name] - now[name], (name, case)
+
+
+# The walkers ----------------------------------------------------------------------------------------------------------
+
+
+def test_facet_mem(tmp_path):
+    config = beam_config()
+    leaf = Leaf(
+        facet_mem,
+        lambda: {
+            "clk": bit(),
+            "load": bit(),
+            "new_facet": Facet(config),
+            "new_growth": Walk(DISTANCE_BITS),
+            "facet": Facet(config),
+            "growth": Walk(DISTANCE_BITS),
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    stimulus = [
+        {name: int(random.integers(1 << port.width)) for name, port in leaf.inputs.items()} | {"load": int(load)}
+        for load in [1, *(random.random(200) < 0.3)]
+    ]
+    outputs = leaf.run_both(stimulus, settled=1)
+    kept = None
+    for inputs, output in zip(stimulus, outputs, strict=True):
+        if kept is not None:
+            assert output == {name: kept[f"new_{name}"] for name in output}, repeat()
+        if inputs["load"]:
+            kept = inputs
+
+
+@by_screen
+def test_rect_walker(config, tmp_path):
+    """Whole rows, in which the ways and the bounds advance at different times, at the steepest slopes too."""
+    leaf = Leaf(
+        rect_walker,
+        lambda: {
+            "clk": bit(),
+            "load": bit(),
+            "step_way": bit(),
+            "step_bounds": bit(),
+            "start": Walk(walk_bits(config)),
+            "growth": Walk(DISTANCE_BITS),
+            "walk": Walk(walk_bits(config)),
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    slopes = primary_slopes(config.screen_geometry)
+    width, columns = walk_bits(config), slopes.shape[1]
+    stimulus, expected = [], {}
+    for row in (0, len(slopes) - 1, int(random.integers(len(slopes)))):
+        table = flat_tables(random, 1)
+        camera = np.array([any_place(random) for _ in AXES])
+        now, then = (products(table, 0, camera, slope) for slope in slopes[row, :2])
+        inputs = {f"start_{name}": word(now[name], width) for name in WALK}
+        inputs |= {f"growth_{name}": word(then[name] - now[name], DISTANCE_BITS) for name in WALK}
+        stimulus.append({**inputs, "load": 1})
+        way = bounds = 0
+        # One step more than there are columns: the last one's end.
+        while min(way, bounds) < columns:
+            slope = slopes[row, 0] + np.array([0, 1, 0]) * [[way], [bounds]]
+            seen = products(table, 0, camera, slope[0]), products(table, 0, camera, slope[1])
+            expected[len(stimulus)] = [word(seen[name != "way_u"][name], width) for name in WALK]
+            step_way, step_bounds = int(way < columns and random.random() < 0.9), int(bounds < columns)
+            stimulus.append({"load": 0, "step_way": step_way, "step_bounds": step_bounds})
+            way, bounds = way + step_way, bounds + step_bounds
+    outputs = leaf.run_both(stimulus, settled=1)
+    for cycle, values in expected.items():
+        assert [outputs[cycle][f"walk_{name}"] for name in WALK] == values, (cycle, repeat())
+
+
+@by_screen
+def test_slope_walker(config, tmp_path):
+    slope_bits = exact_slope_bits(config) + 1
+    leaf = Leaf(
+        slope_walker,
+        lambda: {
+            "clk": bit(),
+            "start_line": bit(),
+            "step": bit(),
+            "column_slope": signed(slope_bits),
+            "config": config,
+        },
+        tmp_path,
+    )
+    columns = config.screen_geometry.columns
+    stimulus = [{"start_line": 1, "step": 1}, *({"start_line": 0, "step": step % 3 != 2} for step in range(columns))]
+    stimulus.append({"start_line": 1})
+    outputs = leaf.run_both(
+        [*({name: int(value) for name, value in cycle.items()} for cycle in stimulus), {}], settled=1
+    )
+    column = 0
+    for inputs, output in zip(stimulus[1:], outputs[1:], strict=False):
+        assert number(output["column_slope"], slope_bits) == column - columns // 2
+        column += inputs.get("step", 0)
+    assert number(outputs[-1]["column_slope"], slope_bits) == -columns // 2
+
+
+def test_slope_magnitudes(tmp_path):
+    config = beam_config(rows=180)
+    width = exact_slope_bits(config) + 1
+    leaf = Leaf(
+        slope_magnitudes,
+        lambda: {"column_slope": signed(width), "row_slope": signed(width), "slope": Slope(width - 1)},
+        tmp_path,
+    )
+    most = (1 << width - 1) - 1
+    pairs = [(value, -value) for value in range(-most, most + 1)]
+    outputs = leaf.run_both([{"column_slope": word(dy, width), "row_slope": word(dz, width)} for dy, dz in pairs])
+    for (dy, dz), output in zip(pairs, outputs, strict=True):
+        assert (output["slope_dy"], output["slope_dz"]) == (abs(dy), abs(dz))
+
+
+# ray_fold and fold_tester ---------------------------------------------------------------------------------------------
+
+
+def beam_rays(random: np.random.Generator, config: Configuration, count: int):
+    """Tables, rectangles of them to look at, cameras, slopes and mirrors (axis and plane, as the ray meets them).
+
+    As the engine meets them, and as extreme as its widths allow.
+    """
+    steepest, view = steepest_slope(config), config.screen_geometry.view_distance
+    for _ in range(count):
+        table = random_rectangles(random, count=8, closed=True)
+        camera = random_camera(random, table).astype(np.int64)
+        sides = random.choice([0, 1, 2, view, steepest, int(random.integers(steepest))], 2) * random.choice([-1, 1], 2)
+        slope = np.array([view, *sides])
+        wanted = int(random.integers(config.reflections + 1))
+        mirrors: list[tuple[int, int]] = []
+        met = Fraction(0)
+        for _ in range(20):
+            if len(mirrors) == wanted:
+                break
+            axis, plane = int(random.integers(3)), any_place(random)
+            if mirrors and random.random() < 0.5:
+                # From corner to corner the image runs as far away as it can.
+                axis, plane = mirrors[-1][0], LAST - mirrors[-1][1]
+            eye, turned = seen_from(camera, slope, mirrors)
+            if turned[axis] and Fraction(int(plane - eye[axis]), int(turned[axis])) > met:
+                met = Fraction(int(plane - eye[axis]), int(turned[axis]))
+                mirrors.append((axis, plane))
+        eye, turned = seen_from(camera, slope, mirrors)
+        chosen = random.choice(np.flatnonzero(table.visible), 4)
+        for index in chosen:
+            table = sharpened(random, table, int(index), eye, turned, mirrors[-1] if mirrors else None)
+        yield table, set(chosen.tolist()), camera, slope, mirrors
+
+
+def seen_from(camera, slope, mirrors) -> tuple[np.ndarray, np.ndarray]:
+    """The camera and the slope, mirrored."""
+    eye, turned = np.array(camera), np.array(slope)
+    for axis, plane in mirrors:
+        eye[axis], turned[axis] = 2 * plane - eye[axis], -turned[axis]
+    return eye, turned
+
+
+def folded(config: Configuration, camera, slope, mirrors) -> dict[str, int]:
+    """The fold, by its definition: x - E = +-(X - E) + T, where the room's x is the mirrored camera's."""
+    eye, turned = seen_from(camera, slope, mirrors)
+    turn = [int(value) for value in eye - camera]
+    back = [sum(axis == mirror for mirror, _ in mirrors) % 2 for axis in range(3)]
+    fields = {f"back_{name}": back[axis] for axis, name in enumerate(AXES)}
+    fields |= {f"turn_{name}": word(turn[axis], TURN_BITS) for axis, name in enumerate(AXES)}
+    for letter, others in (("u", U), ("v", V)):
+        for axis, other in enumerate(others):
+            flip = back[axis] != back[other]
+            sign = -1 if flip else 1
+            added = turn[other] * int(slope[axis]) - sign * turn[axis] * int(slope[other]) + flip
+            fields[f"{letter}_{AXES[axis]}"] = word(added, fold_bits(config))
+    axis, plane = mirrors[-1] if mirrors else (0, int(camera[0]))
+    distance = plane - int(camera[axis])
+    fields |= {f"border_{name}": word(distance * int(slope[c]), walk_bits(config)) for c, name in enumerate(AXES)}
+    fields["mirror_back"] = int(turned[axis] < 0)
+    return fields | {"axis": axis, "distance": word(distance, DISTANCE_BITS)}
+
+
+def slope_ports(config: Configuration, slope) -> dict[str, int]:
+    width = exact_slope_bits(config) + 1
+    return {"column_slope": word(slope[1], width), "row_slope": word(slope[2], width)}
+
+
+@by_screen
+def test_fold_tester(config, tmp_path):
+    """A ray a cycle; its bounds come a cycle later, and its slope's magnitudes two."""
+    slope_bits = exact_slope_bits(config)
+    leaf = Leaf(
+        fold_tester,
+        lambda: {
+            "clk": bit(),
+            "facet": Facet(config),
+            "walk": Walk(walk_bits(config)),
+            "column_slope": signed(slope_bits + 1),
+            "row_slope": signed(slope_bits + 1),
+            "slope": Slope(slope_bits),
+            "fold": Fold(config),
+            "hit": Candidate(config),
+            "view_distance": config.screen_geometry.view_distance,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    stimulus, expected, seen = [], {}, set()
+    for table, chosen, camera, slope, mirrors in beam_rays(random, config, 2000):
+        fold = {f"fold_{name}": value for name, value in folded(config, camera, slope, mirrors).items()}
+        eye, turned = seen_from(camera, slope, mirrors)
+        for index in chosen:
+            now = products(table, index, camera, slope)
+            bounds = {f"walk_{name}": word(now[name], walk_bits(config)) for name in WALK if name != "way_u"}
+            facet = {
+                "facet_usable": int(table.enabled[index]),
+                "facet_axis": int(table.axes[index]),
+                "facet_distance": word(now["distance"], DISTANCE_BITS),
+                "facet_way_v": word(now["way_v"], walk_bits(config)),
+            }
+            ray = {"walk_way_u": word(now["way_u"], walk_bits(config)), **slope_ports(config, slope)}
+            start = len(stimulus)
+            stimulus += [
+                {**facet, **fold, **ray, "fold_active": int(bool(mirrors))},
+                bounds,
+                {f"slope_d{AXES[c]}": abs(int(slope[c])) for c in (1, 2)},
+            ]
+            hit, n, e = verdict(table, index, eye, turned, mirrors[-1] if mirrors else None)
+            seen.add((len(mirrors), hit))
+            expected[start + tester.LATENCY] = hit and bool(table.enabled[index]), n, e, (
+                table.corners[index].tolist(), camera, slope, mirrors, repeat()
+            )  # fmt: skip
+    outputs = leaf.run_both([*stimulus, {}], settled=tester.LATENCY)
+    assert len(seen) == 2 * (config.reflections + 1)
+    for cycle, (hit, n, e, case) in expected.items():
+        output = outputs[cycle]
+        assert output["hit_valid"] == hit, case
+        assert not hit or (output["hit_numerator"], output["hit_denominator"]) == (n, e), case
+
+
+@pytest.mark.parametrize(
+    "config",
+    [beam_config(rows=180), beam_config(reflections=2), beam_config(reflections=2, screen="tiny")],
+    ids=config_id,
+)
+def test_ray_fold(config, tmp_path):
+    """A ray a cycle; its slope comes a cycle after its mirrors."""
+    slope_bits = exact_slope_bits(config) + 1
+    leaf = Leaf(
+        ray_fold,
+        lambda: {
+            "clk": bit(),
+            "earlier": Reflector(),
+            "last": Reflector(),
+            "column_slope": signed(slope_bits),
+            "row_slope": signed(slope_bits),
+            "fold": Fold(config),
+            "view_distance": config.screen_geometry.view_distance,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    rays = [ray[2:] for ray in beam_rays(random, config, 4000) if ray[-1]]
+    stimulus = [{} for _ in range(len(rays) + folder.LATENCY + 1)]
+    for cycle, (camera, slope, mirrors) in enumerate(rays):
+        met = {"last": mirrors[-1], "earlier": mirrors[0] if len(mirrors) == 2 else (1, any_place(random))}
+        for name, (axis, plane) in met.items():
+            distance = word(plane - int(camera[axis]), DISTANCE_BITS)
+            stimulus[cycle] |= {f"{name}_axis": axis, f"{name}_distance": distance}
+        stimulus[cycle]["earlier_active"] = int(len(mirrors) == 2)
+        stimulus[cycle + 1] |= slope_ports(config, slope)
+    outputs = leaf.run_both(
+        [{name: value for name, value in cycle.items() if name in leaf.inputs} for cycle in stimulus],
+        settled=folder.LATENCY,
+    )
+    for cycle, (camera, slope, mirrors) in enumerate(rays):
+        expected = {f"fold_{name}": value for name, value in folded(config, camera, slope, mirrors).items()}
+        assert outputs[cycle + folder.LATENCY] == expected, (camera, slope, mirrors, repeat())
+
+
+# The nearest ----------------------------------------------------------------------------------------------------------
+
+
+def any_candidate(random: np.random.Generator, config: Configuration) -> tuple[int, int, int, int]:
+    """valid, numerator, denominator, index; equal fractions in other terms are common."""
+    most = [(1 << len(signal)) - 1 for signal in (Candidate(config).numerator, Candidate(config).denominator)]
+    if random.random() < 0.4:
+        n, e, times = int(random.integers(1, 4)), int(random.integers(1, 4)), int(random.integers(1, 60))
+        n, e = n * times, e * times
+    else:
+        n, e = (int(random.choice([1, limit, random.integers(1, limit)])) for limit in most)
+    return int(random.random() < 0.8), n, e, int(random.integers(config.rectangles))
+
+
+def candidate_ports(name: str, candidate) -> dict[str, int]:
+    fields = zip(("valid", "numerator", "denominator", "index"), candidate, strict=True)
+    return {f"{name}_{field}": value for field, value in fields}
+
+
+@by_screen
+def test_nearest_of_two(config, tmp_path):
+    leaf = Leaf(
+        nearest_of_two,
+        lambda: {"clk": bit(), **{name: Candidate(config) for name in ("first", "second", "nearest")}},
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    pairs = [(any_candidate(random, config), any_candidate(random, config)) for _ in range(3000)]
+    stimulus = [candidate_ports("first", first) | candidate_ports("second", second) for first, second in pairs]
+    outputs = leaf.run_both([*stimulus, *[{}] * contest.LATENCY], settled=contest.LATENCY)
+    ties = 0
+    for (first, second), output in zip(pairs, outputs[contest.LATENCY :], strict=True):
+        valid = [candidate for candidate in (first, second) if candidate[0]]
+        assert output["nearest_valid"] == bool(valid)
+        if valid:
+            # min takes the first of equals.
+            assert output == candidate_ports("nearest", min(valid, key=lambda one: Fraction(one[1], one[2]))), repeat()
+            ties += len({Fraction(one[1], one[2]) for one in valid}) < len(valid)
+    assert ties > 20
+
+
+def test_unopposed(tmp_path):
+    """It comes out as it is, with those that met another."""
+    config = beam_config()
+    leaf = Leaf(unopposed, lambda: {"clk": bit(), "first": Candidate(config), "nearest": Candidate(config)}, tmp_path)
+    random = np.random.default_rng(seed())
+    candidates = [any_candidate(random, config) for _ in range(200)]
+    stimulus = [candidate_ports("first", candidate) for candidate in candidates]
+    outputs = leaf.run_both([*stimulus, *[{}] * contest.LATENCY], settled=contest.LATENCY)
+    assert outputs[contest.LATENCY :] == [candidate_ports("nearest", candidate) for candidate in candidates]
+
+
+@pytest.mark.parametrize("cycles", [2, 3, 13])
+def test_winner_delay(cycles, tmp_path):
+    leaf = Leaf(
+        winner_delay,
+        lambda: {
+            "clk": bit(), "valid": bit(), "index": unsigned(4), "late_valid": bit(), "late_index": unsigned(4),
+            "cycles": cycles,
+        },
+        tmp_path,
+    )  # fmt: skip
+    random = np.random.default_rng(seed())
+    stimulus = [{"valid": int(random.integers(2)), "index": int(random.integers(16))} for _ in range(100)]
+    outputs = leaf.run_both(stimulus, settled=cycles)
+    for inputs, output in zip(stimulus, outputs[cycles:], strict=False):
+        assert output == {f"late_{name}": value for name, value in inputs.items()}
+
+
+# The colour -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("colour_bits", [1, 5, 8])
+def test_color_mean(colour_bits, tmp_path):
+    config = beam_config(colour_bits=colour_bits)
+    names = ("first", "second", "third")
+    leaf = Leaf(
+        color_mean,
+        lambda: {
+            "clk": bit(),
+            **{name: unsigned(8) for name in names},
+            "reflections": unsigned(2),
+            "mean": unsigned(colour_bits),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    values = random.choice([0, 1, 254, 255, *random.integers(256, size=4)], (600, 3))
+    stimulus = [
+        {**dict(zip(names, map(int, seen), strict=True)), "reflections": number % 3}
+        for number, seen in enumerate(values)
+    ]
+    outputs = leaf.run_both([*stimulus, {}], settled=1)
+    for inputs, output in zip(stimulus, outputs[1:], strict=True):
+        first, second, third = (inputs[name] for name in names)
+        mean = (first, (first + second) >> 1, (2 * first + second + third) >> 2)[inputs["reflections"]]
+        assert output["mean"] == mean >> (8 - colour_bits), (inputs, repeat())
+
+
+def test_color_blend(tmp_path):
+    """What comes after a ray that found nothing is background."""
+    config = beam_config(colour_bits=6)
+    leaf = Leaf(
+        color_blend,
+        lambda: {
+            "clk": bit(),
+            **{f"found_{number}": bit() for number in range(3)},
+            **{f"color_{number}": unsigned(COLOUR_BITS) for number in range(3)},
+            "background": unsigned(COLOUR_BITS),
+            "reflections": unsigned(2),
+            **{channel: unsigned(6) for channel in ("red", "green", "blue")},
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    stimulus, expected = [], []
+    background, reflections = 0x123456, 0
+    for number in range(900):
+        if number % 100 == 0:
+            background, reflections = int(random.integers(1 << COLOUR_BITS)), number // 100 % 3
+        found = (random.random(3) < 0.7).astype(int).tolist()
+        colours = [int(random.integers(1 << COLOUR_BITS)) for _ in found]
+        stimulus.append({
+            "background": background, "reflections": reflections,
+            **{f"found_{i}": one for i, one in enumerate(found)},
+            **{f"color_{i}": one for i, one in enumerate(colours)},
+        })  # fmt: skip
+        seen = [colour if all(found[: i + 1]) else background for i, colour in enumerate(colours)]
+        weights, shift = (((1, 0, 0), 0), ((1, 1, 0), 1), ((2, 1, 1), 2))[reflections]
+        channels = [[colour >> low & 255 for colour in seen] for low in (16, 8, 0)]
+        expected.append([sum(w * c for w, c in zip(weights, one, strict=True)) >> shift >> 2 for one in channels])
+    outputs = leaf.run_both([*stimulus, {}, {}], settled=2)
+    for number, (colour, output) in enumerate(zip(expected, outputs[2:], strict=True)):
+        if number % 100 != 99:  # whose background has changed on the way
+            assert [output[channel] for channel in ("red", "green", "blue")] == colour, (number, repeat())
+
+
+# The engine -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        beam_config(screen="tiny", rectangles=1, reflections=0, colour_bits=4),
+        beam_config(screen="tiny", rectangles=3, reflections=1, scale=1),
+        beam_config(screen="tiny", rectangles=8, reflections=2),
+        beam_config(rows=180, rectangles=5, reflections=1),
+    ],
+    ids=config_id,
+)
+def test_beam_caster(config, tmp_path):
+    """Whole rows of scenes in which a ray of the row meets mirrors and edges."""
+    leaf = Leaf(
+        beam_caster,
+        lambda: {
+            "clk": bit(),
+            "reset": reset_signal(),
+            "start_line": bit(),
+            "next_column": bit(),
+            "row_slope": signed(exact_slope_bits(config) + 1),
+            "camera": Point(),
+            "background": unsigned(COLOUR_BITS),
+            "reflections": unsigned(2),
+            "rects": PipelinedRects(config),
+            **{channel: unsigned(config.colour_bits) for channel in ("red", "green", "blue")},
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    slopes = primary_slopes(config.screen_geometry)
+    stimulus, expected, fates = [{"reset": 1}] * 2, {}, set()
+    for _ in range(24 if config.screen == "tiny" else 4):
+        row = int(random.choice([0, len(slopes) - 1, random.integers(len(slopes))]))
+        line = random.permutation(slopes[row])
+        camera, table, background, reflections, _ = traced_scene(random, config, line)
+        traced = exact.trace(table, camera, background, slopes[row], reflections)
+        fates |= {tuple(int(winner[column] >= 0) for winner in traced.winners) for column in range(len(line))}
+        held = {f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)}
+        held |= {"reset": 0, "start_line": 0, "next_column": 0, "reflections": reflections}
+        held["background"] = int.from_bytes(bytes(background.astype(np.uint8)))
+        held["rects_usable"] = sum(1 << int(index) for index in np.flatnonzero(table.visible))
+        stimulus += [{**held, "start_line": 1}, held, held]
+        held["row_slope"] = word(slopes[row, 0, 2], exact_slope_bits(config) + 1)
+        for index in range(config.rectangles):
+            rect = sorted_rect(table, index, "rects_rect") if table.visible[index] else {}
+            stimulus.append({**held, **rect})
+        stimulus += [held] * (setup.LATENCY - 3 + int(random.integers(4)))
+        for colour in traced.colours:
+            stimulus += [held] * int(random.integers(2) if config.scale == 1 else 0)
+            expected[len(stimulus) + beam_latency(config)] = (
+                pixel_word(config, colour),
+                (camera, table.corners, repeat()),
+            )
+            stimulus.append({**held, "next_column": 1})
+        stimulus += [held] * beam_latency(config)
+    outputs = leaf.run_both([*stimulus, {}], settled=min(expected))
+    assert len(fates) >= config.reflections + 2
+    shift = config.colour_bits
+    for cycle, (pixel, case) in expected.items():
+        output = outputs[cycle]
+        assert (output["red"] << shift | output["green"]) << shift | output["blue"] == pixel, (cycle, case)
