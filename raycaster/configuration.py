@@ -282,10 +282,12 @@ class Configuration:
 
     @property
     def slot_cycles(self) -> int:
-        """Cycles from one rectangle to the next."""
+        """Cycles from one rectangle to the next; the beam engine takes all at once."""
         return self._slot_cycles(self.divider_bits)
 
     def _slot_cycles(self, divider_bits: int) -> int:
+        if self.engine == "beam":
+            return 0
         return -(-self.quotient_bits // divider_bits) if self.engine == "seed" else 1
 
     @property

@@ -28,7 +28,7 @@ def engine_word(config: Configuration) -> int:
 def size_word(config: Configuration) -> int:
     """What the size register of a design reads."""
     return register_map(config.rectangles)["size"].pack(
-        units=config.units, rectangles=config.rectangles, rows=config.screen_geometry.rows
+        units=config.units, rectangles=config.rectangles, rows=config.rows
     )
 
 

@@ -14,9 +14,6 @@ from raycaster.scene import Scene, load_scene
 from raycaster.verif.harness import Harness
 from raycaster.verif.monitor import CLOCK_NS
 
-START_SCREEN_LINES = 2
-"""StartScreen comes so many lines before the first visible one."""
-
 START_SCREEN_TOLERANCE = 8
 """Clocks by which registers on the way to the interrupt and to the video output may part them."""
 
@@ -103,7 +100,7 @@ async def start_screen_interrupts(bench: HierarchyObject) -> None:
     line_ns = screen.horizontal.total * screen.clocks_per_pixel * CLOCK_NS
     first_visible_hs_ns = monitor.frame_lines[screen.vertical.sync + screen.vertical.back - 1].end_ns
     first_visible_ns = first_visible_hs_ns - screen.horizontal.front * screen.clocks_per_pixel * CLOCK_NS
-    late = (await raised - first_visible_ns + START_SCREEN_LINES * line_ns) / CLOCK_NS
+    late = (await raised - first_visible_ns + screen.doubling * line_ns) / CLOCK_NS
     assert abs(late) <= START_SCREEN_TOLERANCE, f"StartScreen came {late} clocks late"
 
     await bus.write("irq_enable", start_screen=0)

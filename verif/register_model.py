@@ -94,16 +94,16 @@ class Agent:
             "id": {"magic": int.from_bytes(b"RAYC", "big")},
             "version": {field: value.reset for field, value in registers["version"].fields.items()},
             "engine": {
-                "engine": {"seed": 0, "exact": 1}[config.engine],
+                "engine": {"seed": 0, "exact": 1, "beam": 2}[config.engine],
                 "fraction_bits": config.fraction_bits,
                 "nearest": int(config.rounding == "nearest"),
                 "divider_bits": config.divider_bits,
                 "reflections": config.reflections,
-                "scale": 1,
+                "scale": config.scale,
                 "colour_bits": config.colour_bits,
             },
             "size": {
-                "units": config.units, "rectangles": config.rectangles, "rows": config.screen_geometry.rows,
+                "units": config.units, "rectangles": config.rectangles, "rows": config.rows,
             },
         }  # fmt: skip
         self._constants = {name: registers[name].pack(**fields) for name, fields in constants.items()}

@@ -182,7 +182,7 @@ def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: in
         "fold-exact",
         "a folded ray hits a rectangle where the mirrored eye's, by a division, is within it and beyond the mirror",
         widths,
-        f"{coordinate_bits} bits, {mirrors} mirrors",
+        f"{coordinate_bits} and {slope_bits} bits, {mirrors} mirrors",
         ("ray_fold", "fold_tester"),
         {
             "COORDINATE_BITS": widths.coordinate,
@@ -245,7 +245,9 @@ PROPERTIES: list[Property] = [
     _tester(2, 1, small=True),
     _tester(2, 2, small=False),
     _tester(3, 1, small=False),
-    _fold(2, 2, 2, 1, small=True),
+    _fold(2, 1, 1, 1, small=True),
+    _fold(2, 1, 1, 2, small=False),
+    _fold(2, 2, 2, 1, small=False),
     *(
         _divider(_tiny(rectangles=2, divider_bits=bits, rounding=rounding), part, small=False)
         for bits, rounding in ((3, "truncate"), (3, "nearest"), (2, "truncate"), (1, "truncate"))

@@ -20,6 +20,7 @@ FULL_SCENE = ROOT / "scenes" / "mirror_room.toml"
 DESIGNS = [
     pytest.param("verilator", configure(screen="tiny"), FULL_SCENE, id="verilator"),
     pytest.param("icarus", configure(screen="tiny", units=8, rectangles=3), SMALL_SCENE, id="icarus"),
+    pytest.param("verilator", configure(engine="beam", screen="tiny"), FULL_SCENE, id="beam"),
 ]
 
 

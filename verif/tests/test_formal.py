@@ -27,7 +27,7 @@ ORDER = chosen("ray-order", "tiny48-u2-r2-m1-f0t-d3-c8")
 SECTIONS = chosen("line-sections", "tiny48-u2-r2-m1-f0t-d3-c8")
 COUNTERS = chosen("render-counters", "vga240-u16-r4-m1-f0t-d1-c8")
 TESTER = chosen("tester-exact", "2 bits, 1 mirrors")
-FOLD = chosen("fold-exact", "2 bits, 1 mirrors")
+FOLD = chosen("fold-exact", "2 and 1 bits, 1 mirrors")
 DIVIDER = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d3-c8 digits")
 
 FAULTS = {

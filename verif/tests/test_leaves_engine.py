@@ -649,7 +649,7 @@ def test_ray_caster_module(config, tmp_path):
         answers[name] = bus.registers[name].unpack(outputs[cycle]["avs_s0_readdata"])
     assert answers["status"] == {"busy": 0, "underrun": 0, "bad_rectangle": 0, "frame": 2}
     assert answers["cycles"]["group"] <= config.group_cycles
-    assert answers["size"] == {"units": config.units, "rectangles": config.rectangles, "rows": screen.rows}
+    assert answers["size"] == {"units": config.units, "rectangles": config.rectangles, "rows": config.rows}
     assert answers["engine"]["fraction_bits"] == config.fraction_bits
 
 
