@@ -38,7 +38,7 @@ class ConfigurationError(UserError):
 
 @dataclass(frozen=True)
 class Span:
-    """One direction of a video timing, in pixels or lines."""
+    """One direction of a video timing, in pixels or lines, in the order in which a monitor sees it."""
 
     visible: int
     front: int

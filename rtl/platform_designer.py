@@ -47,26 +47,31 @@ class Interface:
 
 
 _IN_CLOCK = {"associatedClock": "clock", "associatedReset": "reset"}
-INTERFACES = (
-    Interface("clock", "clock end", {}, roles={"clk": "clk"}),
-    Interface("reset", "reset end", {"associatedClock": "clock", "synchronousEdges": "BOTH"}, roles={"reset": "reset"}),
-    Interface(
-        "s0",
-        "avalon end",
-        {
-            **_IN_CLOCK,
-            "addressUnits": "WORDS",
-            "bitsPerSymbol": 8,
-            "maximumPendingReadTransactions": READS_IN_FLIGHT,
-            "readLatency": 0,
-            "isMemoryDevice": "false",
-        },
-        prefix="avs_s0_",
-    ),
-    Interface("irq", "interrupt end", {**_IN_CLOCK, "associatedAddressablePoint": "s0"}, roles={"irq": "irq"}),
-    Interface("vga", "conduit end", {**_IN_CLOCK}, prefix="vga_"),
-)
-"""In the order in which they refer to each other."""
+
+
+def interfaces(config: Configuration) -> tuple[Interface, ...]:
+    """The component's, in the order in which they refer to each other."""
+    return (
+        Interface("clock", "clock end", {"clockRate": config.screen_geometry.clock_hz}, roles={"clk": "clk"}),
+        Interface(
+            "reset", "reset end", {"associatedClock": "clock", "synchronousEdges": "BOTH"}, roles={"reset": "reset"}
+        ),
+        Interface(
+            "s0",
+            "avalon end",
+            {
+                **_IN_CLOCK,
+                "addressUnits": "WORDS",
+                "bitsPerSymbol": 8,
+                "maximumPendingReadTransactions": READS_IN_FLIGHT,
+                "readLatency": 0,
+                "isMemoryDevice": "false",
+            },
+            prefix="avs_s0_",
+        ),
+        Interface("irq", "interrupt end", {**_IN_CLOCK, "associatedAddressablePoint": "s0"}, roles={"irq": "irq"}),
+        Interface("vga", "conduit end", {**_IN_CLOCK}, prefix="vga_"),
+    )
 
 
 def component(config: Configuration, ports: Sequence[Port], sources: Sequence[str]) -> str:
@@ -103,16 +108,15 @@ def component(config: Configuration, ports: Sequence[Port], sources: Sequence[st
         lines += ["", f'add_fileset {fileset.lower()} {fileset} "" ""']
         lines.append(f"set_fileset_property {fileset.lower()} TOP_LEVEL {top}")
         lines += [f"add_fileset_file {name} VERILOG PATH {name}" for name in sources]
-    owners = {port.name: [one for one in INTERFACES if one.role(port.name)] for port in ports}
+    members = interfaces(config)
+    owners = {port.name: [one for one in members if one.role(port.name)] for port in ports}
     for name, owned in owners.items():
         if len(owned) != 1:
             raise ValueError(f"{name} belongs to {len(owned)} interfaces")
-    for interface in INTERFACES:
+    for interface in members:
         lines += ["", f"add_interface {interface.name} {interface.kind}"]
         for name, value in interface.properties.items():
             lines.append(f"set_interface_property {interface.name} {name} {value}")
-        if interface.name == "clock":
-            lines.append(f"set_interface_property clock clockRate {config.screen_geometry.clock_hz}")
         for port in ports:
             if role := interface.role(port.name):
                 direction = "Output" if port.output else "Input"
