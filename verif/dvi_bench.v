@@ -36,7 +36,7 @@ module dvi_bench;
     end
 
     always @(posedge board.shift_clk)
-        if (recording && board.serialiser.phase == 3'd0) begin
+        if (recording && board.serialiser.blue_lane.load) begin
             taken = $realtime;
             if (taken - changed < still)
                 unsteady = unsteady + 1;

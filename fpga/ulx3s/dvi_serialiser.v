@@ -16,46 +16,35 @@ module dvi_serialiser (
 );
 
 localparam [9:0] LINK_CLOCK = 10'b0000011111;
-localparam [2:0] WAITING = 3'd7;        // for the first pixel
+localparam [4:0] WAITING = 5'b00000;    // for the first pixel
+localparam [4:0] THIRD = 5'b01000;      // three cycles after the first that knew of a pixel
 
 reg  [2:0] seen = 3'b000;
-wire       changed = seen[1] != seen[2];
-reg  [2:0] phase = WAITING;
-wire       expected = phase == 3'd4 || phase == 3'd0 || phase == 3'd1;
-reg  [9:0] shift_blue, shift_green, shift_red, shift_clock;
+reg        changed = 1'b0;
+reg        restart = 1'b0;
+reg  [4:0] phase = WAITING;             // one bit is high, that of the cycle in the pixel
 
 // Two registers bring pixel over, and one more remembers it.
 always @(posedge shift_clk)
     seen <= {seen[1:0], pixel};
 
-// Five cycles a pixel, counted from the first; one that comes a cycle early or late changes nothing, as symbols hold still
-// for longer, and where one comes at quite another time, after a reset, counting starts with it.
-always @(posedge shift_clk)
-    if (changed && !expected)
-        phase <= 3'd1;
-    else if (phase == 3'd4)
-        phase <= 3'd0;
-    else if (phase != WAITING)
-        phase <= phase + 3'd1;
+// A pixel that comes a cycle early or late changes nothing, as symbols hold still for longer; where one comes at quite
+// another time, after a reset, counting starts with it. A table and a register each, for the clock's sake.
+always @(posedge shift_clk) begin
+    changed <= seen[1] != seen[2];
+    restart <= changed && !phase[0] && !phase[1] && !phase[2];
+end
 
-// Bit 0 first.
+// Five cycles a pixel, counted from the first.
 always @(posedge shift_clk)
-    if (phase == 3'd0) begin
-        shift_blue <= blue;
-        shift_green <= green;
-        shift_red <= red;
-        shift_clock <= LINK_CLOCK;
-    end
-    else begin
-        shift_blue <= {2'b00, shift_blue[9:2]};
-        shift_green <= {2'b00, shift_green[9:2]};
-        shift_red <= {2'b00, shift_red[9:2]};
-        shift_clock <= {2'b00, shift_clock[9:2]};
-    end
+    if (restart)
+        phase <= THIRD;
+    else
+        phase <= {phase[3:0], phase[4]};
 
-ODDRX1F blue_pin (.SCLK(shift_clk), .RST(1'b0), .D0(shift_blue[0]), .D1(shift_blue[1]), .Q(gpdi_dp[0]));
-ODDRX1F green_pin (.SCLK(shift_clk), .RST(1'b0), .D0(shift_green[0]), .D1(shift_green[1]), .Q(gpdi_dp[1]));
-ODDRX1F red_pin (.SCLK(shift_clk), .RST(1'b0), .D0(shift_red[0]), .D1(shift_red[1]), .Q(gpdi_dp[2]));
-ODDRX1F clock_pin (.SCLK(shift_clk), .RST(1'b0), .D0(shift_clock[0]), .D1(shift_clock[1]), .Q(gpdi_dp[3]));
+dvi_lane blue_lane (.shift_clk(shift_clk), .fourth(phase[3]), .symbol(blue), .wire_p(gpdi_dp[0]));
+dvi_lane green_lane (.shift_clk(shift_clk), .fourth(phase[3]), .symbol(green), .wire_p(gpdi_dp[1]));
+dvi_lane red_lane (.shift_clk(shift_clk), .fourth(phase[3]), .symbol(red), .wire_p(gpdi_dp[2]));
+dvi_lane clock_lane (.shift_clk(shift_clk), .fourth(phase[3]), .symbol(LINK_CLOCK), .wire_p(gpdi_dp[3]));
 
 endmodule

@@ -22,7 +22,7 @@ from raycaster.verif.dvi import golden, watch
 from raycaster.verif.monitor import VideoError
 
 ULX3S = BOARDS["ulx3s"]
-CLOCKS, SERIALISER, TOP = "ulx3s_clocks.v", "dvi_serialiser.v", "ulx3s.v"
+CLOCKS, SERIALISER, LANE, TOP = "ulx3s_clocks.v", "dvi_serialiser.v", "dvi_lane.v", "ulx3s.v"
 ENCODERS, ENCODER = "dvi_encoder.v", "tmds_encoder.v"
 
 
@@ -88,9 +88,9 @@ LINKED = ".blue({}),\n    .green(green),\n    .red({}),\n    .pixel(pixel),\n   
     ("file", "right", "wrong", "complaint"),
     [
         (TOP, LINKED.format("blue", "red"), LINKED.format("red", "blue"), "carries control bits"),
-        (SERIALISER, "D0(shift_red[0]), .D1(shift_red[1])", "D0(shift_red[1]), .D1(shift_red[0])", "control symbols"),
-        (SERIALISER, "shift_red <= red", "shift_red <= {red[8:0], red[9]}", "different bits"),
-        (SERIALISER, "phase <= 3'd1", "phase <= 3'd3", "change when they are taken"),
+        (LANE, "D0(pair[0]), .D1(pair[1])", "D0(pair[1]), .D1(pair[0])", "control symbols"),
+        (SERIALISER, "symbol(red)", "symbol({red[8:0], red[9]})", "different bits"),
+        (SERIALISER, "phase <= THIRD", "phase <= THIRD >> 2", "change when they are taken"),
         (SERIALISER, "10'b0000011111", "10'b0000111111", "five ones and five zeros"),
         (CLOCKS, ".CLK_DIV(10)", ".CLK_DIV(8)", "change when they are taken"),
         (ENCODER, "symbol[9] <= invert", "symbol[9] <= !invert", ""),
