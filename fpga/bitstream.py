@@ -22,8 +22,9 @@ from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
-from raycaster.design import Design, design_for
+from raycaster.design import Design
 from raycaster.errors import UserError
+from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.rtl.convert import write_dvi_encoder, write_system
 from raycaster.tools import find_program, prepare_wasm, run_program, run_yosys
@@ -319,11 +320,12 @@ def main() -> None:
     parser.add_argument("--scene", type=Path, default=DEFAULT_SCENE, help="(default: %(default)s)")
     parser.add_argument("--output", type=Path, default=Path("build/bitstream"), help="(default: %(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="of the placement (default: %(default)s)")
+    add_fix_option(parser)
     add_configuration_options(parser)
     arguments = parser.parse_args()
     board = find_board(arguments.board)
-    design = design_for(arguments.scene, given_options(arguments))
     console = Console()
+    design = design_of(arguments.scene, given_options(arguments), arguments.fix, console)
     output = arguments.output / board.name
     outcome = make_bitstream(board, design, output, seed=arguments.seed, console=console)
     show(board, outcome, console)

@@ -17,9 +17,11 @@ import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 
+from rich.console import Console
+
 from raycaster.configuration import Configuration
-from raycaster.design import design_for
 from raycaster.errors import UserError
+from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.board import BOARDS, TOP, Board, check_project, find_board, top_ports
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.rtl.convert import write_system
@@ -200,10 +202,11 @@ def main() -> None:
         metavar="DIR",
         help="where a folder for the board is made (default: %(default)s)",
     )
+    add_fix_option(parser)
     add_configuration_options(parser)
     arguments = parser.parse_args()
     board = find_board(arguments.board)
-    design = design_for(arguments.scene, given_options(arguments), board.configuration)
+    design = design_of(arguments.scene, given_options(arguments), arguments.fix, Console(), **board.configuration)
     directory = arguments.output / arguments.board
     write_project(board, design.configuration, design.shown, directory)
     print(compile_project(board, directory))

@@ -17,7 +17,7 @@ from raycaster.scene import Scene
 def render(config: Configuration, scene: Scene, reflections: int) -> np.ndarray:
     """The picture that a design must draw of a scene: uint8 (rows, columns, 3)."""
     slopes = primary_slopes(config.screen_geometry)
-    colours = trace(
+    traced = trace(
         config,
         Rectangles.of_scene(scene),
         scene.camera.position,
@@ -25,7 +25,7 @@ def render(config: Configuration, scene: Scene, reflections: int) -> np.ndarray:
         slopes.reshape(-1, 3),
         reflections,
     )
-    return colours.reshape(slopes.shape)
+    return traced.colours.reshape(slopes.shape)
 
 
 def trace(
@@ -35,11 +35,11 @@ def trace(
     background: Sequence[int],
     slopes: np.ndarray,
     reflections: int,
-) -> np.ndarray:
-    """The colours of rays, uint8 (rays, 3); the arguments are those of `raycaster.golden.exact.trace`."""
+) -> exact.Trace | seed_engine.Trace:
+    """What becomes of rays; the arguments are those of `raycaster.golden.exact.trace`."""
     if config.engine != "seed":
-        return exact.trace(rectangles, camera, background, slopes, reflections).colours
+        return exact.trace(rectangles, camera, background, slopes, reflections)
     return seed_engine.trace(
         rectangles, camera, background, slopes, reflections,
         fraction_bits=config.fraction_bits, rounding=config.rounding,
-    ).colours  # fmt: skip
+    )  # fmt: skip

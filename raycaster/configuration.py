@@ -12,11 +12,15 @@ from pydantic import ConfigDict, Field, ValidationError, model_validator
 from pydantic.dataclasses import dataclass as validated_dataclass
 
 from raycaster.errors import UserError
+from raycaster.fixed import FixedScene
 
 COORDINATE_BITS = 9
 """World coordinates are unsigned: 0..511."""
 
 WORLD_SIZE = 1 << COORDINATE_BITS
+MOST_RECTANGLES = 32
+"""Entries that the largest rectangle table has."""
+
 VIEW_DISTANCE = 100
 """Slope along x of every primary ray: the distance of the viewing rectangle, in world units."""
 
@@ -27,6 +31,9 @@ RESULT_LATENCY = {"seed": 6, "exact": 4}
 """By engine, cycles from the end of a pass's last slot to the first cycle of the next pass. Seed: slope and plane
 latched, product, divider loaded, hit point, depth compared, ray stored (see `rtl/ray_control.py`). Exact: two more
 stages of the test after the first, which the slot is, depth compared, ray stored (see `rtl/rect_tester.py`)."""
+
+UNIT_CELLS = {1: 559, 2: 621, 3: 690}
+"""LUT4 of an ECP5 that a unit of the seed engine takes, by the quotient bits a cycle; see `raycaster.fpga.area`."""
 
 GROUP_OVERHEAD = 4
 """Cycles a group pays once: the write to the line buffer with the reset of two cycles, idling, ray generation."""
@@ -152,7 +159,8 @@ class Configuration:
     `rows`, `scale`, `units` and `divider_bits` may be left to the default (`None`, `"auto"`); a constructed
     configuration holds the numbers that were chosen, so that equal designs compare equal. An engine without quotients
     has no fraction, no rounding and no divider bits; the beam engine has one unit, a pixel a clock and every scale that
-    its monitor has pixels for.
+    its monitor has pixels for. With a fixed scene, `rectangles` are the scene's, and the seed engine too takes as few
+    units as do.
 
     Raises `ConfigurationError` through `configure`; constructed directly, pydantic's `ValidationError`.
     """
@@ -161,7 +169,7 @@ class Configuration:
     units: int | None = Field(
         None, ge=1, description="ray units in parallel, a divisor of the columns: 32; the fewest of the exact engine; 1"
     )
-    rectangles: int = Field(12, ge=1, le=32, description="rectangles that the scene memory holds")
+    rectangles: int = Field(12, ge=1, le=MOST_RECTANGLES, description="rectangles that the scene memory holds")
     reflections: int = Field(1, ge=0, le=2, description="reflections a ray may have")
     rows: int | None = Field(
         None, description="rows of rays: 240 (640x480@60), 200 (640x400@70) or, beam only, 180 (1280x720@60)"
@@ -175,9 +183,14 @@ class Configuration:
     colour_bits: int = Field(8, ge=1, le=CHANNEL_BITS, description="bits a colour channel on the VGA output")
     screen: Literal["vga", "tiny"] = Field("vga", description="vga, or tiny (64x48) for slow simulators")
     allow_underrun: bool = Field(False, description="accept a design that cannot meet the row budget")
+    fixed: FixedScene | None = Field(None, description="what of a scene is built in")
 
     @model_validator(mode="after")
     def _complete(self) -> Configuration:
+        if self.fixed is not None:
+            object.__setattr__(self, "rectangles", len(self.fixed.rectangles))
+            if len(self.fixed.passes) != self.reflections + 1:
+                raise ValueError(f"fixed: is for {len(self.fixed.passes) - 1} reflections, not {self.reflections}")
         self._choose_rows()
         self._choose_scale()
         if self.engine != "seed":
@@ -228,17 +241,30 @@ class Configuration:
         object.__setattr__(self, "divider_bits", 0)
 
     def _choose_units(self) -> None:
-        """The seed's 32; of the exact engine as few as meet the row budget, or all columns where none do; one beam."""
+        """The seed's 32; one beam; otherwise as few as meet the row budget."""
         if self.engine == "beam":
             object.__setattr__(self, "units", 1)
-            return
+        elif self.engine == "exact":
+            object.__setattr__(self, "units", self._fewest_units(0))
+        elif self.fixed is None:
+            object.__setattr__(self, "units", 32)
+        else:
+            # A faster divider makes a unit larger, but there may be fewer of them.
+            given = self.divider_bits
+            fewest = {bits: self._fewest_units(bits) for bits in UNIT_CELLS if given in ("auto", bits)}
+            chosen = min(fewest, key=lambda bits: fewest[bits] * UNIT_CELLS[bits], default=given)
+            object.__setattr__(self, "units", fewest.get(chosen, 32))
+            object.__setattr__(self, "divider_bits", chosen)
+
+    def _fewest_units(self, divider_bits: int) -> int:
+        """Those that meet the row budget with so many quotient bits a cycle, or all columns where none do."""
         columns = self.screen_geometry.columns
         fitting = (
             units
             for units in range(1, columns + 1)
-            if columns % units == 0 and self._group_cycles(0) <= self._group_budget(units)
+            if columns % units == 0 and self._group_cycles(divider_bits) <= self._group_budget(units)
         )
-        object.__setattr__(self, "units", 32 if self.engine == "seed" else next(fitting, columns))
+        return next(fitting, columns)
 
     def _choose_divider_bits(self) -> None:
         if self.engine != "seed":
@@ -259,6 +285,21 @@ class Configuration:
                 "groups); "
                 "take more units or divider bits, fewer rectangles, reflections or fraction bits, or ALLOW_UNDERRUN=1"
             )
+
+    @property
+    def table(self) -> int:
+        """Entries of the rectangle table that software writes: none where the rectangles are fixed."""
+        return 0 if self.fixed else self.rectangles
+
+    @property
+    def passes(self) -> tuple[int, ...]:
+        """For the primary ray and each reflection, which rectangles are tested, as a mask."""
+        return self.fixed.passes if self.fixed else (self.reflections + 1) * ((1 << self.rectangles) - 1,)
+
+    @property
+    def capacity(self) -> int | None:
+        """The most rectangles that a scene may have; None where the scene is fixed, which may have lost some."""
+        return None if self.fixed else self.rectangles
 
     @cached_property
     def screen_geometry(self) -> Screen:
@@ -298,8 +339,8 @@ class Configuration:
     def _group_cycles(self, divider_bits: int) -> int:
         if self.engine == "beam":
             return 1
-        passes = self.reflections + 1
-        return passes * (self.rectangles * self._slot_cycles(divider_bits) + self.result_latency) + GROUP_OVERHEAD
+        slots = sum(mask.bit_count() for mask in self.passes) * self._slot_cycles(divider_bits)
+        return slots + len(self.passes) * self.result_latency + GROUP_OVERHEAD
 
     @property
     def group_cycles(self) -> int:
@@ -320,13 +361,15 @@ class Configuration:
         rounding = "n" if self.rounding == "nearest" else "t"
         quotients = f"-f{self.fraction_bits}{rounding}-d{self.divider_bits}" if self.engine == "seed" else ""
         scale = f"-s{self.scale}" if self.engine == "beam" else ""
+        fixed = f"-{self.fixed.name}" if self.fixed else ""
         return (
             f"{self.engine}-{self.screen}{self.rows}{scale}-u{self.units}-r{self.rectangles}-m{self.reflections}"
-            f"{quotients}-c{self.colour_bits}"
+            f"{quotients}-c{self.colour_bits}{fixed}"
         )
 
 
-FIELD_NAMES = tuple(field.name for field in fields(Configuration))
+OPTION_NAMES = tuple(field.name for field in fields(Configuration) if field.name != "fixed")
+"""Of the fields that people choose one by one; what is fixed comes from a scene."""
 
 
 def configure(**values: Any) -> Configuration:

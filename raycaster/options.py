@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 
 from pydantic.fields import FieldInfo
 
-from raycaster.configuration import FIELD_NAMES, Configuration
+from raycaster.configuration import OPTION_NAMES, Configuration
 from raycaster.errors import UserError
 
 
@@ -18,7 +18,7 @@ def add_configuration_options(parser: argparse.ArgumentParser) -> None:
     """Add `--units`, `--fraction-bits` and the others, each with the configuration's own description."""
     group = parser.add_argument_group("configuration")
     fields: dict[str, FieldInfo] = Configuration.__pydantic_fields__
-    for name in FIELD_NAMES:
+    for name in OPTION_NAMES:
         field = fields[name]
         option = "--" + name.replace("_", "-")
         shown = "by the screen" if field.default is None else field.default
@@ -32,14 +32,14 @@ def add_configuration_options(parser: argparse.ArgumentParser) -> None:
 def given_options(arguments: argparse.Namespace) -> dict[str, Any]:
     """The configuration's options that stood on the command line, by field name."""
     values = vars(arguments)
-    return {name: values[name] for name in FIELD_NAMES if values.get(name) is not None}
+    return {name: values[name] for name in OPTION_NAMES if values.get(name) is not None}
 
 
 def as_options(config: Configuration) -> list[str]:
     """The options that make a configuration: those whose values are not the defaults."""
     fields: dict[str, FieldInfo] = Configuration.__pydantic_fields__
     words = []
-    for name in FIELD_NAMES:
+    for name in OPTION_NAMES:
         value = getattr(config, name)
         if value != fields[name].default:
             words.append("--" + name.replace("_", "-"))

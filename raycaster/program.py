@@ -22,12 +22,12 @@ def scene_fields(scene: Scene, rectangles: int) -> Iterator[tuple[str, dict[str,
 
     Args:
         scene: at most `rectangles` rectangles.
-        rectangles: entries of the hardware's table.
+        rectangles: entries of the hardware's table; 0 where its rectangles are fixed, which takes those of any scene.
     """
     red, green, blue = scene.background
     yield "background", {"red": red, "green": green, "blue": blue}
     yield "camera", dict(zip("xyz", scene.camera.position, strict=True))
-    for index, rectangle in enumerate(scene.rect):
+    for index, rectangle in enumerate(scene.rect if rectangles else ()):
         yield from rectangle_fields(index, rectangle)
     for index in range(len(scene.rect), rectangles):
         yield f"rectangle[{index}].surface", {"enable": 0}
@@ -37,8 +37,8 @@ def scene_words(scene: Scene, rectangles: int, reflections: int | None = None) -
     """Word addresses and words that load a scene and start it: the last one commits.
 
     Args:
-        scene: at most `rectangles` rectangles.
-        rectangles: entries of the hardware's table.
+        scene: as for `scene_fields`.
+        rectangles: as for `scene_fields`.
         reflections: instead of the scene's own.
     """
     registers = register_map(rectangles)

@@ -25,7 +25,7 @@ def write_header(rectangles: int, path: Path) -> None:
     """Write the C header: a struct of the registers, and each field's mask, position and width.
 
     Args:
-        rectangles: entries of the hardware's table, 1 to 32.
+        rectangles: entries of the hardware's table, up to 32.
         path: the file; replaced.
     """
     with tempfile.TemporaryDirectory() as scratch:

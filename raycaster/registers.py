@@ -66,9 +66,9 @@ class Register:
 
 
 def compile_registers(rectangles: int) -> AddrmapNode:
-    """The compiled map of a design with this many rectangles."""
+    """The compiled map of a design with this many entries in its rectangle table."""
     compiler = RDLCompiler()
-    compiler.compile_file(str(SOURCE), defines={"RECTANGLES": str(rectangles)})
+    compiler.compile_file(str(SOURCE), defines={"RECTANGLES": str(rectangles)} if rectangles else {"NO_TABLE": ""})
     return compiler.elaborate("ray_caster").top
 
 

@@ -10,11 +10,12 @@ from raycaster.rtl.scene_word import scene_word
 from raycaster.rtl.widths import COLOUR_BITS, CYCLE_BITS, WORD_BITS, bit, unsigned
 
 ENGINE_CODES = {"seed": 0, "exact": 1, "beam": 2}
+FIXED_CODES = {"rects": 1, "all": 2}
 
 
 def engine_word(config: Configuration) -> int:
     """What the engine register of a design reads."""
-    return register_map(config.rectangles)["engine"].pack(
+    return register_map(config.table)["engine"].pack(
         engine=ENGINE_CODES[config.engine],
         fraction_bits=config.fraction_bits,
         nearest=int(config.rounding == "nearest"),
@@ -22,14 +23,13 @@ def engine_word(config: Configuration) -> int:
         reflections=config.reflections,
         scale=config.scale,
         colour_bits=config.colour_bits,
+        fixed=FIXED_CODES[config.fixed.scope] if config.fixed else 0,
     )
 
 
 def size_word(config: Configuration) -> int:
     """What the size register of a design reads."""
-    return register_map(config.rectangles)["size"].pack(
-        units=config.units, rectangles=config.rectangles, rows=config.rows
-    )
+    return register_map(config.table)["size"].pack(units=config.units, rectangles=config.table, rows=config.rows)
 
 
 @block
@@ -63,9 +63,11 @@ def avalon_interface(
 
     waitrequest is high in reset and in the cycle after it, and never else. Every accepted read is answered once, in
     order. Writes pass through a register: they take effect in the cycle after they were accepted, before any read that
-    is accepted later is answered.
+    is accepted later is answered. Where the camera is fixed, background and reflections
+    are None.
     """
-    registers = register_map(config.rectangles)
+    live = not (config.fixed and config.fixed.camera)
+    registers = register_map(config.table)
     control, status, cycles = registers["control"], registers["status"], registers["cycles"]
     run_bit, commit_bit = control.fields["run"].lsb, control.fields["commit"].lsb
     reflections_low = control.fields["reflections"].lsb
@@ -89,10 +91,11 @@ def avalon_interface(
     id_value = constant(registers["id"].reset, WORD_BITS)
     version_value = constant(registers["version"].reset, WORD_BITS)
     engine_value, size_value = constant(engine_word(config), WORD_BITS), constant(size_word(config), WORD_BITS)
-    control_bits = constant(control.implemented & ~control.fields["commit"].mask, WORD_BITS)
+    unkept = control.fields["commit"].mask | (0 if live else control.fields["reflections"].mask)
+    control_bits = constant(control.implemented & ~unkept, WORD_BITS)
     background_bits = constant(registers["background"].implemented, WORD_BITS)
     control_word, live_control = unsigned(WORD_BITS), unsigned(WORD_BITS)
-    background_word, live_background = unsigned(WORD_BITS), unsigned(WORD_BITS)
+    background_word, live_background = unsigned(WORD_BITS) if live else constant(0, WORD_BITS), unsigned(WORD_BITS)
     select_control, select_background = bit(), bit()
     wait_request = Signal(bool(1))
     reading = bit()
@@ -105,9 +108,6 @@ def avalon_interface(
     irq_enable, irq_pending = bit(), bit()
 
     control_memory = scene_word(clk, reset, bus, select_control, control_bits, control_word, live_control)
-    background_memory = scene_word(
-        clk, reset, bus, select_background, background_bits, background_word, live_background
-    )
 
     # Not ready until reset is over.
     @always_seq(clk.posedge, reset=reset)
@@ -139,11 +139,10 @@ def avalon_interface(
             if avs_s0_byteenable[3]:
                 bus.mask.next[32:24] = 0xFF
 
-    # Which of the words at hand a write is for.
+    # Whether a write is for the control word.
     @always_comb
     def decode():
         select_control.next = bus.address == control_address
-        select_background.next = bus.address == background_address
 
     # What a write-1 register sees.
     @always_comb
@@ -164,15 +163,10 @@ def avalon_interface(
     def go_live():
         bus.go_live.next = start_screen
 
-    # What the renderer gets to know; more reflections than there are count as all.
+    # Whether there is anything to show.
     @always_comb
-    def drive_renderer():
+    def drive_run():
         run.next = live_control[run_bit]
-        background.next = live_background[COLOUR_BITS:]
-        if live_control[reflections_high:reflections_low] > most_reflections:
-            reflections.next = most_reflections
-        else:
-            reflections.next = live_control[reflections_high:reflections_low]
 
     # Sticky bits and the frame counter: a set in the cycle of a clear wins.
     @always_seq(clk.posedge, reset=reset)
@@ -254,7 +248,29 @@ def avalon_interface(
         if reading:
             avs_s0_readdata.next = read_data
 
-    return (
-        control_memory, background_memory, become_ready, drive_ports, accept, decode, find_ones, commit, go_live,
-        drive_renderer, keep_status, interrupt, keep_cycles, read, answer,
+    common = (
+        control_memory, become_ready, drive_ports, accept, decode, find_ones, commit, go_live, drive_run, keep_status,
+        interrupt, keep_cycles, read, answer,
     )  # fmt: skip
+    if not live:
+        return common
+
+    background_memory = scene_word(
+        clk, reset, bus, select_background, background_bits, background_word, live_background
+    )
+
+    # Whether a write is for the background.
+    @always_comb
+    def decode_background():
+        select_background.next = bus.address == background_address
+
+    # What else the renderer gets to know; more reflections than there are count as all.
+    @always_comb
+    def drive_picture():
+        background.next = live_background[COLOUR_BITS:]
+        if live_control[reflections_high:reflections_low] > most_reflections:
+            reflections.next = most_reflections
+        else:
+            reflections.next = live_control[reflections_high:reflections_low]
+
+    return common, background_memory, decode_background, drive_picture

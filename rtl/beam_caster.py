@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The beam engine: every rectangle at once, a pixel a clock."""
 
+from collections.abc import Mapping
+from copy import copy
+
 from myhdl import always, block, concat
 
 from raycaster.configuration import Configuration
@@ -10,8 +13,9 @@ from raycaster.rtl import nearest_of_two as contest
 from raycaster.rtl import ray_fold as folder
 from raycaster.rtl.color_blend import color_blend
 from raycaster.rtl.facet_mem import facet_mem
+from raycaster.rtl.facet_rom import facet_rom
 from raycaster.rtl.fold_tester import fold_tester
-from raycaster.rtl.hierarchy import constant, signed_constant, unconnected
+from raycaster.rtl.hierarchy import constant, held, is_held, signed_constant, unconnected, unconnected_like
 from raycaster.rtl.interfaces import Candidate, Facet, Fold, Reflector, Slope, Walk
 from raycaster.rtl.nearest_of_two import nearest_of_two
 from raycaster.rtl.ray_fold import ray_fold
@@ -42,9 +46,18 @@ LOOK_UP_LATENCY = 1
 """Cycles from a winner's number to what is known of it."""
 
 
+def tested(config: Configuration) -> list[list[int]]:
+    """For the primary ray and each reflection, the numbers of the rectangles that it is tested against.
+
+    A fixed scene may leave none for a reflection, which is then none; one rectangle is always tested.
+    """
+    return [[i for i in range(config.rectangles) if mask >> i & 1] for mask in config.passes if mask]
+
+
 def rounds(config: Configuration) -> int:
-    """Rounds in which the nearest of all rectangles is found, two by two; one alone has one too."""
-    return max(1, (config.rectangles - 1).bit_length())
+    """Rounds in which the nearest of a pass's rectangles is found, two by two; one alone has one too."""
+    most = max(mask.bit_count() for mask in config.passes)
+    return max(1, (most - 1).bit_length())
 
 
 def winner_latency(config: Configuration) -> int:
@@ -61,7 +74,7 @@ def beam_latency(config: Configuration) -> int:
     """Cycles from a column's own, when next_column leaves it, to its colour."""
     return (
         ENTRY_LATENCY
-        + config.reflections * pass_latency(config)
+        + (len(tested(config)) - 1) * pass_latency(config)
         + winner_latency(config)
         + LOOK_UP_LATENCY
         + blend.LATENCY
@@ -96,6 +109,55 @@ def no_mirror() -> Reflector:
     return reflector
 
 
+def fix_facet(facet: Facet, number: int, config: Configuration) -> None:
+    """Hold what is known of a rectangle of a fixed scene."""
+    rectangle, camera = config.fixed.rectangles[number], config.fixed.camera
+    known = {"usable": 1, "axis": rectangle.axis, "colour": rectangle.colour}
+    if camera:
+        known["distance"] = rectangle.position - camera[rectangle.axis]
+    hold(facet, known)
+
+
+def fix_growth(growth: Walk, number: int, config: Configuration) -> None:
+    """The same for its growth: along a row either its way along u grows, or its bounds do, as rect_setup has it."""
+    rectangle, camera = config.fixed.rectangles[number], config.fixed.camera
+    bounds = {"low_u": (rectangle.u_low, 0), "high_u": (rectangle.u_high, 0)}
+    bounds |= {"low_v": (rectangle.v_low, 2), "high_v": (rectangle.v_high, 2)}
+    known = {"way_u": 0} if rectangle.axis == 1 else dict.fromkeys(bounds, 0)
+    if camera and rectangle.axis == 1:
+        known |= {name: bound - camera[axis] for name, (bound, axis) in bounds.items()}
+    elif camera:
+        known["way_u"] = rectangle.position - camera[rectangle.axis]
+    hold(growth, known)
+
+
+def hold(group, known: Mapping[str, int]) -> None:
+    """Make some signals of a group ones that never change."""
+    for name, value in known.items():
+        setattr(group, name, held(value, getattr(group, name)))
+
+
+def driven(group):
+    """The same group for what drives the rest of it."""
+    shown = copy(group)
+    for name, signal in vars(group).items():
+        if is_held(signal):
+            setattr(shown, name, unconnected_like(signal))
+    return shown
+
+
+def unread_mirror() -> Reflector:
+    """One that nobody asks for."""
+    reflector = Reflector()
+    reflector.distance = unconnected_like(reflector.distance)
+    return reflector
+
+
+def table_distance(reflector: Reflector, config: Configuration):
+    """A mirror's distance where a table has it."""
+    return reflector.distance if config.fixed.camera else None
+
+
 def winner(config: Configuration) -> Candidate:
     """The last candidate, of which nobody asks any more how near it is."""
     candidate = Candidate(config)
@@ -127,7 +189,8 @@ def beam_caster(
     walker and a tester for each rectangle, and runs as much later than the one before it as the latencies that the
     blocks declare add up to.
     """
-    count, passes = config.rectangles, config.reflections + 1
+    count, numbers = config.rectangles, tested(config)
+    passes = len(numbers)
     slope_width = exact_slope_bits(config) + 1
     view_distance = config.screen_geometry.view_distance
     # The video generator's strobe has come a long way, so a register takes it before it goes everywhere.
@@ -138,13 +201,18 @@ def beam_caster(
     load = unsigned(count)
     new_facet, new_growth, new_start = Facet(config), Walk(DISTANCE_BITS), Walk(walk_bits(config))
     facets, growths = [Facet(config) for _ in range(count)], [Walk(DISTANCE_BITS) for _ in range(count)]
+    if config.fixed:
+        for i in range(count):
+            fix_facet(facets[i], i, config)
+            fix_growth(growths[i], i, config)
     steps = unsigned(step_count)
 
     setup = rect_setup(
         clk, reset, start_line, rects, camera, row_slope, load, new_facet, new_growth, new_start, config
     )  # fmt: skip
     memories = [
-        facet_mem(clk, load(i + 1, i), new_facet, new_growth, facets[i], growths[i]) for i in range(count)
+        facet_mem(clk, load(i + 1, i), new_facet, new_growth, driven(facets[i]), driven(growths[i]))
+        for i in range(count)
     ]  # fmt: skip
 
     # When a column has been as many cycles in the pipeline as the bit's number.
@@ -161,10 +229,10 @@ def beam_caster(
             clk, load(i + 1, i), step_after(start), step_after(start + 1), new_start, growths[i], walks[number][i]
         )
         for number, start in enumerate(starts)
-        for i in range(count)
+        for i in numbers[number]
     ]
 
-    folds = [unfolded(config)] + [Fold(config) for _ in range(config.reflections)]
+    folds = [unfolded(config)] + [Fold(config) for _ in range(1, passes)]
     for fold in folds[1:]:
         fold.active = constant(1, 1)
     early_slopes, late_slopes = ([signed(slope_width) for _ in range(passes)] for _ in range(2))
@@ -188,11 +256,11 @@ def beam_caster(
             hits[number][i], view_distance,
         )
         for number in range(passes)
-        for i in range(count)
+        for i in numbers[number]
     ]  # fmt: skip
 
     # The rounds of each pass; the last has one candidate left.
-    fields = [[candidates] for candidates in hits]
+    fields = [[[candidates[i] for i in tried]] for candidates, tried in zip(hits, numbers, strict=True)]
     contests = []
     for field in fields:
         for _ in range(rounds(config)):
@@ -223,25 +291,48 @@ def beam_caster(
     found_0, found_1, found_2 = (bit() for _ in range(3))
     color_0, color_1, color_2 = (unsigned(COLOUR_BITS) for _ in range(3))
 
-    # What is known of the rectangles that were seen.
+    # Which rays met anything.
     @always(clk.posedge)
-    def look_up_colors():
+    def look_up_hits():
         found_0.next = valid_0
         found_1.next = valid_1
         found_2.next = valid_2
+
+    # What they met.
+    @always(clk.posedge)
+    def look_up_colors():
         color_0.next = colors[index_0]
         color_1.next = colors[index_1]
         color_2.next = colors[index_2]
 
+    color_look_ups = look_up_colors
+    if config.fixed:
+        color_look_ups = [
+            facet_rom(clk, index, unconnected(AXIS_BITS), table_distance(unread_mirror(), config), color, config)
+            for index, color in ((index_0, color_0), (index_1, color_1), (index_2, color_2))
+        ]
+
     blender = color_blend(
         clk, found_0, found_1, found_2, color_0, color_1, color_2, background, reflections, red, green, blue, config
     )
-    common = setup, memories, follow_columns, walkers, rays, testers, contests, delays, look_up_colors, blender
+    common = (
+        setup,
+        memories,
+        follow_columns,
+        walkers,
+        rays,
+        testers,
+        contests,
+        delays,
+        look_up_hits,
+        color_look_ups,
+        blender,
+    )
     if passes == 1:
         return common
 
     looked_up = winner_latency(config) + LOOK_UP_LATENCY
-    mirror_slopes = [signed(slope_width) for _ in range(config.reflections)]
+    mirror_slopes = [signed(slope_width) for _ in range(1, passes)]
     mirror_rays = [
         slope_walker(clk, start_line, step_after(start + looked_up + 1), slope, config)
         for start, slope in zip(starts, mirror_slopes, strict=False)
@@ -255,9 +346,18 @@ def beam_caster(
         only.axis.next = axes[only_index]
         only.distance.next = distances[only_index]
 
+    # Of a fixed one, only the distance is not known.
+    @always(clk.posedge)
+    def look_up_distance():
+        only.distance.next = distances[only_index]
+
+    first_look_up = look_up_mirror
+    if config.fixed:
+        tables = [facet_rom(clk, only_index, only.axis, table_distance(only, config), unconnected(COLOUR_BITS), config)]
+        first_look_up = tables if config.fixed.camera else (tables, look_up_distance)
     first_folder = ray_fold(clk, nowhere, only, mirror_slopes[0], row_slope, folds[1], view_distance)
     if passes == 2:
-        return (*common, mirror_rays, look_up_mirror, first_folder)
+        return (*common, mirror_rays, first_look_up, first_folder)
 
     earlier, last = mirror(), mirror()
     earlier_index, last_index = seen[0][1].index, seen[1][0].index
@@ -270,5 +370,18 @@ def beam_caster(
         last.axis.next = axes[last_index]
         last.distance.next = distances[last_index]
 
+    # Of fixed ones, only the distances are not known.
+    @always(clk.posedge)
+    def look_up_distances():
+        earlier.distance.next = distances[earlier_index]
+        last.distance.next = distances[last_index]
+
+    second_look_up = look_up_mirrors
+    if config.fixed:
+        tables = [
+            facet_rom(clk, index, left.axis, table_distance(left, config), unconnected(COLOUR_BITS), config)
+            for index, left in ((earlier_index, earlier), (last_index, last))
+        ]
+        second_look_up = tables if config.fixed.camera else (tables, look_up_distances)
     second_folder = ray_fold(clk, earlier, last, mirror_slopes[1], row_slope, folds[2], view_distance)
-    return (*common, mirror_rays, look_up_mirror, first_folder, look_up_mirrors, second_folder)
+    return (*common, mirror_rays, first_look_up, first_folder, second_look_up, second_folder)

@@ -12,8 +12,10 @@ from functools import partial
 from pathlib import Path
 
 from myhdl._block import _Block
+from rich.console import Console
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
+from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.rtl.dvi_encoder import DviPorts, dvi_encoder
 from raycaster.rtl.hierarchy import Module, convert_hierarchy, quick_elaboration
@@ -106,9 +108,11 @@ def main() -> None:
     """The command."""
     parser = argparse.ArgumentParser(prog="python -m raycaster.rtl.convert", description=__doc__)
     parser.add_argument("--output", type=Path, default=Path("build/verilog"), help="(default: %(default)s)")
+    parser.add_argument("--scene", type=Path, help="what to build in; with --fix")
+    add_fix_option(parser)
     add_configuration_options(parser)
     arguments = parser.parse_args()
-    config = configure(**given_options(arguments))
+    config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, Console())
     files = write_verilog(config, arguments.output)
     print(f"{len(files)} modules of {config.name} in {arguments.output}/, listed in {arguments.output / FILE_LIST}")
 

@@ -55,15 +55,20 @@ class Module:
 class _Instance(_UserVerilogCode):
     """The text that stands for a block in its parent; names are only known when it is printed."""
 
-    def __init__(self, module: Module, name: str, connections: dict[str, _Signal | None]):
+    def __init__(self, module: Module, name: str, connections: dict[str, _Signal | str | None]):
         super().__init__("", {}, module.name, None, None, None)
         self._module, self._name, self._connections = module, name, connections
 
     def __str__(self) -> str:
-        pins = ",\n".join(
-            f"    .{port}({signal._name if signal is not None else ''})" for port, signal in self._connections.items()
-        )
+        pins = ",\n".join(f"    .{port}({_printed(signal)})" for port, signal in self._connections.items())
         return f"\n{self._module.name} {self._name} (\n{pins}\n);\n"
+
+
+def _printed(connection: _Signal | str | None) -> str:
+    """A signal by its name in the parent, a number as it is, and nothing for what is not connected."""
+    if connection is None:
+        return ""
+    return connection if isinstance(connection, str) else connection._name
 
 
 class _RecordingConvertor(_ToVerilogConvertor):
@@ -146,6 +151,9 @@ class _Converter:
     def _convert_block(self, block: _Block, name: str, ports: dict[str, _Signal]) -> Module:
         children = [sub for sub in block.subs if isinstance(sub, _Block)]
         modules = [self._module_of(child) for child in children]
+        for signal in ports.values():
+            if isinstance(signal, _SliceSignal):
+                signal._read = False  # another block may have read it; this one has not been looked at
         instances = {}
         for child, module in zip(children, modules, strict=True):
             count = sum(other.func is child.func for other in children)
@@ -153,7 +161,7 @@ class _Converter:
             instance = module.name if count == 1 else f"{module.name}_{ordinal}"
             instances[instance] = module.name
             _replace_by_instance(child, module, f"{instance}_i", ports)
-        _name_connections(block, children)
+        _name_connections(block, children, ports)
         written_ports = self._write(block, name, ports)
         return Module(name, self._directory / f"{name}.v", written_ports, instances)
 
@@ -221,11 +229,13 @@ def _replace_by_instance(child: _Block, module: Module, name: str, parent_ports:
     for port, signal in connections.items():
         if isinstance(signal, _Unconnected) and id(signal) not in passed_on:
             connections[port] = None
+        if isinstance(signal, _Held) and id(signal) not in passed_on:
+            connections[port] = _number(signal)
     child.verilog_code = _Instance(module, name, connections)
     child.subs, child.sigdict, child.memdict = [], {}, {}
     directions = {port.name: port.output for port in module.ports}
     for port, signal in connections.items():
-        if signal is None:
+        if signal is None or isinstance(signal, str):
             continue
         signal._markUsed()
         if directions[port]:
@@ -252,9 +262,10 @@ def _mark_processes(block: _Block) -> None:
                     signal._markRead()
 
 
-def _name_connections(block: _Block, children: list[_Block]) -> None:
+def _name_connections(block: _Block, children: list[_Block], ports: Mapping[str, _Signal]) -> None:
     """Give MyHDL a name for every signal that only instances use: it knows those of processes by itself."""
     named = {id(signal) for signal in block.sigdict.values()}
+    arrived = {id(signal) for signal in ports.values()}
     scope: dict[str, Any] = {}
     for sub in block.subs:
         scope |= {name: value for name, value in sub.callinfo.symdict.items() if not name.startswith("_")}
@@ -264,8 +275,9 @@ def _name_connections(block: _Block, children: list[_Block]) -> None:
             candidates.setdefault(id(signal), path)
     for child in children:
         for port, connected in child.verilog_code._connections.items():
-            signal = connected._sig if isinstance(connected, _SliceSignal) else connected
-            if signal is None or id(signal) in named:
+            cut_here = isinstance(connected, _SliceSignal) and id(connected) not in arrived
+            signal = connected._sig if cut_here else connected
+            if signal is None or isinstance(signal, str) or id(signal) in named:
                 continue
             if id(signal) not in candidates:
                 raise HierarchyError(
@@ -282,6 +294,39 @@ class _Unconnected(_Signal):
 def unconnected(width: int) -> _Signal:
     """A signal for an instance's output that nobody reads; of one bit it is a bool, as such outputs are."""
     return _Unconnected(intbv(0)[width:] if width > 1 else False)
+
+
+def unconnected_like(signal: _Signal) -> _Signal:
+    """The same in the shape of another signal."""
+    if signal.min is None:
+        return unconnected(1)
+    return _Unconnected(intbv(0, min=signal.min, max=signal.max))
+
+
+class _Held(_Signal):
+    """What `held` makes; it prints as a number."""
+
+
+def held(value: int, like: _Signal) -> _Signal:
+    """A signal in the shape of another for instances' inputs that never change, however many levels down.
+
+    Unlike with a constant, processes may look at nothing else.
+    """
+    if like.min is None:
+        return _Held(bool(value))
+    return _Held(intbv(value, min=like.min, max=like.max))
+
+
+def is_held(signal: _Signal) -> bool:
+    """Whether `held` made it."""
+    return isinstance(signal, _Held)
+
+
+def _number(signal: _Signal) -> str:
+    """What never changes, as Verilog writes it."""
+    width, value = len(signal) or 1, int(signal.val)
+    kind = "sd" if (signal.min or 0) < 0 else "d"
+    return f"{'-' if value < 0 else ''}{width}'{kind}{abs(value)}"
 
 
 def constant(value: int, width: int) -> Constant:

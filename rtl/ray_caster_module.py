@@ -3,12 +3,14 @@
 
 from myhdl import ResetSignal, Signal, block
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.registers import address_bits
 from raycaster.rtl.avalon_interface import avalon_interface
 from raycaster.rtl.camera_mem import camera_mem
-from raycaster.rtl.interfaces import Point, SceneBus
+from raycaster.rtl.hierarchy import constant, held, unconnected_like
+from raycaster.rtl.interfaces import PipelinedRects, Point, SceneBus
 from raycaster.rtl.rect_mem import rect_mem
+from raycaster.rtl.rect_rom import fixed_rects, rect_rom
 from raycaster.rtl.renderers import RECTS, RENDERERS
 from raycaster.rtl.widths import COLOUR_BITS, CYCLE_BITS, WORD_BITS, bit, unsigned
 
@@ -22,7 +24,7 @@ class ModulePorts:
     def __init__(self, config: Configuration):
         self.clk = bit()
         self.reset = ResetSignal(0, active=1, isasync=False)
-        self.avs_s0_address = unsigned(address_bits(config.rectangles))
+        self.avs_s0_address = unsigned(address_bits(config.table))
         self.avs_s0_read, self.avs_s0_write = bit(), bit()
         self.avs_s0_writedata, self.avs_s0_byteenable = unsigned(WORD_BITS), unsigned(4)
         self.avs_s0_readdata = unsigned(WORD_BITS)
@@ -61,7 +63,9 @@ def ray_caster_module(
     """Registers, scene memories and renderer in one clock domain, screen.clock_hz; reset is synchronous, active high.
 
     The bus counts 32-bit words. The interrupt is a level. Video data changes at the falling edge of vga_clk, a pixel's.
+    What config.fixed holds is built in: it has no memory, and writes to its registers do nothing.
     """
+    fixed = config.fixed
     bus = SceneBus(len(avs_s0_address))
     rects = RECTS[config.engine](config)
     camera = Point()
@@ -72,16 +76,38 @@ def ray_caster_module(
     background = unsigned(COLOUR_BITS)
     row_cycles, group_cycles = unsigned(CYCLE_BITS), unsigned(CYCLE_BITS)
 
+    if fixed:
+        rect_word, bad_rectangle = constant(0, WORD_BITS), constant(0, 1)
+        word, table = fixed_rects(rects, config)
+    if fixed and fixed.camera:
+        camera_word = constant(0, WORD_BITS)
+        camera.x, camera.y, camera.z = (held(value, unsigned(COORDINATE_BITS)) for value in fixed.camera)
+        background, reflections = held(fixed.background, background), held(config.reflections, reflections)
+        for name, signal in vars(bus).items():
+            setattr(bus, name, unconnected_like(signal))
+    picture = (None, None) if fixed and fixed.camera else (reflections, background)
+
     registers = avalon_interface(
         clk, reset, avs_s0_address, avs_s0_read, avs_s0_write, avs_s0_writedata, avs_s0_byteenable, avs_s0_readdata,
-        avs_s0_readdatavalid, avs_s0_waitrequest, irq, bus, camera_word, rect_word, bad_rectangle, run, reflections,
-        background, start_screen, busy, underrun, row_cycles, group_cycles, config,
+        avs_s0_readdatavalid, avs_s0_waitrequest, irq, bus, camera_word, rect_word, bad_rectangle, run, *picture,
+        start_screen, busy, underrun, row_cycles, group_cycles, config,
     )  # fmt: skip
-    camera_memory = camera_mem(clk, reset, bus, camera_word, camera)
-    rect_memory = rect_mem(clk, reset, bus, rect_word, bad_rectangle, rects, config)
     renderer = RENDERERS[config.engine](
         clk, reset, run, reflections, background, camera, rects, start_screen, busy, underrun, row_cycles,
         group_cycles, vga_r, vga_g, vga_b, vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_clk, config,
     )  # fmt: skip
 
-    return registers, camera_memory, rect_memory, renderer
+    if not fixed:
+        return (
+            registers, renderer,
+            camera_mem(clk, reset, bus, camera_word, camera),
+            rect_mem(clk, reset, bus, rect_word, bad_rectangle, rects, config),
+        )  # fmt: skip
+
+    memories = []
+    if table:
+        pipelined = isinstance(rects, PipelinedRects)
+        memories.append(rect_rom(clk, rects.index, rects.fetch, word, table, pipelined, config))
+    if not fixed.camera:
+        memories.append(camera_mem(clk, reset, bus, camera_word, camera))
+    return registers, renderer, memories

@@ -49,7 +49,7 @@ def ray_caster_system(
     time; buttons: as `scene_player.BUTTONS`, active high, may change at any time; vga_*: as ray_caster_module has them.
     """
     reset = ResetSignal(0, active=1, isasync=False)
-    address = unsigned(address_bits(config.rectangles))
+    address = unsigned(address_bits(config.table))
     write, waitrequest, irq = bit(), bit(), bit()
     writedata, byteenable = unsigned(WORD_BITS), unsigned(4)
     never = constant(0, 1)

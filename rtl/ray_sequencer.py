@@ -36,8 +36,14 @@ def ray_sequencer(
     state = Signal(RayState.IDLE)
     bounce = unsigned(2)
     start_ray, fetched, starting = bit(), bit(), bit()
+    wanted = rects.usable
+    if config.fixed:
+        wanted = unsigned(config.rectangles)
+        first, second, third = (config.passes + 2 * (0,))[:3]
 
-    sequencer = rect_sequencer(clk, reset_ray_caster, start_ray, rects, fetched, starting, slot_cycles, config)
+    sequencer = rect_sequencer(
+        clk, reset_ray_caster, start_ray, wanted, rects.index, rects.fetch, fetched, starting, slot_cycles, config
+    )
 
     # A new ray follows two of the states.
     @always_comb
@@ -87,4 +93,18 @@ def ray_sequencer(
             in_flight.next[write_at + 1 : 1] = in_flight[write_at:]
             in_flight.next[0] = steps.find_intersection
 
-    return sequencer, see_start, advance, operate, follow
+    common = sequencer, see_start, advance, operate, follow
+    if not config.fixed:
+        return common
+
+    # Those that the next ray may meet.
+    @always_comb
+    def choose_wanted():
+        wanted.next = first
+        if state == RayState.TRACE:
+            if bounce == 0:
+                wanted.next = second
+            else:
+                wanted.next = third
+
+    return common, choose_wanted

@@ -8,11 +8,14 @@ from raycaster.rtl.widths import bit, bits_for, index_bits, unsigned
 
 
 @block
-def rect_sequencer(clk, reset_ray_caster, start_ray, rects, fetched, starting, slot_cycles, config: Configuration):
-    """Give each usable rectangle a time slot of slot_cycles, in ascending order, from the cycle after start_ray on.
+def rect_sequencer(
+    clk, reset_ray_caster, start_ray, wanted, index, fetch, fetched, starting, slot_cycles, config: Configuration
+):
+    """Give each wanted rectangle a time slot of slot_cycles, in ascending order, from the cycle after start_ray on.
 
-    fetched: rects.rect is a rectangle whose slot it is; starting: in the first cycle of the slot. rects.usable holds
-    still from the cycle before start_ray until fetched falls, and after a reset_ray_caster nothing is fetched.
+    wanted: a bit for each, looked at in the cycle before start_ray; index, fetch: to the memory; fetched: what it holds
+    is a rectangle whose slot it is; starting: in the first cycle of the slot. After a reset_ray_caster nothing is
+    fetched.
     """
     rectangles = config.rectangles
     last_slot = slot_cycles - 1
@@ -33,7 +36,7 @@ def rect_sequencer(clk, reset_ray_caster, start_ray, rects, fetched, starting, s
         if take:
             candidates.next = waiting
         else:
-            candidates.next = rects.usable
+            candidates.next = wanted
 
     # The lowest rectangle comes first, so that of equals the lower one wins; the others go on waiting.
     @always_comb
@@ -56,9 +59,9 @@ def rect_sequencer(clk, reset_ray_caster, start_ray, rects, fetched, starting, s
 
     # A rectangle is fetched in the cycle before it may start.
     @always_comb
-    def fetch():
-        rects.index.next = upcoming
-        rects.fetch.next = take
+    def ask():
+        index.next = upcoming
+        fetch.next = take
 
     # Whether there is a rectangle at hand, and the place in its time slot.
     @always(clk.posedge)
@@ -77,4 +80,4 @@ def rect_sequencer(clk, reset_ray_caster, start_ray, rects, fetched, starting, s
     def start():
         starting.next = fetched and slot == 0
 
-    return see_take, choose_candidates, choose_rectangle, offer, fetch, take_slots, start
+    return see_take, choose_candidates, choose_rectangle, offer, ask, take_slots, start

@@ -21,9 +21,9 @@ def player_program(scene: Scene, config: Configuration) -> tuple[list[tuple[int,
 
     That part clears the interrupt, moves the camera (its word here is only a place for it) and commits.
     """
-    registers = register_map(config.rectangles)
+    registers = register_map(config.table)
     enable, pending = registers["irq_enable"], registers["irq_pending"]
-    load = scene_words(scene, config.rectangles)
+    load = scene_words(scene, config.table)
     frame = [(pending.address, pending.pack(start_screen=1)), (registers["camera"].address, 0), load[-1]]
     return [*load, (enable.address, enable.pack(start_screen=1)), *frame], len(load) + 1
 
@@ -50,7 +50,7 @@ def scene_player(
     program, first_of_frame = player_program(scene, config)
     addresses, words = (tuple(column) for column in zip(*program, strict=True))
     last = len(program) - 1
-    camera = register_map(config.rectangles)["camera"]
+    camera = register_map(config.table)["camera"]
     camera_entry = first_of_frame + 1
     x_low, y_low, z_low = (camera.fields[axis].lsb for axis in "xyz")
     x_high, y_high, z_high = (camera.fields[axis].lsb + camera.fields[axis].width for axis in "xyz")

@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
-import dataclasses
 import shutil
 from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import OPTION_NAMES, Configuration
 from raycaster.register_views import HEADER, write_header
 from raycaster.registers import address_bits
 from raycaster.rtl.avalon_interface import size_word
@@ -38,7 +37,7 @@ def write_take_home(config: Configuration, modules: Sequence[Module], directory:
     (directory / f"{TOP}.sdc").write_text(_constraints(config))
     (directory / f"{TOP}.core").write_text(_core(config, sources))
     (directory / COMPONENT).write_text(component(config, modules[-1].ports, sources))
-    write_header(config.rectangles, directory / HEADER)
+    write_header(config.table, directory / HEADER)
     shutil.copyfile(WAIVERS, directory / f"{TOP}.vlt")
     (directory / BENCHES).mkdir()
     shutil.copyfile(SMOKE_BENCH, directory / BENCHES / SMOKE_BENCH.name)
@@ -47,8 +46,10 @@ def write_take_home(config: Configuration, modules: Sequence[Module], directory:
 
 
 def _description(config: Configuration) -> str:
-    """The configuration as comment lines; only the beam engine has a scale."""
-    values = {field.name: getattr(config, field.name) for field in dataclasses.fields(config)}
+    """The configuration as comment lines; only the beam engine has a scale, and few designs a fixed scene."""
+    values = {name: getattr(config, name) for name in OPTION_NAMES}
+    if config.fixed:
+        values["fixed"] = config.fixed.name
     if config.engine != "beam":
         del values["scale"]
     pad = max(map(len, values))
@@ -80,7 +81,7 @@ def _core(config: Configuration, sources: Sequence[str]) -> str:
     """A FuseSoC core (CAPI2) that lints, simulates and synthesises the files where they are."""
     horizontal = config.screen_geometry.horizontal
     parameters = {
-        "ADDRESS_BITS": address_bits(config.rectangles),
+        "ADDRESS_BITS": address_bits(config.table),
         "COLOUR_BITS": config.colour_bits,
         "H_TOTAL": horizontal.total,
         "H_SYNC": horizontal.sync,

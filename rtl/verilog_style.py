@@ -48,11 +48,23 @@ def restyle(text: str, block: _Block, ports: Sequence[str]) -> str:
     text = _drop_modulo(text, block)
     text = _fold_constants(text)
     text = re.sub(r"\b33'h(?=[89a-f][0-9a-f]{7}\b)", "32'h", text)  # MyHDL adds a bit for a sign that is not there
+    text = _size_words(text)
     text = "\n".join(map(_drop_parentheses, text.splitlines()))
     text = _declare_ports(text, ports)
     text = _declare_constants(text)
     lines = (wrapped for line in text.splitlines() for wrapped in _wrap(line.rstrip()))
     return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).strip("\n") + "\n"
+
+
+def _size_words(text: str) -> str:
+    """Give a long word the width of what it is assigned to; MyHDL gives it that of its value, and one more for luck."""
+    widths = {name: int(high) + 1 for high, name in re.findall(r"\[(\d+):0\] (\w+);", text)}
+
+    def size(match: re.Match[str]) -> str:
+        width = widths.get(match[1], int(match[3]))
+        return f"{match[1]} {match[2]} {width}'h{match[4]};"
+
+    return re.sub(r"\b(\w+) (<?=) (\d+)'h([0-9a-f]+);", size, text)
 
 
 def _comment(text: str, process: _Instantiator) -> str:

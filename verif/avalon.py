@@ -25,8 +25,8 @@ class AvalonBus:
     """
 
     def __init__(self, bench: HierarchyObject, configuration: Configuration):
-        self.registers: dict[str, Register] = register_map(configuration.rectangles)
-        self._rectangles = configuration.rectangles
+        self.registers: dict[str, Register] = register_map(configuration.table)
+        self._rectangles = configuration.table
         self._clock = bench.clk
         self._master = AvalonMaster(bench, "avs_s0", bench.clk)
         self._signals = self._master.bus

@@ -21,8 +21,9 @@ from PIL import Image
 from rich.console import Console
 
 from raycaster.configuration import Screen
-from raycaster.design import Design, design_for
+from raycaster.design import Design
 from raycaster.errors import UserError
+from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.bitstream import BOARDS, DEFAULT_SCENE, find_board, write_project
 from raycaster.golden import engines
 from raycaster.golden.picture import count_wrong
@@ -230,16 +231,17 @@ def main() -> int:
     parser.add_argument("--frames", type=int, default=1, help="to look at (default: %(default)s)")
     parser.add_argument("--simulator", default="verilator", metavar="SIM", help=" or ".join(SIMULATORS))
     parser.add_argument("--output", type=Path, default=Path("build/dvi"), help="(default: %(default)s)")
+    add_fix_option(parser)
     add_configuration_options(parser)
     arguments = parser.parse_args()
     if arguments.simulator not in SIMULATORS:
         raise UserError(f"simulator: {' or '.join(SIMULATORS)}, not {arguments.simulator}")
     board = find_board(arguments.board)
-    design = design_for(arguments.scene, given_options(arguments))
+    console = Console()
+    design = design_of(arguments.scene, given_options(arguments), arguments.fix, console)
     output = arguments.output / board.name / design.name
     shutil.rmtree(output, ignore_errors=True)
     output.mkdir(parents=True)
-    console = Console()
     screen = design.configuration.screen_geometry
     try:
         with console.status(f"{board.name}, {design.configuration.name}: building and simulating"):

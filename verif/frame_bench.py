@@ -22,7 +22,7 @@ async def one_frame(bench: HierarchyObject) -> None:
     """Program the job's scene, capture a frame, write pictures and `result.json` into the job's output directory."""
     harness = Harness(bench)
     job, configuration, bus = harness.job, harness.configuration, harness.bus
-    scene = load_scene(job.scene, configuration.rectangles)
+    scene = load_scene(job.scene, configuration.capacity)
     reflections = scene.reflections if job.reflections is None else job.reflections
 
     started = time.perf_counter()

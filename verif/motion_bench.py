@@ -110,7 +110,7 @@ async def start_screen_interrupts(bench: HierarchyObject) -> None:
 
 
 def _scene(harness: Harness) -> tuple[Scene, int]:
-    scene = load_scene(harness.job.scene, harness.configuration.rectangles)
+    scene = load_scene(harness.job.scene, harness.configuration.capacity)
     return scene, scene.reflections if harness.job.reflections is None else harness.job.reflections
 
 

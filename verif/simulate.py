@@ -22,8 +22,9 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from raycaster.configuration import Configuration
-from raycaster.design import Design, design_for
+from raycaster.design import Design
 from raycaster.errors import UserError
+from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.verif.job import Job
 from raycaster.verif.netlist import COUNTED_CELLS, Netlist, find_yosys, synthesise
@@ -56,13 +57,29 @@ class Outcome:
     waves: Path | None = None
 
 
-def plan_runs(paths: Iterable[Path], options: Mapping[str, Any], defaults: Mapping[str, Any]) -> list[Design]:
+def plan_runs(
+    paths: Iterable[Path],
+    options: Mapping[str, Any],
+    defaults: Mapping[str, Any],
+    scope: str | None = None,
+    console: Console | None = None,
+) -> list[Design]:
     """Plan all before anything is built, so that a mistake costs no time.
 
+    Args:
+        paths: of scenes.
+        options: as they are given.
+        defaults: for the hardware where nothing is given.
+        scope: what of each scene is built in; see `raycaster.fit.fixing`.
+        console: where what that leaves out is shown.
+
     Raises:
-        UserError: as `design_for`, or two scenes would write into one directory.
+        UserError: as `design_of`, or two scenes would write into one directory.
     """
-    runs = [design_for(path, options, defaults) for path in paths]
+    if scope:
+        # Units and reflections are the scene's business then.
+        defaults = {name: value for name, value in defaults.items() if name == "screen"}
+    runs = [design_of(path, options, scope, console or Console(quiet=True), **defaults) for path in paths]
     seen: dict[Path, Path] = {}
     for run in runs:
         if (other := seen.setdefault(run.name, run.path)) != run.path:
@@ -248,6 +265,7 @@ def parse_arguments() -> argparse.Namespace:
         "--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes (default: build)"
     )
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="scenes at a time (default: 2)")
+    add_fix_option(parser)
     add_configuration_options(parser)
     return parser.parse_args()
 
@@ -264,12 +282,12 @@ def main() -> int:
     if not paths:
         raise UserError(f"there are no scenes in {SCENES.resolve()}; name one with --scene")
     gates = arguments.gates
-    runs = plan_runs(paths, given_options(arguments), GATES_OPTIONS if gates else {})
+    # Into a file or a pipe rich would print as if on 80 columns, which the table does not fit.
+    console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
+    runs = plan_runs(paths, given_options(arguments), GATES_OPTIONS if gates else {}, arguments.fix, console)
     find_tool(arguments.simulator)
     if gates:
         find_yosys()
-    # Into a file or a pipe rich would print as if on 80 columns, which the table does not fit.
-    console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
     try:
         netlists = synthesise_all(runs, arguments.build, console) if gates else {}
         models = build_models(runs, arguments.simulator, arguments.waves, arguments.build, netlists, console)

@@ -222,7 +222,7 @@ def _build_failure(configuration: Configuration, simulator: str, log: Path) -> E
 def _bench_parameters(configuration: Configuration) -> dict[str, int]:
     horizontal = configuration.screen_geometry.horizontal
     return {
-        "ADDRESS_BITS": address_bits(configuration.rectangles),
+        "ADDRESS_BITS": address_bits(configuration.table),
         "COLOUR_BITS": configuration.colour_bits,
         "H_TOTAL": horizontal.total,
         "HS_ACTIVE": int(horizontal.active_high),

@@ -172,7 +172,7 @@ def _picture(harness: Harness, scene: LiveScene | None) -> np.ndarray:
     slopes = primary_slopes(harness.screen)
     if scene is None or not scene.run:
         return harness.shown(np.zeros(slopes.shape, dtype=np.uint8))
-    colours = engines.trace(
+    traced = engines.trace(
         harness.configuration,
         scene.rectangles,
         scene.camera,
@@ -180,4 +180,4 @@ def _picture(harness: Harness, scene: LiveScene | None) -> np.ndarray:
         slopes.reshape(-1, 3),
         scene.reflections,
     )
-    return harness.shown(colours.reshape(slopes.shape))
+    return harness.shown(traced.colours.reshape(slopes.shape))

@@ -17,7 +17,7 @@ module dvi_serialiser (
 
 localparam [9:0] LINK_CLOCK = 10'b0000011111;
 localparam [4:0] WAITING = 5'b00000;    // for the first pixel
-localparam [4:0] THIRD = 5'b01000;      // three cycles after the first that knew of a pixel
+localparam [4:0] THIRD = 5'b01000;      // of a pixel's cycles, from the one that knew of it on
 
 reg  [2:0] seen = 3'b000;
 reg        changed = 1'b0;
@@ -42,9 +42,9 @@ always @(posedge shift_clk)
     else
         phase <= {phase[3:0], phase[4]};
 
-dvi_lane blue_lane (.shift_clk(shift_clk), .fourth(phase[3]), .symbol(blue), .wire_p(gpdi_dp[0]));
-dvi_lane green_lane (.shift_clk(shift_clk), .fourth(phase[3]), .symbol(green), .wire_p(gpdi_dp[1]));
-dvi_lane red_lane (.shift_clk(shift_clk), .fourth(phase[3]), .symbol(red), .wire_p(gpdi_dp[2]));
-dvi_lane clock_lane (.shift_clk(shift_clk), .fourth(phase[3]), .symbol(LINK_CLOCK), .wire_p(gpdi_dp[3]));
+dvi_lane blue_lane (.shift_clk(shift_clk), .restart(restart), .symbol(blue), .wire_p(gpdi_dp[0]));
+dvi_lane green_lane (.shift_clk(shift_clk), .restart(restart), .symbol(green), .wire_p(gpdi_dp[1]));
+dvi_lane red_lane (.shift_clk(shift_clk), .restart(restart), .symbol(red), .wire_p(gpdi_dp[2]));
+dvi_lane clock_lane (.shift_clk(shift_clk), .restart(restart), .symbol(LINK_CLOCK), .wire_p(gpdi_dp[3]));
 
 endmodule

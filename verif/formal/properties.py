@@ -56,7 +56,7 @@ def _avalon(config: Configuration, small: bool) -> Property:
         _label(config),
         ("avalon_interface", "camera_mem", "rect_mem", "rect_slot", "rect_sorter", "scene_word"),
         {
-            "ADDRESS_BITS": address_bits(config.rectangles),
+            "ADDRESS_BITS": address_bits(config.table),
             "ENGINE_WORD": engine_word(config),
             "SIZE_WORD": size_word(config),
             "REFLECTIONS": config.reflections,

@@ -90,7 +90,7 @@ LINKED = ".blue({}),\n    .green(green),\n    .red({}),\n    .pixel(pixel),\n   
         (TOP, LINKED.format("blue", "red"), LINKED.format("red", "blue"), "carries control bits"),
         (LANE, "D0(pair[0]), .D1(pair[1])", "D0(pair[1]), .D1(pair[0])", "control symbols"),
         (SERIALISER, "symbol(red)", "symbol({red[8:0], red[9]})", "different bits"),
-        (SERIALISER, "phase <= THIRD", "phase <= THIRD >> 2", "change when they are taken"),
+        (LANE, "THIRD = 5'b01000", "THIRD = 5'b00010", "change when they are taken"),
         (SERIALISER, "10'b0000011111", "10'b0000111111", "five ones and five zeros"),
         (CLOCKS, ".CLK_DIV(10)", ".CLK_DIV(8)", "change when they are taken"),
         (ENCODER, "symbol[9] <= invert", "symbol[9] <= !invert", ""),

@@ -624,7 +624,7 @@ def test_ray_caster_module(config, tmp_path):
             camera = random.integers(WORLD_SIZE, size=3) // [2, 1, 1]
             table = rectangles_in_view(random, camera, slopes, config.rectangles)
             background = random.integers(256, size=3)
-            colours = engines.trace(config, table, camera, background, slopes, config.reflections)
+            colours = engines.trace(config, table, camera, background, slopes, config.reflections).colours
             if len(np.unique(colours, axis=0)) > config.rectangles:
                 break
         pictures.append(golden_words(config, colours))

@@ -24,6 +24,7 @@ from raycaster.rtl.widths import (
     bit,
     exact_slope_bits,
     eye_bits,
+    index_bits,
     offset_bits,
     pixel_bits,
     row_bits,
@@ -347,7 +348,9 @@ def test_rect_sequencer(count, slot_cycles, tmp_path):
             "clk": bit(),
             "reset_ray_caster": bit(),
             "start_ray": bit(),
-            "rects": SequentialRects(config),
+            "wanted": unsigned(count),
+            "index": unsigned(index_bits(config)),
+            "fetch": bit(),
             "fetched": bit(),
             "starting": bit(),
             "slot_cycles": slot_cycles,
@@ -360,7 +363,7 @@ def test_rect_sequencer(count, slot_cycles, tmp_path):
 
     def drive(reset, start, mask, current=None, first=False):
         """A cycle in which `current` is at hand."""
-        stimulus.append({"reset_ray_caster": reset, "start_ray": start, "rects_usable": mask})
+        stimulus.append({"reset_ray_caster": reset, "start_ray": start, "wanted": mask})
         expected.append((current, first))
 
     every = (1 << count) - 1
@@ -388,8 +391,8 @@ def test_rect_sequencer(count, slot_cycles, tmp_path):
                 repeat(),
             )
             assert current is None or held_by_memory == current, (cycle, repeat())
-        if output["rects_fetch"]:
-            held_by_memory = output["rects_index"]
+        if output["fetch"]:
+            held_by_memory = output["index"]
 
 
 def seed_config(**options) -> Configuration:

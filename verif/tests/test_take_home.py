@@ -12,8 +12,10 @@ import sysconfig
 from pathlib import Path
 
 import pytest
+from conftest import SMALL_SCENE
 
 from raycaster.configuration import Configuration, configure
+from raycaster.fit.fixing import fix
 from raycaster.rtl.convert import FILE_LIST, write_verilog
 from raycaster.rtl.take_home import TOP, WAIVERS
 from raycaster.verif.simulator import find_tool
@@ -30,6 +32,8 @@ CONFIGURATIONS = [
     configure(engine="beam", rows=180),
     configure(engine="beam", screen="tiny", reflections=2, rectangles=3, scale=1),
     configure(engine="beam", reflections=0, rectangles=1, colour_bits=4),
+    fix(SMALL_SCENE, {"screen": "tiny"}, "rects").design.configuration,
+    *(fix(SMALL_SCENE, {"engine": engine}, "all").design.configuration for engine in ("seed", "exact", "beam")),
 ]
 SMALL = configure(screen="tiny", units=2, rectangles=2, allow_underrun=True)
 

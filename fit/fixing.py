@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: MIT
+"""A scene built into the hardware, and what that leaves out."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from raycaster.configuration import MOST_RECTANGLES, WORLD_SIZE, Configuration, configure
+from raycaster.design import Design, design_for
+from raycaster.errors import UserError
+from raycaster.fit.unneeded import covered, label, seen, unreachable
+from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
+from raycaster.golden.world import Rectangles
+from raycaster.scene import Rectangle, Scene
+
+SCOPES = {
+    "rects": "rectangles are constants, the camera is live",
+    "all": "camera, background and reflections are constants too",
+}
+BOUNDS = {"u_low": 0, "v_low": 0, "u_high": WORLD_SIZE - 1, "v_high": WORLD_SIZE - 1}
+"""The world's edge, by the bound that may be there."""
+
+
+@dataclass(frozen=True)
+class Omission:
+    """Something that the hardware does without."""
+
+    what: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Fixing:
+    """A design with a scene built in.
+
+    Attributes:
+        design: it.
+        general: the design that shows the same scene, and any other.
+        omissions: what the one has not got of the other.
+    """
+
+    design: Design
+    general: Design
+    omissions: tuple[Omission, ...]
+
+
+def add_fix_option(parser: argparse.ArgumentParser) -> None:
+    """Add `--fix`."""
+    scopes = "; ".join(f"{name}: {meaning}" for name, meaning in SCOPES.items())
+    parser.add_argument("--fix", metavar="SCOPE", help=f"build the scene into the hardware; {scopes}")
+
+
+def design_of(path: Path, options: Mapping[str, Any], scope: str | None, console: Console, **defaults: Any) -> Design:
+    """The design for a scene, which is built into it where a scope is given; what that leaves out is shown.
+
+    Args:
+        path: the scene file.
+        options: of the configuration, as they are given.
+        scope: one of `SCOPES`, or None.
+        console: where to show it.
+        defaults: for the hardware where nothing is given; see `design_for`.
+
+    Raises:
+        UserError: as `design_for` and `fix`.
+    """
+    if scope is None:
+        return design_for(path, options, defaults)
+    fixing = fix(path, defaults | dict(options), scope)
+    show(fixing, console)
+    return fixing.design
+
+
+def configuration_of(
+    path: Path | None, options: Mapping[str, Any], scope: str | None, console: Console
+) -> Configuration:
+    """The hardware for any scene, or for the one that is built into it; otherwise as `design_of`.
+
+    Raises:
+        UserError: a scope without a scene, or a scene without a scope, which would decide nothing.
+    """
+    if scope is None and path is None:
+        return configure(**options)
+    if path is None:
+        raise UserError("fix: needs a scene to build in; name one with SCENE=path")
+    if scope is None:
+        raise UserError(f"scene: the hardware shows any; to build {path} in, say FIX={' or FIX='.join(SCOPES)}")
+    return design_of(path, options, scope, console).configuration
+
+
+def fix(path: Path, options: Mapping[str, Any], scope: str) -> Fixing:
+    """Build a scene into a design.
+
+    Args:
+        path: the scene file.
+        options: of the configuration, as they are given; not the number of rectangles, which is the scene's.
+        scope: one of `SCOPES`.
+
+    Raises:
+        UserError: as `design_for`; there is no such scope; or a number of rectangles was given.
+    """
+    if scope not in SCOPES:
+        raise UserError(f"fix: {' or '.join(SCOPES)}, not {scope}")
+    if "rectangles" in options:
+        raise UserError("rectangles: FIX builds in those of the scene; leave RECTANGLES out")
+    general = _general(path, options)
+    scene, reflections = general.scene, general.reflections
+    reasons = _reasons(general, scope)
+    # An engine has at least one rectangle, and tests primary rays against it.
+    kept = sorted(set(range(len(scene.rect))) - set.intersection(*map(set, reasons))) or [0]
+    primary, *reflected = (sum(1 << at for at, index in enumerate(kept) if index not in one) for one in reasons)
+    fixed = FixedScene(tuple(fixed_rectangle(scene.rect[index]) for index in kept), (primary or 1, *reflected))
+    if scope == "all":
+        background = int.from_bytes(bytes(scene.background), "big")
+        fixed = replace(fixed, camera=scene.camera.position, background=background)
+    given = {"rows": general.configuration.rows, **options, "reflections": reflections, "fixed": fixed}
+    design = Design(path, scene, configure(**given), reflections)
+    return Fixing(design, general, tuple(_omissions(design, general, reasons)))
+
+
+def _reasons(general: Design, scope: str) -> list[dict[int, str]]:
+    """For the primary ray and each reflection: why a rectangle is not tested, by its index."""
+    scene, reflections = general.scene, general.reflections
+    rectangles = Rectangles.of_scene(scene)
+    within = {index: f"lies within {label(scene, other)}" for index, other in covered(rectangles).items()}
+    reasons = [
+        within | dict.fromkeys(behind, "at x = 0, and no ray runs that way")
+        for behind in unreachable(rectangles, reflections)
+    ]
+    if scope == "all":
+        everything = dict.fromkeys(range(len(scene.rect)), "no ray of the picture meets it first")
+        for one, met in zip(reasons, seen(general.configuration, scene, reflections), strict=True):
+            one |= {index: reason for index, reason in everything.items() if index not in met | set(one)}
+    return reasons
+
+
+def fixed_rectangle(rectangle: Rectangle) -> FixedRectangle:
+    """A scene's rectangle with its corners put in order."""
+    axis = rectangle.axis
+    (u_low, u_high), (v_low, v_high) = (
+        sorted(pair) for other, pair in enumerate(zip(*rectangle.corners, strict=True)) if other != axis
+    )
+    colour = int.from_bytes(bytes(rectangle.colour), "big")
+    return FixedRectangle(axis, rectangle.corners[0][axis], u_low, u_high, v_low, v_high, colour)
+
+
+def _general(path: Path, options: Mapping[str, Any]) -> Design:
+    """The design for any scene: the default one, or one that is large enough."""
+    for count in (None, MOST_RECTANGLES):
+        room = {} if count is None else {"rectangles": count, "allow_underrun": True}
+        try:
+            return design_for(path, {**options, **room})
+        except UserError:
+            if count:
+                raise
+    raise AssertionError("the largest design either serves or says why not")
+
+
+def _omissions(design: Design, general: Design, reasons: Sequence[Mapping[int, str]]) -> Iterator[Omission]:
+    """In the order in which a picture is made: what is stored, what is compared, what it is multiplied with."""
+    scene, small, large = design.scene, design.configuration, general.configuration
+    words = 3 * large.rectangles
+    yield Omission(f"rectangle memory: {words} words, each three times", "rectangles are constants")
+    yield Omission("sorter of corners", "constants are in order")
+    if small.fixed.camera:
+        yield Omission("memory of camera and background", "they are constants")
+    yield from _rectangles(scene, reasons)
+    if spare := large.rectangles - len(scene.rect):
+        yield Omission(f"{spare} entries for rectangles", f"the scene has {len(scene.rect)}")
+    if large.reflections > small.reflections:
+        yield Omission("reflection", "the scene has none" if not small.reflections else "the scene has fewer")
+    if small.divider_bits != large.divider_bits or small.units != large.units:
+        yield Omission(*_work(small, large))
+    yield from _constant_fields(small)
+
+
+def _rectangles(scene: Scene, reasons: Sequence[Mapping[int, str]]) -> Iterator[Omission]:
+    passes = ("of primary rays", "of the reflection", "of the second reflection")
+    nowhere = set.intersection(*map(set, reasons))
+    for index in sorted(nowhere):
+        yield Omission(label(scene, index), reasons[0][index])
+    for name, one in zip(passes, reasons, strict=False):
+        for index in sorted(set(one) - nowhere):
+            yield Omission(f"tests {name} against {label(scene, index)}", one[index])
+
+
+def _work(small: Configuration, large: Configuration) -> tuple[str, str]:
+    fewer = f"{large.units - small.units} of {large.units} units"
+    reason = f"{small.units} meet the row budget with {small.group_cycles} cycles a group"
+    if small.divider_bits != large.divider_bits:
+        reason += f", at {small.divider_bits} quotient bits a cycle"
+    return fewer, reason
+
+
+def _constant_fields(config: Configuration) -> Iterator[Omission]:
+    """What the rectangles have in common, so that nothing looks it up or carries it."""
+    fixed = config.fixed
+    axes = set(fixed.column("axis"))
+    for axis in sorted({0, 1, 2} - axes):
+        yield Omission(f"rays against planes on {'xyz'[axis]}", "no rectangle is on that axis")
+    for name, edge in BOUNDS.items():
+        if set(fixed.column(name)) == {edge}:
+            yield Omission(f"comparison with {name}", "every rectangle reaches the world's edge there")
+    fields = ("position", *BOUNDS, "colour")
+    bits = {"colour": 24}
+    for name in fields:
+        same = bits.get(name, 9) - varying_bits(fixed.column(name)).bit_count()
+        if same:
+            yield Omission(f"{same} of {bits.get(name, 9)} bits of {name}", "the same in every rectangle")
+
+
+def show(fixing: Fixing, console: Console) -> None:
+    """Print what is left out, each with its reason."""
+    table = Table(title=f"{fixing.design.name}: left out of {fixing.general.configuration.name}", title_justify="left")
+    table.add_column("left out")
+    table.add_column("as")
+    for omission in fixing.omissions:
+        table.add_row(omission.what, omission.reason)
+    console.print(table)

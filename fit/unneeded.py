@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: MIT
+"""Which of a scene's rectangles no picture needs, and why."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from raycaster.configuration import Configuration
+from raycaster.golden import engines
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.scene import Scene
+
+
+def covered(rectangles: Rectangles) -> dict[int, int]:
+    """Rectangles that lie within an earlier one of the same plane, which of two at one depth is the one that is seen.
+
+    In every engine a ray meets both at the same point and depth, rounded or not.
+
+    Returns:
+        By the index of such a rectangle, that of the first which covers it.
+    """
+    found: dict[int, int] = {}
+    for index in np.flatnonzero(rectangles.visible):
+        axis, extent = rectangles.axes[index], list(OTHER_AXES[rectangles.axes[index]])
+        over = (
+            (rectangles.axes == axis)
+            & (rectangles.low[:, axis] == rectangles.low[index, axis])
+            & (rectangles.low[:, extent] <= rectangles.low[index, extent]).all(axis=1)
+            & (rectangles.high[:, extent] >= rectangles.high[index, extent]).all(axis=1)
+        )
+        over[index:] = False
+        if over.any():
+            found[int(index)] = int(over.argmax())
+    return found
+
+
+def unreachable(rectangles: Rectangles, reflections: int) -> list[set[int]]:
+    """Rectangles that no camera's ray can run to: at x = 0, where every ray starts from or beyond it.
+
+    A ray runs along +x until a mirror on x turns it round, and only one that is not at x = 0 itself can do that.
+
+    Returns:
+        For the primary ray and each reflection, their indices.
+    """
+    on_x = rectangles.visible & (rectangles.axes == 0)
+    at_0 = on_x & (rectangles.low[:, 0] == 0)
+    behind = set(np.flatnonzero(at_0).tolist())
+    turned = set() if (on_x & ~at_0).any() else behind
+    return [behind] + reflections * [turned]
+
+
+def seen(config: Configuration, scene: Scene, reflections: int) -> list[set[int]]:
+    """Rectangles that some ray of the picture meets first, by the golden model of the very engine.
+
+    Without the others every ray meets what it met before, as the nearest of fewer rectangles is the same one.
+
+    Args:
+        config: the engine, its fraction and rounding, and the screen; not the number of rectangles.
+        scene: all its rectangles are enabled.
+        reflections: those that are shown.
+
+    Returns:
+        For the primary ray and each reflection, their indices.
+    """
+    slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
+    traced = engines.trace(
+        config, Rectangles.of_scene(scene), scene.camera.position, scene.background, slopes, reflections
+    )
+    return [set(np.unique(winners).tolist()) - {-1} for winners in traced.winners]
+
+
+def label(scene: Scene, index: int) -> str:
+    """A rectangle's name, or its place in the file."""
+    return scene.rect[index].name or f"rect[{index}]"

@@ -1,0 +1,331 @@
+# SPDX-License-Identifier: MIT
+"""Scenes built into the hardware: what is left out, that nothing else is, and that no pixel changes."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT, SMALL_SCENE, Bench
+from rich.console import Console
+
+from raycaster.configuration import Configuration, configure
+from raycaster.design import design_for
+from raycaster.errors import UserError
+from raycaster.fit.fixing import SCOPES, configuration_of, design_of, fix, fixed_rectangle
+from raycaster.fit.unneeded import covered, seen, unreachable
+from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
+from raycaster.golden import engines
+from raycaster.golden.world import Rectangles
+from raycaster.registers import address_bits, register_map
+from raycaster.rtl.convert import write_verilog
+from raycaster.rtl.facet_rom import facet_rom
+from raycaster.rtl.interfaces import PipelinedRects, SequentialRects
+from raycaster.rtl.rect_rom import FIELDS, fixed_rects, rect_rom
+from raycaster.rtl.widths import AXIS_BITS, COLOUR_BITS, DISTANCE_BITS, bit, index_bits, signed, unsigned
+from raycaster.scene import Rectangle, Scene, load_scene
+from raycaster.verif.leaf import Leaf
+from raycaster.verif.seeds import repeat, seed
+from raycaster.verif.simulator import SimulationError
+
+ENGINES = ("seed", "exact", "beam")
+BOXES = ROOT / "scenes" / "boxes.toml"
+
+
+def scene_of(*corners, **values) -> Scene:
+    """A scene of rectangles in colours of their own, seen from the middle of the world's near side."""
+    rect = [{"corners": pair, "colour": f"#{number:06x}"} for number, pair in enumerate(corners, 1)]
+    return Scene(**{"camera": {"position": (0, 255, 100)}, "rect": rect, **values})
+
+
+WALL = ((300, 0, 0), (300, 511, 511))
+WINDOW = ((300, 100, 100), (300, 200, 200))
+FLOOR = ((0, 0, 0), (511, 511, 0))
+NEAR = ((0, 0, 0), (0, 511, 511))
+
+
+# What is not needed ---------------------------------------------------------------------------------------------------
+
+
+def test_the_earlier_of_two_in_a_plane_covers_the_later():
+    assert covered(Rectangles.of_scene(scene_of(WALL, FLOOR, WINDOW))) == {2: 0}
+    assert covered(Rectangles.of_scene(scene_of(WINDOW, FLOOR, WALL))) == {}
+    assert covered(Rectangles.of_scene(scene_of(FLOOR, FLOOR, FLOOR))) == {1: 0, 2: 0}
+    beside = ((300, 100, 100), (300, 201, 511))
+    assert covered(Rectangles.of_scene(scene_of(((300, 0, 0), (300, 200, 511)), beside))) == {}
+
+
+def test_nothing_runs_to_x_0_that_met_no_other_mirror_on_x():
+    assert unreachable(Rectangles.of_scene(scene_of(NEAR, FLOOR)), 1) == [{0}, {0}]
+    assert unreachable(Rectangles.of_scene(scene_of(NEAR, WALL)), 2) == [{0}, set(), set()]
+    assert unreachable(Rectangles.of_scene(scene_of(WALL, FLOOR)), 1) == [set(), set()]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_what_is_seen_is_enough(engine):
+    """Without the others the picture is the same; without any of these it is not."""
+    config = configure(engine=engine, screen="tiny", allow_underrun=True)
+    scene = load_scene(BOXES)
+    met = set().union(*seen(config, scene, 1))
+    picture = engines.render(config, scene, 1)
+
+    def without(indices) -> np.ndarray:
+        kept = tuple(rectangle for index, rectangle in enumerate(scene.rect) if index not in indices)
+        return engines.render(config, scene.model_copy(update={"rect": kept}), 1)
+
+    assert 3 <= len(met) < len(scene.rect)
+    assert np.array_equal(without(set(range(len(scene.rect))) - met), picture)
+    assert not any(np.array_equal(without({index}), picture) for index in met)
+
+
+def test_random_cameras_need_nothing_that_was_left_out():
+    """For `rects`: random scenes with rectangles in one plane, and some at x = 0, from random cameras."""
+    random = np.random.default_rng(seed())
+    left_out = 0
+    for _ in range(30):
+        corners = random.choice([0, 60, 200, 400, 511], size=(8, 2, 3))
+        flat = random.choice([0, 0, 1, 2], size=8)
+        corners[np.arange(8), 1, flat] = corners[np.arange(8), 0, flat]
+        position = random.choice([0, 100, 511], size=3).tolist()
+        scene = scene_of(*corners.tolist(), camera={"position": position})
+        for engine, reflections in itertools.product(ENGINES, (0, 1, 2)):
+            config = configure(engine=engine, screen="tiny", reflections=reflections, allow_underrun=True)
+            table = Rectangles.of_scene(scene)
+            within, behind = set(covered(table)), unreachable(table, reflections)
+            met = seen(config, scene, reflections)
+            for one, never in zip(met, behind, strict=True):
+                assert not one & (within | never), repeat()
+                left_out += len(within | never)
+    assert left_out > 300
+
+
+# What is built --------------------------------------------------------------------------------------------------------
+
+
+def test_fixed_rectangles_are_in_order():
+    rectangle = Rectangle(corners=((9, 300, 200), (500, 300, 7)), colour=(1, 2, 3))
+    assert fixed_rectangle(rectangle) == FixedRectangle(1, 300, 9, 500, 7, 200, 0x010203)
+
+
+def test_varying_bits():
+    assert varying_bits((0b1100,)) == 0
+    assert varying_bits((0b1100, 0b1010, 0b1000)) == 0b0110
+
+
+def test_units_are_as_few_as_do():
+    general, fixed = design_for(BOXES, {}), fix(BOXES, {}, "all").design
+    assert (general.configuration.units, general.configuration.divider_bits) == (32, 1)
+    config = fixed.configuration
+    assert config.group_cycles <= config.group_budget
+    assert (config.units, config.divider_bits) == (10, 3)
+    # What is given is taken.
+    assert fix(BOXES, {"units": "40"}, "all").design.configuration.units == 40
+    assert fix(BOXES, {"divider_bits": "1"}, "rects").design.configuration.divider_bits == 1
+
+
+def test_passes_count_for_the_budget():
+    rectangle = fixed_rectangle(load_scene(BOXES).rect[0])
+    fixed = FixedScene((rectangle,) * 4, (0b0011, 0b1000))
+    config = configure(fixed=fixed, units=32, divider_bits=1)
+    assert config.group_cycles == (2 * 9 + 6) + (9 + 6) + 4
+    with pytest.raises(UserError, match="for 1 reflections, not 2"):
+        configure(fixed=fixed, reflections=2)
+
+
+def test_names_differ_where_scenes_do(tmp_path):
+    names = {fix(BOXES, {}, scope).design.configuration.name for scope in SCOPES}
+    moved = tmp_path / "boxes.toml"
+    moved.write_text(BOXES.read_text().replace("[5, 251, 113]", "[6, 251, 113]"))
+    names |= {fix(moved, {}, scope).design.configuration.name for scope in SCOPES}
+    assert len(names) == 3  # the camera is no part of what `rects` fixes
+
+
+def test_registers_of_what_is_fixed_are_gone():
+    assert not any(name.startswith("rectangle") for name in register_map(0))
+    assert address_bits(0) == 4
+
+
+def test_omissions_say_why():
+    omissions = dict(dataclasses.astuple(one) for one in fix(BOXES, {"screen": "tiny"}, "all").omissions)
+    assert omissions["rectangle memory: 36 words, each three times"] == "rectangles are constants"
+    assert omissions["ceiling"] == "no ray of the picture meets it first"
+    matte = dict(dataclasses.astuple(one) for one in fix(ROOT / "scenes" / "matte.toml", {}, "rects").omissions)
+    assert "memory of camera and background" not in matte
+    floors = dict(dataclasses.astuple(one) for one in fix(ROOT / "scenes" / "floor.toml", {}, "all").omissions)
+    assert "tests of the reflection against green slab, side" in floors
+
+
+@pytest.mark.parametrize(
+    ("path", "options", "scope", "complaint"),
+    [
+        (BOXES, {}, "some", "fix: rects or all, not some"),
+        (BOXES, {"rectangles": "12"}, "all", "leave RECTANGLES out"),
+        (None, {}, "all", "needs a scene"),
+        (BOXES, {}, None, "say FIX=rects or FIX=all"),
+        (Path("nowhere.toml"), {}, "all", "nowhere.toml"),
+    ],
+)
+def test_bad_input_is_one_line(path, options, scope, complaint):
+    with pytest.raises(UserError, match=complaint) as caught:
+        configuration_of(path, options, scope, Console(quiet=True))
+    assert "\n" not in str(caught.value)
+
+
+def test_without_a_scope_a_design_is_general():
+    assert design_of(BOXES, {"units": "64"}, None, Console(quiet=True)) == design_for(BOXES, {"units": "64"})
+
+
+def test_a_scene_of_one_rectangle_that_nobody_sees(tmp_path):
+    """An engine has at least one rectangle."""
+    path = tmp_path / "nothing.toml"
+    path.write_text('[camera]\nposition = [9, 9, 9]\n[[rect]]\ncorners = [[0, 0, 0], [0, 9, 9]]\ncolour = "#ffffff"\n')
+    for scope, engine in itertools.product(SCOPES, ENGINES):
+        config = fix(path, {"engine": engine, "screen": "tiny"}, scope).design.configuration
+        assert config.rectangles == 1
+
+
+# Leaves ---------------------------------------------------------------------------------------------------------------
+
+
+def fixed_config(count: int, engine: str, camera: bool, alike: bool = False) -> Configuration:
+    """A design of random fixed rectangles, of which the axis is the same for all where they are alike."""
+    random = np.random.default_rng(seed())
+    rectangles = tuple(
+        FixedRectangle(1 if alike else int(axis), *map(int, random.integers(512, size=5)), int(colour))
+        for axis, colour in zip(random.integers(3, size=count), random.integers(1 << 24, size=count), strict=True)
+    )
+    eye = tuple(random.integers(512, size=3).tolist()) if camera else None
+    fixed = FixedScene(rectangles, (2 * (1 << count) - 1 >> 1,) * 2, eye, 0 if camera else None)
+    return configure(engine=engine, fixed=fixed, allow_underrun=True)
+
+
+@pytest.mark.parametrize("pipelined", [False, True])
+@pytest.mark.parametrize(("count", "alike"), [(2, False), (7, False), (8, False), (12, True), (32, False)])
+def test_rect_rom(count, alike, pipelined, tmp_path):
+    config = fixed_config(count, "beam" if pipelined else "seed", False, alike)
+    rects = (PipelinedRects if pipelined else SequentialRects)(config)
+    word, table = fixed_rects(rects, config)
+    assert int(rects.usable.val) == (1 << count) - 1
+    leaf = Leaf(
+        rect_rom,
+        lambda: {
+            "clk": bit(), "index": unsigned(index_bits(config)), "fetch": bit(), "word": unsigned(len(word)),
+            "table": table, "pipelined": pipelined, "config": config,
+        },
+        tmp_path,
+    )  # fmt: skip
+    random = np.random.default_rng(seed())
+    stimulus = [{"index": int(random.integers(count)), "fetch": int(random.integers(2))} for _ in range(300)]
+    outputs = leaf.run_both(stimulus, settled=8)
+    held, late = None, None
+    for cycle, (inputs, output) in enumerate(zip(stimulus, outputs, strict=True)):
+        shown = late if pipelined else held
+        if cycle >= 8 and shown is not None:
+            low = 0
+            for name in FIELDS:
+                value, column = getattr(rects.rect, name), config.fixed.column(name)
+                # A part of the word, or what never changes.
+                varies = len(set(column)) > 1
+                found = output["word"] >> low if varies else int(value.val)
+                low += varies * len(value)
+                assert found % (1 << len(value)) == column[shown], (cycle, name, repeat())
+        late = held
+        if inputs["fetch"]:
+            held = inputs["index"]
+    assert held is not None
+    assert low == len(word)
+    assert len(word) < 71 or not alike
+
+
+@pytest.mark.parametrize("camera", [False, True])
+@pytest.mark.parametrize("count", [1, 5, 16])
+def test_facet_rom(count, camera, tmp_path):
+    config = fixed_config(count, "beam", camera)
+    leaf = Leaf(
+        facet_rom,
+        lambda: {
+            "clk": bit(), "index": unsigned(index_bits(config)), "axis": unsigned(AXIS_BITS),
+            "distance": signed(DISTANCE_BITS) if camera else None, "colour": unsigned(COLOUR_BITS), "config": config,
+        },
+        tmp_path,
+    )  # fmt: skip
+    random = np.random.default_rng(seed())
+    stimulus = [{"index": int(random.integers(count))} for _ in range(200)]
+    outputs = leaf.run_both(stimulus, settled=1)
+    for inputs, output in zip(stimulus, outputs[1:], strict=False):
+        rectangle = config.fixed.rectangles[inputs["index"]]
+        expected = {"axis": rectangle.axis, "colour": rectangle.colour}
+        if camera:
+            way = rectangle.position - config.fixed.camera[rectangle.axis]
+            expected["distance"] = way % (1 << DISTANCE_BITS)
+        assert output == expected, repeat()
+
+
+# Whole designs --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scope", SCOPES)
+@pytest.mark.parametrize("engine", ENGINES)
+def test_no_pixel_changes(bench: Bench, engine, scope):
+    design = fix(BOXES, {"engine": engine, "screen": "tiny"}, scope).design
+    result = json.loads((bench("frame_bench", design.configuration, "icarus", BOXES) / "result.json").read_text())
+    assert result["wrong_vs_golden"] == 0
+    assert result["worst_group_cycles"] <= design.configuration.group_cycles
+
+
+@pytest.mark.parametrize(
+    ("engine", "options"),
+    [("seed", {"fraction_bits": 2, "rounding": "nearest"}), ("seed", {}), ("exact", {}), ("beam", {})],
+)
+def test_two_reflections(bench: Bench, engine, options):
+    scene = ROOT / "scenes" / "facing_mirrors.toml"
+    design = fix(scene, {"engine": engine, "screen": "tiny", **options}, "all").design
+    assert design.reflections == 2
+    bench("frame_bench", design.configuration, "icarus", scene)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_any_camera_may_look_at_fixed_rectangles(bench: Bench, engine):
+    """With the rectangles in a plane with others and at x = 0 that `rects` leaves out."""
+    scene = ROOT / "scenes" / "mirror_room.toml"
+    design = fix(scene, {"engine": engine, "screen": "tiny"}, "rects").design
+    bench("camera_bench", design.configuration, "verilator", scene, seeds=tuple(range(24)))
+
+
+def test_nothing_in_sight(bench: Bench, tmp_path):
+    path = tmp_path / "nothing.toml"
+    path.write_text(
+        'background = "#123456"\n[camera]\nposition = [9, 9, 9]\n'
+        '[[rect]]\ncorners = [[0, 0, 0], [0, 9, 9]]\ncolour = "#ffffff"\n'
+    )
+    for engine in ENGINES:
+        design = fix(path, {"engine": engine, "screen": "tiny"}, "all").design
+        bench("frame_bench", design.configuration, "icarus", path)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_rectangle_wrongly_left_out_is_caught(bench: Bench, engine):
+    """Of one pass only, which is the least that can go wrong."""
+    config = fix(SMALL_SCENE, {"engine": engine, "screen": "tiny"}, "all").design.configuration
+    primary, reflected = config.fixed.passes
+    fewer = dataclasses.replace(config.fixed, passes=(primary, reflected & reflected - 1))
+    assert fewer != config.fixed
+    broken = dataclasses.replace(config, fixed=fewer)
+    with pytest.raises(SimulationError, match="pixels are wrong"):
+        bench("frame_bench", broken, "icarus", SMALL_SCENE)
+
+
+@pytest.mark.parametrize("scope", SCOPES)
+@pytest.mark.parametrize("engine", ENGINES)
+def test_what_is_fixed_has_no_memory(engine, scope, tmp_path):
+    """And equal scenes give equal bytes."""
+    config = fix(BOXES, {"engine": engine}, scope).design.configuration
+    files = {path.name: path.read_text() for path in write_verilog(config, tmp_path / "one")}
+    assert not {"rect_mem.v", "rect_slot.v", "rect_sorter.v"} & set(files)
+    assert ("camera_mem.v" in files) == (scope == "rects")
+    again = {path.name: path.read_text() for path in write_verilog(config, tmp_path / "two")}
+    assert files == again
