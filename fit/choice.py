@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: MIT
+"""What `make fit` chose for a scene, kept for the commands that build it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from raycaster.errors import UserError
+
+BUILD = Path("build/fit")
+"""Where it is kept, a file for each scene."""
+
+
+def _digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def keep_choice(path: Path, options: Mapping[str, Any], scope: str, output: Path = BUILD) -> Path:
+    """Write what was chosen for a scene.
+
+    Args:
+        path: the scene file.
+        options: of the configuration.
+        scope: what of the scene is built in.
+        output: where it goes.
+
+    Returns:
+        The file, which appears whole.
+    """
+    output.mkdir(parents=True, exist_ok=True)
+    target = output / f"{path.stem}.json"
+    partial = target.with_suffix(".partial")
+    choice = {"scene": str(path), "sha256": _digest(path), "scope": scope, "options": dict(options)}
+    partial.write_text(json.dumps(choice, indent=2) + "\n")
+    partial.rename(target)
+    return target
+
+
+def kept_choice(path: Path, output: Path = BUILD) -> tuple[dict[str, Any], str]:
+    """The options and the scope that were chosen for a scene.
+
+    Raises:
+        UserError: nothing was chosen for this scene, or it has changed since.
+    """
+    kept = output / f"{path.stem}.json"
+    if not kept.exists():
+        raise UserError(f"fit: nothing was chosen for {path} yet; run make fit SCENE={path}")
+    choice = json.loads(kept.read_text())
+    if not path.exists() or choice["sha256"] != _digest(path):
+        raise UserError(f"fit: {path} is not the scene that {kept} was chosen for; run make fit SCENE={path}")
+    return choice["options"], choice["scope"]
