@@ -4,10 +4,17 @@
 from __future__ import annotations
 
 from raycaster.configuration import Configuration, Screen, Span, configure
-from raycaster.registers import address_bits
+from raycaster.fit.fixing import fixed_rectangle
+from raycaster.fixed import FixedScene
+from raycaster.program import scene_words
+from raycaster.registers import address_bits, register_map
 from raycaster.rtl.avalon_interface import engine_word, size_word
+from raycaster.rtl.interfaces import PipelinedRects, Rect
+from raycaster.rtl.rect_rom import FIELDS, fixed_rects
+from raycaster.rtl.renderers import RECTS
 from raycaster.rtl.widths import bits_for, index_bits, offset_bits, pixel_bits, position_bits, row_bits, unit_bits
-from raycaster.verif.formal.prover import FoldWidths, Property, TesterWidths
+from raycaster.scene import Camera, Rectangle, Scene
+from raycaster.verif.formal.prover import FixedTable, FoldWidths, Property, TesterWidths
 
 TOY_SCREEN = Screen(3, 2, 1, 3, Span(9, 1, 2, 1, active_high=True), Span(6, 1, 1, 3, active_high=True))
 """Tripled pixels, and a frame short enough to be walked through whole."""
@@ -199,6 +206,60 @@ def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: in
     )
 
 
+FIXED_SCENE = Scene(
+    camera=Camera(position=(20, 250, 100)),
+    rect=(
+        Rectangle(corners=((0, 100, 0), (511, 420, 0)), colour=(200, 200, 180)),
+        Rectangle(corners=((300, 400, 180), (300, 60, 0)), colour=(80, 160, 255)),
+        Rectangle(corners=((200, 270, 20), (130, 270, 140)), colour=(255, 64, 32)),
+    ),
+)
+"""A floor, a wall and a post; corners in any order."""
+
+
+def _fixed(engine: str, alike: bool, small: bool) -> Property:
+    """With rectangles that agree in nothing, or in most."""
+    rect = (FIXED_SCENE.rect[1],) * 3 if alike else FIXED_SCENE.rect
+    if alike:
+        rect = (*rect[:2], rect[2].model_copy(update={"colour": (1, 2, 3)}))
+    general = configure(engine=engine, rectangles=len(rect), allow_underrun=True)
+    every = (1 << len(rect)) - 1
+    fixed = configure(
+        engine=engine, fixed=FixedScene(tuple(map(fixed_rectangle, rect)), (every, every)), allow_underrun=True
+    )
+    word, _ = fixed_rects(RECTS[engine](fixed), fixed)
+    words = dict(scene_words(FIXED_SCENE.model_copy(update={"rect": rect}), len(rect)))
+    registers = register_map(len(rect))
+    parameters = {
+        f"{name.upper()}_{index}": words[registers[f"rectangle[{index}].{name}"].address]
+        for index in range(len(rect))
+        for name in ("corner_0", "corner_1", "surface")
+    }
+    low = 0
+    for name in FIELDS:
+        column = fixed.fixed.column(name)
+        varies = len(set(column)) > 1
+        parameters |= {f"{name.upper()}_AT": low if varies else 99, f"{name.upper()}_IS": column[0]}
+        low += varies * len(getattr(Rect(), name))
+    return Property(
+        "fixed-rects",
+        "a fixed scene's table gives every rectangle as the memory does that holds the scene's words",
+        FixedTable(general, fixed),
+        f"{engine}, {'alike' if alike else 'different'}",
+        ("rect_mem", "rect_slot", "rect_sorter", "scene_word", "rect_rom"),
+        {
+            "INDEX_BITS": index_bits(fixed),
+            "ADDRESS_BITS": address_bits(general.table),
+            "WORD_BITS": len(word),
+            "PIPELINED": int(RECTS[engine] is PipelinedRects),
+            **parameters,
+        },
+        induction=3,
+        reach=6,
+        small=small,
+    )
+
+
 def _label(config: Configuration) -> str:
     return config.name.removeprefix(f"{config.engine}-")
 
@@ -248,6 +309,10 @@ PROPERTIES: list[Property] = [
     _fold(2, 1, 1, 1, small=True),
     _fold(2, 1, 1, 2, small=False),
     _fold(2, 2, 2, 1, small=False),
+    _fixed("seed", False, small=True),
+    _fixed("seed", True, small=False),
+    _fixed("beam", False, small=True),
+    _fixed("beam", True, small=False),
     *(
         _divider(_tiny(rectangles=2, divider_bits=bits, rounding=rounding), part, small=False)
         for bits, rounding in ((3, "truncate"), (3, "nearest"), (2, "truncate"), (1, "truncate"))

@@ -15,6 +15,7 @@ from pathlib import Path
 
 from raycaster.configuration import Configuration, Screen, configure
 from raycaster.errors import UserError
+from raycaster.registers import address_bits
 from raycaster.rtl.convert import write_verilog
 from raycaster.rtl.fold_tester import fold_tester
 from raycaster.rtl.hierarchy import convert_hierarchy, quick_elaboration
@@ -24,17 +25,23 @@ from raycaster.rtl.interfaces import (
     Facet,
     Fold,
     Mirror,
+    PipelinedRects,
     RaySteps,
     Rect,
     Reflector,
+    SceneBus,
+    SequentialRects,
     Signs,
     Slope,
     Walk,
 )
 from raycaster.rtl.ray_fold import ray_fold
+from raycaster.rtl.rect_mem import rect_mem
+from raycaster.rtl.rect_rom import fixed_rects, rect_rom
 from raycaster.rtl.rect_tester import rect_tester
+from raycaster.rtl.renderers import RECTS
 from raycaster.rtl.video_generator import video_generator
-from raycaster.rtl.widths import bit, signed, unsigned
+from raycaster.rtl.widths import WORD_BITS, bit, signed, unsigned
 from raycaster.tools import TIMEOUT, find_program, run_program, run_yosys
 from raycaster.verif.leaf import reset_signal
 
@@ -86,7 +93,20 @@ class FoldWidths:
         return (most * ((1 << self.slope) - 1)).bit_length() + 1
 
 
-Design = Configuration | Screen | TesterWidths | FoldWidths
+@dataclass(frozen=True)
+class FixedTable:
+    """The memory of a general design, and the table that takes its place where the scene is fixed."""
+
+    general: Configuration
+    fixed: Configuration
+
+    @property
+    def view(self) -> type[SequentialRects]:
+        """How the engine reads either."""
+        return RECTS[self.general.engine]
+
+
+Design = Configuration | Screen | TesterWidths | FoldWidths | FixedTable
 
 
 @dataclass(frozen=True)
@@ -96,8 +116,8 @@ class Property:
     Attributes:
         name: of the claim, and of its wrapper `<name>.v` with dashes for underscores.
         claim: in a few words.
-        design: the configuration whose Verilog is read; a screen, for the video generator alone; or widths, for a
-            rectangle test alone.
+        design: the configuration whose Verilog is read; a screen, for the video generator alone; widths, for a
+            rectangle test alone; or the two places that rectangles may come from.
         label: the design in a few characters.
         modules: the generated modules that are part of the proof.
         cut: of these, those whose outputs become arbitrary.
@@ -214,6 +234,7 @@ def _verilog(design: Design) -> dict[str, str]:
             directory.mkdir()
             converters = {
                 TesterWidths: _convert_rect_tester, FoldWidths: _convert_fold, Screen: _convert_video_generator,
+                FixedTable: _convert_tables,
             }  # fmt: skip
             converters[type(design)](design, directory)
         return {path.name: path.read_text() for path in directory.glob("*.v")}
@@ -264,6 +285,21 @@ def _convert_fold(widths: FoldWidths, directory: Path) -> None:
         )
     for top in (folder, tester):
         convert_hierarchy(top, directory, "// {module}")
+
+
+def _convert_tables(tables: FixedTable, directory: Path) -> None:
+    rects, config = tables.view(tables.fixed), tables.fixed
+    word, table = fixed_rects(rects, config)
+    pipelined = isinstance(rects, PipelinedRects)
+    with quick_elaboration():
+        rom = rect_rom(bit(), rects.index, rects.fetch, word, table, pipelined, config)
+    convert_hierarchy(rom, directory, "// {module}")
+    bus = SceneBus(address_bits(tables.general.table))
+    with quick_elaboration():
+        memory = rect_mem(
+            bit(), reset_signal(), bus, unsigned(WORD_BITS), bit(), tables.view(tables.general), tables.general
+        )
+    convert_hierarchy(memory, directory, "// {module}")
 
 
 def _make_model(proof: Property, directory: Path) -> None:

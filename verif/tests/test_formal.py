@@ -28,6 +28,7 @@ SECTIONS = chosen("line-sections", "tiny48-u2-r2-m1-f0t-d3-c8")
 COUNTERS = chosen("render-counters", "vga240-u16-r4-m1-f0t-d1-c8")
 TESTER = chosen("tester-exact", "2 bits, 1 mirrors")
 FOLD = chosen("fold-exact", "2 and 1 bits, 1 mirrors")
+TABLE = chosen("fixed-rects", "seed, different")
 DIVIDER = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d3-c8 digits")
 
 FAULTS = {
@@ -77,12 +78,16 @@ FAULTS = {
     "mirror-again": (FOLD, "fold_tester", "facet_distance > fold_distance", "facet_distance >= fold_distance"),
     "one-too-few": (FOLD, "ray_fold", "sum_xz_1 = x_by_z - not_z_by_x", "sum_xz_1 = x_by_z + z_by_x"),
     "bounds-swapped": (FOLD, "fold_tester", "(under_low_v || at_low_v) && (over_high_v || at_high_v)", "1'b0"),
+    "bounds-unsorted": (TABLE, "rect_sorter", "if (u_0 <= u_1) begin", "if (1'b1) begin"),
+    "not-held": (TABLE, "rect_rom", "if (fetch) begin", "if (1'b1) begin"),
     "overflow-missed": (DIVIDER, "divider", "overflow <= too_large;", "overflow <= too_large && (quotient != 0);"),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize(
-    "proof", [TIMING, AGENT, ORDER, SECTIONS, COUNTERS, TESTER, FOLD], ids=lambda proof: f"{proof.name}-{proof.label}"
+    "proof",
+    [TIMING, AGENT, ORDER, SECTIONS, COUNTERS, TESTER, FOLD, TABLE],
+    ids=lambda proof: f"{proof.name}-{proof.label}",
 )
 def test_holds(proof, output):
     """What the faults below are planted in is proved without them."""
