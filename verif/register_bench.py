@@ -45,6 +45,7 @@ async def says_what_it_is(bench: HierarchyObject) -> None:
             "reflections": configuration.reflections,
             "scale": configuration.scale,
             "colour_bits": configuration.colour_bits,
+            "fixed": 0,
         },
         "size": {
             "units": configuration.units,

@@ -301,6 +301,12 @@ def test_any_camera_may_look_at_fixed_rectangles(bench: Bench, engine):
     bench("camera_bench", design.configuration, "verilator", scene, seeds=tuple(range(24)))
 
 
+@pytest.mark.parametrize("scope", SCOPES)
+def test_what_is_fixed_ignores_writes(bench: Bench, scope):
+    design = fix(SMALL_SCENE, {"engine": "exact", "screen": "tiny"}, scope).design
+    bench("fixed_bench", design.configuration, "icarus", SMALL_SCENE)
+
+
 def test_nothing_in_sight(bench: Bench, tmp_path):
     path = tmp_path / "nothing.toml"
     path.write_text(
