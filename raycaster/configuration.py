@@ -32,8 +32,8 @@ RESULT_LATENCY = {"seed": 6, "exact": 4}
 latched, product, divider loaded, hit point, depth compared, ray stored (see `rtl/ray_control.py`). Exact: two more
 stages of the test after the first, which the slot is, depth compared, ray stored (see `rtl/rect_tester.py`)."""
 
-UNIT_CELLS = {1: 559, 2: 621, 3: 690}
-"""LUT4 of an ECP5 that a unit of the seed engine takes, by the quotient bits a cycle; see `raycaster.fpga.area`."""
+UNIT_CELLS = {1: 559, 2: 607, 3: 647}
+"""LUT4 of an ECP5 that a unit of the seed engine takes, by quotient bits a cycle; from `make area DIVIDER_BITS=`."""
 
 GROUP_OVERHEAD = 4
 """Cycles a group pays once: the write to the line buffer with the reset of two cycles, idling, ray generation."""

@@ -19,9 +19,9 @@ from raycaster.rtl.convert import write_verilog
 YOSYS = "0.70.0.0.post1259"
 SMALL = configure(screen="tiny", units=2, rectangles=2, divider_bits=1, allow_underrun=True)
 AREAS = {
-    "ecp5": Area(tables=2438, registers=1808, elements=2438, multipliers=4, memories=0),
-    "cycloneive": Area(tables=2848, registers=1742, elements=3280, multipliers=4, memories=2),
-    "cyclonev": Area(tables=1920, registers=1783, elements=1020, multipliers=4, memories=2),
+    "ecp5": Area(tables=2561, registers=1808, elements=2561, multipliers=4, memories=0),
+    "cycloneive": Area(tables=2861, registers=1742, elements=3293, multipliers=4, memories=2),
+    "cyclonev": Area(tables=1929, registers=1783, elements=1017, multipliers=4, memories=2),
 }
 
 families = pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES)

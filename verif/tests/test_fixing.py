@@ -24,6 +24,7 @@ from raycaster.fit.choice import keep_choice, kept_choice
 from raycaster.fit.fixing import FIT, SCOPES, configuration_of, design_of, fix, fixed_rectangle
 from raycaster.fit.unneeded import covered, seen, unreachable
 from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
+from raycaster.fpga.area import FAMILIES, measure
 from raycaster.golden import engines
 from raycaster.golden.world import Rectangles
 from raycaster.registers import address_bits, register_map
@@ -340,6 +341,17 @@ def test_what_is_fixed_has_no_memory(engine, scope, tmp_path):
     assert ("camera_mem.v" in files) == (scope == "rects")
     again = {path.name: path.read_text() for path in write_verilog(config, tmp_path / "two")}
     assert files == again
+
+
+def test_two_boxes_cost_a_quarter(tmp_path):
+    """Of the cells of the default design, by far not as much of its registers."""
+    scene = ROOT / "examples" / "two_boxes.toml"
+    family = FAMILIES["ecp5"]
+    general = measure(configure(engine="exact"), family, tmp_path / "general")
+    fixed = measure(fix(scene, {"engine": "exact"}, "all").design.configuration, family, tmp_path / "fixed")
+    assert fixed.tables <= general.tables / 4
+    assert fixed.registers <= general.registers / 4
+    assert fixed.multipliers <= general.multipliers / 2
 
 
 # The smallest ---------------------------------------------------------------------------------------------------------
