@@ -49,7 +49,11 @@ def kept_choice(path: Path, output: Path = BUILD) -> tuple[dict[str, Any], str]:
     kept = output / f"{path.stem}.json"
     if not kept.exists():
         raise UserError(f"fit: nothing was chosen for {path} yet; run make fit SCENE={path}")
-    choice = json.loads(kept.read_text())
-    if not path.exists() or choice["sha256"] != _digest(path):
+    try:
+        choice = json.loads(kept.read_text())
+        digest, options, scope = choice["sha256"], choice["options"], choice["scope"]
+    except (ValueError, KeyError, TypeError):
+        raise UserError(f"fit: {kept} is not what make fit wrote; run make fit SCENE={path}") from None
+    if not path.exists() or digest != _digest(path):
         raise UserError(f"fit: {path} is not the scene that {kept} was chosen for; run make fit SCENE={path}")
-    return choice["options"], choice["scope"]
+    return options, scope

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -167,14 +168,11 @@ def fixed_rectangle(rectangle: Rectangle) -> FixedRectangle:
 
 def _general(path: Path, options: Mapping[str, Any]) -> Design:
     """The design for any scene: the default one, or one that is large enough."""
-    for count in (None, MOST_RECTANGLES):
-        room = {} if count is None else {"rectangles": count, "allow_underrun": True}
-        try:
+    underrun = {"allow_underrun": True}
+    for room in ({}, underrun):
+        with suppress(UserError):
             return design_for(path, {**options, **room})
-        except UserError:
-            if count:
-                raise
-    raise AssertionError("the largest design either serves or says why not")
+    return design_for(path, {**options, **underrun, "rectangles": MOST_RECTANGLES})
 
 
 def _omissions(design: Design, general: Design, reasons: Sequence[Mapping[int, str]]) -> Iterator[Omission]:
@@ -187,7 +185,7 @@ def _omissions(design: Design, general: Design, reasons: Sequence[Mapping[int, s
         yield Omission("memory of camera and background", "they are constants")
     yield from _rectangles(scene, reasons)
     if spare := large.rectangles - len(scene.rect):
-        yield Omission(f"{spare} entries for rectangles", f"the scene has {len(scene.rect)}")
+        yield Omission(f"{spare} of {large.rectangles} entries for rectangles", f"the scene has {len(scene.rect)}")
     if large.reflections > small.reflections:
         yield Omission("reflection", "the scene has none" if not small.reflections else "the scene has fewer")
     if small.divider_bits != large.divider_bits or small.units != large.units:

@@ -316,18 +316,9 @@ def beam_caster(
         clk, found_0, found_1, found_2, color_0, color_1, color_2, background, reflections, red, green, blue, config
     )
     common = (
-        setup,
-        memories,
-        follow_columns,
-        walkers,
-        rays,
-        testers,
-        contests,
-        delays,
-        look_up_hits,
-        color_look_ups,
+        setup, memories, follow_columns, walkers, rays, testers, contests, delays, look_up_hits, color_look_ups,
         blender,
-    )
+    )  # fmt: skip
     if passes == 1:
         return common
 

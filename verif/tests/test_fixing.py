@@ -131,6 +131,9 @@ def test_units_are_as_few_as_do():
     # What is given is taken.
     assert fix(BOXES, {"units": "40"}, "all").design.configuration.units == 40
     assert fix(BOXES, {"divider_bits": "1"}, "rects").design.configuration.divider_bits == 1
+    # Too few for any scene may be enough for this one; what is left out is still of as many rectangles.
+    fewer = fix(ROOT / "scenes" / "corners.toml", {"units": "20", "divider_bits": "1"}, "all")
+    assert (fewer.design.configuration.units, fewer.general.configuration.rectangles) == (20, 12)
 
 
 def test_passes_count_for_the_budget():
@@ -396,6 +399,9 @@ def test_a_choice_for_another_scene_is_refused(tmp_path, monkeypatch):
     assert design == fix(scene, {"engine": "exact", "screen": "tiny"}, "rects").design
     with pytest.raises(UserError, match="leave UNITS out"):
         design_of(scene, {"units": "4"}, FIT, Console(quiet=True))
+    (tmp_path / "build" / "fit" / "other.json").write_text("{")
+    with pytest.raises(UserError, match="is not what make fit wrote"):
+        design_of(tmp_path / "other.toml", {}, FIT, Console(quiet=True))
     scene.write_text(SMALL_SCENE.read_text().replace("20, 250", "21, 250"))
     with pytest.raises(UserError, match="is not the scene that"):
         design_of(scene, {}, FIT, Console(quiet=True))
