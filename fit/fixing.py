@@ -125,7 +125,7 @@ def fix(path: Path, options: Mapping[str, Any], scope: str) -> Fixing:
         raise UserError(f"fix: {' or '.join(SCOPES)}, not {scope}")
     if "rectangles" in options:
         raise UserError("rectangles: FIX builds in those of the scene; leave RECTANGLES out")
-    general = _general(path, options)
+    general = general_design(path, options)
     scene, reflections = general.scene, general.reflections
     reasons = _reasons(general, scope)
     # An engine has at least one rectangle, and tests primary rays against it.
@@ -166,8 +166,12 @@ def fixed_rectangle(rectangle: Rectangle) -> FixedRectangle:
     return FixedRectangle(axis, rectangle.corners[0][axis], u_low, u_high, v_low, v_high, colour)
 
 
-def _general(path: Path, options: Mapping[str, Any]) -> Design:
-    """The design for any scene: the default one, or one that is large enough."""
+def general_design(path: Path, options: Mapping[str, Any]) -> Design:
+    """The design that shows a scene, and any other: the default one, or one that is large enough.
+
+    Raises:
+        UserError: as `design_for`, but for the row budget, and up to `MOST_RECTANGLES` for the number of rectangles.
+    """
     underrun = {"allow_underrun": True}
     for room in ({}, underrun):
         with suppress(UserError):

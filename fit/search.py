@@ -17,10 +17,10 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from raycaster.configuration import Configuration
-from raycaster.design import Design, design_for
+from raycaster.design import Design
 from raycaster.errors import UserError
 from raycaster.fit.choice import BUILD, keep_choice
-from raycaster.fit.fixing import SCOPES, Fixing, fix, show
+from raycaster.fit.fixing import SCOPES, Fixing, fix, general_design, show
 from raycaster.fpga.area import FAMILIES, Area, measure
 from raycaster.golden import engines, exact
 from raycaster.golden.picture import count_wrong
@@ -99,9 +99,8 @@ def candidates(
         UserError: the scene or the options are not good.
     """
     for engine in (options["engine"],) if "engine" in options else ENGINES:
-        for chosen in _arithmetic(engine, path, options, error):
-            general = design_for(path, chosen)
-            wrong = error_of(general)
+        for chosen, wrong in _arithmetic(engine, path, options, error):
+            general = general_design(path, chosen)
             yield Candidate(general, GENERAL, wrong, chosen)
             for scope in scopes:
                 fixing = fix(path, chosen, scope)
@@ -110,18 +109,20 @@ def candidates(
 
 def _arithmetic(
     engine: str, path: Path, options: Mapping[str, Any], error: float | None
-) -> Iterator[Mapping[str, Any]]:
+) -> Iterator[tuple[Mapping[str, Any], float]]:
+    """The options of each arithmetic that meets the error, and its own error."""
     chosen = {**options, "engine": engine}
     if engine != "seed":
-        yield chosen
+        yield chosen, 0.0
         return
     roundings = (options["rounding"],) if "rounding" in options else ROUNDINGS
     fractions = (options["fraction_bits"],) if "fraction_bits" in options else FRACTIONS
     for rounding in roundings:
         for fraction in fractions:
             one = {**chosen, "rounding": rounding, "fraction_bits": fraction}
-            if error is None or error_of(design_for(path, {**one, "allow_underrun": True})) <= error:
-                yield one
+            wrong = error_of(general_design(path, one))
+            if error is None or wrong <= error:
+                yield one, wrong
                 break
 
 
@@ -232,7 +233,7 @@ def main() -> None:
 
 
 def _check_rate(path: Path, options: Mapping[str, Any], wanted: int) -> None:
-    config = design_for(path, {**options, "allow_underrun": True}).configuration
+    config = general_design(path, options).configuration
     if (rate := frames_a_second(config)) < wanted:
         raise UserError(f"fps: {path}: {config.rows} rows are shown {rate} times a second, not {wanted}; see ROWS")
 

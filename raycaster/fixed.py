@@ -48,6 +48,11 @@ class FixedScene:
         """A short file name that differs where anything fixed does."""
         return f"{self.scope}-{hashlib.sha256(repr(self).encode()).hexdigest()[:8]}"
 
+    @property
+    def distances(self) -> tuple[int, ...]:
+        """From the fixed camera to each rectangle's plane, with the sign."""
+        return tuple(rectangle.position - self.camera[rectangle.axis] for rectangle in self.rectangles)
+
     def column(self, name: str) -> tuple[int, ...]:
         """One attribute of every rectangle."""
         return tuple(getattr(rectangle, name) for rectangle in self.rectangles)

@@ -111,10 +111,10 @@ def no_mirror() -> Reflector:
 
 def fix_facet(facet: Facet, number: int, config: Configuration) -> None:
     """Hold what is known of a rectangle of a fixed scene."""
-    rectangle, camera = config.fixed.rectangles[number], config.fixed.camera
+    rectangle = config.fixed.rectangles[number]
     known = {"usable": 1, "axis": rectangle.axis, "colour": rectangle.colour}
-    if camera:
-        known["distance"] = rectangle.position - camera[rectangle.axis]
+    if config.fixed.camera:
+        known["distance"] = config.fixed.distances[number]
     hold(facet, known)
 
 
@@ -127,7 +127,7 @@ def fix_growth(growth: Walk, number: int, config: Configuration) -> None:
     if camera and rectangle.axis == 1:
         known |= {name: bound - camera[axis] for name, (bound, axis) in bounds.items()}
     elif camera:
-        known["way_u"] = rectangle.position - camera[rectangle.axis]
+        known["way_u"] = config.fixed.distances[number]
     hold(growth, known)
 
 

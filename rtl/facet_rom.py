@@ -11,7 +11,6 @@ from raycaster.rtl.widths import unsigned
 def facet_rom(clk, index, axis, distance, colour, config: Configuration):
     """The rectangle's own, a cycle after its index. distance, from the camera to its plane: None where that is live."""
     axes, colours = config.fixed.column("axis"), config.fixed.column("colour")
-    camera = config.fixed.camera
 
     # What a ray sees, and what a mirror is.
     @always(clk.posedge)
@@ -19,14 +18,12 @@ def facet_rom(clk, index, axis, distance, colour, config: Configuration):
         axis.next = axes[int(index)]
         colour.next = colours[int(index)]
 
-    if not camera:
+    if not config.fixed.camera:
         return look_up
 
     # A table holds words without a sign.
     distance_bits = len(distance)
-    distances = tuple(
-        (rectangle.position - camera[rectangle.axis]) % (1 << distance_bits) for rectangle in config.fixed.rectangles
-    )
+    distances = tuple(distance % (1 << distance_bits) for distance in config.fixed.distances)
     word = unsigned(distance_bits)
 
     # How far away it is.

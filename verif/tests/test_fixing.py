@@ -376,6 +376,15 @@ def test_the_least_fraction_that_meets_an_error():
     assert {one.configuration.engine for one in search.candidates(BOXES, {"engine": "beam"}, (), None)} == {"beam"}
 
 
+def test_more_rectangles_than_the_default_has(tmp_path):
+    """The general design is then a larger one."""
+    scene, text = tmp_path / "many.toml", BOXES.read_text()
+    scene.write_text(f"{text}[[rect]]{text.split('[[rect]]')[1]}")
+    found = list(search.candidates(scene, {"screen": "tiny"}, ("all",), None))
+    assert {one.configuration.rectangles for one in found if one.scope == "general"} == {32}
+    assert max(one.configuration.rectangles for one in found if one.scope == "all") <= 12
+
+
 def test_the_smallest_is_kept_and_built(tmp_path, capfd):
     """The whole way, on a small scene and one engine."""
     output = tmp_path / "fit"
