@@ -160,7 +160,7 @@ class Configuration:
     configuration holds the numbers that were chosen, so that equal designs compare equal. An engine without quotients
     has no fraction, no rounding and no divider bits; the beam engine has one unit, a pixel a clock and every scale that
     its monitor has pixels for. With a fixed scene, `rectangles` are the scene's, and the seed engine too takes as few
-    units as do.
+    units as do. Culling saves cycles in most groups and none in the worst case, so the row budget does not know of it.
 
     Raises `ConfigurationError` through `configure`; constructed directly, pydantic's `ValidationError`.
     """
@@ -183,6 +183,9 @@ class Configuration:
     colour_bits: int = Field(8, ge=1, le=CHANNEL_BITS, description="bits a colour channel on the VGA output")
     screen: Literal["vga", "tiny"] = Field("vga", description="vga, or tiny (64x48) for slow simulators")
     allow_underrun: bool = Field(False, description="accept a design that cannot meet the row budget")
+    culling: bool | None = Field(
+        None, description="give up early what no ray of a group can hit, 1 or 0: 1 of the seed engine's general design"
+    )
     fixed: FixedScene | None = Field(None, description="what of a scene is built in")
 
     @model_validator(mode="after")
@@ -195,6 +198,7 @@ class Configuration:
         self._choose_scale()
         if self.engine != "seed":
             self._refuse_quotients()
+        self._choose_culling()
         if self.units is None:
             self._choose_units()
         elif self.engine == "beam" and self.units != 1:
@@ -239,6 +243,15 @@ class Configuration:
         if self.divider_bits not in ("auto", 0):
             raise ValueError(f"divider_bits: the {self.engine} engine has no divider; leave out {self.divider_bits}")
         object.__setattr__(self, "divider_bits", 0)
+
+    def _choose_culling(self) -> None:
+        """The seed engine's slots are long enough to be worth it; what a fixed scene does not need is left out."""
+        if self.culling is None:
+            object.__setattr__(self, "culling", self.engine == "seed" and self.fixed is None)
+        elif self.culling and self.engine == "beam":
+            raise ValueError("culling: the beam engine takes all rectangles at once; leave it out")
+        elif self.culling and self.fixed is not None:
+            raise ValueError("culling: is for scenes that change; leave it out, or what is fixed")
 
     def _choose_units(self) -> None:
         """The seed's 32; one beam; otherwise as few as meet the row budget."""
@@ -362,9 +375,11 @@ class Configuration:
         quotients = f"-f{self.fraction_bits}{rounding}-d{self.divider_bits}" if self.engine == "seed" else ""
         scale = f"-s{self.scale}" if self.engine == "beam" else ""
         fixed = f"-{self.fixed.name}" if self.fixed else ""
+        # Only what is not the default is told.
+        culling = "" if self.fixed or self.culling == (self.engine == "seed") else f"-k{int(self.culling)}"
         return (
             f"{self.engine}-{self.screen}{self.rows}{scale}-u{self.units}-r{self.rectangles}-m{self.reflections}"
-            f"{quotients}-c{self.colour_bits}{fixed}"
+            f"{quotients}-c{self.colour_bits}{culling}{fixed}"
         )
 
 

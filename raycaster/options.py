@@ -21,7 +21,7 @@ def add_configuration_options(parser: argparse.ArgumentParser) -> None:
     for name in OPTION_NAMES:
         field = fields[name]
         option = "--" + name.replace("_", "-")
-        shown = "by the screen" if field.default is None else field.default
+        shown = "what suits the rest" if field.default is None else field.default
         help_text = f"{field.description} (default: {shown})"
         if field.annotation is bool or field.annotation == "bool":
             group.add_argument(option, action="store_true", default=None, help=help_text)
@@ -43,7 +43,9 @@ def as_options(config: Configuration) -> list[str]:
         value = getattr(config, name)
         if value != fields[name].default:
             words.append("--" + name.replace("_", "-"))
-            words += [] if isinstance(value, bool) else [str(value)]
+            if fields[name].annotation is bool or fields[name].annotation == "bool":
+                continue
+            words.append(str(int(value)) if isinstance(value, bool) else str(value))
     return words
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from rich.console import Console
 
 from raycaster.configuration import Configuration, configure
+from raycaster.design import design_for
 from raycaster.errors import UserError
 from raycaster.fpga.area import with_units
 from raycaster.golden.catalogue import Case, catalogue
@@ -79,13 +80,18 @@ class Extent:
     frontier: int
     """Designs of the frontiers that are simulated, at most: those of all first, the fastest first."""
 
+    culled: Sequence[str]
+    """Engines of which each scene is simulated with culling and without."""
+
 
 def extent(quick: bool) -> Extent:
     """Everything, or what takes less than three minutes."""
     cases = catalogue()
     if quick:
         probed = configure(screen="tiny", units=16, reflections=CASE_REFLECTIONS, divider_bits=3, allow_underrun=True)
-        return Extent((0, 2, 4), (1,), (0, 4), (16,), (4, 16), cases, (0,), "tiny", cases[::6], [probed], "tiny", 2)
+        return Extent(
+            (0, 2, 4), (1,), (0, 4), (16,), (4, 16), cases, (0,), "tiny", cases[::6], [probed], "tiny", 2, ["seed"]
+        )
     probed_designs = [
         configure(reflections=CASE_REFLECTIONS, fraction_bits=f, rounding=r, divider_bits=3)
         for f, r in ((0, "truncate"), (0, "nearest"), (4, "nearest"))
@@ -104,6 +110,7 @@ def extent(quick: bool) -> Extent:
         probed_designs,
         "vga",
         24,
+        ["seed", "exact"],
     )
 
 
@@ -161,6 +168,7 @@ def write_report(directory: Path, what: Extent, sweep: Sweeper) -> Path:
     shown = {point: pictures[point] for point in of_scenes if point.reflections == 1}
     sections = [
         *_frontier_sections(directory, what, shown, sweep),
+        _culling_section(directory, what, scenes, sweep),
         *_error_sections(directory, what, shown),
         *_catalogue_sections(directory, what, {point: pictures[point] for point in of_cases}, sweep),
     ]
@@ -181,7 +189,7 @@ def _frontier_sections(directory: Path, what: Extent, results: Results, sweep: S
         "exact": hardware.exact_designs(what.exact_units, what.screen),
     }
     checks = {
-        "seed": hardware.checks(configure(units=max(what.units), screen=what.screen)),
+        "seed": hardware.checks(configure(units=max(what.units), screen=what.screen, culling=False)),
         "exact": hardware.checks(configure(engine="exact", screen=what.screen)),
     }
     alone = {
@@ -258,6 +266,44 @@ def _frontier_sections(directory: Path, what: Extent, results: Results, sweep: S
         Section("What the numbers say", sentences=said),
         Section("The frontiers", columns=columns, rows=rows),
     ]
+
+
+def _culling_section(directory: Path, what: Extent, scenes: Sequence[View], sweep: Sweeper) -> Section:
+    """Cycles of a frame of every scene without culling and with it."""
+    scenes = [scene for scene in scenes if scene.scene.reflections in what.reflections]
+    points = {}
+    for engine in what.culled:
+        for scene in scenes:
+            for culling in (False, True):
+                options = {"engine": engine, "screen": what.screen, "culling": culling}
+                design = design_for(Path(scene.source), options)
+                points[engine, scene, culling] = TimePoint(scene, design.configuration)
+    found = sweep("culling", list(points.values()))
+    cycles = {key: found[point]["frame_cycles"] for key, point in points.items()}
+    shares = {
+        engine: {scene.name: cycles[engine, scene, True] / cycles[engine, scene, False] for scene in scenes}
+        for engine in what.culled
+    }
+    plots.culling(shares, directory / "culling.png")
+    columns = (
+        "scene", "engine", "rectangles", "reflections", "frame cycles without", "frame cycles with", "share",
+        "wrong against golden", "command",
+    )  # fmt: skip
+    rows = [
+        [
+            scene.name, engine, len(scene.scene.rect), points[engine, scene, True].config.reflections,
+            cycles[engine, scene, False], cycles[engine, scene, True], shares[engine][scene.name],
+            sum(found[points[engine, scene, culling]]["wrong"] for culling in (False, True)),
+            command(points[engine, scene, True]),
+        ]
+        for engine in what.culled for scene in scenes
+    ]  # fmt: skip
+    write_csv(columns, rows, directory / "culling.csv")
+    text = (
+        "System cycles in which a frame is rendered, without culling and with it: what no ray of a group can hit is "
+        "given up early. The worst case, which the row budget is for, stays."
+    )
+    return Section("What culling saves", text, plot="culling.png", columns=columns, rows=rows)
 
 
 def _error_sections(directory: Path, what: Extent, results: Results) -> list[Section]:

@@ -47,10 +47,20 @@ def frame_ms(config: Configuration, row_cycles: int) -> float:
 
 
 def seed_designs(fractions: Iterable[int], units: Iterable[int], screen: str) -> list[Configuration]:
-    """Every design of the seed engine of these that meets the row budget, with one reflection."""
+    """Every design of the seed engine of these that meets the row budget, with one reflection.
+
+    Without culling, so that a design's time is one number, whatever the scene.
+    """
     choices = itertools.product(fractions, units, ("truncate", "nearest"), (1, 2, 3))
     return _possible(
-        {"fraction_bits": f, "units": count, "rounding": rounding, "divider_bits": bits, "screen": screen}
+        {
+            "fraction_bits": f,
+            "units": count,
+            "rounding": rounding,
+            "divider_bits": bits,
+            "screen": screen,
+            "culling": False,
+        }
         for f, count, rounding, bits in choices
     )
 

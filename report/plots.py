@@ -49,6 +49,23 @@ def error_by_fraction(results: Results, path: Path) -> None:
     _save(figure, path)
 
 
+def culling(shares: Mapping[str, Mapping[str, float]], path: Path) -> None:
+    """By engine and scene, the share of a frame's cycles that is left with culling: a bar each."""
+    scenes = sorted({name for of_engine in shares.values() for name in of_engine}, reverse=True)
+    figure, axes = _subplots(figsize=(9, 1.5 + 0.4 * len(scenes)))
+    height = 0.8 / len(shares)
+    for place, (engine, of_engine) in enumerate(shares.items()):
+        offsets = np.arange(len(scenes)) + 0.4 - (place + 0.5) * height
+        bars = axes.barh(offsets, [100 * of_engine[name] for name in scenes], height, label=engine)
+        axes.bar_label(bars, fmt="%.0f", padding=3, fontsize=8)
+    axes.axvline(100, color="black", linewidth=1)
+    axes.set(xlabel="cycles of a frame with culling, % of those without", xlim=(0, 115))
+    axes.set_yticks(np.arange(len(scenes)), scenes)
+    axes.set_title("What culling leaves")
+    axes.legend()
+    _save(figure, path)
+
+
 def work_precision(
     candidates: Sequence[Candidate], best: Sequence[Candidate], of_seed: Sequence[Candidate], path: Path
 ) -> None:

@@ -24,6 +24,7 @@ def engine_word(config: Configuration) -> int:
         scale=config.scale,
         colour_bits=config.colour_bits,
         fixed=FIXED_CODES[config.fixed.scope] if config.fixed else 0,
+        culling=int(config.culling),
     )
 
 

@@ -207,9 +207,10 @@ def beam_caster(
             fix_growth(growths[i], i, config)
     steps = unsigned(step_count)
 
+    first_slope = held(-config.screen_geometry.centre_column, signed(slope_width))
     setup = rect_setup(
-        clk, reset, start_line, rects, camera, row_slope, load, new_facet, new_growth, new_start, config
-    )  # fmt: skip
+        clk, reset, start_line, rects, camera, first_slope, row_slope, load, new_facet, new_growth, new_start, config
+    )
     memories = [
         facet_mem(clk, load(i + 1, i), new_facet, new_growth, driven(facets[i]), driven(growths[i]))
         for i in range(count)

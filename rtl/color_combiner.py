@@ -6,17 +6,17 @@ from myhdl import ConcatSignal, always, always_comb, block
 from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.rtl.color_channel import color_channel
 from raycaster.rtl.interfaces import Colour
-from raycaster.rtl.widths import COLOUR_BITS, bit, unsigned
+from raycaster.rtl.widths import COLOUR_BITS, unsigned
 
 
 @block
-def color_combiner(clk, steps, found, found_color, background, reflections, pixel, config: Configuration):
+def color_combiner(clk, steps, found, found_color, background, reflections, missed, pixel, config: Configuration):
     """At steps.add_color, add the colour of the hit that was found; background from the first ray that found none on.
 
     found_color, background: 24 bits, red above green above blue; reflections: those of the scene; pixel: the blend,
-    3 * colour_bits, from the cycle after the last steps.add_color.
+    3 * colour_bits, from the cycle after the last steps.add_color; missed: one has found none, from the cycle after its
+    steps.add_color.
     """
-    missed = bit()
     seen = Colour()
     seen_color = unsigned(COLOUR_BITS)
     red, green, blue = (unsigned(config.colour_bits) for _ in range(3))

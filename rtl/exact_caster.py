@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: MIT
 """The exact engine: one control, a few units, and never a wrong pixel."""
 
-from myhdl import ConcatSignal, always_comb, block
+from myhdl import always_comb, block
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.exact_control import exact_control
 from raycaster.rtl.exact_unit import exact_unit
+from raycaster.rtl.group_culler import group_culler, prospects_of
 from raycaster.rtl.hierarchy import constant
-from raycaster.rtl.interfaces import RaySteps, Surface
-from raycaster.rtl.widths import pixel_bits, unit_bits, unsigned
+from raycaster.rtl.interfaces import Outlook, RaySteps, Surface
+from raycaster.rtl.widths import pixel_bits, side_by_side, unit_bits, unsigned
 
 
 @block
@@ -31,13 +32,16 @@ def exact_caster(
     offered = Surface()
     bases = [constant(unit, unit_bits(config)) for unit in range(config.units)]
     pixels = [unsigned(pixel_bits(config)) for _ in range(config.units)]
-    together = ConcatSignal(*reversed(pixels)) if config.units > 1 else pixels[0]
+    together = side_by_side(pixels)
 
-    control = exact_control(clk, reset_ray_caster, enable, reflections, rects, steps, offered, done, config)
+    outlooks = [Outlook() for _ in range(config.units)]
+    prospects = prospects_of(config)
+
+    control = exact_control(clk, reset_ray_caster, enable, reflections, rects, steps, prospects, offered, done, config)
     units = [
         exact_unit(
             clk, steps, row, bases[unit], column_offset, camera, rects.rect, offered, background, reflections,
-            pixels[unit], config,
+            pixels[unit], outlooks[unit], config,
         )
         for unit in range(config.units)
     ]  # fmt: skip
@@ -47,4 +51,18 @@ def exact_caster(
     def join():
         colors.next = together
 
-    return control, units, join
+    common = control, units, join
+    if not config.culling:
+        return common
+
+    alives = side_by_side([outlook.alive for outlook in outlooks])
+    culler = group_culler(
+        clk, reset_ray_caster, steps.screen_to_ray, done, row, column_offset, camera, rects, prospects.possible, config
+    )
+
+    # One unit is enough.
+    @always_comb
+    def judge():
+        prospects.alive.next = alives != 0
+
+    return common, culler, judge

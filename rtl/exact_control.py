@@ -4,9 +4,10 @@
 from myhdl import always, always_comb, block
 
 from raycaster.configuration import Configuration
+from raycaster.rtl.hierarchy import held
 from raycaster.rtl.interfaces import Surface
 from raycaster.rtl.ray_sequencer import ray_sequencer
-from raycaster.rtl.widths import unsigned
+from raycaster.rtl.widths import bit, unsigned
 
 SLOT_CYCLES = 1
 WRITE_AT = 2
@@ -14,7 +15,9 @@ WRITE_AT = 2
 
 
 @block
-def exact_control(clk, reset_ray_caster, enable, reflections, rects, steps, offered, done, config: Configuration):
+def exact_control(
+    clk, reset_ray_caster, enable, reflections, rects, steps, prospects, offered, done, config: Configuration
+):
     """A ray_sequencer that takes a rectangle a clock, with done and the other ports as it has them.
 
     write_z_buf follows find_intersection by three cycles, the latency of rect_tester; offered is the rectangle that
@@ -24,8 +27,9 @@ def exact_control(clk, reset_ray_caster, enable, reflections, rects, steps, offe
     first, second = Surface(), Surface()
 
     sequencer = ray_sequencer(
-        clk, reset_ray_caster, enable, reflections, rects, steps, in_flight, done, SLOT_CYCLES, config
-    )
+        clk, reset_ray_caster, enable, reflections, rects, steps, in_flight, prospects, held(0, bit()), done,
+        SLOT_CYCLES, config,
+    )  # fmt: skip
 
     # Its verdict is due.
     @always_comb

@@ -8,6 +8,7 @@ from raycaster.rtl.widths import (
     DISTANCE_BITS,
     SLOPE_BITS,
     TURN_BITS,
+    WIDE_BITS,
     WORD_BITS,
     bit,
     exact_slope_bits,
@@ -72,6 +73,15 @@ class Rect(Interface):
         self.colour = unsigned(COLOUR_BITS)
 
 
+class WideRect(Interface):
+    """A rectangle whose bounds may be a unit further out, two's complement; it has no colour."""
+
+    def __init__(self):
+        self.axis = unsigned(AXIS_BITS)
+        self.position = unsigned(COORDINATE_BITS)
+        self.u_low, self.u_high, self.v_low, self.v_high = (signed(WIDE_BITS) for _ in range(4))
+
+
 class Colour(Interface):
     """A colour's channels at the full width."""
 
@@ -98,6 +108,24 @@ class Steps(RaySteps):
     def __init__(self):
         super().__init__()
         self.load_divider, self.store_quotient = (bit() for _ in range(2))
+
+
+class Outlook(Interface):
+    """What a unit's ray may still meet. alive: it has hit something since reset_z_buf, and at every bounce before.
+    ahead, of an impatient design: it has at every bounce before, and runs towards the plane that find_intersection
+    started on in the cycle before.
+    """
+
+    def __init__(self):
+        self.ahead, self.alive = bit(), bit()
+
+
+class Prospects(Outlook):
+    """The same of any unit's ray; possible: a bit for each rectangle, 1 where a primary ray of the group may hit it."""
+
+    def __init__(self, config: Configuration):
+        super().__init__()
+        self.possible = unsigned(config.rectangles)
 
 
 class Eye(Interface):

@@ -11,14 +11,14 @@ from raycaster.rtl.widths import SLOPE_BITS, bit, position_bits, signed, unsigne
 
 @block
 def intersection_finder(
-    clk, steps, current_plane, finishing_rect, origin, signs, slope, hit, depth, point, config: Configuration
+    clk, steps, current_plane, finishing_rect, origin, signs, slope, hit, depth, point, ahead, config: Configuration
 ):
     """Two a + b * (c - d) / e units, one for each axis other than the plane's, and the test against the bounds.
 
     current_plane is taken at steps.find_intersection; finishing_rect is the same rectangle from the cycle after its
     store_quotient on. origin, signs and slope hold still while a ray is traced. hit, depth (|distance| along x, with
     the configured fraction) and point (the hit point) stand in the second cycle after store_quotient, which is
-    steps.write_z_buf.
+    steps.write_z_buf. ahead: the ray runs towards the plane, from the cycle after find_intersection.
     """
     fraction_bits = config.fraction_bits
     position_width = position_bits(config)
@@ -37,11 +37,11 @@ def intersection_finder(
 
     u_helper = intersection_helper(
         clk, steps, u_origin, u_slope, u_negative, plane_start, start_a, e_slope, e_negative,
-        u_value, u_quotient, u_distance, u_valid, config,
+        u_value, u_quotient, u_distance, u_valid, ahead, config,
     )  # fmt: skip
     v_helper = intersection_helper(
         clk, steps, v_origin, v_slope, v_negative, plane_start, start_a, e_slope, e_negative,
-        v_value, v_quotient, v_distance, v_valid, config,
+        v_value, v_quotient, v_distance, v_valid, unconnected(1), config,
     )  # fmt: skip
 
     # The plane's axis chooses what divides (e, and d beside it) and what is multiplied (b).

@@ -23,13 +23,15 @@ def intersection_helper(
     quotient,
     distance,
     valid,
+    ahead,
     config: Configuration,
 ):
     """value = a + b * (c - d) / e where (c - d) / e is positive, by one multiplication and one division of magnitudes.
 
     a, c, d: unsigned, position_bits; b, e: magnitudes of 9 bits, each with its sign; value: signed, position_bits + 2;
     quotient: |b * (c - d) / e|; distance: |c - d|; both unsigned, position_bits.
-    valid: e is not 0, the plane lies ahead (c - d is not 0 and has e's sign), and the quotient did not overflow.
+    valid: ahead, and the quotient did not overflow; ahead, from the cycle after find_intersection: e is not 0 and the
+    plane lies ahead (c - d is not 0 and has e's sign).
     Operands but `a` are taken at steps.find_intersection, load_divider follows two cycles later and store_quotient
     `config.divider_steps` after that; quotient, distance and valid stand from the next cycle, `a` is taken in it,
     and value stands from the cycle after. The next find_intersection may follow config.divider_steps after the first.
@@ -39,11 +41,11 @@ def intersection_helper(
 
     difference, opposite = (signed(position_width + 1) for _ in range(2))
     magnitude = unsigned(position_width)
-    ahead = bit()
+    runs_ahead = bit()
     started_distance, loaded_distance = (unsigned(position_width) for _ in range(2))
     started_b, started_e = (unsigned(SLOPE_BITS) for _ in range(2))
     started_negative, loaded_negative, stored_negative = (bit() for _ in range(3))
-    started_ahead, loaded_ahead, stored_ahead = (bit() for _ in range(3))
+    loaded_ahead, stored_ahead = bit(), bit()
     product = unsigned(product_width)
     overflow = bit()
     forward = signed(position_width + 2)
@@ -68,7 +70,7 @@ def intersection_helper(
             magnitude.next = opposite[position_width:]
         else:
             magnitude.next = difference[position_width:]
-        ahead.next = (e != 0) and (difference != 0) and ((difference < 0) == e_negative)
+        runs_ahead.next = (e != 0) and (difference != 0) and ((difference < 0) == e_negative)
 
     # Take the operands.
     @always(clk.posedge)
@@ -78,7 +80,7 @@ def intersection_helper(
             started_b.next = b
             started_e.next = e
             started_negative.next = b_negative
-            started_ahead.next = ahead
+            ahead.next = runs_ahead
 
     # b * (c - d) as magnitudes: the one multiplier.
     @always(clk.posedge)
@@ -91,7 +93,7 @@ def intersection_helper(
         if steps.load_divider:
             loaded_distance.next = started_distance
             loaded_negative.next = started_negative
-            loaded_ahead.next = started_ahead
+            loaded_ahead.next = ahead
 
     # What belongs to the finished quotient.
     @always(clk.posedge)

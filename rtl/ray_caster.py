@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: MIT
 """The ray casting engine: one control, many units."""
 
-from myhdl import ConcatSignal, always_comb, block
+from myhdl import always_comb, block
 
 from raycaster.configuration import Configuration
+from raycaster.rtl.group_culler import group_culler, prospects_of
 from raycaster.rtl.hierarchy import constant
-from raycaster.rtl.interfaces import Plane, Rect, Steps
+from raycaster.rtl.interfaces import Outlook, Plane, Rect, Steps
 from raycaster.rtl.ray_control import ray_control
+from raycaster.rtl.ray_sequencer import impatient
 from raycaster.rtl.ray_unit import ray_unit
-from raycaster.rtl.widths import pixel_bits, unit_bits, unsigned
+from raycaster.rtl.widths import pixel_bits, side_by_side, unit_bits, unsigned
 
 
 @block
@@ -38,9 +40,14 @@ def ray_caster(
     current_plane.position = rects.rect.position
     bases = [constant(unit, unit_bits(config)) for unit in range(config.units)]
     pixels = [unsigned(pixel_bits(config)) for _ in range(config.units)]
-    together = ConcatSignal(*reversed(pixels)) if config.units > 1 else pixels[0]
+    together = side_by_side(pixels)
 
-    control = ray_control(clk, reset_ray_caster, enable, reflections, rects, steps, finishing_rect, done, config)
+    outlooks = [Outlook() for _ in range(config.units)]
+    prospects = prospects_of(config)
+
+    control = ray_control(
+        clk, reset_ray_caster, enable, reflections, rects, steps, prospects, finishing_rect, done, config
+    )
     units = [
         ray_unit(
             clk,
@@ -54,6 +61,7 @@ def ray_caster(
             background,
             reflections,
             pixels[unit],
+            outlooks[unit],
             config,
         )
         for unit in range(config.units)
@@ -64,4 +72,28 @@ def ray_caster(
     def join():
         colors.next = together
 
-    return control, units, join
+    common = control, units, join
+    if not config.culling:
+        return common
+
+    alives = side_by_side([outlook.alive for outlook in outlooks])
+    culler = group_culler(
+        clk, reset_ray_caster, steps.screen_to_ray, done, row, column_offset, camera, rects, prospects.possible, config
+    )
+
+    # One unit is enough.
+    @always_comb
+    def judge():
+        prospects.alive.next = alives != 0
+
+    if not impatient(config):
+        return common, culler, judge
+
+    aheads = side_by_side([outlook.ahead for outlook in outlooks])
+
+    # And here.
+    @always_comb
+    def look_ahead():
+        prospects.ahead.next = aheads != 0
+
+    return common, culler, judge, look_ahead

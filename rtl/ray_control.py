@@ -4,18 +4,31 @@
 from myhdl import always, always_comb, block
 
 from raycaster.configuration import Configuration
+from raycaster.rtl.hierarchy import held
 from raycaster.rtl.interfaces import Rect
-from raycaster.rtl.ray_sequencer import ray_sequencer
-from raycaster.rtl.widths import unsigned
+from raycaster.rtl.ray_sequencer import impatient, ray_sequencer
+from raycaster.rtl.widths import bit, unsigned
 
 
 @block
-def ray_control(clk, reset_ray_caster, enable, reflections, rects, steps, finishing_rect, done, config: Configuration):
+def ray_control(
+    clk,
+    reset_ray_caster,
+    enable,
+    reflections,
+    rects,
+    steps,
+    prospects,
+    finishing_rect,
+    done,
+    config: Configuration,
+):
     """A ray_sequencer around the dividers, with done and the other ports as it has them.
 
     A new rectangle starts every config.divider_steps cycles: with find_intersection in cycle t, load_divider is in
     t + 2, store_quotient in t + 2 + divider_steps (together with the next rectangle's load_divider) and write_z_buf two
-    cycles later. finishing_rect is the rectangle whose quotients were stored.
+    cycles later. finishing_rect is the rectangle whose quotients were stored. An impatient control gives a rectangle up
+    in t + 2 if no ray runs towards it: prospects.ahead is low in t + 1.
     """
     slot_cycles = config.divider_steps
     load_at = 1
@@ -23,11 +36,13 @@ def ray_control(clk, reset_ray_caster, enable, reflections, rects, steps, finish
     write_at = store_at + 2
 
     in_flight = unsigned(write_at + 1)
+    hopeless, give_up = bit(), bit() if impatient(config) else held(0, bit())
     dividing_rect = Rect()
 
     sequencer = ray_sequencer(
-        clk, reset_ray_caster, enable, reflections, rects, steps, in_flight, done, slot_cycles, config
-    )
+        clk, reset_ray_caster, enable, reflections, rects, steps, in_flight, prospects, give_up, done, slot_cycles,
+        config,
+    )  # fmt: skip
 
     # Stages that lie a fixed number of cycles behind the start.
     @always_comb
@@ -56,4 +71,18 @@ def ray_control(clk, reset_ray_caster, enable, reflections, rects, steps, finish
             finishing_rect.v_high.next = dividing_rect.v_high
             finishing_rect.colour.next = dividing_rect.colour
 
-    return sequencer, operate_stages, carry_rectangle
+    common = sequencer, operate_stages, carry_rectangle
+    if not impatient(config):
+        return common
+
+    # All units together take a cycle to say that the plane lies behind them.
+    @always(clk.posedge)
+    def look_ahead():
+        hopeless.next = not prospects.ahead
+
+    # Its division has just begun.
+    @always_comb
+    def judge():
+        give_up.next = in_flight[load_at] and hopeless
+
+    return common, look_ahead, judge

@@ -7,7 +7,15 @@ from raycaster.configuration import Configuration
 from raycaster.rtl.rect_sequencer import rect_sequencer
 from raycaster.rtl.widths import bit, unsigned
 
+GIVE_UP_AT = 2
+"""Cycles from find_intersection to when it may be given up."""
+
 RayState = enum("IDLE", "GENERATE", "TRACE", "BLEND", "DONE")
+
+
+def impatient(config: Configuration) -> bool:
+    """Whether a design gives rectangles up within their slot, which must be longer than it takes to know."""
+    return config.culling and config.slot_cycles > GIVE_UP_AT + 1
 
 
 @block
@@ -19,6 +27,8 @@ def ray_sequencer(
     rects,
     steps,
     in_flight,
+    prospects,
+    give_up,
     done,
     slot_cycles,
     config: Configuration,
@@ -30,20 +40,25 @@ def ray_sequencer(
     follows, and then the next ray. enable is looked at while idle; done stays until reset_ray_caster, which is
     synchronous. reflections: 0 to config.reflections, still while rendering; rects.usable: from the cycle that looks at
     enable.
+
+    prospects: a primary ray passes by the rectangles that are not possible; when none is alive, BLEND follows BLEND
+    until done, and none may come alive again. give_up: high in the second cycle after the start of a rectangle that
+    nobody hits; the next one starts in the cycle after it.
     """
     write_at = len(in_flight) - 1
+    given_up = GIVE_UP_AT
 
     state = Signal(RayState.IDLE)
     bounce = unsigned(2)
     start_ray, fetched, starting = bit(), bit(), bit()
-    wanted = rects.usable
+    wanted = unsigned(config.rectangles)
     if config.fixed:
-        wanted = unsigned(config.rectangles)
         first, second, third = (config.passes + 2 * (0,))[:3]
 
     sequencer = rect_sequencer(
-        clk, reset_ray_caster, start_ray, wanted, rects.index, rects.fetch, fetched, starting, slot_cycles, config
-    )
+        clk, reset_ray_caster, start_ray, wanted, give_up, rects.index, rects.fetch, fetched, starting, slot_cycles,
+        config,
+    )  # fmt: skip
 
     # A new ray follows two of the states.
     @always_comb
@@ -69,7 +84,8 @@ def ray_sequencer(
                 state.next = RayState.DONE
             else:
                 bounce.next = bounce + 1
-                state.next = RayState.TRACE
+                if prospects.alive:
+                    state.next = RayState.TRACE
 
     # What each state asserts.
     @always_comb
@@ -92,10 +108,20 @@ def ray_sequencer(
         else:
             in_flight.next[write_at + 1 : 1] = in_flight[write_at:]
             in_flight.next[0] = steps.find_intersection
+            if give_up:
+                in_flight.next[given_up] = False
 
     common = sequencer, see_start, advance, operate, follow
+
     if not config.fixed:
-        return common
+        # Those that the next ray may meet.
+        @always_comb
+        def choose_possible():
+            wanted.next = rects.usable & prospects.possible
+            if state == RayState.TRACE:
+                wanted.next = rects.usable
+
+        return common, choose_possible
 
     # Those that the next ray may meet.
     @always_comb

@@ -5,10 +5,12 @@ from myhdl import always_comb, block
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.color_combiner import color_combiner
+from raycaster.rtl.hierarchy import unconnected
 from raycaster.rtl.interfaces import Origin, Signs, Slope
 from raycaster.rtl.intersection_finder import intersection_finder
 from raycaster.rtl.ray_generator import ray_generator
 from raycaster.rtl.ray_mem import ray_mem
+from raycaster.rtl.ray_sequencer import impatient
 from raycaster.rtl.widths import AXIS_BITS, COLOUR_BITS, bit, position_bits, unsigned
 from raycaster.rtl.z_buffer import z_buffer
 
@@ -26,11 +28,13 @@ def ray_unit(
     background,
     reflections,
     pixel,
+    outlook,
     config: Configuration,
 ):
     """Trace the pixel at (row, column_offset * units + column_base) as the steps say; pixel stands after the last.
 
-    It holds no control of its own: one ray_control operates all units in step. camera: whole world units.
+    It holds no control of its own: one ray_control operates all units in step. camera: whole world units. outlook: with
+    config.culling.
     """
     fraction_bits = config.fraction_bits
     position_width = position_bits(config)
@@ -39,17 +43,19 @@ def ray_unit(
     slope = Slope()
     reflected_origin, origin, point, found_point = (Origin(config) for _ in range(4))
     hit, found = bit(), bit()
+    ahead = bit() if impatient(config) else unconnected(1)
+    missed = bit() if config.culling else unconnected(1)
     depth = unsigned(position_width)
     found_axis = unsigned(AXIS_BITS)
     found_color = unsigned(COLOUR_BITS)
 
     generator = ray_generator(clk, steps, row, column_base, column_offset, initial_signs, slope, config)
     finder = intersection_finder(
-        clk, steps, current_plane, finishing_rect, origin, signs, slope, hit, depth, point, config
+        clk, steps, current_plane, finishing_rect, origin, signs, slope, hit, depth, point, ahead, config
     )
     z_buf = z_buffer(clk, steps, finishing_rect, hit, depth, point, found, found_axis, found_color, found_point, config)
     memory = ray_mem(clk, steps, found_axis, found_point, signs, reflected_origin, reflected_signs)
-    combiner = color_combiner(clk, steps, found, found_color, background, reflections, pixel, config)
+    combiner = color_combiner(clk, steps, found, found_color, background, reflections, missed, pixel, config)
 
     # The camera's ray first, then what the mirrors make of it.
     @always_comb
@@ -72,4 +78,21 @@ def ray_unit(
             signs.dy.next = reflected_signs.dy
             signs.dz.next = reflected_signs.dz
 
-    return generator, finder, z_buf, memory, combiner, choose_ray
+    common = generator, finder, z_buf, memory, combiner, choose_ray
+    if not config.culling:
+        return common
+
+    # What is lost hits nothing any more.
+    @always_comb
+    def judge():
+        outlook.alive.next = found and not missed
+
+    if not impatient(config):
+        return common, judge
+
+    # Nor does it run towards anything.
+    @always_comb
+    def look_ahead():
+        outlook.ahead.next = ahead and not missed
+
+    return common, judge, look_ahead

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The world's rectangles."""
 
-from myhdl import ConcatSignal, always, always_comb, block
+from myhdl import always, always_comb, block
 
 from raycaster.configuration import Configuration
 from raycaster.registers import register_map
@@ -9,7 +9,7 @@ from raycaster.rtl.hierarchy import constant
 from raycaster.rtl.interfaces import ParallelRects, PipelinedRects, Rect
 from raycaster.rtl.rect_slot import rect_slot
 from raycaster.rtl.rect_sorter import rect_sorter
-from raycaster.rtl.widths import WORD_BITS, bit, index_bits, signed, unsigned
+from raycaster.rtl.widths import WORD_BITS, bit, index_bits, side_by_side, signed, unsigned
 
 
 @block
@@ -28,8 +28,8 @@ def rect_mem(clk, reset, bus, read_word, bad_rectangle, rects, config: Configura
     corners_0, corners_1, surfaces = ([unsigned(WORD_BITS) for _ in range(count)] for _ in range(3))
     live_corners_0, live_corners_1, live_surfaces = ([unsigned(WORD_BITS) for _ in range(count)] for _ in range(3))
     usables, bads = ([bit() for _ in range(count)] for _ in range(2))
-    usable = _side_by_side(usables)
-    bad = _side_by_side(bads)
+    usable = side_by_side(usables)
+    bad = side_by_side(bads)
     read_slot = signed(address_width - 1)
     read_index = unsigned(index_width)
     in_table = bit()
@@ -80,7 +80,7 @@ def rect_mem(clk, reset, bus, read_word, bad_rectangle, rects, config: Configura
     common = slots, locate, clip, read, judge, show_usable
 
     if isinstance(rects, ParallelRects):
-        all_corners_0, all_corners_1, all_surfaces = map(_side_by_side, (live_corners_0, live_corners_1, live_surfaces))
+        all_corners_0, all_corners_1, all_surfaces = map(side_by_side, (live_corners_0, live_corners_1, live_surfaces))
 
         # Everything at once.
         @always_comb
@@ -137,8 +137,3 @@ def rect_mem(clk, reset, bus, read_word, bad_rectangle, rects, config: Configura
             rects.rect.colour.next = sorted_rect.colour
 
     return common, sorter, choose, present
-
-
-def _side_by_side(signals):
-    """The signals as one vector, the first in the lowest bits."""
-    return ConcatSignal(*reversed(signals)) if len(signals) > 1 else signals[0]

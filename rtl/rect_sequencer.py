@@ -9,11 +9,22 @@ from raycaster.rtl.widths import bit, bits_for, index_bits, unsigned
 
 @block
 def rect_sequencer(
-    clk, reset_ray_caster, start_ray, wanted, index, fetch, fetched, starting, slot_cycles, config: Configuration
+    clk,
+    reset_ray_caster,
+    start_ray,
+    wanted,
+    give_up,
+    index,
+    fetch,
+    fetched,
+    starting,
+    slot_cycles,
+    config: Configuration,
 ):
     """Give each wanted rectangle a time slot of slot_cycles, in ascending order, from the cycle after start_ray on.
 
-    wanted: a bit for each, looked at in the cycle before start_ray; index, fetch: to the memory; fetched: what it holds
+    wanted: a bit for each, looked at in the cycle before start_ray; give_up: this cycle is the last of the slot.
+    index, fetch: to the memory; fetched: what it holds
     is a rectangle whose slot it is; starting: in the first cycle of the slot. After a reset_ray_caster nothing is
     fetched.
     """
@@ -28,7 +39,7 @@ def rect_sequencer(
     # The rectangle at hand has had its time slot.
     @always_comb
     def see_take():
-        take.next = start_ray or (fetched and slot == last_slot)
+        take.next = start_ray or (fetched and (give_up or slot == last_slot))
 
     # While nothing is at hand, the next ray's first rectangle is looked for: it wants all of them again.
     @always_comb
@@ -70,7 +81,7 @@ def rect_sequencer(
             fetched.next = False
         elif take:
             fetched.next = offered
-        if start_ray or slot == last_slot:
+        if start_ray or give_up or slot == last_slot:
             slot.next = 0
         else:
             slot.next = slot + 1

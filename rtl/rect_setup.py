@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What the columns of a row start from, for one rectangle after another."""
+"""What neighbouring columns of a row start from, for one rectangle after another."""
 
-from myhdl import always, always_comb, always_seq, block
+from myhdl import always, always_comb, block
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.widths import (
@@ -13,7 +13,6 @@ from raycaster.rtl.widths import (
     index_bits,
     signed,
     unsigned,
-    walk_bits,
 )
 
 LATENCY = 5
@@ -21,41 +20,59 @@ LATENCY = 5
 
 
 @block
-def rect_setup(clk, reset, start_line, rects, camera, row_slope, load, facet, growth, start, config: Configuration):
+def rect_setup(
+    clk,
+    reset,
+    start_line,
+    rects,
+    camera,
+    column_slope,
+    row_slope,
+    load,
+    facet,
+    growth,
+    start,
+    config: Configuration,
+):
     """From start_line on, take a rectangle a cycle from memory; LATENCY cycles later it stands at the outputs.
 
-    Six products of a distance and a component of the ray through the row's first column (Kensler and Shirley 2006);
-    along the row they grow linearly, so no later column needs one (forward differences). load: a bit for each
-    rectangle, high where the outputs are its own; facet, start: as in `interfaces`; growth: what a column adds to
-    start, in DISTANCE_BITS. rects: PipelinedRects. row_slope: D[z], which holds still from the third cycle after
-    start_line.
+    Six products of a distance and a component of the ray through the first column (Kensler and Shirley 2006); along the
+    row they grow linearly, so no later column needs one (forward differences). load: a bit for each rectangle, high
+    where the outputs are its own; facet, start: as in `interfaces`; growth: what a column adds to start. rects:
+    PipelinedRects, whose bounds may have a sign. column_slope, row_slope: D[y] of the first column and D[z], which hold
+    still from the third cycle after start_line. reset: synchronous. Widths of distances to bounds are growth's, those
+    of products start's.
     """
     slope_bits = exact_slope_bits(config) + 1
-    product_bits = walk_bits(config)
+    bound_bits = len(growth.low_u)
+    way_v_bits, product_bits = len(facet.way_v), len(start.way_u)
     last = config.rectangles - 1
     view_distance = config.screen_geometry.view_distance
-    first_slope = -config.screen_geometry.centre_column
 
     reading, asked, at_hand = bit(), bit(), bit()
     number = unsigned(index_bits(config))
     usable_0, usable = bit(), bit()
-    eye_a, eye_u, eye_v, plane = (signed(DISTANCE_BITS) for _ in range(4))
-    low_u, high_u, low_v, high_v = (signed(DISTANCE_BITS) for _ in range(4))
+    eye_a, plane, distance = (signed(DISTANCE_BITS) for _ in range(3))
+    eye_u, eye_v, low_u, high_u, low_v, high_v = (signed(bound_bits) for _ in range(6))
     slope_a, slope_u, slope_v = (signed(slope_bits) for _ in range(3))
-    distance, to_low_u, to_high_u, to_low_v, to_high_v = (signed(DISTANCE_BITS) for _ in range(5))
+    to_low_u, to_high_u, to_low_v, to_high_v = (signed(bound_bits) for _ in range(4))
 
     number_0, number_1, number_2 = (unsigned(index_bits(config)) for _ in range(3))
     at_hand_2, usable_2 = bit(), bit()
     axis_2 = unsigned(AXIS_BITS)
     colour_2 = unsigned(COLOUR_BITS)
-    distance_2, to_low_u_2, to_high_u_2, to_low_v_2, to_high_v_2 = (signed(DISTANCE_BITS) for _ in range(5))
+    distance_2 = signed(DISTANCE_BITS)
+    to_low_u_2, to_high_u_2, to_low_v_2, to_high_v_2 = (signed(bound_bits) for _ in range(4))
     slope_a_2, slope_u_2, slope_v_2 = (signed(slope_bits) for _ in range(3))
-    way_u, way_v, way_low_u, way_high_u, way_low_v, way_high_v = (signed(product_bits) for _ in range(6))
+    way_v = signed(way_v_bits)
+    way_u, way_low_u, way_high_u, way_low_v, way_high_v = (signed(product_bits) for _ in range(5))
 
     # One rectangle after another.
-    @always_seq(clk.posedge, reset=reset)
+    @always(clk.posedge)
     def count():
-        if start_line:
+        if reset:
+            reading.next = False
+        elif start_line:
             reading.next = True
             number.next = 0
         elif reading:
@@ -71,11 +88,11 @@ def rect_setup(clk, reset, start_line, rects, camera, row_slope, load, facet, gr
         rects.index.next = number
 
     # It comes two cycles later, and its distances one after that.
-    @always_seq(clk.posedge, reset=reset)
+    @always(clk.posedge)
     def follow():
-        asked.next = reading
-        at_hand.next = asked
-        at_hand_2.next = at_hand
+        asked.next = reading and not reset
+        at_hand.next = asked and not reset
+        at_hand_2.next = at_hand and not reset
 
     # Which one it is, and whether it may be hit.
     @always(clk.posedge)
@@ -96,13 +113,13 @@ def rect_setup(clk, reset, start_line, rects, camera, row_slope, load, facet, gr
             eye_u.next = camera.y
             eye_v.next = camera.z
             slope_a.next = view_distance
-            slope_u.next = first_slope
+            slope_u.next = column_slope
             slope_v.next = row_slope
         elif rects.rect.axis == 1:
             eye_a.next = camera.y
             eye_u.next = camera.x
             eye_v.next = camera.z
-            slope_a.next = first_slope
+            slope_a.next = column_slope
             slope_u.next = view_distance
             slope_v.next = row_slope
         else:
@@ -110,7 +127,7 @@ def rect_setup(clk, reset, start_line, rects, camera, row_slope, load, facet, gr
             eye_u.next = camera.y
             eye_v.next = camera.x
             slope_a.next = row_slope
-            slope_u.next = first_slope
+            slope_u.next = column_slope
             slope_v.next = view_distance
         if rects.rect.axis == 2:
             low_u.next = rects.rect.v_low
@@ -186,10 +203,10 @@ def rect_setup(clk, reset, start_line, rects, camera, row_slope, load, facet, gr
             growth.high_v.next = to_high_v_2
 
     # Whose they are.
-    @always_seq(clk.posedge, reset=reset)
+    @always(clk.posedge)
     def address():
         load.next = 0
-        if at_hand_2:
+        if at_hand_2 and not reset:
             load.next[number_2] = True
 
     return count, fetch, follow, identify, choose_axes, measure, hold_distances, multiply, present, grow, address

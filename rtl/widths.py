@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Every width of the hardware, derived from the configuration by name, and signals of those widths."""
 
-from myhdl import Signal, intbv
+from myhdl import ConcatSignal, Signal, intbv
 
 from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, WORLD_SIZE, Configuration
 
@@ -10,6 +10,9 @@ SLOPE_BITS = 9
 
 DISTANCE_BITS = COORDINATE_BITS + 1
 """From the camera to a plane, with the sign."""
+
+WIDE_BITS = COORDINATE_BITS + 2
+"""From the camera to a bound that may be a unit outside the world, with the sign: -512..512."""
 
 TURN_BITS = COORDINATE_BITS + 2
 """Twice a distance, or the difference of two mirrors doubled, with the sign: at most 2 * 511."""
@@ -62,6 +65,11 @@ def walk_bits(config: Configuration) -> int:
     return ((WORLD_SIZE - 1) * steepest_slope(config)).bit_length() + 1
 
 
+def wide_walk_bits(config: Configuration) -> int:
+    """The same with a distance of `WIDE_BITS`, or what that grows by from one group to the next."""
+    return (WORLD_SIZE * max(steepest_slope(config), config.units)).bit_length() + 1
+
+
 def fold_bits(config: Configuration) -> int:
     """A product at the folded ray, with the sign.
 
@@ -110,3 +118,8 @@ def signed(width: int) -> Signal:
 def bit() -> Signal:
     """A signal of one bit, low at first."""
     return Signal(bool(0))
+
+
+def side_by_side(signals: list) -> Signal:
+    """The signals as one vector, the first in the lowest bits."""
+    return ConcatSignal(*reversed(signals)) if len(signals) > 1 else signals[0]

@@ -21,7 +21,7 @@ extern "C" {
 #define RAY_CASTER__VERSION__MINOR_bm 0xffff
 #define RAY_CASTER__VERSION__MINOR_bp 0
 #define RAY_CASTER__VERSION__MINOR_bw 16
-#define RAY_CASTER__VERSION__MINOR_reset 0x2
+#define RAY_CASTER__VERSION__MINOR_reset 0x3
 #define RAY_CASTER__VERSION__MAJOR_bm 0xffff0000
 #define RAY_CASTER__VERSION__MAJOR_bp 16
 #define RAY_CASTER__VERSION__MAJOR_bw 16
@@ -52,6 +52,9 @@ extern "C" {
 #define RAY_CASTER__ENGINE__FIXED_bm 0x30000000
 #define RAY_CASTER__ENGINE__FIXED_bp 28
 #define RAY_CASTER__ENGINE__FIXED_bw 2
+#define RAY_CASTER__ENGINE__CULLING_bm 0x40000000
+#define RAY_CASTER__ENGINE__CULLING_bp 30
+#define RAY_CASTER__ENGINE__CULLING_bw 1
 
 // reg - ray_caster::size
 #define RAY_CASTER__SIZE__UNITS_bm 0x3ff

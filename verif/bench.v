@@ -92,6 +92,15 @@ module bench #(
         filled = filled + 1;
     end
 
+    // Cycles of rendering since the last StartScreen.
+    reg [31:0] busy_cycles /*verilator public_flat_rw*/;
+    initial busy_cycles = 0;
+    always @(posedge clk)
+        if (dut.start_screen)
+            busy_cycles = 0;
+        else if (dut.busy)
+            busy_cycles = busy_cycles + 1;
+
     // A monitor samples at the pixel clock's rising edge, so there the data must not change.
     reg [31:0] unstable_samples /*verilator public_flat_rw*/;
     reg [31:0] clock_faults /*verilator public_flat_rw*/;     // vga_clk must be clk halved, or inverted

@@ -189,7 +189,7 @@ def _arguments(bench: Bench) -> tuple[Callable, dict[str, Any]]:
         "steps": Steps(),
         **{name: unsigned(position) for name in ("a", "c", "d")},
         **{name: unsigned(slope) for name in ("b", "e")},
-        **{name: bit() for name in ("b_negative", "e_negative", "valid")},
+        **{name: bit() for name in ("b_negative", "e_negative", "valid", "ahead")},
         "value": signed(position + 2),
         **{name: unsigned(position) for name in ("quotient", "distance")},
         "config": config,

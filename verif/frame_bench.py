@@ -30,6 +30,7 @@ async def one_frame(bench: HierarchyObject) -> None:
     await bus.load_scene(scene)
     await bus.commit(reflections=reflections)
     frame = await harness.monitor.frame(on_row=harness.write_progress)
+    frame_cycles = int(bench.busy_cycles.value)
     cycles = await bus.read("cycles")
     status = await bus.read("status")
     seconds = time.perf_counter() - started
@@ -47,6 +48,7 @@ async def one_frame(bench: HierarchyObject) -> None:
         "pixels": golden[..., 0].size,
         "wrong_vs_golden": count_wrong(frame, golden),
         "wrong_vs_exact": count_wrong(frame, perfect),
+        "frame_cycles": frame_cycles,
         "worst_row_cycles": cycles["row"],
         "worst_group_cycles": cycles["group"],
         "underrun": bool(status["underrun"]),

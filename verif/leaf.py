@@ -8,8 +8,9 @@ import os
 import re
 import shutil
 import subprocess
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from raycaster.configuration import Configuration
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.hierarchy import Module, Port, convert_hierarchy, port_signals, quick_elaboration
 from raycaster.rtl.interfaces import RaySteps, Steps
+from raycaster.rtl.ray_sequencer import GIVE_UP_AT, impatient
 
 Cycle = Mapping[str, int]
 
@@ -254,45 +256,73 @@ class TraceCycle:
     finishing: int | None = None
     """The rectangle whose quotients were stored last; of the exact engine the one whose verdict is due."""
 
+    ahead: int | None = None
+    """Whether a ray runs towards the rectangle that was started on, None where nobody looks."""
 
-def trace_cycles(config: Configuration, usable: Sequence[int], reflections: int) -> list[TraceCycle]:
+    alive: int | None = None
+    """Whether a ray still hits anything, None where nobody looks."""
+
+
+def trace_cycles(
+    config: Configuration,
+    usable: Sequence[int],
+    reflections: int,
+    *,
+    possible: Collection[int] | None = None,
+    hopeless: Collection[tuple[int, int]] = (),
+    lost: int | None = None,
+) -> list[TraceCycle]:
     """The cycles from the one that generates a group's rays to the last before `done`, from the timing that the
     blocks' contracts state.
 
     Args:
-        config: for its engine and divider.
+        config: for its engine, its divider and its culling.
         usable: indices of the rectangles that are enabled and have a plane, ascending.
         reflections: of this scene.
+        possible: indices of those that a primary ray may hit; all where it is None.
+        hopeless: (bounce, index) of those that no ray runs towards.
+        lost: the bounce after which no ray is alive.
     """
     division = config.slot_cycles
-    # Where there is nothing to trace, a pass only looks for it and adds the background.
-    pass_length = len(usable) * division + config.result_latency if usable else 2
     exact = config.engine == "exact"
+    offered_after = 3 if exact else division + 4
     idle = {f"steps_{name}": 0 for name in vars(RaySteps() if exact else Steps())}
-    cycles = [TraceCycle(dict(idle), 0) for _ in range(1 + (reflections + 1) * pass_length)]
+    cycles = [TraceCycle(dict(idle), 0)]
 
     def strobe(cycle: int, *names: str) -> None:
         cycles[cycle].steps |= {f"steps_{name}": 1 for name in names}
 
     strobe(0, "screen_to_ray", "reset_color", "reset_z_buf")
     for bounce in range(reflections + 1):
-        first = 1 + bounce * pass_length
-        for cycle in cycles[first : first + pass_length]:
-            cycle.bounce = bounce
-            cycle.steps["steps_initial_ray"] = int(bounce == 0)
-        for ordinal, index in enumerate(usable):
-            start = first + ordinal * division
+        visited = [index for index in usable if bounce or possible is None or index in possible]
+        given_up = [impatient(config) and (bounce, index) in hopeless for index in visited]
+        starts = list(accumulate((GIVE_UP_AT + 1 if dropped else division for dropped in given_up), initial=0))
+        offered = [start + offered_after for start, dropped in zip(starts, given_up, strict=False) if not dropped]
+        # Where there is nothing to trace, a pass only looks for it and adds the background; a lost ray adds at once.
+        traced = lost is None or bounce <= lost
+        length = 2 + max([starts[-1], *offered]) if traced else 1
+        first = len(cycles)
+        cycles += [TraceCycle(idle | {"steps_initial_ray": int(bounce == 0)}, bounce) for _ in range(length)]
+        strobe(-1, "add_color", "reset_z_buf", *(["store_ray"] if bounce < reflections else []))
+        cycles[-1].alive = int(lost is None or bounce < lost)
+        for index, dropped, place in zip(visited if traced else [], given_up, starts, strict=False):
+            start = first + place
             strobe(start, "find_intersection")
             if exact:
                 strobe(start + 3, "write_z_buf")
                 cycles[start].current = cycles[start + 3].finishing = index
                 continue
+            cycles[start + 1].ahead = int((bounce, index) not in hopeless)
             strobe(start + 2, "load_divider")
-            strobe(start + 2 + division, "store_quotient")
-            strobe(start + 4 + division, "write_z_buf")
-            for cycle in cycles[start : start + division]:
+            for cycle in cycles[start : start + (GIVE_UP_AT + 1 if dropped else division)]:
                 cycle.current = index
-            for cycle in cycles[start + 3 + division :]:
-                cycle.finishing = index
-        strobe(first + pass_length - 1, "add_color", "reset_z_buf", *(["store_ray"] if bounce < reflections else []))
+            if not dropped:
+                strobe(start + 2 + division, "store_quotient")
+                strobe(start + 4 + division, "write_z_buf")
+                for cycle in cycles[start + 3 + division :]:
+                    cycle.finishing = index
+    # What the last one finished holds still until another one has.
+    for before, cycle in pairwise(cycles):
+        if not exact and cycle.finishing is None:
+            cycle.finishing = before.finishing
     return cycles

@@ -46,6 +46,7 @@ async def says_what_it_is(bench: HierarchyObject) -> None:
             "scale": configuration.scale,
             "colour_bits": configuration.colour_bits,
             "fixed": 0,
+            "culling": int(configuration.culling),
         },
         "size": {
             "units": configuration.units,

@@ -101,6 +101,7 @@ class Agent:
                 "reflections": config.reflections,
                 "scale": config.scale,
                 "colour_bits": config.colour_bits,
+                "culling": int(config.culling),
             },
             "size": {
                 "units": config.units, "rectangles": config.rectangles, "rows": config.rows,

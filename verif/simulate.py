@@ -200,14 +200,15 @@ def show(outcomes: list[Outcome], console: Console, title: str | None = None) ->
     """Print a table, a line a scene, then what went wrong and where to look."""
     table = _table(title)
     table.add_column("scene", no_wrap=True)
-    for heading in ("pixels", "wrong", "vs\nexact", "row", "group", "slack", "alone\nHz", "time\ns"):
+    for heading in ("pixels", "wrong", "vs\nexact", "frame", "row", "group", "slack", "alone\nHz", "time\ns"):
         table.add_column(heading, justify="right", no_wrap=True)
     for outcome in outcomes:
         table.add_row(outcome.run.path.stem, *_cells(outcome))
     console.print(table)
     console.print(
-        "wrong: pixels unlike golden. vs exact: pixels unlike the true picture, the engine's own error. row, group: "
-        "system cycles of the slowest, of those it has. alone: frame rate that the renderer alone could hold.",
+        "wrong: pixels unlike golden. vs exact: pixels unlike the true picture, the engine's own error. frame: "
+        "system cycles of its rendering. row, group: those of the slowest, of those it has. alone: frame rate that the "
+        "renderer alone could hold.",
         style="dim",
     )
     for outcome in outcomes:
@@ -228,13 +229,14 @@ def _frames_per_second(configuration: Configuration, row_cycles: int) -> float:
 def _cells(outcome: Outcome) -> list[str]:
     result, configuration = outcome.result, outcome.run.configuration
     if result is None:
-        return ["[red]failed[/]"] + 7 * [""]
+        return ["[red]failed[/]"] + 8 * [""]
     row, group, wrong = result["worst_row_cycles"], result["worst_group_cycles"], result["wrong_vs_golden"]
     budget = configuration.group_budget
     return [
         str(result["pixels"]),
         f"[red]{wrong}[/]" if wrong else "0",
         str(result["wrong_vs_exact"]),
+        str(result["frame_cycles"]),
         f"{row}/{configuration.screen_geometry.row_cycles}",
         f"{group}/{budget}",
         "[red]underrun[/]" if result["underrun"] else str(budget - group),

@@ -138,7 +138,7 @@ reg read_1, read_2, watched_1, watched_2;
 reg [31:0] shadow_1, expected_1, expected_2;
 always @* case (watched)
     ID: expected_1 = 32'h52415943;
-    VERSION: expected_1 = 2;
+    VERSION: expected_1 = 3;
     ENGINE: expected_1 = ENGINE_WORD;
     SIZE: expected_1 = SIZE_WORD;
     CONTROL: expected_1 = shadow_1 | (outstanding << 1);

@@ -78,7 +78,8 @@ def _order(config: Configuration, small: bool) -> Property:
     bound = config.group_cycles - 2  # done comes two cycles before the next group may start
     return Property(
         "ray-order",
-        "every usable rectangle once a ray and in order, reflections + 1 rays, done in the budget's cycles",
+        "each rectangle a ray may hit once and in order, given up if behind all, reflections + 1 rays, done in the "
+        "budget's cycles",
         config,
         _label(config),
         ("ray_control", "ray_sequencer", "rect_sequencer"),
@@ -90,9 +91,10 @@ def _order(config: Configuration, small: bool) -> Property:
             "REFLECTIONS": config.reflections,
             "RESULT_LATENCY": config.result_latency,
             "RUN_BOUND": bound,
+            "CULLING": int(config.culling),
         },
-        induction=2,
-        reach=bound + 2 if config.rectangles == 2 and config.reflections == 1 and config.divider_steps == 3 else 0,
+        induction=1,
+        reach=bound + 2 if config.rectangles == 2 and config.reflections == 1 and config.divider_steps < 5 else 0,
         small=small,
     )
 
@@ -117,7 +119,7 @@ def _sections(config: Configuration, small: bool) -> Property:
 
 
 def _counters(config: Configuration, small: bool) -> Property:
-    cut = ("ray_unit", "line_buffer", "video_generator")
+    cut = ("ray_unit", "line_buffer", "video_generator", *(("group_culler",) if config.culling else ()))
     return Property(
         "render-counters",
         "the renderer's counters stay in range, a group is written once and into its row",
@@ -268,9 +270,15 @@ def _tiny(**values: int | str) -> Configuration:
     return configure(screen="tiny", units=2, allow_underrun=True, **values)
 
 
-def _ray_control(rectangles: int, reflections: int, steps: int) -> Configuration:
+def _ray_control(rectangles: int, reflections: int, steps: int, culling: bool) -> Configuration:
     fraction_bits, divider_bits = SLOWEST[steps]
-    return _tiny(rectangles=rectangles, reflections=reflections, fraction_bits=fraction_bits, divider_bits=divider_bits)
+    return _tiny(
+        rectangles=rectangles,
+        reflections=reflections,
+        fraction_bits=fraction_bits,
+        divider_bits=divider_bits,
+        culling=culling,
+    )
 
 
 DEFAULT = configure()
@@ -289,7 +297,11 @@ PROPERTIES: list[Property] = [
     _avalon(_one_unit(rectangles=2), small=True),
     _avalon(_one_unit(rectangles=2, reflections=2, rounding="nearest", fraction_bits=4, rows=200), small=False),
     *(
-        _order(_ray_control(rectangles, reflections, steps), small=(rectangles, reflections) in {(2, 1), (4, 2)})
+        _order(
+            _ray_control(rectangles, reflections, steps, culling),
+            small=(rectangles, reflections, culling) in {(2, 1, True), (4, 2, True), (2, 1, False)},
+        )
+        for culling in (True, False)
         for rectangles in (2, 3, 4)
         for reflections in (0, 1, 2)
         for steps in SLOWEST
@@ -302,6 +314,7 @@ PROPERTIES: list[Property] = [
     _counters(DEFAULT, small=True),
     _counters(configure(rows=200, reflections=2), small=False),
     _counters(_tiny(rectangles=2), small=True),
+    _counters(_tiny(rectangles=2, culling=False), small=False),
     _counters(configure(units=16, rectangles=4), small=False),
     _tester(2, 1, small=True),
     _tester(2, 2, small=False),

@@ -4,17 +4,23 @@
 // The memory's answer is modelled by a tag: a cycle after a fetch the plane at hand is the one with the fetched index,
 // and the tag takes the place of the rectangle's plane, so that it can be followed to the z buffer.
 //
-// Assumed, as the renderer has it: one cycle of reset at first; the usable rectangles and the reflections hold still
-// from the cycle in which the control starts, until the next reset; reflections are at most what was configured. Reset
-// may come at any time, and registers hold anything before the first one.
+// Assumed, as the renderer has it: one cycle of reset at first; the usable rectangles, the possible ones and the
+// reflections hold still from the cycle in which the control starts, until the next reset; reflections are at most what
+// was configured. As the units have it: who was not alive at the end of a ray is not at the end of the next one, which
+// is not traced. Otherwise anybody may be alive, and any plane ahead, in any cycle. Reset may come at any time, and
+// registers hold anything before the first one.
 
 module ray_order #(
     parameter RECTANGLES = 2, parameter INDEX_BITS = 1, parameter STEPS = 9, parameter SLOT_BITS = 4,
-    parameter REFLECTIONS = 1, parameter RESULT_LATENCY = 6, parameter RUN_BOUND = 50
+    parameter REFLECTIONS = 1, parameter RESULT_LATENCY = 6, parameter RUN_BOUND = 50, parameter CULLING = 1
 ) (
-    input clk, input reset, input enable, input [RECTANGLES-1:0] usable, input [1:0] reflections
+    input clk, input reset, input enable, input [RECTANGLES-1:0] usable, input [1:0] reflections,
+    input [RECTANGLES-1:0] possible, input ahead, input alive
 );
 localparam TRAVEL = STEPS + 4;  // from a rectangle's start to its offer to the z buffer
+localparam GIVE_UP = 3;  // from the start of a rectangle that is given up to the next one's
+localparam GIVES_UP = CULLING && STEPS > GIVE_UP;
+localparam TIME_BITS = $clog2(RUN_BOUND) + 1;
 
 wire done, fetch, screen_to_ray, initial_ray, find_intersection, load_divider, store_quotient, reset_z_buf, write_z_buf,
     reset_color, add_color, store_ray;
@@ -26,88 +32,89 @@ ray_control dut (
     .clk(clk), .reset_ray_caster(reset), .enable(enable), .reflections(reflections), .done(done),
     .rects_usable(usable), .rects_index(index), .rects_fetch(fetch), .rects_rect_axis(2'd0),
     .rects_rect_position(tag), .rects_rect_u_low(9'd0), .rects_rect_u_high(9'd0), .rects_rect_v_low(9'd0),
-    .rects_rect_v_high(9'd0), .rects_rect_colour(24'd0), .steps_screen_to_ray(screen_to_ray),
-    .steps_initial_ray(initial_ray), .steps_find_intersection(find_intersection), .steps_load_divider(load_divider),
-    .steps_store_quotient(store_quotient), .steps_reset_z_buf(reset_z_buf), .steps_write_z_buf(write_z_buf),
-    .steps_reset_color(reset_color), .steps_add_color(add_color), .steps_store_ray(store_ray),
+    .rects_rect_v_high(9'd0), .rects_rect_colour(24'd0), .prospects_possible(possible), .prospects_alive(alive),
+    .steps_screen_to_ray(screen_to_ray), .steps_initial_ray(initial_ray), .steps_find_intersection(find_intersection),
+    .steps_load_divider(load_divider), .steps_store_quotient(store_quotient), .steps_reset_z_buf(reset_z_buf),
+    .steps_write_z_buf(write_z_buf), .steps_reset_color(reset_color), .steps_add_color(add_color),
+    .steps_store_ray(store_ray),
     .finishing_rect_axis(), .finishing_rect_position(finishing), .finishing_rect_u_low(), .finishing_rect_u_high(),
     .finishing_rect_v_low(), .finishing_rect_v_high(), .finishing_rect_colour()
 );
+
+// A port of the control that gives up; beside another it is a wire that leads nowhere.
+(* hierconn *) wire \dut.prospects_ahead ;
+assign \dut.prospects_ahead = ahead;
 
 always @(posedge clk) if (fetch) tag <= index;
 
 // Since the last reset: whether the control was enabled, and for how many cycles it has been at work.
 reg known = 0;
 reg started;
-reg [15:0] cycles;
-reg [RECTANGLES-1:0] last_usable;
+reg [TIME_BITS-1:0] cycles;
+reg [RECTANGLES-1:0] last_usable, last_possible;
 reg [1:0] last_reflections;
+reg last_ahead;
 always @(posedge clk) begin
     known <= 1;
     started <= !reset && (started || enable);
     cycles <= reset || !(started || enable) ? 0 : cycles + !done;
     last_usable <= usable;
+    last_possible <= possible;
     last_reflections <= reflections;
+    last_ahead <= ahead;
 end
 always @* begin
     if (!known) assume (reset);
     assume (reflections <= REFLECTIONS);
-    if (known && started) assume (usable == last_usable && reflections == last_reflections);
+    if (known && started) begin
+        assume (usable == last_usable && possible == last_possible);
+        assume (reflections == last_reflections);
+    end
 end
 
-// A ray: from the cycle after reset_z_buf to add_color. Visits are starts on the tagged plane; place counts cycles.
+// A ray: from the cycle after reset_z_buf to add_color, which for one that is lost, as nobody was alive, is the same.
+// Visits are starts on the tagged plane; place counts cycles.
 reg [RECTANGLES-1:0] visited;
-reg tracing;
+reg tracing, lost;
 reg [1:0] rays;
-reg [15:0] place;
+reg [TIME_BITS-1:0] place;
 wire [RECTANGLES-1:0] tagged = {{RECTANGLES-1{1'b0}}, 1'b1} << tag;
+wire [RECTANGLES-1:0] wanted = rays == 0 ? usable & possible : usable;
+wire reflected = add_color && rays != reflections;
 always @(posedge clk) begin
     if (reset) tracing <= 0;
-    else if (reset_z_buf) tracing <= !add_color || rays != reflections;
+    else if (reset_z_buf) tracing <= !add_color || reflected && alive;
+    lost <= !reset && reflected && !alive;
     visited <= reset_z_buf ? 0 : find_intersection ? visited | tagged : visited;
     rays <= screen_to_ray ? 0 : rays + add_color;
     place <= reset_z_buf ? 0 : place + 1;
 end
+always @* if (known && lost) assume (!alive);
 always @* if (known && started) begin
     if (find_intersection) begin
         assert (tracing && tag < RECTANGLES);
-        assert ((usable & tagged) != 0);
+        assert ((wanted & tagged) != 0);
         assert (visited < tagged);  // each once, and in ascending order
     end
-    if (add_color) assert (tracing && visited == usable && rays <= reflections);
-    assert (store_ray == (add_color && rays != reflections));
+    if (add_color) assert ((lost || tracing && visited == wanted) && rays <= reflections);
+    if (lost) assert (add_color && !tracing);
+    assert (store_ray == reflected);
     assert (reset_color == screen_to_ray);
     assert (reset_z_buf == (screen_to_ray || add_color));
     assert (screen_to_ray == (cycles == 1));
-    if (tracing) assert (initial_ray == (rays == 0));
-    if (done) assert (!tracing && rays == reflections + 1);
+    if (tracing || lost) assert (initial_ray == (rays == 0));
+    if (done) assert (!tracing && !lost && rays == reflections + 1);
 end
 always @* if (known && !started) assert (!done && !find_intersection && !write_z_buf && !add_color);
 
-// It ends, in a number of cycles that is known: that of the budget's formula for the usable rectangles. Done stays.
-function [5:0] count(input [RECTANGLES-1:0] mask);
-    integer i;
-    begin
-        count = 0;
-        for (i = 0; i < RECTANGLES; i = i + 1) count = count + mask[i];
-    end
-endfunction
-wire [15:0] pass = usable == 0 ? 2 : count(usable) * STEPS + RESULT_LATENCY;
-wire [15:0] rays_cycles = rays[1] ? (rays[0] ? 3 * pass : 2 * pass) : rays[0] ? pass : 0;
-reg was_done;
-always @(posedge clk) was_done <= done && !reset;
-always @* if (known && started) begin
-    if (done) assert (cycles == 2 + rays_cycles);
-    else assert (cycles < RUN_BOUND);
-    if (was_done) assert (done);
-end
-
 // Each start on its way: loaded after 2 cycles, stored STEPS later, offered 2 later, with the rectangle it belongs to.
+// One whose plane was not ahead in the cycle after it is given up as it is loaded, and goes no further.
 reg [TRAVEL-1:0] starts;
 reg [8:0] tags [0:TRAVEL-1];
+wire given_up = GIVES_UP && starts[1] && !last_ahead;
 always @(posedge clk) begin: follow
     integer i;
-    starts <= reset ? 0 : {starts, find_intersection};
+    starts <= reset ? 0 : {starts[TRAVEL-2:2], starts[1] && !given_up, starts[0], find_intersection};
     tags[0] <= tag;
     for (i = 1; i < TRAVEL; i = i + 1) tags[i] <= tags[i-1];
 end
@@ -120,14 +127,56 @@ always @* if (known) begin
     if (starts[2+STEPS]) assert (finishing == tags[2+STEPS]);
     if (starts[3+STEPS]) assert (finishing == tags[3+STEPS]);
     // No result is still under way when the ray is blended.
-    if (add_color) assert (starts << 1 == 0);
+    if (add_color) assert (starts == 0);
 end
 
-// The divider is never loaded before it is finished.
+// The divider is never loaded before it is finished, or its division given up.
 reg [7:0] since_load;
-always @(posedge clk) since_load <= reset || (since_load >= STEPS && !load_divider) ? STEPS
+always @(posedge clk) since_load <= reset || given_up || (since_load >= STEPS && !load_divider) ? STEPS
     : load_divider ? 1 : since_load + 1;
 always @* if (known && load_divider) assert (since_load >= STEPS);
+
+// A ray's time: where the slots end that have begun, and where the last that was kept did; 0: none was. One slot
+// follows the other, and the ray is blended when nothing is under way any more.
+reg [TIME_BITS-1:0] slots_end, kept_end;
+wire [TIME_BITS-1:0] kept_result = kept_end == 0 ? 0 : kept_end + RESULT_LATENCY - 1;
+wire [TIME_BITS-1:0] blend_at = kept_result > slots_end + 1 ? kept_result : slots_end + 1;
+always @(posedge clk) begin
+    if (reset_z_buf) slots_end <= 0;
+    else if (find_intersection) slots_end <= slots_end + STEPS;
+    else if (given_up) slots_end <= slots_end - (STEPS - GIVE_UP);
+    if (reset_z_buf) kept_end <= 0;
+    else if (starts[1] && !given_up) kept_end <= slots_end;
+end
+always @* if (known && started && tracing) begin
+    if (find_intersection) assert (place == slots_end);
+    assert (add_color == (place == blend_at));
+end
+
+// It ends, in at most a number of cycles that is known: that of the budget's formula for the usable rectangles; and in
+// just so many where nothing was spared. Done stays.
+function [5:0] count(input [RECTANGLES-1:0] mask);
+    integer i;
+    begin
+        count = 0;
+        for (i = 0; i < RECTANGLES; i = i + 1) count = count + mask[i];
+    end
+endfunction
+wire [TIME_BITS-1:0] pass = usable == 0 ? 2 : count(usable) * STEPS + RESULT_LATENCY;
+wire [TIME_BITS-1:0] rays_cycles = rays[1] ? (rays[0] ? 3 * pass : 2 * pass) : rays[0] ? pass : 0;
+reg some_given_up, some_lost;
+wire spared = some_given_up || some_lost || (usable & ~possible) != 0;
+reg was_done;
+always @(posedge clk) begin
+    some_given_up <= started && (some_given_up || given_up);
+    some_lost <= started && (some_lost || reflected && !alive);
+    was_done <= done && !reset;
+end
+always @* if (known && started) begin
+    if (done) assert (cycles <= 2 + rays_cycles && (spared || cycles == 2 + rays_cycles));
+    else assert (cycles < RUN_BOUND);
+    if (was_done) assert (done);
+end
 
 // Counters in range.
 (* hierconn *) wire [SLOT_BITS-1:0] \dut.ray_sequencer_i.rect_sequencer_i.slot ;
@@ -137,56 +186,66 @@ always @* if (known && tracing) begin
     assert (\dut.ray_sequencer_i.bounce <= reflections);
 end
 
-// Invariants: the state machine is where the counts say, what waits follows what was visited, and everything in flight
-// started at a slot's begin.
+// Invariants: the state machine is where the counts say, what waits follows what was visited, and of what is in flight,
+// none started within STEPS cycles of another.
 (* hierconn *) wire [2:0] \dut.ray_sequencer_i.state ;
 (* hierconn *) wire \dut.ray_sequencer_i.rect_sequencer_i.fetched ;
 (* hierconn *) wire \dut.ray_sequencer_i.rect_sequencer_i.offered ;
 (* hierconn *) wire [INDEX_BITS-1:0] \dut.ray_sequencer_i.rect_sequencer_i.upcoming ;
 (* hierconn *) wire [RECTANGLES-1:0] \dut.ray_sequencer_i.rect_sequencer_i.waiting ;
+(* hierconn *) wire \dut.ray_sequencer_i.give_up ;
 (* hierconn *) wire [TRAVEL-1:0] \dut.in_flight ;
 (* hierconn *) wire [8:0] \dut.dividing_rect_position ;
 localparam IDLE = 0, GENERATE = 1, TRACE = 2, BLEND = 3, DONE = 4;
 wire [2:0] state = \dut.ray_sequencer_i.state ;
 wire [SLOT_BITS-1:0] slot = \dut.ray_sequencer_i.rect_sequencer_i.slot ;
+wire fetched = \dut.ray_sequencer_i.rect_sequencer_i.fetched ;
 wire [RECTANGLES-1:0] waiting = \dut.ray_sequencer_i.rect_sequencer_i.waiting ;
 wire [RECTANGLES-1:0] lowest_waiting = waiting & -waiting;
 wire [RECTANGLES-1:0] offered = {{RECTANGLES-1{1'b0}}, \dut.ray_sequencer_i.rect_sequencer_i.offered } << \dut.ray_sequencer_i.rect_sequencer_i.upcoming ;
 wire [RECTANGLES-1:0] left = offered | waiting;
-wire starting = state == TRACE && \dut.ray_sequencer_i.rect_sequencer_i.fetched && slot == 0;
+wire starting = state == TRACE && fetched && slot == 0;
 wire [RECTANGLES-1:0] taken = starting ? visited | tagged : visited;
-wire [15:0] started_slots = count(visited) * STEPS;
-wire [15:0] extra = place - started_slots;  // cycles since the last rectangle's slot, once nothing is fetched
+wire [TIME_BITS-1:0] whole_slots = count(visited) * STEPS;
 always @* if (known) begin
-    assert (\dut.in_flight == starts);
-    if (!started) assert (state == IDLE && starts == 0 && !tracing);
-    else assert (state != IDLE && state <= DONE);
-    assert (tracing == (started && (state == TRACE || state == BLEND)));
-    if (started && state == GENERATE) assert (cycles == 1 && starts == 0);
-    if (started && state == DONE) assert (starts == 0);
-    if (state == IDLE || state == GENERATE) assert (!\dut.ray_sequencer_i.rect_sequencer_i.fetched );
-    if (state == GENERATE || state == BLEND && usable != 0) assert (!\dut.ray_sequencer_i.rect_sequencer_i.fetched && left == usable);
-    if (state != IDLE) assert (waiting == 0 || offered < lowest_waiting && offered != 0 && (offered & waiting) == 0);
-    if (tracing) begin
+    assert (\dut.in_flight == starts && \dut.ray_sequencer_i.give_up == given_up);
+    if (!started) assert (cycles == 0 && state == IDLE && starts == 0 && !tracing && !lost);
+    else assert (state != IDLE && state <= DONE && (state == GENERATE ? cycles == 1 : cycles > 1));
+    assert ((tracing || lost) == (started && (state == TRACE || state == BLEND)));
+    if (state != TRACE) assert (starts == 0);
+    if (started && state == GENERATE) assert (!some_given_up && !some_lost);
+    if (state == IDLE || state == GENERATE) assert (!fetched);
+    if (state == GENERATE) assert (left == (usable & possible));
+    if (state == BLEND && tracing) assert (!fetched && left == usable);
+    if (state != IDLE) begin
+        assert (waiting == 0 || offered < lowest_waiting && offered != 0 && (offered & waiting) == 0);
+        assert (\dut.ray_sequencer_i.rect_sequencer_i.offered == (offered != 0));
+    end
+    if (tracing || lost) begin
         assert (rays == \dut.ray_sequencer_i.bounce );
-        assert (cycles == 2 + rays_cycles + place);
-        assert (place < pass);
-        assert ((state == BLEND) == (place == pass - 1));
+        assert (cycles <= 2 + rays_cycles + place && (spared || cycles == 2 + rays_cycles + place));
+    end
+    if (lost) assert (state == BLEND && place == 0 && rays != 0 && some_lost);
+    if (tracing) begin
+        assert ((state == BLEND) == (place == blend_at));
+        assert (place <= blend_at);
+        assert (slots_end <= whole_slots && (some_given_up || slots_end == whole_slots));
+        assert (kept_end <= slots_end && (some_given_up || kept_end == slots_end || fetched));
     end
     if (state == TRACE) begin
-        if (\dut.ray_sequencer_i.rect_sequencer_i.fetched ) begin
-            assert ((taken | left) == usable && (taken & left) == 0);
+        if (fetched) begin
+            assert ((taken | left) == wanted && (taken & left) == 0);
             assert (left == 0 || taken < offered);
             assert (tag < RECTANGLES);
-            if (slot == 0) assert ((usable & tagged) != 0 && visited < tagged);
+            if (slot == 0) assert ((wanted & tagged) != 0 && visited < tagged);
             else assert (visited != 0);
-            assert (place == (slot == 0 ? started_slots : started_slots - STEPS + slot));
+            assert (place == (slot == 0 ? slots_end : slots_end - STEPS + slot));
         end
         else begin
-            assert (visited == usable && left == (extra == 0 ? 0 : usable));
-            assert (place >= started_slots && extra <= 4);
-            if (usable == 0) assert (extra == 0);
+            assert (visited == wanted && left == (place == slots_end ? 0 : usable));
+            assert (place >= slots_end);
         end
+        if (!fetched || slot == 0) assert ((starts & ((1 << (STEPS - 1)) - 1)) == 0);
     end
 end
 always @* if (known && since_load < STEPS) assert (since_load != 0 && (starts >> since_load) & 2);
@@ -195,25 +254,28 @@ genvar age;
 generate
     for (age = 0; age < TRAVEL; age = age + 1) begin: ages
         always @* if (known && starts[age]) begin
-            if (state == TRACE) assert (slot == (age + 1) % STEPS && place > age);
-            if (age < 2) assert (tag == tags[age]);
-            else if (age < 2 + STEPS) assert (\dut.dividing_rect_position == tags[age]);
+            assert (place > age && ((starts << (STEPS - 1)) >> age & ((1 << (STEPS - 1)) - 1)) == 0);
+            if (age < 2) assert (fetched && slot == age + 1 && tag == tags[age]);
+            else if (age < 2 + STEPS) assert (\dut.dividing_rect_position == tags[age] && since_load == age - 1);
             else assert (finishing == tags[age]);
-            if (age >= 2 && age < 2 + STEPS) assert (since_load == age - 1);
+            if (age >= 2) assert (kept_end != 0 && kept_end + age + 1 >= place + STEPS);
         end
+        // The last that was kept is on its way for so long.
+        always @* if (known && state == TRACE && kept_end != 0 && kept_end + age + 1 == place + STEPS)
+            assert (age >= 2 && starts[age]);
     end
     for (age = 1; age < STEPS; age = age + 1) begin: slots
-        always @* if (known && state == TRACE && \dut.ray_sequencer_i.rect_sequencer_i.fetched && slot == age)
+        always @* if (known && state == TRACE && fetched && slot == age)
             assert (starts[age-1] && (starts & ((1 << (age - 1)) - 1)) == 0);
-    end
-    for (age = 0; age <= 4; age = age + 1) begin: extras
-        always @* if (known && state == TRACE && !\dut.ray_sequencer_i.rect_sequencer_i.fetched && usable != 0 && extra == age) begin
-            assert (slot == age % STEPS);
-            assert (starts[STEPS+age-1] && (starts & ((1 << (STEPS + age - 1)) - 1)) == 0);
-        end
     end
 endgenerate
 
-// A run with everything in it ends.
-always @* cover (done && started && &usable && reflections == REFLECTIONS);
+// A run with everything in it ends, and one that is spared what can be.
+always @* cover (done && started && !spared && &usable && reflections == REFLECTIONS);
+always @* cover (done && started && some_lost);
+generate
+    if (GIVES_UP) begin: giving_up
+        always @* cover (done && started && some_given_up && !some_lost);
+    end
+endgenerate
 endmodule

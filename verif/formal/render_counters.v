@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The renderer's counters: rows, columns, and the place in the line buffer. With the real control of the rays; the ray
-// units, the line buffers and the video generator are cut out, and what they would drive is arbitrary.
+// units, what culls for them, the line buffers and the video generator are cut out, and what they would drive is
+// arbitrary.
 //
 // So nothing is assumed of the video generator's strobes. Assumed of the rest: one cycle of reset at first, and `run`
 // changes in the cycle after StartScreen or reset only, as the scene's live words do.

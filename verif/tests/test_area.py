@@ -17,11 +17,11 @@ from raycaster.fpga.area import CHIPS, FAMILIES, Area, Chip, Model, measure, mea
 from raycaster.rtl.convert import write_verilog
 
 YOSYS = "0.70.0.0.post1259"
-SMALL = configure(screen="tiny", units=2, rectangles=2, divider_bits=1, allow_underrun=True)
+SMALL = configure(screen="tiny", units=2, rectangles=2, divider_bits=1, allow_underrun=True, culling=False)
 AREAS = {
-    "ecp5": Area(tables=2561, registers=1808, elements=2561, multipliers=4, memories=0),
-    "cycloneive": Area(tables=2861, registers=1742, elements=3293, multipliers=4, memories=2),
-    "cyclonev": Area(tables=1929, registers=1783, elements=1017, multipliers=4, memories=2),
+    "ecp5": Area(tables=2438, registers=1808, elements=2438, multipliers=4, memories=0),
+    "cycloneive": Area(tables=2839, registers=1742, elements=3271, multipliers=4, memories=2),
+    "cyclonev": Area(tables=1926, registers=1783, elements=1020, multipliers=4, memories=2),
 }
 
 families = pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES)
@@ -54,10 +54,23 @@ def test_modules_and_their_multipliers(family, tmp_path):
     assert 0.6 * registers < AREAS[family.name].registers <= registers
 
 
+@pytest.mark.parametrize(("family", "multipliers"), [("ecp5", 6), ("cycloneive", 12), ("cyclonev", 12)])
+def test_what_culling_takes(family, multipliers, tmp_path):
+    """Six products, each wider than 9 by 9 bits; its adders are no multipliers where units are a power of two."""
+    modules = measure_modules(replace(SMALL, culling=True), FAMILIES[family], tmp_path / "area")
+    found = {name: instances for name, (instances, _) in modules.items() if name not in INSTANCES}
+    assert found == {"group_culler": 1, "group_tester": 1, "rect_copy": 1, "rect_setup": 1}
+    assert {name: modules[name][1].multipliers for name in found} == dict.fromkeys(found, 0) | {
+        "rect_setup": multipliers
+    }
+
+
 @pytest.mark.parametrize(("family", "multipliers"), [("ecp5", 1), ("cycloneive", 2)])
 def test_wide_multipliers(family, multipliers, tmp_path):
     """9 by 17 bits: one of 18 bits, or two of 9."""
-    wide = configure(screen="tiny", units=2, rectangles=2, fraction_bits=8, divider_bits=1, allow_underrun=True)
+    wide = configure(
+        screen="tiny", units=2, rectangles=2, fraction_bits=8, divider_bits=1, allow_underrun=True, culling=False
+    )
     assert measure(wide, FAMILIES[family], tmp_path / "area").multipliers == 4 * multipliers
 
 
@@ -91,7 +104,8 @@ def test_every_chip_belongs_to_a_family():
 
 
 def test_the_command(tmp_path):
-    options = ("--screen", "tiny", "--units", "4", "--rectangles", "1", "--allow-underrun", "--family", "ecp5")
+    options = ("--screen", "tiny", "--units", "4", "--rectangles", "1", "--allow-underrun", "--culling", "0")
+    options += ("--family", "ecp5")
     done = command(tmp_path, *options)
     assert (done.returncode, done.stderr) == (0, "")
     published = json.loads((tmp_path / "build" / "area" / "area.json").read_text())["families"]["ecp5"]

@@ -131,6 +131,7 @@ def test_intersection_helper(config, tmp_path):
             "quotient": unsigned(width),
             "distance": unsigned(width),
             "valid": bit(),
+            "ahead": bit(),
             "config": config,
         },
         tmp_path,
@@ -174,6 +175,7 @@ def test_intersection_helper(config, tmp_path):
         added = outputs[number * steps + steps + 4]
         vector = {"a": a, "b": b, "c": c, "d": d, "e": e}
         assert bool(stored["valid"]) == bool(valid), (vector, repeat())
+        assert bool(outputs[number * steps + 1]["ahead"]) == ((c - d) * e > 0), (vector, repeat())
         if valid:
             valid_seen += 1
             assert added["value"] == int(value) % (1 << (width + 2)), (vector, repeat())

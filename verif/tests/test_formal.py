@@ -24,6 +24,8 @@ def chosen(name: str, label: str) -> Property:
 TIMING = chosen("video-timing", "tiny48")
 AGENT = chosen("avalon-agent", "vga240-u1-r2-m1-f0t-d3-c8")
 ORDER = chosen("ray-order", "tiny48-u2-r2-m1-f0t-d3-c8")
+GIVING_UP = chosen("ray-order", "tiny48-u2-r2-m1-f3t-d3-c8")
+PATIENT = chosen("ray-order", "tiny48-u2-r2-m1-f3t-d3-c8-k0")
 SECTIONS = chosen("line-sections", "tiny48-u2-r2-m1-f0t-d3-c8")
 COUNTERS = chosen("render-counters", "vga240-u16-r4-m1-f0t-d1-c8")
 TESTER = chosen("tester-exact", "2 bits, 1 mirrors")
@@ -61,6 +63,25 @@ FAULTS = {
     "stored-too-early": (ORDER, "ray_control", "store_quotient = in_flight[4];", "store_quotient = in_flight[3];"),
     "wrong-rectangle": (ORDER, "ray_control", "_position <= dividing_rect_position;",
                         "_position <= rects_rect_position;"),
+    "impossible-visited": (ORDER, "ray_sequencer", "wanted = rects_usable & prospects_possible;",
+                           "wanted = rects_usable;"),
+    "mirrored-not-visited": (ORDER, "ray_sequencer", "wanted = rects_usable;",
+                             "wanted = rects_usable & prospects_possible;"),
+    "not-traced-though-alive": (ORDER, "ray_sequencer", "if (prospects_alive) begin", "if (1'b0) begin"),
+    "lost-traced": (ORDER, "ray_sequencer", "if (prospects_alive) begin", "if (1'b1) begin"),
+    "a-ray-too-few": (ORDER, "ray_sequencer", "if (bounce == reflections) begin",
+                      "if ((bounce == reflections) || !prospects_alive) begin"),
+    "stored-though-given-up": (GIVING_UP, "ray_sequencer", "in_flight[2] <= 1'b0;", "in_flight[2] <= in_flight[1];"),
+    "given-up-early": (GIVING_UP, "ray_control", "give_up = in_flight[1] && hopeless;",
+                       "give_up = in_flight[0] && hopeless;"),
+    "given-up-late": (GIVING_UP, "ray_control", "give_up = in_flight[1] && hopeless;",
+                      "give_up = in_flight[2] && hopeless;"),
+    "given-up-though-ahead": (GIVING_UP, "ray_control", "give_up = in_flight[1] && hopeless;",
+                              "give_up = in_flight[1];"),
+    "not-given-up": (GIVING_UP, "ray_control", "give_up = in_flight[1] && hopeless;", "give_up = 1'b0;"),
+    "slot-runs-on": (GIVING_UP, "rect_sequencer", "if (start_ray || give_up || (slot == 3)) begin",
+                     "if (start_ray || (slot == 3)) begin"),
+    "given-up-by-itself": (PATIENT, "ray_control", ".give_up(1'd0)", ".give_up(in_flight[1] && !prospects_alive)"),
     "halves-overlap": (SECTIONS, "line_buffer", "read_address = read_offset + 32;",
                        "read_address = read_offset + 31;"),
     "one-half": (SECTIONS, "line_buffer", "if (line_buf_sel) begin", "if (line_buf_sel && !write) begin"),
@@ -86,7 +107,7 @@ FAULTS = {
 
 @pytest.mark.parametrize(
     "proof",
-    [TIMING, AGENT, ORDER, SECTIONS, COUNTERS, TESTER, FOLD, TABLE],
+    [TIMING, AGENT, ORDER, GIVING_UP, PATIENT, SECTIONS, COUNTERS, TESTER, FOLD, TABLE],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )
 def test_holds(proof, output):

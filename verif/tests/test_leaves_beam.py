@@ -183,6 +183,7 @@ def test_rect_setup(config, tmp_path):
             "start_line": bit(),
             "rects": PipelinedRects(config),
             "camera": Point(),
+            "column_slope": signed(exact_slope_bits(config) + 1),
             "row_slope": signed(exact_slope_bits(config) + 1),
             "load": unsigned(count),
             "facet": Facet(config),
@@ -204,11 +205,13 @@ def test_rect_setup(config, tmp_path):
         held |= {"reset": 0, "start_line": 0, "rects_usable": sum(int(one) << i for i, one in enumerate(table.enabled))}
         start = len(stimulus)
         stimulus += [{**held, "start_line": 1}, held, held]
-        held["row_slope"] = word(slopes[row, 0, 2], exact_slope_bits(config) + 1)
+        column = 0 if line < 4 else int(random.integers(slopes.shape[1] - 1))
+        held["column_slope"] = word(slopes[row, column, 1], exact_slope_bits(config) + 1)
+        held["row_slope"] = word(slopes[row, column, 2], exact_slope_bits(config) + 1)
         for index in range(count):
             # Two cycles after it was asked for.
             stimulus.append({**held, **sorted_rect(table, index, "rects_rect")})
-            loads[start + setup.LATENCY + index] = table, index, camera, slopes[row, :2]
+            loads[start + setup.LATENCY + index] = table, index, camera, slopes[row, column : column + 2]
         stimulus += [held] * (setup.LATENCY + int(random.integers(5)))
     outputs = leaf.run_both(stimulus, settled=2 + setup.LATENCY)
     width = walk_bits(config)

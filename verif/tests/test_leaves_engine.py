@@ -5,10 +5,12 @@ golden on one set of scenes, and the control's steps cycle by cycle."""
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
+from typing import Any
 from unittest import mock
 
 import numpy as np
 import pytest
+from fates import mask_of, prospects_in, random_fate
 from hard_scenes import edged, pixel_word, rectangles_in_view, traced_scene
 
 from raycaster.configuration import BEAM_SCREENS, SCREENS, WORLD_SIZE, Configuration, Screen, Span, configure
@@ -18,7 +20,7 @@ from raycaster.golden.world import Rectangles
 from raycaster.registers import register_map
 from raycaster.rtl.camera_axis import STEP
 from raycaster.rtl.engines import ENGINES
-from raycaster.rtl.interfaces import Plane, Point, Rect, SequentialRects, Steps
+from raycaster.rtl.interfaces import Outlook, Plane, Point, Prospects, Rect, SequentialRects, Steps
 from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
 from raycaster.rtl.ray_caster_system import SystemPorts, ray_caster_system
 from raycaster.rtl.ray_control import ray_control
@@ -92,7 +94,8 @@ controls = pytest.mark.parametrize(
             (1, 0, 0, 1), (1, 2, 8, 1), (2, 1, 0, 3), (3, 2, 0, 3), (5, 1, 4, 2), (8, 2, 1, 2), (12, 1, 0, 1),
             (12, 2, 0, 3), (32, 1, 8, 3),
         )
-    ],
+    ]
+    + [any_config(rectangles=5, reflections=2, culling=False)],
     ids=config_id,
 )  # fmt: skip
 
@@ -108,6 +111,7 @@ def test_ray_control(config, tmp_path):
             "reflections": unsigned(2),
             "rects": SequentialRects(config),
             "steps": Steps(),
+            "prospects": Prospects(config),
             "finishing_rect": Rect(),
             "done": bit(),
             "config": config,
@@ -140,14 +144,17 @@ def test_ray_control(config, tmp_path):
         usable = [index for index in range(count) if mask >> index & 1]
         reflections = config.reflections if number < 2 else int(random.integers(config.reflections + 1))
         held = {"rects_usable": mask, "reflections": reflections}
+        fate = random_fate(random, usable, reflections, number)
+        # What is not usable may be possible, and is not visited.
+        held["prospects_possible"] = mask_of(fate["possible"]) | int(random.integers(1 << count)) & ~mask
         quiet = ({f"steps_{name}": 0 for name in vars(Steps()) if name != "initial_ray"} | {"done": 0}, None, None)
         for _ in range(2):
             drive({**held, "reset_ray_caster": 1, "enable": int(random.integers(2))})
         for _ in range(int(random.integers(3))):
             drive({**held, "reset_ray_caster": 0, "enable": 0}, quiet)
         drive({**held, "reset_ray_caster": 0, "enable": 1}, quiet)
-        trace = trace_cycles(config, usable, reflections)
-        if mask == every and reflections == config.reflections:
+        trace = trace_cycles(config, usable, reflections, **fate)
+        if number == 0:
             assert len(trace) + 3 == config.group_cycles, "with done and the reset of two cycles"
         # A row may be abandoned at any moment; what was under way must not come out later.
         abandoned = number > 4 and number % 2
@@ -158,6 +165,7 @@ def test_ray_control(config, tmp_path):
             if cycle.finishing is not None and first_known is None:
                 first_known = len(stimulus)
             inputs = {**held, "reset_ray_caster": 0, "enable": int(random.integers(2))}
+            inputs |= prospects_in(random, cycle, leaf)
             drive(inputs, (wanted, cycle.current, cycle.finishing), cycle.current)
         if not abandoned:
             for _ in range(int(random.integers(1, 4))):
@@ -177,6 +185,18 @@ def test_ray_control(config, tmp_path):
                 assert {name: output[name] for name in rect} == rect, (cycle, repeat())
         if output["rects_fetch"]:
             held_by_memory = output["rects_index"]
+
+
+def fate_of(golden) -> dict[str, Any]:
+    """What the control is told of a group that golden has traced: the keyword arguments of `trace_cycles`."""
+    hopeless = {
+        (number, index)
+        for number, bounce in enumerate(golden.bounces)
+        for index in range(len(bounce.numerators))
+        if not np.any(bounce.alive & (bounce.numerators[index] * bounce.denominators[index] > 0))
+    }
+    missed = np.logical_or.accumulate(np.array(golden.winners) < 0)
+    return {"hopeless": hopeless, "lost": next(iter(np.flatnonzero(missed.all(axis=1))), None)}
 
 
 # ray_unit ------------------------------------------------------------------------------------------------------------
@@ -218,6 +238,7 @@ def ray_unit_leaf(config: Configuration, directory) -> Leaf:
             "background": unsigned(COLOUR_BITS),
             "reflections": unsigned(2),
             "pixel": unsigned(pixel_bits(config)),
+            "outlook": Outlook(),
             "config": config,
         },
         directory,
@@ -229,7 +250,7 @@ def check_ray_unit(leaf: Leaf, config: Configuration, rays: int = 24) -> None:
     random = np.random.default_rng(seed())
     slopes = primary_slopes(config.screen_geometry)
     rows, columns, _ = slopes.shape
-    stimulus, results = [], []
+    stimulus, results, outlooks = [], [], []
     # How many mirrors a ray meets: none, one, and all that it may.
     fates, every_fate = set(), set(range(config.reflections + 2))
     while len(results) < rays or fates != every_fate:
@@ -248,8 +269,11 @@ def check_ray_unit(leaf: Leaf, config: Configuration, rays: int = 24) -> None:
             "reflections": reflections,
             **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
         }
-        for cycle in trace_cycles(config, visible_indices(table), reflections):
+        fated = fate_of(golden) if config.culling else {}
+        for cycle in trace_cycles(config, visible_indices(table), reflections, **fated):
             inputs = {**held, **cycle.steps, **plane_and_rect(cycle, table)}
+            if config.culling:
+                outlooks.append((len(stimulus), cycle.ahead, cycle.alive))
             if not cycle.steps["steps_screen_to_ray"] and not cycle.steps["steps_find_intersection"]:
                 inputs |= unrelated_inputs(random, config)
             stimulus.append(inputs)
@@ -260,6 +284,9 @@ def check_ray_unit(leaf: Leaf, config: Configuration, rays: int = 24) -> None:
     outputs = leaf.run_both(stimulus, settled=results[0][0])
     for cycle, pixel, case in results:
         assert outputs[cycle]["pixel"] == pixel, case
+    for cycle, ahead, alive in outlooks:
+        assert ahead is None or outputs[cycle].get("outlook_ahead", ahead) == ahead, (cycle, repeat())
+        assert alive is None or outputs[cycle]["outlook_alive"] == alive, (cycle, repeat())
 
 
 @pytest.mark.parametrize(
@@ -275,7 +302,8 @@ def check_ray_unit(leaf: Leaf, config: Configuration, rays: int = 24) -> None:
             ("vga", 320, 7, 2, 4, "nearest", 3, 8), ("vga", 64, 8, 1, 4, "truncate", 1, 1),
             ("tiny", 16, 8, 2, 8, "nearest", 2, 8), ("vga", 40, 8, 2, 8, "truncate", 3, 8),
         )
-    ],
+    ]
+    + [any_config(units=16, rectangles=8, reflections=2, culling=False)],
     ids=config_id,
 )  # fmt: skip
 def test_ray_unit(config, tmp_path):
@@ -294,11 +322,13 @@ def test_ray_unit(config, tmp_path):
         any_config(engine="exact", units=1, rectangles=4, reflections=2),
         any_config(engine="exact", units=2, rectangles=8, reflections=1),
         any_config(engine="exact", units=5, rectangles=7, reflections=0, colour_bits=4),
+        any_config(units=4, rectangles=6, reflections=2, divider_bits=1, culling=False),
+        any_config(engine="exact", units=4, rectangles=6, reflections=2, culling=True),
     ],
     ids=config_id,
 )
 def test_ray_caster(config, tmp_path):
-    """Of either engine, whose ports are the same."""
+    """Of either engine, whose ports are the same. No group is a frame's first, so none is foreseen."""
     leaf = Leaf(
         ENGINES[config.engine],
         lambda: {
@@ -321,7 +351,7 @@ def test_ray_caster(config, tmp_path):
     slopes = primary_slopes(config.screen_geometry)
     stimulus, results = [], []
     for _ in range((160 if config.engine == "exact" else 80) if config.units == 1 else 12):
-        row, offset = int(random.integers(len(slopes))), int(random.integers(config.groups))
+        row, offset = int(random.integers(1, len(slopes))), int(random.integers(config.groups))
         group = slopes[row, offset * config.units : (offset + 1) * config.units]
         camera, table, background, reflections, golden = traced_scene(random, config, group)
         held = {
@@ -335,7 +365,8 @@ def test_ray_caster(config, tmp_path):
         stimulus += [{**held, "reset_ray_caster": 1, "enable": 1}] * 2
         stimulus += [{**held, "reset_ray_caster": 0, "enable": 0}] * int(random.integers(3))
         stimulus.append({**held, "reset_ray_caster": 0, "enable": 1})
-        for cycle in trace_cycles(config, visible_indices(table), reflections):
+        fate = fate_of(golden) if config.culling else {}
+        for cycle in trace_cycles(config, visible_indices(table), reflections, **fate):
             rect = {} if cycle.current is None else sorted_rect(table, cycle.current, "rects_rect")
             stimulus.append({**held, **rect, "reset_ray_caster": 0, "enable": int(random.integers(2))})
         colours = [pixel_word(config, colour) for colour in golden.colours]
@@ -414,11 +445,14 @@ def renderer_leaf(config: Configuration, directory) -> Leaf:
 @pytest.mark.parametrize(
     "config",
     [
-        small_config(units=4, rectangles=1, reflections=1, colour_bits=8),
-        small_config(units=2, rectangles=1, reflections=0, fraction_bits=4, rounding="nearest", colour_bits=4),
-        small_config(units=4, rectangles=1, reflections=2, divider_bits=3, colour_bits=2),
+        small_config(units=4, rectangles=1, reflections=1, colour_bits=8, culling=False),
+        small_config(units=2, rectangles=1, reflections=0, fraction_bits=4, rounding="nearest", culling=False),
+        small_config(units=4, rectangles=1, reflections=2, divider_bits=3, colour_bits=2, culling=False),
+        small_config(units=4, rectangles=1, reflections=2, colour_bits=4),
         # 16 groups of 27 cycles, of which a row of 336 has time for twelve.
-        small_config(units=1, rectangles=1, reflections=0, fraction_bits=8, divider_bits=1, allow_underrun=True),
+        small_config(
+            units=1, rectangles=1, reflections=0, fraction_bits=8, divider_bits=1, allow_underrun=True, culling=False
+        ),
     ],
     ids=config_id,
 )
@@ -474,9 +508,14 @@ def test_ray_caster_renderer(config, tmp_path):
     rows = [start + frame + row * screen.row_cycles for row in range(1, screen.rows + 1)]
     assert late == (rows if config.allow_underrun else [])
     in_second = outputs[start + frame + 1 : start + 2 * frame]
+    busy = sum(output["busy"] for output in in_second)
+    if config.culling:
+        # In the first two groups nothing is known yet.
+        assert 2 * group < busy < screen.rows * config.groups * group / 2
+        return
     if not config.allow_underrun:
         assert max(output["row_cycles"] for output in in_second if output["busy"]) == config.groups * group
-        assert sum(output["busy"] for output in in_second) == screen.rows * config.groups * group
+        assert busy == screen.rows * config.groups * group
         times = [output["group_cycles"] for output in in_second]
         finished = [before for before, after in pairwise(times) if after < before]
         assert finished == [group] * screen.rows * config.groups

@@ -2,9 +2,11 @@
 """The exact engine's blocks: MyHDL's simulator, the converted Verilog and exact arithmetic on one set of vectors."""
 
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 import pytest
+from fates import mask_of, prospects_in, random_fate
 from hard_scenes import pixel_word, sharpened, traced_scene, verdict
 
 from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
@@ -14,9 +16,21 @@ from raycaster.golden.world import Rectangles
 from raycaster.rtl.exact_control import exact_control
 from raycaster.rtl.exact_unit import exact_unit
 from raycaster.rtl.eye_mem import eye_mem
-from raycaster.rtl.interfaces import Eye, Mirror, Point, RaySteps, Rect, SequentialRects, Signs, Slope, Surface
+from raycaster.rtl.interfaces import (
+    Eye,
+    Mirror,
+    Outlook,
+    Point,
+    Prospects,
+    RaySteps,
+    Rect,
+    SequentialRects,
+    Signs,
+    Slope,
+    Surface,
+)
 from raycaster.rtl.nearest_hit import nearest_hit
-from raycaster.rtl.ray_sequencer import ray_sequencer
+from raycaster.rtl.ray_sequencer import GIVE_UP_AT, impatient, ray_sequencer
 from raycaster.rtl.rect_sequencer import rect_sequencer
 from raycaster.rtl.rect_tester import rect_tester
 from raycaster.rtl.widths import (
@@ -31,7 +45,7 @@ from raycaster.rtl.widths import (
     unit_bits,
     unsigned,
 )
-from raycaster.verif.leaf import Leaf, sorted_rect, trace_cycles
+from raycaster.verif.leaf import Leaf, TraceCycle, sorted_rect, trace_cycles
 from raycaster.verif.seeds import repeat, seed
 
 AXES = "xyz"
@@ -349,6 +363,7 @@ def test_rect_sequencer(count, slot_cycles, tmp_path):
             "reset_ray_caster": bit(),
             "start_ray": bit(),
             "wanted": unsigned(count),
+            "give_up": bit(),
             "index": unsigned(index_bits(config)),
             "fetch": bit(),
             "fetched": bit(),
@@ -361,9 +376,9 @@ def test_rect_sequencer(count, slot_cycles, tmp_path):
     random = np.random.default_rng(seed())
     stimulus, expected = [], []
 
-    def drive(reset, start, mask, current=None, first=False):
+    def drive(reset, start, mask, current=None, first=False, give_up=0):
         """A cycle in which `current` is at hand."""
-        stimulus.append({"reset_ray_caster": reset, "start_ray": start, "wanted": mask})
+        stimulus.append({"reset_ray_caster": reset, "start_ray": start, "wanted": mask, "give_up": give_up})
         expected.append((current, first))
 
     every = (1 << count) - 1
@@ -376,10 +391,16 @@ def test_rect_sequencer(count, slot_cycles, tmp_path):
         for _ in range(int(random.integers(1, 3))):
             drive(0, 0, mask)
         drive(0, 1, mask)
-        slots = [(index, cycle == 0) for index in range(count) if mask >> index & 1 for cycle in range(slot_cycles)]
+        slots = []
+        for index in range(count):
+            if mask >> index & 1:
+                # Some are given up, in any cycle of their slot.
+                last = int(random.integers(slot_cycles)) if random.random() < 0.3 else slot_cycles - 1
+                given_up = last < slot_cycles - 1
+                slots += [(index, cycle == 0, int(given_up and cycle == last)) for cycle in range(last + 1)]
         # Only a reset comes before the end.
-        for current, first in slots[: int(random.integers(len(slots) + 1))] if number % 5 == 4 else slots:
-            drive(0, 0, mask, current, first)
+        for current, first, give_up in slots[: int(random.integers(len(slots) + 1))] if number % 5 == 4 else slots:
+            drive(0, 0, mask, current, first, give_up)
         if number % 5 != 4:
             drive(0, 0, mask)
     outputs = leaf.run_both(stimulus, settled=4)
@@ -407,12 +428,17 @@ def seed_config(**options) -> Configuration:
             for n, r in ((1, 0), (1, 2), (3, 2), (12, 2), (32, 0))
         ),
         *((ray_sequencer, exact_config(rectangles=n, reflections=r)) for n, r in ((2, 1), (12, 2))),
-        *((ray_sequencer, seed_config(rectangles=n, reflections=2, divider_bits=b)) for n, b in ((3, 3), (12, 3))),
+        *(
+            (ray_sequencer, seed_config(rectangles=n, reflections=2, divider_bits=b))
+            for n, b in ((3, 3), (12, 3), (5, 1))
+        ),
     ],
     ids=lambda value: value.name if isinstance(value, Configuration) else value.__name__,
 )
 def test_controls(function, config, tmp_path):
-    arguments = {"offered": Surface} if function is exact_control else {"in_flight": lambda: unsigned(write_at + 1)}
+    arguments = {"in_flight": lambda: unsigned(write_at + 1), "give_up": bit}
+    if function is exact_control:
+        arguments = {"offered": Surface}
     write_at = 2 if config.engine == "exact" else config.divider_steps + 3
     leaf = Leaf(
         function,
@@ -423,6 +449,7 @@ def test_controls(function, config, tmp_path):
             "reflections": unsigned(2),
             "rects": SequentialRects(config),
             "steps": RaySteps(),
+            "prospects": Prospects(config),
             **{name: make() for name, make in arguments.items()},
             "done": bit(),
             **({"slot_cycles": config.slot_cycles} if function is ray_sequencer else {}),
@@ -445,6 +472,7 @@ def test_controls(function, config, tmp_path):
     table.corners[np.arange(count), 1, flat] = table.corners[np.arange(count), 0, flat]
     quiet = {name: 0 for name in leaf.outputs if name.startswith("steps_") and name != "steps_initial_ray"}
     quiet["done"] = 0
+    quiet_cycle = TraceCycle({}, 0)
     stimulus, expected = [], []
 
     def drive(inputs, wanted=None, current=None, finishing=None):
@@ -456,22 +484,26 @@ def test_controls(function, config, tmp_path):
         usable = [index for index in range(count) if mask >> index & 1]
         reflections = config.reflections if number < 2 else int(random.integers(config.reflections + 1))
         held = {"rects_usable": mask, "reflections": reflections}
+        fate = random_fate(random, usable, reflections, number)
+        # What is not usable may be possible, and is not visited.
+        held["prospects_possible"] = mask_of(fate["possible"]) | int(random.integers(1 << count)) & ~mask
         for _ in range(2):
             drive({**held, "reset_ray_caster": 1, "enable": int(random.integers(2))})
         for _ in range(int(random.integers(3))):
             drive({**held, "reset_ray_caster": 0, "enable": 0}, quiet)
         drive({**held, "reset_ray_caster": 0, "enable": 1}, quiet)
-        trace = trace_cycles(config, usable, reflections)
-        if mask == every and reflections == config.reflections:
+        trace = trace_cycles(config, usable, reflections, **fate)
+        if number == 0:
             assert len(trace) + 3 == config.group_cycles, "with done and the reset of two cycles"
         # A row may be abandoned at any moment; what was under way must not come out later.
         abandoned = number > 4 and number % 2
-        for cycle in trace[: int(random.integers(len(trace))) if abandoned else None]:
+        for before, cycle in pairwise([quiet_cycle, *trace][: int(random.integers(len(trace))) if abandoned else None]):
             wanted = {name: value for name, value in cycle.steps.items() if name in leaf.outputs} | {"done": 0}
             if cycle.steps["steps_screen_to_ray"]:
                 del wanted["steps_initial_ray"]
             inputs = {**held, "reset_ray_caster": 0, "enable": int(random.integers(2))}
-            drive(inputs, wanted, cycle.current, cycle.finishing)
+            inputs |= {"give_up": int(impatient(config) and before.ahead == 0)} if function is ray_sequencer else {}
+            drive(inputs | prospects_in(random, cycle, leaf), wanted, cycle.current, cycle.finishing)
         if not abandoned:
             for _ in range(int(random.integers(1, 4))):
                 drive({**held, "reset_ray_caster": 0, "enable": int(random.integers(2))}, {**quiet, "done": 1})
@@ -491,6 +523,9 @@ def test_controls(function, config, tmp_path):
             ]
             resets = [stimulus[before]["reset_ray_caster"] for before in range(cycle - 1, cycle - write_at - 2, -1)]
             alive = started[: resets.index(1)] if 1 in resets else started
+            # What was given up in its second cycle is not seen from the third on.
+            for place in range(GIVE_UP_AT, len(alive)):
+                alive[place] &= not stimulus[cycle - 1 - place + GIVE_UP_AT].get("give_up", 0)
             assert output["in_flight"] == sum(bit << place for place, bit in enumerate(alive)), (cycle, repeat())
         elif finishing is not None:
             rect = sorted_rect(table, finishing, "offered")
@@ -515,7 +550,8 @@ def held_inputs(camera, background, reflections) -> dict[str, int]:
         for screen, units, rectangles, reflections, bits in (
             ("vga", 4, 8, 1, 8), ("vga", 5, 8, 2, 4), ("tiny", 2, 8, 0, 1), ("vga", 320, 8, 2, 8), ("vga", 1, 4, 2, 8),
         )
-    ],
+    ]
+    + [exact_config(units=8, rectangles=8, reflections=2, culling=True)],
     ids=config_id,
 )  # fmt: skip
 def test_exact_unit(config, tmp_path):
@@ -533,6 +569,7 @@ def test_exact_unit(config, tmp_path):
             "background": unsigned(COLOUR_BITS),
             "reflections": unsigned(2),
             "pixel": unsigned(pixel_bits(config)),
+            "outlook": Outlook(),
             "config": config,
         },
         tmp_path,
@@ -540,7 +577,7 @@ def test_exact_unit(config, tmp_path):
     random = np.random.default_rng(seed())
     slopes = primary_slopes(config.screen_geometry)
     rows, columns, _ = slopes.shape
-    stimulus, results, fates = [], [], set()
+    stimulus, results, fates, outlooks = [], [], set(), {}
     for _ in range(300 if config.units == 5 else 80):
         row = int(random.choice([0, 1, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))
         column = int(random.choice([0, 1, columns // 2, columns - 1, random.integers(columns)]))
@@ -551,8 +588,12 @@ def test_exact_unit(config, tmp_path):
         usable = [int(index) for index in np.flatnonzero(table.visible)]
         if not usable:
             continue
-        for cycle in trace_cycles(config, usable, reflections):
+        misses = [bounce for bounce, winner in enumerate(traced.winners) if winner[0] < 0]
+        lost = min(misses, default=None) if config.culling else None
+        for cycle in trace_cycles(config, usable, reflections, lost=lost):
             inputs = {**held, **cycle.steps}
+            if cycle.alive is not None and config.culling:
+                outlooks[len(stimulus)] = cycle.alive
             other = int(random.choice(usable))
             rect = sorted_rect(table, other if cycle.current is None else cycle.current, "rect")
             inputs |= {name: value for name, value in rect.items() if name != "rect_colour"}
@@ -566,3 +607,6 @@ def test_exact_unit(config, tmp_path):
     outputs = leaf.run_both(stimulus, settled=results[0][0])
     for cycle, pixel, case in results:
         assert outputs[cycle]["pixel"] == pixel, case
+    for cycle, alive in outlooks.items():
+        assert outputs[cycle]["outlook_alive"] == alive, (cycle, repeat())
+    assert not config.culling or set(outlooks.values()) == {0, 1}

@@ -74,6 +74,7 @@ def finder_leaf(config: Configuration, directory) -> Leaf:
             "hit": bit(),
             "depth": unsigned(position_bits(config)),
             "point": Origin(config),
+            "ahead": bit(),
             "config": config,
         },
         directory,
@@ -379,6 +380,7 @@ def test_color_combiner(colour_bits, reflections, tmp_path):
             "found_color": unsigned(COLOUR_BITS),
             "background": unsigned(COLOUR_BITS),
             "reflections": unsigned(2),
+            "missed": bit(),
             "pixel": unsigned(pixel_bits(config)),
             "config": config,
         },
@@ -402,11 +404,12 @@ def test_color_combiner(colour_bits, reflections, tmp_path):
             # Only what is found in the cycle of the addition counts.
             stimulus += [{**ray, "found": int(random.integers(2))}] * int(random.integers(2))
             stimulus.append({**ray, "steps_add_color": 1})
-        results.append((len(stimulus), palette, winners))
+        results.append((len(stimulus), palette, winners, missed))
         stimulus.append({**held, "found": int(random.integers(2))})
     outputs = leaf.run_both(stimulus, settled=1)
-    for cycle, palette, winners in results:
+    for cycle, palette, winners, missed in results:
         expected = 0
         for channel in blend(palette[:-1], palette[-1], winners)[0]:
             expected = expected << colour_bits | int(channel) >> (CHANNEL_BITS - colour_bits)
         assert outputs[cycle]["pixel"] == expected, (palette.tolist(), winners, repeat())
+        assert outputs[cycle]["missed"] == missed, (winners, repeat())

@@ -159,8 +159,9 @@ def test_every_module_is_mutated(tmp_path):
         config = configure(engine=engine, units=1, rectangles=5, reflections=2, allow_underrun=True)
         files += write_system(config, scene, tmp_path / engine)
     known = expectations()
-    # The system's scene is fixed when it is generated, so its leaf test cannot vary what goes over its wires.
-    assert set(known) == {path.stem for path in files} - {"ray_caster_system"}
+    # The system's scene is fixed when it is generated, so its leaf test cannot vary what goes over its wires; and a bit
+    # of what goes from part to part of the culler seldom decides about a rectangle.
+    assert set(known) == {path.stem for path in files} - {"ray_caster_system", "group_culler"}
     assert all(expectation.tests for expectation in known.values())
     assert all(entry.why for expectation in known.values() for entry in expectation.explained)
 

@@ -448,14 +448,24 @@ def test_a_small_report(tmp_path, monkeypatch):
     probed = configure(screen="tiny", units=16, reflections=2, divider_bits=3)
     # Its rays hit at every depth.
     [facing] = [case for case in catalogue() if case.name == "facing_y_40"]
-    extent = report.Extent((0, 4), (0, 1), (0,), (16,), (4,), cases, (0,), "tiny", [facing], [probed], "tiny", 1)
+    extent = report.Extent(
+        (0, 4), (0, 1), (0,), (16,), (4,), cases, (0,), "tiny", [facing], [probed], "tiny", 1, ["exact"]
+    )
     output = tmp_path / "report"
     output.mkdir()
     sweeper = report.Sweeper(Store(output / "points"), lambda: ProcessPoolExecutor(2), QUIET)
     page = report.write_report(output, extent, sweeper)
     html = unescape(page.read_text())
-    assert html.count("data:image/png;base64,") == html.count("<img") == 6
-    for name in ("index.html", "report.md", "points.csv", "frontier.csv", "catalogue.csv", "catalogue_hardware.csv"):
+    assert html.count("data:image/png;base64,") == html.count("<img") == 7
+    for name in (
+        "index.html",
+        "report.md",
+        "points.csv",
+        "frontier.csv",
+        "culling.csv",
+        "catalogue.csv",
+        "catalogue_hardware.csv",
+    ):
         assert (output / name).stat().st_size > 0
     assert "0 took other cycles than foretold, 0 pixels were not golden's" in html
     assert "a shared part of 3,000 LUT4" in html and "(+0.0%)" in html
@@ -474,6 +484,11 @@ def test_a_small_report(tmp_path, monkeypatch):
     assert (exact_row["wrong, mean share"], exact_row["on the frontier of all"]) == ("0.0", "yes")
     assert first["cycles a group: a pixel and unit"] == first["cycles a group, foretold"]
     assert "raycaster.report.points time scenes/mirror_room.toml" in first["command"]
+    with (output / "culling.csv").open() as file:
+        for row in csv.DictReader(file):
+            assert 0 < int(row["frame cycles with"]) < int(row["frame cycles without"])
+            assert row["wrong against golden"] == "0"
+            assert row["command"].endswith("--culling 1")
     with (output / "catalogue_hardware.csv").open() as file:
         [seen] = csv.DictReader(file)
     assert (seen["hit points not golden's"], seen["over the bound"]) == ("0", "0")

@@ -19,6 +19,7 @@ RESULT_KEYS = {
     "wrong_vs_golden",
     "wrong_vs_exact",
     "worst_row_cycles",
+    "frame_cycles",
     "worst_group_cycles",
     "underrun",
     "sim_seconds",

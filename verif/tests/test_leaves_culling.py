@@ -1,0 +1,401 @@
+# SPDX-License-Identifier: MIT
+"""The blocks that say which rectangles a group's rays may hit: MyHDL's simulator, the converted Verilog, the rule in
+Python's integers, and golden, whose hits are all among them."""
+
+import numpy as np
+import pytest
+
+from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
+from raycaster.golden import exact, seed_engine
+from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.rtl.group_culler import LATENCY, MARGIN, group_culler
+from raycaster.rtl.group_tester import group_tester
+from raycaster.rtl.interfaces import Facet, PipelinedRects, Point, SequentialRects, Walk, WideRect
+from raycaster.rtl.rect_copy import rect_copy
+from raycaster.rtl.renderers import RECTS
+from raycaster.rtl.widths import (
+    WIDE_BITS,
+    bit,
+    exact_slope_bits,
+    offset_bits,
+    row_bits,
+    signed,
+    unsigned,
+    wide_walk_bits,
+)
+from raycaster.verif.leaf import Leaf, sorted_rect
+from raycaster.verif.seeds import repeat, seed
+
+AXES = "xyz"
+BOUNDS = ("u_low", "u_high", "v_low", "v_high")
+
+
+def config_id(config: Configuration) -> str:
+    return config.name
+
+
+def culling_config(**options) -> Configuration:
+    return configure(**{"culling": True, "allow_underrun": True} | options)
+
+
+def any_place(random: np.random.Generator) -> int:
+    return int(random.choice(EXTREMES)) if random.random() < 0.3 else int(random.integers(WORLD_SIZE))
+
+
+def possible_mask(config: Configuration, table: Rectangles, camera, row: int, offset: int) -> int:
+    """The rule, for the rays at a group's ends: a bit for each rectangle."""
+    first = [int(d) for d in primary_slopes(config.screen_geometry)[row, offset * config.units]]
+    ends = [first, [first[0], first[1] + config.units, first[2]]]
+    margin = MARGIN[config.engine]
+    mask = 0
+    for index in range(len(table)):
+        axis = int(table.axes[index])
+        low, high = (bound[index].astype(object) - camera for bound in (table.low, table.high))
+        n = int(low[axis])
+        backs = [end[axis] < 0 for end in ends]
+        impossible = n == 0 or all((n < 0) != back for back in backs)
+        if backs[0] == backs[1]:
+            for u in OTHER_AXES[axis]:
+                sign = -1 if backs[0] else 1
+                ways = [sign * n * end[u] for end in ends]
+                impossible |= all(way < (low[u] - margin) * abs(end[axis]) for way, end in zip(ways, ends, strict=True))
+                impossible |= all(
+                    way > (high[u] + margin) * abs(end[axis]) for way, end in zip(ways, ends, strict=True)
+                )
+        mask |= (not impossible) << index
+    return mask
+
+
+def hit_mask(config: Configuration, table: Rectangles, camera, row: int, offset: int) -> int:
+    """What golden's primary rays of the group hit."""
+    slopes = primary_slopes(config.screen_geometry)[row, offset * config.units : (offset + 1) * config.units]
+    if config.engine == "exact":
+        traced = exact.trace(table, camera, (0, 0, 0), slopes, 0, keep=True)
+    else:
+        traced = seed_engine.trace(
+            table, camera, (0, 0, 0), slopes, 0,
+            fraction_bits=config.fraction_bits, rounding=config.rounding, keep=True,
+        )  # fmt: skip
+    return sum(int(hit) << index for index, hit in enumerate(traced.bounces[0].hits.any(axis=1)))
+
+
+def scenes(random: np.random.Generator, config: Configuration):
+    """Camera and table, of which all rectangles are enabled and have a plane; some touch the rays at a group's ends."""
+    while True:
+        table = random_rectangles(random, config.rectangles, closed=None if config.rectangles >= 7 else False)
+        camera = np.asarray(random_camera(random, table))
+        if random.random() < 0.3:
+            camera = np.array([any_place(random) for _ in AXES])
+        corners = table.corners.copy()
+        corners[~table.visible, 1, 0] = corners[~table.visible, 0, 0]
+        yield camera, Rectangles(corners, table.colours, np.ones(len(table), dtype=bool))
+
+
+def with_edges_on_rays(
+    random: np.random.Generator, config: Configuration, table: Rectangles, camera, row: int, offset: int
+) -> Rectangles:
+    """Many of the rectangles get an edge where a ray at an end of the group meets their plane, or next to it."""
+    first = [int(d) for d in primary_slopes(config.screen_geometry)[row, offset * config.units]]
+    corners = table.corners.copy()
+    for index in range(len(table)):
+        axis = int(table.axes[index])
+        end = [first[0], first[1] + int(random.choice([0, config.units - 1, config.units])), first[2]]
+        if random.random() < 0.6 and end[axis]:
+            u = int(random.choice(OTHER_AXES[axis]))
+            met = camera[u] + end[u] * (corners[index, 0, axis] - camera[axis]) // end[axis]
+            corners[index, random.integers(2), u] = np.clip(met + random.integers(-2, 3), 0, WORLD_SIZE - 1)
+    return Rectangles(corners, table.colours, table.enabled)
+
+
+# The configuration ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("options", "culls", "name"),
+    [
+        ({}, True, "seed-vga240-u32-r12-m1-f0t-d1-c8"),
+        ({"culling": "0"}, False, "seed-vga240-u32-r12-m1-f0t-d1-c8-k0"),
+        ({"engine": "exact"}, False, "exact-vga240-u4-r12-m1-c8"),
+        ({"engine": "exact", "culling": "1"}, True, "exact-vga240-u4-r12-m1-c8-k1"),
+        ({"engine": "beam"}, False, "beam-vga240-s2-u1-r12-m1-c8"),
+    ],
+)
+def test_which_designs_cull(options, culls, name):
+    config = configure(**options)
+    assert config.culling is culls
+    assert config.name == name
+    # The worst case is the same, so the choice is free.
+    assert config.group_cycles == configure(**{**options, "culling": None}).group_cycles
+
+
+def test_the_beam_engine_does_not_cull():
+    with pytest.raises(ConfigurationError, match=r"^culling: the beam engine takes all rectangles at once; leave it"):
+        configure(engine="beam", culling="1")
+
+
+# rect_copy ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("margin", [0, 1])
+@pytest.mark.parametrize(("view", "latency"), [(SequentialRects, 1), (PipelinedRects, 2)])
+@pytest.mark.parametrize("count", [1, 12, 32])
+def test_rect_copy(count, view, latency, margin, tmp_path):
+    """Fetches of both readers in any order; the second sees what came to the first last, and further out."""
+    config = configure(engine="exact", rectangles=count, allow_underrun=True)
+
+    def copy():
+        copied = PipelinedRects(config)
+        copied.rect = WideRect()
+        return copied
+
+    leaf = Leaf(
+        rect_copy,
+        lambda: {"clk": bit(), "rects": view(config), "copy": copy(), "margin": margin, "config": config},
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    stimulus, written, asked = [], [], []
+    for cycle in range(600):
+        fetch, index = int(cycle < count or random.random() < 0.3), cycle if cycle < count else random.integers(count)
+        # Only what was fetched is asked for, and long enough ago.
+        ask = int(cycle > count + 4 and random.random() < 0.7)
+        corners = np.array([[any_place(random) for _ in AXES] for _ in range(2)])
+        corners[1, random.integers(3)] = corners[0].copy()[axis := int(random.integers(3))]
+        corners[1, axis] = corners[0, axis]
+        shown = sorted_rect(Rectangles(corners[None], np.zeros((1, 3), np.uint8), np.ones(1, bool)), 0, "rects_rect")
+        del shown["rects_rect_colour"]
+        wanted = int(random.integers(count))
+        stimulus.append(
+            {"rects_fetch": fetch, "rects_index": int(index), "copy_fetch": ask, "copy_index": wanted, **shown}
+        )
+        written.append((fetch, int(index), shown))
+        asked.append((ask, wanted))
+    outputs = leaf.run_both(stimulus, settled=count + 8)
+    memory, answer = {}, None
+    for cycle, output in enumerate(outputs):
+        # A rectangle that was at hand three cycles ago could be read two cycles ago.
+        at_hand, read = cycle - 3, cycle - 2
+        if at_hand >= latency and written[at_hand - latency][0]:
+            memory[written[at_hand - latency][1]] = written[at_hand][2]
+        if read >= 0 and asked[read][0]:
+            answer = memory[asked[read][1]]
+        if answer is not None:
+            expected = {name: answer[f"rects_rect_{name}"] for name in ("axis", "position", *BOUNDS)}
+            for name in BOUNDS:
+                further = expected[name] + (margin if name.endswith("high") else -margin)
+                expected[name] = further % (1 << WIDE_BITS)
+            assert output == {f"copy_rect_{name}": value for name, value in expected.items()}, (cycle, repeat())
+
+
+# group_tester ---------------------------------------------------------------------------------------------------------
+
+designs = pytest.mark.parametrize(
+    "config",
+    [
+        culling_config(),
+        culling_config(units=20, rectangles=4, fraction_bits=4, rounding="nearest", rows=200),
+        culling_config(units=1, rectangles=3),
+        culling_config(units=320, rectangles=2),
+        culling_config(screen="tiny", units=16, rectangles=32, divider_bits=3),
+        culling_config(engine="exact"),
+        culling_config(engine="exact", units=64, rectangles=1),
+        culling_config(engine="exact", screen="tiny", units=2, rectangles=9),
+    ],
+    ids=config_id,
+)
+
+
+def leaf_of_tester(config: Configuration, directory) -> Leaf:
+    slope_bits, walk_bits = exact_slope_bits(config) + 1, wide_walk_bits(config)
+    return Leaf(
+        group_tester,
+        lambda: {
+            "clk": bit(),
+            "load": unsigned(config.rectangles),
+            "facet": Facet(config),
+            "growth": Walk(WIDE_BITS),
+            "start": Walk(walk_bits),
+            "column_slope": signed(slope_bits),
+            "row_slope": signed(slope_bits),
+            "possible": unsigned(config.rectangles),
+            "config": config,
+        },
+        directory,
+    )
+
+
+@designs
+def test_group_tester(config, tmp_path):
+    """Products as rect_setup makes them, of groups at the screen's borders and in its middle, and edges on the rays."""
+    slope_bits = exact_slope_bits(config) + 1
+    leaf = leaf_of_tester(config, tmp_path)
+    random = np.random.default_rng(seed())
+    slopes = primary_slopes(config.screen_geometry)
+    margin, rows = MARGIN[config.engine], config.screen_geometry.rows
+    stimulus, expected = [], {}
+    for (camera, drawn), _ in zip(scenes(random, config), range(3000 // config.rectangles), strict=False):
+        row = int(random.choice([0, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))
+        offset = int(random.integers(config.groups))
+        slope = [int(d) for d in slopes[row, offset * config.units]]
+        table = with_edges_on_rays(random, config, drawn, camera, row, offset)
+        mask = possible_mask(config, table, camera, row, offset)
+        held = {"column_slope": slope[1] % (1 << slope_bits), "row_slope": slope[2] % (1 << slope_bits)}
+        for index in range(len(table)):
+            axis = int(table.axes[index])
+            u, v = (0, 2) if axis == 1 else (1, 2) if axis == 0 else (1, 0)
+            low, high = (bound[index].astype(object) - camera for bound in (table.low - margin, table.high + margin))
+            n, e = int(table.low[index, axis] - camera[axis]), slope[axis]
+            start = {"way_u": n * slope[u], "low_u": low[u] * e, "high_u": high[u] * e}
+            start |= {"low_v": low[v] * e, "high_v": high[v] * e}
+            growth = dict.fromkeys(start, 0) | {"way_u": n}
+            if axis == 1:
+                growth = {"way_u": 0, "low_u": low[u], "high_u": high[u], "low_v": low[v], "high_v": high[v]}
+            inputs = {"facet_axis": axis, "facet_distance": n, "facet_way_v": n * slope[v]}
+            inputs |= {f"start_{name}": value for name, value in start.items()}
+            inputs |= {f"growth_{name}": value for name, value in growth.items()}
+            inputs = {name: int(value) % (1 << leaf.inputs[name].width) for name, value in inputs.items()}
+            stimulus.append({**held, **inputs, "load": 1 << index})
+        stimulus += [{"load": 0}] * 2
+        expected[len(stimulus) - 1] = mask, row, offset, camera, table
+    outputs = leaf.run_both(stimulus, settled=min(expected) + 1)
+    seen = set()
+    for cycle, (mask, row, offset, camera, table) in expected.items():
+        case = row, offset, camera.tolist(), table.corners.tolist(), repeat()
+        assert outputs[cycle]["possible"] == mask, case
+        assert hit_mask(config, table, camera, row, offset) & ~mask == 0, case
+        seen |= {mask >> index & 1 for index in range(len(table))}
+    assert seen == {0, 1}
+
+
+@designs
+def test_group_tester_at_its_limits(config, tmp_path):
+    """Any products, at which each comparison is decided by its last bit, one bit or the sign."""
+    leaf = leaf_of_tester(config, tmp_path)
+    random = np.random.default_rng(seed())
+    units, far = config.units, 1 << wide_walk_bits(config) - 2
+    slope_limit = 1 << exact_slope_bits(config) - 1
+    stimulus, expected = [], {}
+
+    def small() -> int:
+        return int(random.choice([0, 1, 2, 1 << int(random.integers(far.bit_length() - 3))]) * random.choice([-1, 1]))
+
+    for _ in range(6000):
+        axis = int(random.integers(3))
+        distance = int(random.choice([0, 1, -1, 1 << int(random.integers(9)), *random.integers(-511, 512, size=4)]))
+        turning = [0, -1, -units, 1 - units, -units - 1]
+        column_slope, row_slope = (
+            int(np.clip(random.choice([*turning, *random.integers(-slope_limit, slope_limit, size=15)]), -far, far))
+            for _ in range(2)
+        )
+        column_slope, row_slope = max(-slope_limit, column_slope), max(-slope_limit, row_slope)
+        slopes = {0: (1, 1), 1: (column_slope, column_slope + units), 2: (row_slope, row_slope)}[axis]
+        backs = [slope < 0 for slope in slopes]
+        if random.random() < 0.9:
+            # Ahead, so that the bounds decide.
+            distance = (-1 if backs[0] else 1) * max(1, abs(distance))
+        start = {"way_u": int(random.integers(-far // 4, far // 4)), "way_v": int(random.integers(-far // 4, far // 4))}
+        growth = {"way_u": int(random.integers(-far // 8, far // 8)) // units % 512 - 256}
+        growth["way_u"] = growth["way_u"] if abs(growth["way_u"]) * units < far // 8 else 0
+        # Bounds are far away on their side, but one that decides: at one end or both it is near.
+        low, high = ("high", "low") if backs[0] else ("low", "high")
+        for u in "uv":
+            start |= {f"{low}_{u}": -far // 2, f"{high}_{u}": far // 2}
+            growth |= {f"{low}_{u}": 0, f"{high}_{u}": 0}
+        side, u = str(random.choice(["low", "high"])), str(random.choice(["u", "v"]))
+        more = int(random.choice([0, 0, 1, -1, small() % 64 - 32]))
+        apart = small() - int(random.integers(2)) * more * units
+        start[f"{side}_{u}"] = start[f"way_{u}"] + apart
+        growth[f"{side}_{u}"] = growth.get(f"way_{u}", 0) + more
+        end = {name: value + growth.get(name, 0) * units for name, value in start.items()}
+        impossible = distance == 0 or all((distance < 0) != back for back in backs)
+        if backs[0] == backs[1]:
+            for u in "uv":
+                impossible |= all(at[f"way_{u}"] < at[f"{low}_{u}"] for at in (start, end))
+                impossible |= all(at[f"way_{u}"] > at[f"{high}_{u}"] for at in (start, end))
+        inputs = {"facet_axis": axis, "facet_distance": distance, "facet_way_v": start.pop("way_v")}
+        inputs |= {"column_slope": column_slope, "row_slope": row_slope}
+        inputs |= {f"start_{name}": value for name, value in start.items()}
+        inputs |= {f"growth_{name}": value for name, value in growth.items()}
+        inputs = {name: value % (1 << leaf.inputs[name].width) for name, value in inputs.items()}
+        index = len(stimulus) % config.rectangles
+        expected[len(stimulus) + 2] = index, not impossible
+        stimulus.append({**inputs, "load": 1 << index})
+    stimulus += [{"load": 0}] * 2
+    outputs = leaf.run_both(stimulus, settled=config.rectangles + 2)
+    for cycle, (index, may_hit) in expected.items():
+        assert outputs[cycle]["possible"] >> index & 1 == may_hit, (stimulus[cycle - 2], repeat())
+
+
+# group_culler ---------------------------------------------------------------------------------------------------------
+
+
+@designs
+def test_group_culler(config, tmp_path):
+    """A frame's first group, then others in their order and out of it, with time enough to look ahead or too little."""
+    leaf = Leaf(
+        group_culler,
+        lambda: {
+            "clk": bit(),
+            "reset_ray_caster": bit(),
+            "start_group": bit(),
+            "done": bit(),
+            "row": unsigned(row_bits(config)),
+            "column_offset": unsigned(offset_bits(config)),
+            "camera": Point(),
+            "rects": RECTS[config.engine](config),
+            "possible": unsigned(config.rectangles),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    count, groups, rows = config.rectangles, config.groups, config.screen_geometry.rows
+    latency = 2 if RECTS[config.engine] is PipelinedRects else 1
+    every = (1 << count) - 1
+    stimulus, expected, fates = [], {}, set()
+
+    for (camera, drawn), _ in zip(scenes(random, config), range(max(6, 240 // count)), strict=False):
+        start = int(random.integers(1, rows)), int(random.integers(groups))
+        table = with_edges_on_rays(random, config, drawn, camera, *start)
+        scene = {f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)}
+        quiet = {**scene, "reset_ray_caster": 0, "start_group": 0, "done": 0, "rects_fetch": 0}
+        place, foreseen, known = (0, 0), None, False
+        for number in range(12):
+            here = {**quiet, "row": place[0], "column_offset": place[1]}
+            answer = possible_mask(config, table, camera, *place) if foreseen == place else every
+            assert hit_mask(config, table, camera, *place) & ~answer == 0, repeat()
+            fates.add((known, foreseen == place, answer == every))
+            # The second cycle of reset; then the group's time.
+            stimulus.append({**here, "reset_ray_caster": 1})
+            expected[len(stimulus)] = answer, place, camera, table
+            stimulus += [here, {**here, "start_group": 1}]
+            for index in range(count) if number == 0 else ():
+                shown = sorted_rect(table, index, "rects_rect")
+                del shown["rects_rect_colour"]
+                stimulus.append({**here, "rects_fetch": 1, "rects_index": index})
+                stimulus += [here] * (latency - 1) + [{**here, **shown}]
+            time = count + LATENCY + int(random.integers(3))
+            if random.random() < 0.2:
+                time = int(random.integers(3, count + LATENCY))
+            stimulus += [here] * (time - 1)
+            # A frame of which not even that is done has taught nothing.
+            abandoned = random.random() < 0.2
+            stimulus.append({**here, "reset_ray_caster": 1, "done": int(not abandoned)})
+
+            following = (place[0], place[1] + 1) if place[1] < groups - 1 else (place[0] + 1, 0)
+            foreseen = following if known and time >= count + LATENCY else None
+            known = known or (number == 0 and not abandoned)
+            place = following
+            if abandoned or place[0] == rows:
+                place = int(random.integers(1, rows)), int(random.choice([0, groups - 1, random.integers(groups)]))
+            if number == 1:
+                # As if the frame had come to where the rectangles' edges are.
+                place = start[0] if start[1] else start[0] - 1, (start[1] - 1) % groups
+                place = (1, 0) if place == (0, 0) else place
+    outputs = leaf.run_both(stimulus, settled=min(expected))
+    for cycle, (answer, place, camera, table) in expected.items():
+        case = cycle, place, camera.tolist(), table.corners.tolist(), repeat()
+        assert outputs[cycle]["possible"] == answer, case
+    assert {(True, True, False), (True, False, True), (False, False, True)} <= fates
