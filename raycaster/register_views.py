@@ -31,7 +31,7 @@ def write_header(rectangles: int, path: Path) -> None:
     with tempfile.TemporaryDirectory() as scratch:
         # The guard of the header is made of the file's name.
         written = Path(scratch) / HEADER
-        CHeaderExporter().export(compile_registers(rectangles), str(written), std=CStandard.gnu11)
+        CHeaderExporter().export(compile_registers(rectangles), str(written), std=CStandard.gnu99)
         path.write_text(f"// SPDX-License-Identifier: MIT\n{written.read_text()}")
 
 

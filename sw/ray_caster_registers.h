@@ -9,7 +9,6 @@
 extern "C" {
 #endif
 #include <stdint.h>
-#include <assert.h>
 
 // reg - ray_caster::id
 #define RAY_CASTER__ID__MAGIC_bm 0xffffffff
@@ -207,7 +206,6 @@ typedef struct __attribute__ ((__packed__)) {
 } ray_caster_t;
 
 
-static_assert(sizeof(ray_caster_t) == 0x100, "Packing error");
 
 #ifdef __cplusplus
 }
