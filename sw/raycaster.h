@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// The ray tracer's driver: C99, without a C library, memory of its own or floating point.
+//
+// A program probes once, describes a picture with the functions called set, and commits it, which shows all of it together
+// from the next frame on. Nothing is clipped: an argument that does not fit is an error, and then nothing is written.
+
+#ifndef RAYCASTER_H
+#define RAYCASTER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// How registers are reached: `base` and a byte offset. A system whose bus wants it otherwise defines both before.
+#ifndef RAYCASTER_READ
+#ifdef __nios2__
+// A Nios II's data cache would answer plain loads.
+#include <io.h>
+#define RAYCASTER_READ(base, offset) IORD_32DIRECT(base, offset)
+#define RAYCASTER_WRITE(base, offset, word) IOWR_32DIRECT(base, offset, word)
+#else
+#define RAYCASTER_READ(base, offset) ((base)[(offset) / 4])
+#define RAYCASTER_WRITE(base, offset, word) ((base)[(offset) / 4] = (word))
+#endif
+#endif
+
+enum raycaster_error {
+    RAYCASTER_OK,
+    RAYCASTER_NOT_FOUND,
+    RAYCASTER_OTHER_VERSION,
+    RAYCASTER_NO_SUCH_RECTANGLE,
+    RAYCASTER_OUTSIDE_WORLD,
+    RAYCASTER_NO_PLANE,
+    RAYCASTER_TOO_MANY_REFLECTIONS,
+    RAYCASTER_FIXED,
+    RAYCASTER_STILL_COMMITTING,
+    RAYCASTER_NO_FRAME,
+    RAYCASTER_UNDERRUN,
+    RAYCASTER_BAD_RECTANGLE
+};
+
+enum raycaster_engine { RAYCASTER_SEED, RAYCASTER_EXACT, RAYCASTER_BEAM };
+
+// What is built into the hardware and cannot be set.
+enum raycaster_built_in { RAYCASTER_NOTHING_BUILT_IN, RAYCASTER_RECTANGLES_BUILT_IN, RAYCASTER_SCENE_BUILT_IN };
+
+// A ray tracer, as raycaster_probe found it.
+struct raycaster {
+    volatile uint32_t *base;
+    uint16_t major;
+    uint16_t minor;
+    uint16_t units;
+    uint16_t rows;       // at scale 1
+    uint8_t rectangles;  // entries of the table
+    uint8_t reflections; // that it can compute
+    uint8_t engine;      // enum raycaster_engine
+    uint8_t built_in;    // enum raycaster_built_in
+    uint8_t scale;
+    uint8_t fraction_bits;
+    uint8_t divider_bits;
+    uint8_t colour_bits;
+    bool nearest; // rounds its quotients to nearest
+};
+
+// A place in the world, each coordinate 0 to 511: x is depth, y is side to side, z is height.
+struct raycaster_point {
+    uint16_t x;
+    uint16_t y;
+    uint16_t z;
+};
+
+struct raycaster_colour {
+    uint8_t red;
+    uint8_t green;
+    uint8_t blue;
+};
+
+struct raycaster_status {
+    uint16_t frame; // frames since reset, modulo 65536
+    bool busy;
+    bool underrun;      // sticky
+    bool bad_rectangle; // sticky
+};
+
+// Clock cycles, the most since raycaster_clear_cycles.
+struct raycaster_cycles {
+    uint16_t row;
+    uint16_t group;
+};
+
+// What an error means, in English, without a full stop.
+const char *raycaster_error_text(enum raycaster_error error);
+
+// Fill in `device` from the registers at `base`. RAYCASTER_NOT_FOUND, RAYCASTER_OTHER_VERSION: the rest is not filled in.
+enum raycaster_error raycaster_probe(struct raycaster *device, volatile uint32_t *base);
+
+// Set an entry of the table, from two opposite corners that share a coordinate, and enable it.
+enum raycaster_error raycaster_set_rectangle(
+    const struct raycaster *device, unsigned index, struct raycaster_point corner_0, struct raycaster_point corner_1,
+    struct raycaster_colour colour);
+
+// Show an entry of the table or leave it out; its corners and colour stay.
+enum raycaster_error raycaster_enable_rectangle(const struct raycaster *device, unsigned index, bool enable);
+
+enum raycaster_error raycaster_set_camera(const struct raycaster *device, struct raycaster_point position);
+
+enum raycaster_error raycaster_set_background(const struct raycaster *device, struct raycaster_colour colour);
+
+enum raycaster_error raycaster_set_reflections(const struct raycaster *device, unsigned reflections);
+
+// Show the scene, or black.
+void raycaster_set_run(const struct raycaster *device, bool run);
+
+// Make all that was set go live at the next frame. RAYCASTER_STILL_COMMITTING: what was committed before is not live yet;
+// nothing was done.
+enum raycaster_error raycaster_commit(const struct raycaster *device);
+
+// Whether what was committed is still to go live.
+bool raycaster_is_committing(const struct raycaster *device);
+
+// Wait for the start of a frame that was not waited for or acknowledged before. RAYCASTER_NO_FRAME: it did not come while
+// the registers were looked at `polls` times.
+enum raycaster_error raycaster_wait_frame(const struct raycaster *device, uint32_t polls);
+
+void raycaster_enable_interrupt(const struct raycaster *device, bool enable);
+
+// Take back the interrupt, as its handler must. False: it was another's.
+bool raycaster_acknowledge(const struct raycaster *device);
+
+// Frames since reset, modulo 65536.
+uint16_t raycaster_frame(const struct raycaster *device);
+
+struct raycaster_status raycaster_get_status(const struct raycaster *device);
+
+// RAYCASTER_UNDERRUN or RAYCASTER_BAD_RECTANGLE where that has happened since raycaster_clear_status.
+enum raycaster_error raycaster_check(const struct raycaster *device);
+
+// Forget both sticky errors.
+void raycaster_clear_status(const struct raycaster *device);
+
+struct raycaster_cycles raycaster_get_cycles(const struct raycaster *device);
+
+void raycaster_clear_cycles(const struct raycaster *device);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: MIT
+#include "host_bus.h"
+
+struct host_bus host_bus;

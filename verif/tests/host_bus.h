@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// The driver's way to the registers where it runs on the host: two functions that the test gives. Goes before raycaster.h.
+#pragma once
+#include <stdint.h>
+
+struct host_bus {
+    uint32_t (*read)(uint32_t offset);
+    void (*write)(uint32_t offset, uint32_t word);
+};
+
+extern struct host_bus host_bus;
+
+#define RAYCASTER_READ(base, offset) ((void)(base), host_bus.read((uint32_t)(offset)))
+#define RAYCASTER_WRITE(base, offset, word) ((void)(base), host_bus.write((uint32_t)(offset), (word)))

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: MIT
+"""The C sources of sw/ compiled for the host, on the model of the registers."""
+
+from __future__ import annotations
+
+import ctypes
+import re
+import shutil
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from raycaster.configuration import Configuration
+from raycaster.registers import register_map
+from raycaster.verif.register_model import LiveScene, RegisterFile, Request
+
+ROOT = Path(__file__).parents[2]
+SOFTWARE = ROOT / "sw"
+STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror")
+
+_Read = ctypes.CFUNCTYPE(ctypes.c_uint32, ctypes.c_uint32)
+_Write = ctypes.CFUNCTYPE(None, ctypes.c_uint32, ctypes.c_uint32)
+
+
+class Point(ctypes.Structure):
+    """`struct raycaster_point`."""
+
+    _fields_ = [(axis, ctypes.c_uint16) for axis in "xyz"]
+
+
+class Colour(ctypes.Structure):
+    """`struct raycaster_colour`."""
+
+    _fields_ = [(channel, ctypes.c_uint8) for channel in ("red", "green", "blue")]
+
+
+class Status(ctypes.Structure):
+    """`struct raycaster_status`."""
+
+    _fields_ = [("frame", ctypes.c_uint16)] + [
+        (name, ctypes.c_bool) for name in ("busy", "underrun", "bad_rectangle")
+    ]
+
+
+class Cycles(ctypes.Structure):
+    """`struct raycaster_cycles`."""
+
+    _fields_ = [("row", ctypes.c_uint16), ("group", ctypes.c_uint16)]
+
+
+class RayCaster(ctypes.Structure):
+    """`struct raycaster`."""
+
+    _fields_ = [
+        ("base", ctypes.c_void_p),
+        *((name, ctypes.c_uint16) for name in ("major", "minor", "units", "rows")),
+        *(
+            (name, ctypes.c_uint8)
+            for name in (
+                "rectangles", "reflections", "engine", "built_in", "scale", "fraction_bits", "divider_bits", "colour_bits",
+            )
+        ),
+        ("nearest", ctypes.c_bool),
+    ]  # fmt: skip
+
+
+def enumerators(header: Path, name: str) -> list[str]:
+    """The names of an enumeration of a header whose values count from 0."""
+    body = re.search(rf"enum {name} {{(.*?)}}", header.read_text(), re.S)[1]
+    assert "=" not in body
+    return re.findall(r"\w+", body)
+
+
+def compile_library(directory: Path, *sources: str) -> ctypes.CDLL:
+    """Compile sources of sw/, and load them."""
+    compiler = shutil.which("gcc") or shutil.which("cc")
+    library = directory / "library.so"
+    tests = Path(__file__).parent
+    command = [
+        compiler, *STRICT, "-O1", "-shared", "-fPIC", "-include", tests / "host_bus.h", f"-I{SOFTWARE}", "-o", library,
+        tests / "host_bus.c", *(SOFTWARE / source for source in sources),
+    ]  # fmt: skip
+    subprocess.run(command, check=True)
+    loaded = ctypes.CDLL(library)
+    for function, result in (
+        ("raycaster_error_text", ctypes.c_char_p),
+        ("raycaster_get_status", Status),
+        ("raycaster_get_cycles", Cycles),
+        ("raycaster_frame", ctypes.c_uint16),
+        ("raycaster_acknowledge", ctypes.c_bool),
+        ("raycaster_is_committing", ctypes.c_bool),
+    ):
+        getattr(loaded, function).restype = result
+    return loaded
+
+
+class Registers:
+    """A ray tracer of which only the registers are there; a StartScreen comes when it is asked for.
+
+    Attributes:
+        file: the model.
+        written: offsets in bytes, and words, in the order in which they came.
+        polls_to_frame: looks at the pending interrupt until the next StartScreen, or None for never.
+    """
+
+    def __init__(self, config: Configuration):
+        self.file = RegisterFile(config)
+        self.written: list[tuple[int, int]] = []
+        self.polls_to_frame: int | None = None
+        self._pending = 4 * register_map(config.rectangles)["irq_pending"].address
+        self.file.clock(True, None)
+
+    def read(self, offset: int) -> int:
+        """The word at an offset in bytes."""
+        assert offset % 4 == 0
+        if offset == self._pending and self.polls_to_frame is not None:
+            self.polls_to_frame -= 1
+            if self.polls_to_frame == 0:
+                self.polls_to_frame = None
+                self.start_screen()
+        self._request(Request(offset // 4))
+        return self.file.agent.answer[1]
+
+    def write(self, offset: int, word: int) -> None:
+        """Write a word at an offset in bytes."""
+        assert offset % 4 == 0
+        self.written.append((offset, word))
+        self._request(Request(offset // 4, word))
+
+    def _request(self, request: Request) -> None:
+        while not self.file.clock(False, request):
+            pass
+        # One to answer or to write, one for what a commit copies.
+        self.file.clock(False, None)
+        answer = self.file.agent.answer
+        self.file.clock(False, None)
+        self.file.agent.answer = answer
+
+    def start_screen(self) -> LiveScene:
+        """What a StartScreen now makes live."""
+        self.file.clocks = self.file.start_screen_clock
+        self.file.clock(False, None)
+        return self.file.live
+
+    def say(self, register: str, **fields: int) -> None:
+        """Let a register that cannot be written answer something else in some fields."""
+        words, known = self.file.agent._constants, self.file.agent.registers[register]
+        words[register] = known.pack(**{**known.unpack(words[register]), **fields})
+
+
+@contextmanager
+def attached(library: ctypes.CDLL, registers: Registers) -> Iterator[None]:
+    """Let a library's driver reach registers."""
+
+    class HostBus(ctypes.Structure):
+        _fields_ = [("read", _Read), ("write", _Write)]
+
+    bus = HostBus.in_dll(library, "host_bus")
+    bus.read, bus.write = _Read(registers.read), _Write(registers.write)
+    yield
+
+
+def probed(library: ctypes.CDLL) -> RayCaster:
+    """The handle of what is attached."""
+    device = RayCaster()
+    assert library.raycaster_probe(ctypes.byref(device), None) == 0
+    return device

@@ -1,0 +1,338 @@
+# SPDX-License-Identifier: MIT
+"""The C driver on the model of the registers: what it writes, what it refuses, and what it says."""
+
+from __future__ import annotations
+
+import ctypes
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+from host_software import (
+    SOFTWARE,
+    STRICT,
+    Colour,
+    Point,
+    RayCaster,
+    Registers,
+    attached,
+    compile_library,
+    enumerators,
+    probed,
+)
+
+from raycaster.configuration import configure
+from raycaster.golden.world import Rectangles
+from raycaster.program import scene_words
+from raycaster.registers import register_map
+from raycaster.rtl.take_home import TOP
+from raycaster.scene import load_scene
+
+CONFIG = configure(engine="exact", screen="tiny", rectangles=12, reflections=1)
+ERRORS = enumerators(SOFTWARE / "raycaster.h", "raycaster_error")
+WHITE = Colour(255, 255, 255)
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory) -> ctypes.CDLL:
+    return compile_library(tmp_path_factory.mktemp("driver"), "raycaster.c")
+
+
+@pytest.fixture
+def registers(library):
+    model = Registers(CONFIG)
+    with attached(library, model):
+        yield model
+
+
+@pytest.fixture
+def device(library, registers) -> RayCaster:
+    return probed(library)
+
+
+def error(number: int) -> str:
+    return ERRORS[number].removeprefix("RAYCASTER_")
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        CONFIG,
+        configure(
+            units=16, rectangles=32, reflections=2, rows=200, fraction_bits=5, rounding="nearest", colour_bits=4,
+            allow_underrun=True,
+        ),
+        configure(engine="beam", rectangles=3, rows=180),
+    ],
+    ids=lambda config: config.name,
+)  # fmt: skip
+def test_probe_reads_what_the_design_is(library, config):
+    with attached(library, Registers(config)):
+        found = probed(library)
+    for name in ("units", "rows", "rectangles", "reflections", "scale", "fraction_bits", "divider_bits", "colour_bits"):
+        assert getattr(found, name) == getattr(config, name), name
+    engines = enumerators(SOFTWARE / "raycaster.h", "raycaster_engine")
+    assert engines[found.engine] == f"RAYCASTER_{config.engine.upper()}"
+    assert found.nearest == (config.rounding == "nearest")
+    version = register_map(config.rectangles)["version"].fields
+    assert (found.major, found.minor) == (version["major"].reset, version["minor"].reset)
+    assert found.built_in == 0
+
+
+@pytest.mark.parametrize(
+    ("register", "fields", "expected"),
+    [
+        ("id", {"magic": 0}, "NOT_FOUND"),
+        ("id", {"magic": 0xFFFFFFFF}, "NOT_FOUND"),
+        ("version", {"major": 1}, "OTHER_VERSION"),
+        ("version", {"minor": 77}, "OK"),
+    ],
+)
+def test_probe_refuses_others(library, registers, register, fields, expected):
+    registers.say(register, **fields)
+    assert error(library.raycaster_probe(ctypes.byref(RayCaster()), None)) == expected
+    assert not registers.written
+
+
+def test_a_scene_is_the_words_that_the_project_writes(library, registers, device, scenes):
+    for path in sorted(scenes.glob("*.toml")):
+        scene = load_scene(path)
+        if scene.reflections > CONFIG.reflections:
+            continue
+        model = Registers(CONFIG)
+        with attached(library, model):
+            results = [
+                library.raycaster_set_background(ctypes.byref(device), Colour(*scene.background)),
+                library.raycaster_set_camera(ctypes.byref(device), Point(*scene.camera.position)),
+            ]
+            for index, rectangle in enumerate(scene.rect):
+                corners = [Point(*corner) for corner in rectangle.corners]
+                colour = Colour(*rectangle.colour)
+                results.append(library.raycaster_set_rectangle(ctypes.byref(device), index, *corners, colour))
+            for index in range(len(scene.rect), CONFIG.rectangles):
+                results.append(library.raycaster_enable_rectangle(ctypes.byref(device), index, False))
+            library.raycaster_set_run(ctypes.byref(device), True)
+            results.append(library.raycaster_set_reflections(ctypes.byref(device), scene.reflections))
+            results.append(library.raycaster_commit(ctypes.byref(device)))
+        assert set(results) == {0}
+        expected = [(4 * address, word) for address, word in scene_words(scene, CONFIG.rectangles)]
+        # Run and reflections share a register with commit, and are written one by one.
+        run_and_reflections = len(model.written) - len(expected)
+        assert run_and_reflections == 2
+        assert model.written[: len(expected) - 1] + model.written[-1:] == expected
+        live = model.start_screen()
+        assert (live.run, live.reflections, live.background) == (True, scene.reflections, scene.background)
+        assert live.camera == scene.camera.position
+        shown, wanted = live.rectangles, Rectangles.of_scene(scene)
+        assert shown.enabled.sum() == len(wanted)
+        np.testing.assert_array_equal(shown.corners[: len(wanted)], wanted.corners)
+        np.testing.assert_array_equal(shown.colours[: len(wanted)], wanted.colours)
+
+
+@pytest.mark.parametrize(
+    ("index", "corners", "expected"),
+    [
+        (11, ((0, 0, 5), (511, 511, 5)), "OK"),
+        (0, ((7, 8, 9), (7, 8, 9)), "OK"),
+        (12, ((0, 0, 5), (511, 511, 5)), "NO_SUCH_RECTANGLE"),
+        (0xFFFFFFFF, ((0, 0, 5), (511, 511, 5)), "NO_SUCH_RECTANGLE"),
+        (0, ((512, 0, 5), (511, 511, 5)), "OUTSIDE_WORLD"),
+        (0, ((0, 0, 5), (511, 512, 5)), "OUTSIDE_WORLD"),
+        (0, ((0, 0, 512), (511, 511, 512)), "OUTSIDE_WORLD"),
+        (0, ((0, 0, 5), (65535, 511, 5)), "OUTSIDE_WORLD"),
+        (0, ((0, 1, 2), (1, 2, 3)), "NO_PLANE"),
+    ],
+)
+def test_rectangles_that_are_refused(library, registers, device, index, corners, expected):
+    result = library.raycaster_set_rectangle(ctypes.byref(device), index, *(Point(*c) for c in corners), WHITE)
+    assert error(result) == expected
+    assert len(registers.written) == (3 if expected == "OK" else 0)
+
+
+def test_a_rectangle_is_left_out_and_shown_again(library, registers, device):
+    corners = Point(1, 2, 3), Point(1, 20, 30)
+    assert library.raycaster_set_rectangle(ctypes.byref(device), 4, *corners, Colour(1, 2, 3)) == 0
+    for enable in (False, True):
+        assert library.raycaster_enable_rectangle(ctypes.byref(device), 4, enable) == 0
+        assert library.raycaster_commit(ctypes.byref(device)) == 0
+        rectangles = registers.start_screen().rectangles
+        assert rectangles.enabled[4] == enable
+        assert rectangles.corners[4].tolist() == [[1, 2, 3], [1, 20, 30]]
+        assert rectangles.colours[4].tolist() == [1, 2, 3]
+    assert error(library.raycaster_enable_rectangle(ctypes.byref(device), 12, True)) == "NO_SUCH_RECTANGLE"
+
+
+def test_the_whole_table_of_a_larger_design(library):
+    model = Registers(configure(engine="beam", screen="tiny", rectangles=32))
+    with attached(library, model):
+        device = probed(library)
+        for index in range(32):
+            corners = Point(index, 0, 0), Point(index, 1, 1)
+            assert library.raycaster_set_rectangle(ctypes.byref(device), index, *corners, WHITE) == 0
+        assert library.raycaster_commit(ctypes.byref(device)) == 0
+        assert error(library.raycaster_enable_rectangle(ctypes.byref(device), 32, True)) == "NO_SUCH_RECTANGLE"
+    assert model.start_screen().rectangles.corners[:, 0, 0].tolist() == list(range(32))
+
+
+@pytest.mark.parametrize(("built_in", "camera"), [(1, "OK"), (2, "FIXED")])
+def test_what_is_built_in_is_not_set(library, registers, built_in, camera):
+    registers.say("engine", fixed=built_in)
+    registers.say("size", rectangles=0)
+    device = probed(library)
+    handle = ctypes.byref(device)
+    assert error(library.raycaster_set_rectangle(handle, 0, Point(), Point(), WHITE)) == "FIXED"
+    assert error(library.raycaster_enable_rectangle(handle, 0, True)) == "FIXED"
+    assert not registers.written
+    assert error(library.raycaster_set_camera(handle, Point(1, 2, 3))) == camera
+    assert error(library.raycaster_set_background(handle, WHITE)) == camera
+    assert error(library.raycaster_set_reflections(handle, 1)) == camera
+    assert len(registers.written) == (3 if camera == "OK" else 0)
+
+
+@pytest.mark.parametrize("position", [(512, 0, 0), (0, 512, 0), (0, 0, 512), (65535, 65535, 65535)])
+def test_cameras_outside_the_world(library, registers, device, position):
+    assert error(library.raycaster_set_camera(ctypes.byref(device), Point(*position))) == "OUTSIDE_WORLD"
+    assert not registers.written
+
+
+def test_reflections_that_the_hardware_does_not_have(library, registers, device):
+    assert error(library.raycaster_set_reflections(ctypes.byref(device), 2)) == "TOO_MANY_REFLECTIONS"
+    assert not registers.written
+
+
+def test_a_commit_waits_for_the_one_before(library, registers, device):
+    handle = ctypes.byref(device)
+    library.raycaster_set_run(handle, True)
+    assert library.raycaster_commit(handle) == 0
+    assert library.raycaster_is_committing(handle)
+    # What is changed now belongs to the next commit, and must not make one.
+    assert library.raycaster_set_reflections(handle, 1) == 0
+    assert library.raycaster_set_camera(handle, Point(1, 2, 3)) == 0
+    written = len(registers.written)
+    assert error(library.raycaster_commit(handle)) == "STILL_COMMITTING"
+    assert len(registers.written) == written
+    live = registers.start_screen()
+    assert (live.run, live.reflections, live.camera) == (True, 0, (0, 0, 0))
+    assert not library.raycaster_is_committing(handle)
+    assert library.raycaster_commit(handle) == 0
+    live = registers.start_screen()
+    assert (live.run, live.reflections, live.camera) == (True, 1, (1, 2, 3))
+    library.raycaster_set_run(handle, False)
+    assert library.raycaster_commit(handle) == 0
+    live = registers.start_screen()
+    assert (live.run, live.reflections) == (False, 1)
+
+
+def test_waiting_for_a_frame(library, registers, device):
+    handle = ctypes.byref(device)
+    registers.polls_to_frame = 10
+    assert error(library.raycaster_wait_frame(handle, 9)) == "NO_FRAME"
+    assert library.raycaster_frame(handle) == 0
+    assert error(library.raycaster_wait_frame(handle, 9)) == "OK"
+    assert library.raycaster_frame(handle) == 1
+    # Each frame counts once; one that came before it was waited for counts too.
+    assert error(library.raycaster_wait_frame(handle, 100)) == "NO_FRAME"
+    registers.start_screen()
+    assert error(library.raycaster_wait_frame(handle, 1)) == "OK"
+    assert error(library.raycaster_wait_frame(handle, 0)) == "NO_FRAME"
+
+
+def test_the_interrupt(library, registers, device):
+    handle = ctypes.byref(device)
+
+    def raised() -> bool:
+        agent = registers.file.agent
+        return agent.irq_enable and agent.irq_pending
+
+    registers.start_screen()
+    assert not raised()
+    library.raycaster_enable_interrupt(handle, True)
+    assert raised()
+    assert library.raycaster_acknowledge(handle)
+    assert not raised()
+    assert not library.raycaster_acknowledge(handle)
+    registers.start_screen()
+    assert raised()
+    library.raycaster_enable_interrupt(handle, False)
+    assert not raised()
+
+
+def test_sticky_errors(library, registers, device):
+    handle = ctypes.byref(device)
+    assert error(library.raycaster_check(handle)) == "OK"
+    # Past the driver, which would refuse it.
+    table = register_map(CONFIG.rectangles)
+    registers.write(4 * table["rectangle[3].corner_0"].address, table["rectangle[3].corner_0"].pack(x=1, y=2, z=3))
+    assert library.raycaster_enable_rectangle(handle, 3, True) == 0
+    assert library.raycaster_commit(handle) == 0
+    assert error(library.raycaster_check(handle)) == "BAD_RECTANGLE"
+    registers.file.agent.underrun = True
+    assert error(library.raycaster_check(handle)) == "UNDERRUN"
+    for _ in range(3):
+        registers.start_screen()
+    status = library.raycaster_get_status(handle)
+    assert (status.frame, status.busy, status.underrun, status.bad_rectangle) == (3, False, True, True)
+    library.raycaster_clear_status(handle)
+    assert error(library.raycaster_check(handle)) == "OK"
+    status = library.raycaster_get_status(handle)
+    assert (status.frame, status.underrun, status.bad_rectangle) == (3, False, False)
+
+
+def test_cycles(library, registers, device):
+    registers.file.agent.row, registers.file.agent.group = 1234, 321
+    cycles = library.raycaster_get_cycles(ctypes.byref(device))
+    assert (cycles.row, cycles.group) == (1234, 321)
+    library.raycaster_clear_cycles(ctypes.byref(device))
+    cycles = library.raycaster_get_cycles(ctypes.byref(device))
+    assert (cycles.row, cycles.group) == (0, 0)
+
+
+def test_every_error_has_a_text_of_its_own(library):
+    texts = [library.raycaster_error_text(number).decode() for number in range(len(ERRORS) + 1)]
+    assert len(set(texts)) == len(texts)
+    assert texts[-1] == "unknown error"
+    assert not any(text.endswith(".") for text in texts)
+
+
+@pytest.mark.parametrize("standard", ["c99", "c11"])
+@pytest.mark.parametrize("level", ["-O0", "-Os", "-O2"])
+def test_plain_memory_and_no_library(tmp_path, standard, level):
+    """With the driver's own access to the registers, and nothing but itself to link with."""
+    compiler = shutil.which("gcc") or shutil.which("cc")
+    flags = (f"-std={standard}", *STRICT[1:], level, "-ffreestanding", "-shared", "-fPIC", "-nostdlib", "-Wl,-z,defs")
+    subprocess.run([compiler, *flags, SOFTWARE / "raycaster.c", "-o", tmp_path / "driver.so"], check=True)
+    library = ctypes.CDLL(tmp_path / "driver.so")
+    memory = (ctypes.c_uint32 * 64)()
+    registers = register_map(CONFIG.rectangles)
+    memory[registers["id"].address] = registers["id"].reset
+    memory[registers["version"].address] = registers["version"].reset
+    memory[registers["size"].address] = registers["size"].pack(units=4, rectangles=12, rows=240)
+    device = RayCaster()
+    assert library.raycaster_probe(ctypes.byref(device), memory) == 0
+    assert (device.units, device.rectangles, device.rows) == (4, 12, 240)
+    assert library.raycaster_set_camera(ctypes.byref(device), Point(1, 2, 3)) == 0
+    assert memory[registers["camera"].address] == registers["camera"].pack(x=1, y=2, z=3)
+
+
+def test_a_cpp_compiler_takes_the_header():
+    command = ["g++", "-x", "c++", *STRICT[1:], "-fsyntax-only", SOFTWARE / "raycaster.h"]
+    subprocess.run(command, check=True)
+
+
+def test_the_driver_for_nios(tmp_path):
+    """The description, run by a real Tcl against stand-ins: it names files that exist, and the component."""
+    if not shutil.which("tclsh"):
+        pytest.skip("no tclsh here: Debian's package tcl")
+    script = "".join(
+        f"proc {name} {{args}} {{ puts [join [list {name} {{*}}$args] \\t] }}\n"
+        for name in ("create_driver", "set_sw_property", "add_sw_property")
+    )
+    (tmp_path / "main.tcl").write_text(f"{script}source {SOFTWARE / 'raycaster_sw.tcl'}\n")
+    done = subprocess.run(["tclsh", "main.tcl"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    calls = [line.split("\t") for line in done.stdout.splitlines()]
+    assert calls[0][0] == "create_driver"
+    assert ["set_sw_property", "hw_class_name", TOP] in calls
+    files = {call[2] for call in calls if call[1] in ("c_source", "include_source")}
+    assert files == {path.name for path in SOFTWARE.glob("*.[ch]")}
