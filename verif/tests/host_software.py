@@ -7,17 +7,29 @@ import ctypes
 import re
 import shutil
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import NamedTuple
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import Configuration, configure
 from raycaster.registers import register_map
+from raycaster.sw.play_script import BUTTONS
 from raycaster.verif.register_model import LiveScene, RegisterFile, Request
 
 ROOT = Path(__file__).parents[2]
 SOFTWARE = ROOT / "sw"
 STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror")
+
+GAME_HEADER = SOFTWARE / "game" / "game.h"
+SEED = int(re.search(r"GAME_SEED = (\d+)", GAME_HEADER.read_text())[1])
+EVENTS = {
+    name: int(bit)
+    for name, bit in re.findall(r"GAME_(STARTED|RETURNED|TILE|LEVEL|MISSED|ENDED) = (\d+)", GAME_HEADER.read_text())
+}
+FIRE = 1 << BUTTONS.index("fire")
+CONFIG = configure(engine="exact", screen="tiny", rectangles=12)
+"""The design on whose registers the software is tried."""
 
 _Read = ctypes.CFUNCTYPE(ctypes.c_uint32, ctypes.c_uint32)
 _Write = ctypes.CFUNCTYPE(None, ctypes.c_uint32, ctypes.c_uint32)
@@ -38,9 +50,7 @@ class Colour(ctypes.Structure):
 class Status(ctypes.Structure):
     """`struct raycaster_status`."""
 
-    _fields_ = [("frame", ctypes.c_uint16)] + [
-        (name, ctypes.c_bool) for name in ("busy", "underrun", "bad_rectangle")
-    ]
+    _fields_ = [("frame", ctypes.c_uint16)] + [(name, ctypes.c_bool) for name in ("busy", "underrun", "bad_rectangle")]
 
 
 class Cycles(ctypes.Structure):
@@ -58,11 +68,42 @@ class RayCaster(ctypes.Structure):
         *(
             (name, ctypes.c_uint8)
             for name in (
-                "rectangles", "reflections", "engine", "built_in", "scale", "fraction_bits", "divider_bits", "colour_bits",
+                "rectangles", "reflections", "engine", "built_in", "scale", "fraction_bits", "divider_bits",
+                "colour_bits",
             )
         ),
         ("nearest", ctypes.c_bool),
     ]  # fmt: skip
+
+
+class Vector(ctypes.Structure):
+    """`struct game_vector`."""
+
+    _fields_ = [(axis, ctypes.c_int32) for axis in "xyz"]
+
+
+class GameRectangle(ctypes.Structure):
+    """`struct game_rectangle`."""
+
+    _fields_ = [("low", Point), ("high", Point), ("colour", Colour), ("enabled", ctypes.c_bool)]
+
+
+class Game(ctypes.Structure):
+    """`struct game`."""
+
+    _fields_ = [
+        ("phase", ctypes.c_int),
+        ("attract", ctypes.c_bool),
+        *((name, ctypes.c_uint8) for name in ("lives", "level", "tiles")),
+        *(
+            (name, ctypes.c_uint32)
+            for name in ("score", "random", "age", "held", "sway", "racket_flash", "tile_flash", "alarm")
+        ),
+        *((name, Vector) for name in ("ball", "velocity", "racket", "target", "veil")),
+        ("drawn", ctypes.c_bool),
+        ("camera", Point),
+        ("shown", 12 * GameRectangle),
+    ]
 
 
 def enumerators(header: Path, name: str) -> list[str]:
@@ -166,3 +207,60 @@ def probed(library: ctypes.CDLL) -> RayCaster:
     device = RayCaster()
     assert library.raycaster_probe(ctypes.byref(device), None) == 0
     return device
+
+
+class Frame(NamedTuple):
+    """What came of a step: events, the scene then live, and what was written for it."""
+
+    events: set[str]
+    live: LiveScene
+    written: list[tuple[int, int]]
+
+
+class Session:
+    """A game and its ray tracer."""
+
+    def __init__(self, library: ctypes.CDLL, seed: int = SEED):
+        self.library = library
+        self.game = Game()
+        self.registers = Registers(CONFIG)
+        with attached(library, self.registers):
+            self.device = probed(library)
+            library.raycaster_set_run(ctypes.byref(self.device), True)
+            assert library.raycaster_set_reflections(ctypes.byref(self.device), 1) == 0
+        library.game_init(ctypes.byref(self.game), seed)
+
+    def draw(self) -> int:
+        """The driver's error."""
+        with attached(self.library, self.registers):
+            return self.library.game_draw(ctypes.byref(self.game), ctypes.byref(self.device))
+
+    def step(self, buttons: int) -> set[str]:
+        """What happens in a frame with these buttons, without a picture."""
+        bits = self.library.game_step(ctypes.byref(self.game), buttons)
+        return {name for name, bit in EVENTS.items() if bits & bit}
+
+    def autoplay(self) -> int:
+        """What a good player would hold now."""
+        return self.library.game_autoplay(ctypes.byref(self.game))
+
+    def play(self, script: Iterable[int]) -> Iterator[Frame]:
+        """Frame after frame, drawn and shown; the sticky errors stay clear."""
+        for buttons in script:
+            self.registers.written.clear()
+            events = self.step(buttons)
+            assert self.draw() == 0
+            written = list(self.registers.written)
+            with attached(self.library, self.registers):
+                assert self.library.raycaster_commit(ctypes.byref(self.device)) == 0
+                live = self.registers.start_screen()
+                assert self.library.raycaster_check(ctypes.byref(self.device)) == 0
+            yield Frame(events, live, written)
+
+    def start(self) -> None:
+        """Press fire in attract mode."""
+        assert self.step(FIRE) == {"STARTED"}
+
+    def phase(self) -> str:
+        """Which of `enum game_phase`."""
+        return enumerators(GAME_HEADER, "game_phase")[self.game.phase].removeprefix("GAME_")

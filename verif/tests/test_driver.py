@@ -10,6 +10,7 @@ import subprocess
 import numpy as np
 import pytest
 from host_software import (
+    CONFIG,
     SOFTWARE,
     STRICT,
     Colour,
@@ -29,7 +30,6 @@ from raycaster.registers import register_map
 from raycaster.rtl.take_home import TOP
 from raycaster.scene import load_scene
 
-CONFIG = configure(engine="exact", screen="tiny", rectangles=12, reflections=1)
 ERRORS = enumerators(SOFTWARE / "raycaster.h", "raycaster_error")
 WHITE = Colour(255, 255, 255)
 

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: MIT
+"""A recorded game: which buttons are held in each frame."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from raycaster.errors import UserError
+
+BUTTONS = ("left", "right", "up", "down", "fire")
+"""What each bit of a frame's buttons means, from bit 0 on."""
+
+DEMO = Path(__file__).parent / "game" / "demo.txt"
+
+
+MOST_FRAMES = 1_000_000
+"""In a script: hours."""
+
+
+class PlayScriptError(UserError):
+    """A play script that is refused: the file, the line, and what was expected."""
+
+
+def load(path: Path | str) -> tuple[int, ...]:
+    """Read a play script.
+
+    Each line has the frame from which on buttons are held, and their names; the last one has `end` in their place, and
+    the number of frames. What follows a `#` is a comment. Frames count from 0 and rise; before the first line nothing
+    is held.
+
+    Args:
+        path: the text file.
+
+    Returns:
+        For each frame the buttons, as bits in the order of `BUTTONS`.
+
+    Raises:
+        PlayScriptError: the file cannot be read, or a line is wrong; one line says where and what was expected.
+    """
+    path = Path(path)
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except OSError as error:
+        raise PlayScriptError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise PlayScriptError(f"{path}: is not UTF-8 text") from None
+    frames: list[int] = []
+    held = 0
+    previous = -1
+    ended = False
+    for number, line in enumerate(lines, 1):
+        words = line.partition("#")[0].split()
+        if not words:
+            continue
+        place = f"{path}: line {number}"
+        if ended:
+            raise PlayScriptError(f"{place}: nothing may follow the end")
+        first, *names = words
+        # Length before value, as Python refuses to read thousands of digits.
+        if not (first.isascii() and first.isdigit() and len(first) < 20 and int(first) <= MOST_FRAMES):
+            raise PlayScriptError(f"{place}: must begin with a frame's number up to {MOST_FRAMES}, not {first[:20]}")
+        frame = int(first)
+        if frame <= previous:
+            raise PlayScriptError(f"{place}: frame {frame} must come after {previous}")
+        frames += [held] * (frame - len(frames))
+        previous = frame
+        if names == ["end"]:
+            ended = True
+            continue
+        for name in names:
+            if name not in BUTTONS:
+                raise PlayScriptError(f"{place}: the buttons are {', '.join(BUTTONS)}, not {name}")
+        held = sum(1 << BUTTONS.index(name) for name in set(names))
+    if not ended:
+        raise PlayScriptError(f"{path}: must end with the number of frames and the word end")
+    return tuple(frames)
+
+
+def dump(frames: tuple[int, ...]) -> str:
+    """The text of a play script, without comments; `load` reads the same frames from it."""
+    lines = []
+    held = 0
+    for frame, buttons in enumerate(frames):
+        if buttons != held:
+            names = [name for bit, name in enumerate(BUTTONS) if buttons >> bit & 1]
+            lines.append(" ".join([str(frame), *names]))
+            held = buttons
+    return "\n".join([*lines, f"{len(frames)} end"]) + "\n"

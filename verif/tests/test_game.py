@@ -1,0 +1,300 @@
+# SPDX-License-Identifier: MIT
+"""The game, compiled for the host: what it draws, its rules, and the recorded game."""
+
+from __future__ import annotations
+
+import ctypes
+import random
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from host_software import (
+    CONFIG,
+    FIRE,
+    GAME_HEADER,
+    SOFTWARE,
+    Game,
+    Registers,
+    Session,
+    attached,
+    compile_library,
+    enumerators,
+    probed,
+)
+
+from raycaster.configuration import configure
+from raycaster.golden import exact
+from raycaster.golden.rays import primary_slopes
+from raycaster.sw.play_script import BUTTONS, DEMO, PlayScriptError, dump, load
+from raycaster.verif.register_model import LiveScene
+
+ENTRIES = enumerators(GAME_HEADER, "game_entry")
+COURT = {"x": (44, 281), "y": (89, 423), "z": (0, 258)}
+LIVES = 3
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory) -> ctypes.CDLL:
+    return compile_library(tmp_path_factory.mktemp("game"), "raycaster.c", "game/game.c")
+
+
+@pytest.fixture
+def session(library) -> Session:
+    return Session(library)
+
+
+def check_in_court(game: Game) -> None:
+    for axis, (low, high) in COURT.items():
+        assert low <= getattr(game.ball, axis) / 256 <= high
+    assert 0 <= game.lives <= LIVES
+    assert 1 <= game.level <= 9
+
+
+def assert_same_scene(one: LiveScene, other: LiveScene) -> None:
+    assert (one.run, one.reflections, one.background, one.camera) == (
+        other.run, other.reflections, other.background, other.camera,
+    )  # fmt: skip
+    np.testing.assert_array_equal(one.rectangles.enabled, other.rectangles.enabled)
+    for index in np.flatnonzero(one.rectangles.enabled):
+        np.testing.assert_array_equal(one.rectangles.corners[index], other.rectangles.corners[index])
+        np.testing.assert_array_equal(one.rectangles.colours[index], other.rectangles.colours[index])
+
+
+def test_the_table_is_that_of_the_default_design():
+    assert ENTRIES.index("GAME_RECTANGLES") == CONFIG.rectangles == 12
+
+
+def test_the_demo_is_a_good_game(session):
+    script = load(DEMO)
+    assert len(script) >= 150
+    happened = [event for frame in session.play(script) for event in frame.events]
+    assert happened.count("STARTED") == 1
+    assert happened.count("TILE") >= 4
+    assert "LEVEL" in happened
+    assert "MISSED" not in happened
+    assert (session.game.attract, session.game.lives) == (False, LIVES)
+
+
+def test_a_step_off_the_demo_still_plays_well(session):
+    """The game counts from fire, so hardware that starts some frames sooner or later shows the same one."""
+    script = load(DEMO)
+    scores = set()
+    for late in (0, 1, 17):
+        other = Session(session.library)
+        for buttons in [0] * late + list(script):
+            other.step(buttons)
+        scores.add((other.game.score, other.game.level, other.game.lives))
+    assert len(scores) == 1
+
+
+def test_equal_seeds_give_equal_frames(library):
+    generator = random.Random(3)
+    script = [generator.choice((0, FIRE, 1, 2, 4, 8, 5, 10)) for _ in range(300)]
+    runs = [[frame.written for frame in Session(library, seed).play(script)] for seed in (5, 5, 6)]
+    assert runs[0] == runs[1]
+    assert runs[0] != runs[2]
+
+
+def test_what_is_not_written_is_as_if_it_were(session):
+    """Frames of which only changes were written are those of a table that was written as a whole."""
+    anew = Session(session.library)
+    for number, frame in enumerate(session.play(load(DEMO)[:480])):
+        if number % 60 == 0:
+            anew.game = Game.from_buffer_copy(session.game)
+            anew.game.drawn = False
+            anew.registers.written.clear()
+            assert anew.draw() == 0
+            with attached(anew.library, anew.registers):
+                assert anew.library.raycaster_commit(ctypes.byref(anew.device)) == 0
+            assert_same_scene(frame.live, anew.registers.start_screen())
+
+
+def test_only_what_changes_is_written(session):
+    frames = list(session.play(load(DEMO)))
+    # Background, camera, and three words an entry.
+    assert len(frames[0].written) == 2 + 3 * 12
+    assert max(len(frame.written) for frame in frames[1:]) < 2 + 3 * 12
+    assert np.mean([len(frame.written) for frame in frames]) < 12
+    session.registers.written.clear()
+    assert session.draw() == 0
+    assert not session.registers.written
+
+
+@pytest.mark.parametrize("seed", [0, 1, 7, 0xFFFFFFFF])
+def test_wild_buttons_do_no_harm(library, seed):
+    """Whatever is pressed, everything is in the world, has a plane and is drawn; see `Session.play`."""
+    session = Session(library, seed)
+    generator = random.Random(seed)
+    held = 0
+    script = []
+    for _ in range(1500):
+        if generator.random() < 0.1:
+            held = generator.getrandbits(5)
+        script.append(held)
+    for _ in session.play(script):
+        check_in_court(session.game)
+
+
+def test_attract_mode_plays_by_itself_for_ever(session):
+    happened: list[str] = []
+    levels = set()
+    for _ in range(20_000):
+        happened += session.step(0)
+        levels.add(session.game.level)
+        check_in_court(session.game)
+    assert session.game.attract
+    assert "ENDED" not in happened
+    assert happened.count("RETURNED") > 20 * happened.count("MISSED")
+    assert levels == {1, 2, 3, 4}
+
+
+def test_a_good_player_sees_every_level(session):
+    session.start()
+    speeds = {}
+    for _ in range(60_000):
+        session.step(session.autoplay())
+        if session.phase() == "RALLY":
+            speeds.setdefault(session.game.level, abs(session.game.velocity.x))
+        if session.game.attract:
+            break
+    assert sorted(speeds) == list(range(1, len(speeds) + 1))
+    assert len(speeds) >= 7
+    values = list(speeds.values())
+    assert all(slow < fast for slow, fast in pairwise(values))
+
+
+def test_lives_are_lost_and_the_game_ends(session):
+    session.start()
+    assert not session.game.attract
+    missed = 0
+    for _ in range(3000):
+        # Into a corner, where the ball does not come.
+        events = session.step(0b0101)
+        missed += "MISSED" in events
+        assert session.game.lives == LIVES - missed
+        if "ENDED" in events:
+            break
+    assert (missed, session.phase()) == (LIVES, "OVER")
+    frames = 0
+    while not session.game.attract:
+        assert session.step(0) == set()
+        frames += 1
+    assert frames == 300
+    assert session.game.lives == LIVES
+
+
+def test_fire_starts_anew_but_not_in_haste(session):
+    session.start()
+    while session.phase() != "OVER":
+        session.step(0b0101)
+    for _ in range(60):
+        assert session.step(FIRE) == set()
+        assert session.phase() == "OVER"
+    assert session.step(FIRE) == set(), "it is still held"
+    session.step(0)
+    assert session.step(FIRE) == {"STARTED"}
+    assert (session.game.score, session.game.level, session.game.lives) == (0, 1, LIVES)
+
+
+def test_fire_serves(session):
+    session.start()
+    assert session.phase() == "SERVE"
+    session.step(FIRE)
+    assert session.phase() == "SERVE", "it is still held"
+    session.step(0)
+    session.step(FIRE)
+    assert session.phase() == "RALLY"
+
+
+@pytest.mark.parametrize(("button", "axis", "sign"), [(0, "y", -1), (1, "y", 1), (2, "z", 1), (3, "z", -1)])
+def test_the_racket_goes_where_it_is_told(session, button, axis, sign):
+    session.start()
+    before = getattr(session.game.racket, axis)
+    session.step(1 << button)
+    assert np.sign(getattr(session.game.racket, axis) - before) == sign
+    session.step(0b1111)
+    for _ in range(200):
+        session.step(1 << button)
+    edge = getattr(session.game.racket, axis)
+    session.step(1 << button)
+    assert getattr(session.game.racket, axis) == edge
+
+
+def test_bars_tell_lives_and_tiles(session):
+    *_, last = session.play(load(DEMO)[:330])
+    lives, score = (ENTRIES.index(f"GAME_{name}_BAR") for name in ("LIVES", "SCORE"))
+    lengths = last.live.rectangles.high[:, 0] - last.live.rectangles.low[:, 0]
+    assert (session.game.lives, session.game.tiles) == (3, 3)
+    assert (lengths[lives], lengths[score]) == (180, 135)
+
+
+def test_mirrors_show_what_the_veil_hides(session):
+    """In some frames no ray meets the ball at first, but rays from mirrors do."""
+    slopes = primary_slopes(configure(engine="exact").screen_geometry).reshape(-1, 3)
+    ball = ENTRIES.index("GAME_BALL")
+    direct = only_in_mirrors = 0
+    for number, frame in enumerate(session.play(load(DEMO)[:220])):
+        if number >= 80 and number % 10 == 0:
+            live = frame.live
+            first, second = exact.trace(live.rectangles, live.camera, live.background, slopes, 1).winners
+            direct += (first == ball).any()
+            only_in_mirrors += (second == ball).any() and not (first == ball).any()
+    assert direct
+    assert only_in_mirrors
+
+
+def test_a_table_that_is_too_small(library):
+    session = Session(library)
+    session.registers = Registers(configure(engine="exact", screen="tiny", rectangles=11))
+    with attached(library, session.registers):
+        session.device = probed(library)
+    errors = enumerators(SOFTWARE / "raycaster.h", "raycaster_error")
+    assert errors[session.draw()] == "RAYCASTER_NO_SUCH_RECTANGLE"
+    written = len(session.registers.written)
+    assert errors[session.draw()] == "RAYCASTER_NO_SUCH_RECTANGLE"
+    assert len(session.registers.written) == 2 * written, "after an error everything is written anew"
+
+
+def test_buttons_have_the_same_bits_in_c():
+    for bit, name in enumerate(BUTTONS):
+        assert f"GAME_{name.upper()} = {1 << bit}" in GAME_HEADER.read_text()
+
+
+def test_a_script_holds_buttons_until_the_next_line(tmp_path):
+    path = tmp_path / "script.txt"
+    path.write_text("# a comment\n\n2 fire  # and another\n3\n4 left up up\n6 end\n")
+    assert load(path) == (0, 0, 16, 0, 5, 5)
+    path.write_text(dump(load(path)))
+    assert load(path) == (0, 0, 16, 0, 5, 5)
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        ("", "must end with the number of frames and the word end"),
+        ("1 fire\n", "must end with the number of frames and the word end"),
+        ("1 fire\n1 end\n", "line 2: frame 1 must come after 1"),
+        ("fire\n9 end\n", "line 1: must begin with a frame's number up to 1000000, not fire"),
+        ("-1 fire\n9 end\n", "line 1: must begin with a frame's number up to 1000000, not -1"),
+        ("1000001 end\n", "line 1: must begin with a frame's number up to 1000000, not 1000001"),
+        (f"{'9' * 5000} end\n", "line 1: must begin with a frame's number up to 1000000, not 99999999999999999999"),
+        ("1 jump\n9 end\n", "line 1: the buttons are left, right, up, down, fire, not jump"),
+        ("9 end\n10 fire\n", "line 2: nothing may follow the end"),
+        ("1 end fire\n", "line 1: the buttons are left, right, up, down, fire, not end"),
+    ],
+)
+def test_wrong_scripts_get_one_line(tmp_path, text, complaint):
+    path = tmp_path / "script.txt"
+    path.write_text(text)
+    with pytest.raises(PlayScriptError) as refusal:
+        load(path)
+    assert str(refusal.value) == f"{path}: {complaint}"
+
+
+def test_files_that_are_no_scripts(tmp_path):
+    with pytest.raises(PlayScriptError, match=r"none\.txt: cannot be read: No such file or directory"):
+        load(tmp_path / "none.txt")
+    (tmp_path / "bytes.txt").write_bytes(b"\xff\xfe")
+    with pytest.raises(PlayScriptError, match="is not UTF-8 text"):
+        load(tmp_path / "bytes.txt")
