@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: MIT
+"""`python -m raycaster.sw.firmware`: the game for a PicoRV32, as an ELF file and as words for `$readmemh`."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import shutil
+import struct
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from raycaster.errors import UserError
+from raycaster.options import run_command
+from raycaster.tools import run_program
+
+SOFTWARE = Path(__file__).parent
+FIRMWARE = SOFTWARE / "firmware"
+SOURCES = (FIRMWARE / "start.S", FIRMWARE / "main.c", SOFTWARE / "game" / "game.c", SOFTWARE / "raycaster.c")
+
+COMPILER = ("-m", "ziglang", "cc", "-target", "riscv32-freestanding-none", "-mcpu=generic_rv32+m")
+"""For the Python that runs: clang for RV32IM without compressed instructions, and no C library."""
+
+STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror")
+TIMEOUT = 300
+
+
+@dataclass(frozen=True)
+class Firmware:
+    """What was built."""
+
+    elf: Path
+    """With what a debugger wants."""
+
+    words: Path
+    """All of the RAM, one word of 32 bits a line, in hexadecimal."""
+
+    sections: dict[str, int]
+    """Bytes of each section that takes up RAM."""
+
+
+def memory_map() -> dict[str, int]:
+    """The numbers of `firmware/system.h` by name, without the `SYSTEM_` before it: `RAM_BYTES`, `UART_BASE`, ..."""
+    text = (FIRMWARE / "system.h").read_text()
+    return {name: int(number, 0) for name, number in re.findall(r"^#define SYSTEM_(\w+) (\w+)", text, re.M)}
+
+
+def build_firmware(output: Path) -> Firmware:
+    """Compile and link the game.
+
+    Args:
+        output: the directory; replaced as a whole.
+
+    Raises:
+        UserError: the compiler is missing, or did not accept the sources.
+    """
+    for module in ("ziglang", "elftools"):
+        if find_spec(module) is None:
+            raise UserError(f"{module} is missing; pip install 'raycaster[firmware]'")
+    output.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=output.parent, prefix=f".{output.name}-") as scratch:
+        work = Path(scratch) / output.name
+        work.mkdir()
+        script = Path(scratch) / "link.ld"
+        _compile("-E", "-P", "-x", "c", FIRMWARE / "link.ld", "-o", script)
+        _compile(
+            *STRICT, "-Os", "-g", "-ffunction-sections", f"-I{SOFTWARE}", f"-I{FIRMWARE}", f"-Wl,-T,{script}",
+            "-Wl,--gc-sections", *SOURCES, "-o", work / "firmware.elf",
+        )  # fmt: skip
+        memory, sections = _read_elf(work / "firmware.elf")
+        lines = (f"{word:08x}\n" for (word,) in struct.iter_unpack("<I", memory))
+        (work / "firmware.hex").write_text("".join(lines))
+        if output.exists():
+            shutil.rmtree(output)
+        work.rename(output)
+    return Firmware(output / "firmware.elf", output / "firmware.hex", sections)
+
+
+def _compile(*arguments: str | Path) -> None:
+    done = run_program([sys.executable, *COMPILER, *map(str, arguments)], SOFTWARE, TIMEOUT)
+    if done.returncode:
+        raise UserError(f"the compiler failed:\n{done.stderr.strip()}")
+
+
+def _read_elf(path: Path) -> tuple[bytes, dict[str, int]]:
+    """The whole RAM before the start, and the sizes of the sections in it."""
+    # Only this command needs it.
+    from elftools.elf.constants import SH_FLAGS  # noqa: PLC0415
+    from elftools.elf.elffile import ELFFile  # noqa: PLC0415
+
+    places = memory_map()
+    memory = bytearray(places["RAM_BYTES"])
+    with path.open("rb") as file:
+        elf = ELFFile(file)
+        sections = [section for section in elf.iter_sections() if section["sh_flags"] & SH_FLAGS.SHF_ALLOC]
+        for section in sections:
+            if section["sh_type"] == "SHT_PROGBITS":
+                start = section["sh_addr"] - places["RAM_BASE"]
+                memory[start : start + section["sh_size"]] = section.data()
+        return bytes(memory), {section.name: section["sh_size"] for section in sections}
+
+
+def show(sections: dict[str, int], console: Console) -> None:
+    """Print what takes up the RAM."""
+    there = memory_map()["RAM_BYTES"]
+    table = Table("section", "bytes", "share", title=f"{there:,} bytes of RAM")
+    for column in table.columns[1:]:
+        column.justify = "right"
+    rest = there - sum(sections.values())
+    for name, size in (*sections.items(), ("left for the stack", rest)):
+        table.add_row(name, f"{size:,}", f"{size / there:.1%}")
+    console.print(table)
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """The command.
+
+    Args:
+        argv: its arguments, those of the process by default.
+    """
+    parser = argparse.ArgumentParser(prog="python -m raycaster.sw.firmware", description=__doc__)
+    parser.add_argument("--output", type=Path, default=Path("build/firmware"), help="(default: %(default)s)")
+    arguments = parser.parse_args(argv)
+    console = Console()
+    # The compiler runs in a directory of its own.
+    built = build_firmware(arguments.output.absolute())
+    show(built.sections, console)
+    print(f"{arguments.output / built.elf.name} and {arguments.output / built.words.name}")
+
+
+if __name__ == "__main__":
+    run_command(main)

@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: MIT
+"""The firmware, as built for the PicoRV32, in an emulator on the model of the registers."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from host_software import CONFIG, FIRE, Registers, Session, compile_library
+
+from raycaster.registers import register_map
+from raycaster.sw.firmware import Firmware, build_firmware, main, memory_map
+from raycaster.sw.play_script import DEMO, load
+from raycaster.verif.register_model import LiveScene
+
+PLACES = memory_map()
+PAGE = 0x1000
+
+
+@pytest.fixture(scope="module")
+def firmware(tmp_path_factory) -> Firmware:
+    pytest.importorskip("ziglang", reason="the extra firmware is not installed")
+    return build_firmware(tmp_path_factory.mktemp("firmware") / "firmware")
+
+
+class Machine:
+    """The system: memory from the image, the ray tracer's registers, buttons, and a UART that is busy for a while.
+
+    Attributes:
+        said: what went over the UART.
+        frames: for each frame, the words that were written to the ray tracer, and how many instructions it took.
+    """
+
+    def __init__(self, words: Path, script: tuple[int, ...], registers: Registers):
+        self._unicorn = unicorn = pytest.importorskip("unicorn")
+        self._script = script
+        self._registers = registers
+        self._busy = 0
+        self._instructions = 0
+        self._block = -1
+        self.said = ""
+        self.frames: list[tuple[list[tuple[int, int]], int]] = []
+        self._frame_open = False
+        self.uc = uc = unicorn.Uc(unicorn.UC_ARCH_RISCV, unicorn.UC_MODE_RISCV32)
+        uc.mem_map(PLACES["RAM_BASE"], PLACES["RAM_BYTES"])
+        memory = b"".join(int(line, 16).to_bytes(4, "little") for line in words.read_text().split())
+        assert len(memory) == PLACES["RAM_BYTES"]
+        uc.mem_write(PLACES["RAM_BASE"], memory)
+        uc.mmio_map(PLACES["RAYCASTER_BASE"], PAGE, self._read_registers, None, self._write_registers, None)
+        uc.mmio_map(PLACES["BUTTONS_BASE"], PAGE, self._read_rest, None, self._write_rest, None)
+        uc.hook_add(unicorn.UC_HOOK_BLOCK, self._count)
+        uc.hook_add(unicorn.UC_HOOK_MEM_READ | unicorn.UC_HOOK_MEM_WRITE, self._check_access)
+
+    def run(self) -> None:
+        """Until the script ends, or main does."""
+        self.uc.emu_start(PLACES["RAM_BASE"], PLACES["RAM_BYTES"], count=20_000_000)
+
+    def _count(self, uc, address, size, _) -> None:
+        self._instructions += size // 4
+        # A jump to itself is where the program ends.
+        if size == 4 and address == self._block:
+            self.uc.emu_stop()
+        self._block = address
+
+    def _check_access(self, uc, access, address, size, value, _) -> None:
+        # A PicoRV32 traps on others.
+        assert address % size == 0
+
+    def _read_registers(self, uc, offset, size, _) -> int:
+        assert size == 4
+        if offset == 4 * register_map(CONFIG.rectangles)["irq_pending"].address:
+            self._close_frame()
+            self._registers.polls_to_frame = self._registers.polls_to_frame or 3
+        return self._registers.read(offset)
+
+    def _write_registers(self, uc, offset, size, word, _) -> None:
+        assert size == 4
+        self._registers.write(offset, word)
+
+    def _close_frame(self) -> None:
+        if self._frame_open:
+            self._frame_open = False
+            self.frames.append((list(self._registers.written), self._instructions))
+            if len(self.frames) == len(self._script):
+                self.uc.emu_stop()
+
+    def _read_rest(self, uc, offset, size, _) -> int:
+        assert size == 4
+        address = PLACES["BUTTONS_BASE"] + offset
+        if address == PLACES["BUTTONS_BASE"]:
+            self._frame_open = True
+            self._instructions = 0
+            self._registers.written.clear()
+            return self._script[len(self.frames)]
+        assert address == PLACES["UART_BASE"]
+        self._busy = max(self._busy - 1, 0)
+        return PLACES["UART_BUSY"] if self._busy else 0
+
+    def _write_rest(self, uc, offset, size, word, _) -> None:
+        assert (size, PLACES["BUTTONS_BASE"] + offset) == (4, PLACES["UART_BASE"])
+        assert not self._busy
+        self._busy = 3
+        self.said += chr(word)
+
+
+def test_the_memory_map():
+    assert PLACES == {
+        "RAM_BASE": 0,
+        "RAM_BYTES": 0x8000,
+        "RAYCASTER_BASE": 0x80000000,
+        "BUTTONS_BASE": 0x90000000,
+        "UART_BASE": 0x90000010,
+        "UART_BUSY": 1,
+    }
+
+
+def test_the_demo_is_played_as_on_the_host(firmware, tmp_path):
+    script = load(DEMO)[:430]
+    machine = Machine(firmware.words, script, Registers(CONFIG))
+    machine.run()
+    version = register_map(CONFIG.rectangles)["version"].fields
+    assert machine.said.splitlines() == [
+        f"RayCaster {version['major'].reset}.{version['minor'].reset}, engine exact, units {CONFIG.units}, "
+        "rectangles 12, rows 48, reflections 1, scale 1, fixed 0",
+        "start",
+        "level 2",
+    ]
+    assert len(machine.frames) == len(script)
+    host = Session(compile_library(tmp_path, "raycaster.c", "game/game.c"))
+    status = 4 * register_map(CONFIG.rectangles)["status"].address
+    for number, (expected, (written, _)) in enumerate(zip(host.play(script), machine.frames, strict=True)):
+        # After the picture's words come the commit and the forgotten errors.
+        assert written[:-2] == expected.written, f"frame {number}"
+        assert written[-1][0] == status
+    # A PicoRV32 takes some five cycles an instruction, and a frame is 420,000 cycles of 25 MHz.
+    instructions = [count for _, count in machine.frames]
+    print(f"instructions a frame: at most {max(instructions)}, mean {sum(instructions) / len(instructions):.0f}")
+    assert max(instructions) < 420_000 / 5 / 2
+
+
+def test_a_lost_game_is_told(firmware):
+    corner = 0b0101
+    machine = Machine(firmware.words, (0, FIRE) + (corner,) * 700, Registers(CONFIG))
+    machine.run()
+    assert re.search(r"^game over, score \d+\r$", machine.said, re.M)
+
+
+@pytest.mark.parametrize(
+    ("register", "fields", "complaint"),
+    [
+        ("id", {"magic": 0}, "no game: no ray tracer at this address"),
+        ("version", {"major": 9}, "no game: the registers are of another major version than this driver"),
+        ("engine", {"fixed": 2}, "no game: built into the hardware"),
+        ("size", {"rectangles": 11}, "ray tracer: the rectangle's index is beyond the table"),
+    ],
+)
+def test_errors_are_told_once(firmware, register, fields, complaint):
+    registers = Registers(CONFIG)
+    registers.say(register, **fields)
+    machine = Machine(firmware.words, (0,) * 5, registers)
+    machine.run()
+    assert machine.said.count(complaint) == 1
+    assert machine.said.endswith(f"{complaint}\r\n")
+
+
+@pytest.mark.parametrize(("frame", "told"), [(0, 0), (3, 1)])
+def test_an_underrun_is_told(firmware, frame, told):
+    """But not what was before the start."""
+
+    class Late(Registers):
+        def start_screen(self) -> LiveScene:
+            self.file.agent.underrun |= self.file.agent.frame == frame > 0
+            return super().start_screen()
+
+    registers = Late(CONFIG)
+    registers.file.agent.underrun = frame == 0
+    machine = Machine(firmware.words, (0,) * 9, registers)
+    machine.run()
+    assert machine.said.count("ray tracer: a row was not complete in time\r\n") == told
+    assert not registers.file.agent.underrun
+
+
+def test_the_image_is_the_program(firmware):
+    """The words are what is linked, from the first instruction on, and nothing is compressed."""
+    words = firmware.words.read_text().split()
+    assert len(words) == PLACES["RAM_BYTES"] // 4
+    program = firmware.sections[".text"] // 4
+    assert all(int(word, 16) & 3 == 3 for word in words[:program])
+    used = sum(firmware.sections.values())
+    assert set(words[-(-used // 4) :]) == {"00000000"}
+    assert firmware.elf.read_bytes()[:4] == b"\x7fELF"
+
+
+def test_the_command(tmp_path):
+    pytest.importorskip("ziglang", reason="the extra firmware is not installed")
+    command = (sys.executable, "-m", "raycaster.sw.firmware", "--output", "here")
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "32,768 bytes of RAM" in done.stdout
+    assert {path.name for path in (tmp_path / "here").iterdir()} == {"firmware.elf", "firmware.hex"}
+
+
+@pytest.mark.parametrize("missing", ["ziglang", "elftools"])
+def test_a_missing_tool_is_one_line(tmp_path, monkeypatch, missing):
+    monkeypatch.setattr("raycaster.sw.firmware.find_spec", lambda name: None if name == missing else name)
+    with pytest.raises(Exception, match=rf"^{missing} is missing; pip install 'raycaster\[firmware\]'$"):
+        main(["--output", str(tmp_path / "output")])
+    assert not any(tmp_path.iterdir())
+
+
+def test_equal_sources_give_equal_words(firmware, tmp_path):
+    assert build_firmware(tmp_path / "other").words.read_bytes() == firmware.words.read_bytes()
+
+
+def test_a_program_that_does_not_compile(tmp_path, monkeypatch):
+    pytest.importorskip("ziglang", reason="the extra firmware is not installed")
+    from raycaster.sw import firmware as module  # noqa: PLC0415
+
+    broken = tmp_path / "broken.c"
+    shutil.copy(module.SOURCES[1], broken)
+    broken.write_text(broken.read_text().replace("int main(void) {", "int main(void) { int unused;"))
+    monkeypatch.setattr(module, "SOURCES", (module.SOURCES[0], broken, *module.SOURCES[2:]))
+    with pytest.raises(Exception, match=r"the compiler failed:\n.*unused"):
+        build_firmware(tmp_path / "output")
+    assert not (tmp_path / "output").exists()
