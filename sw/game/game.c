@@ -2,17 +2,17 @@
 #include "game.h"
 
 // The court, in units of the world. The view is along x; the court begins where the walls come into view, and its front
-// is open, so that what faces the player mirrors the background. From the eye to floor, ceiling and back it is primes that
-// no pixel's slopes are multiples of: no ray goes through an edge, wherever the eye is from side to side. From an edge it
-// would leave the court, and leave a speck.
+// is open, so that what faces the player mirrors the background. A ray that meets an edge leaves the court from there, and
+// would be a speck; so ceiling, floor and back are as far from the eye as no pixel's slopes, wherever the eye is from side
+// to side.
 enum {
     FRONT = 80,
     BACK = 281,
     LEFT = 89,
     RIGHT = 423,
-    CEILING = 258,
+    CEILING = 264,
     MIDDLE = (LEFT + RIGHT) / 2,
-    EYE_HEIGHT = 61,
+    EYE_HEIGHT = 67,
     RACKET_X = 130,
     VEIL_X = 200,
     GONE_X = 50,

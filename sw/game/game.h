@@ -44,7 +44,7 @@ enum game_entry {
 
 enum {
     GAME_REFLECTIONS = 1,
-    GAME_SEED = 2026, // of the firmware, and of what demo.txt plays
+    GAME_SEED = 2013, // of the firmware, and of what demo.txt plays
 };
 
 // A place or a speed; of the ball in 256ths of a unit.

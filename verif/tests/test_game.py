@@ -30,7 +30,7 @@ from raycaster.sw.play_script import BUTTONS, DEMO, PlayScriptError, dump, load
 from raycaster.verif.register_model import LiveScene
 
 ENTRIES = enumerators(GAME_HEADER, "game_entry")
-COURT = {"x": (44, 281), "y": (89, 423), "z": (0, 258)}
+COURT = {"x": (44, 281), "y": (89, 423), "z": (0, 264)}
 LIVES = 3
 
 
@@ -242,6 +242,25 @@ def test_mirrors_show_what_the_veil_hides(session):
             only_in_mirrors += (second == ball).any() and not (first == ball).any()
     assert direct
     assert only_in_mirrors
+
+
+def test_no_ray_meets_an_edge_of_the_court(session):
+    """Wherever the racket leads the eye."""
+    slope = primary_slopes(configure(engine="exact").screen_geometry).reshape(-1, 3)
+    walls = [ENTRIES.index(f"GAME_{name}") for name in ("FLOOR", "CEILING", "LEFT_WALL", "RIGHT_WALL", "BACK_WALL")]
+    session.start()
+    eyes = set()
+    for frame in session.play([0b0001] * 60 + [0b0010] * 120):
+        eyes.add(frame.live.camera)
+    assert len({y for _, y, _ in eyes}) > 20
+    for eye in eyes:
+        corners = frame.live.rectangles.corners[walls]
+        low, high = (edge - np.array(eye) for edge in (corners.min(axis=(0, 1)), corners.max(axis=(0, 1))))
+        for u, v in ((1, 2), (0, 1), (0, 2)):
+            for at_u in {low[u], high[u]} - {low[0]}:
+                for at_v in (low[v], high[v]):
+                    on_edge = (slope[:, u] * at_v == slope[:, v] * at_u) & (slope[:, u] * at_u > 0)
+                    assert not on_edge.any(), (eye, at_u, at_v)
 
 
 def test_a_table_that_is_too_small(library):
