@@ -407,7 +407,6 @@ enum raycaster_error game_draw(struct game *game, const struct raycaster *device
     compose(game, scene);
     // The player's head follows the racket a little to the sides, and everything shifts with it.
     const struct raycaster_point camera = {0, (uint16_t)(MIDDLE + (game->racket.y - MIDDLE) / 8), EYE_HEIGHT};
-    game->drawn = false;
     if (all) {
         error = raycaster_set_background(device, BACKGROUND);
     }

@@ -229,6 +229,40 @@ def test_bars_tell_lives_and_tiles(session):
     assert (lengths[lives], lengths[score]) == (180, 135)
 
 
+def test_the_score_is_that_of_what_happened(session):
+    score, level = 0, 1
+    for frame in session.play(load(DEMO)):
+        score += ("RETURNED" in frame.events) + 10 * level * ("TILE" in frame.events)
+        level += "LEVEL" in frame.events
+        assert (session.game.score, session.game.level) == (score, level)
+
+
+def test_what_is_hit_flashes(session):
+    entries = {"RETURNED": ENTRIES.index("GAME_RACKET"), "TILE": ENTRIES.index("GAME_TARGET")}
+    white = dict.fromkeys(entries, 0)
+    for frame in session.play(load(DEMO)):
+        for event, entry in entries.items():
+            is_white = frame.live.rectangles.colours[entry].tolist() == [255, 255, 255]
+            assert is_white or event not in frame.events
+            white[event] = white[event] + 1 if is_white else 0
+            assert white[event] < 10
+
+
+def test_a_miss_turns_the_walls_red_and_the_end_hides_the_ball(session):
+    def reddish(live: LiveScene) -> bool:
+        red, green, blue = live.rectangles.colours[ENTRIES.index("GAME_BACK_WALL")]
+        return red > 2 * max(green, blue)
+
+    frames = list(session.play([FIRE] + [0b0101] * 700))
+    over = next(number for number, frame in enumerate(frames) if "ENDED" in frame.events)
+    for number, frame in enumerate(frames[: over + 200]):
+        recent = any("MISSED" in before.events for before in frames[max(number - 23, 0) : number + 1])
+        assert reddish(frame.live) == (recent or number >= over)
+        shown = [bool(frame.live.rectangles.enabled[ENTRIES.index(f"GAME_{name}")]) for name in ("BALL", "LIVES_BAR")]
+        gone = sum("MISSED" in before.events for before in frames[: number + 1]) == LIVES
+        assert shown == [number < over, not gone]
+
+
 def test_mirrors_show_what_the_veil_hides(session):
     """In some frames no ray meets the ball at first, but rays from mirrors do."""
     slopes = primary_slopes(configure(engine="exact").screen_geometry).reshape(-1, 3)
