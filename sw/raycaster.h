@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The ray tracer's driver: C99, without a C library, memory of its own or floating point.
 //
-// A program probes once, describes a picture with the functions called set, and commits it, which shows all of it together
-// from the next frame on. Nothing is clipped: an argument that does not fit is an error, and then nothing is written.
+// A program probes once, describes a picture with the functions called set, and commits it, which shows all of it
+// together from the next frame on. Nothing is clipped: an argument that does not fit is an error, and then nothing is
+// written.
 
 #ifndef RAYCASTER_H
 #define RAYCASTER_H
@@ -94,7 +95,7 @@ struct raycaster_cycles {
 // What an error means, in English, without a full stop.
 const char *raycaster_error_text(enum raycaster_error error);
 
-// Fill in `device` from the registers at `base`. RAYCASTER_NOT_FOUND, RAYCASTER_OTHER_VERSION: the rest is not filled in.
+// Fill in `device` from the registers at `base`. RAYCASTER_NOT_FOUND, RAYCASTER_OTHER_VERSION: it must not be used.
 enum raycaster_error raycaster_probe(struct raycaster *device, volatile uint32_t *base);
 
 // Set an entry of the table, from two opposite corners that share a coordinate, and enable it.
@@ -114,15 +115,15 @@ enum raycaster_error raycaster_set_reflections(const struct raycaster *device, u
 // Show the scene, or black.
 void raycaster_set_run(const struct raycaster *device, bool run);
 
-// Make all that was set go live at the next frame. RAYCASTER_STILL_COMMITTING: what was committed before is not live yet;
-// nothing was done.
+// Make all that was set go live at the next frame. RAYCASTER_STILL_COMMITTING: what was committed before is not live
+// yet; nothing was done.
 enum raycaster_error raycaster_commit(const struct raycaster *device);
 
 // Whether what was committed is still to go live.
 bool raycaster_is_committing(const struct raycaster *device);
 
-// Wait for the start of a frame that was not waited for or acknowledged before. RAYCASTER_NO_FRAME: it did not come while
-// the registers were looked at `polls` times.
+// Wait for the start of a frame that was not waited for or acknowledged before. RAYCASTER_NO_FRAME: it did not come
+// while the registers were looked at `polls` times.
 enum raycaster_error raycaster_wait_frame(const struct raycaster *device, uint32_t polls);
 
 void raycaster_enable_interrupt(const struct raycaster *device, bool enable);

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# The driver for the board support packages of Nios II (HAL), of the component in raycaster_hw.tcl. It has not been run in
-# Quartus so far.
+# The driver for the board support packages of Nios II (HAL), of the component in raycaster_hw.tcl. It has not been run
+# in Quartus so far.
 
 create_driver raycaster_driver
 

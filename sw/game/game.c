@@ -2,9 +2,9 @@
 #include "game.h"
 
 // The court, in units of the world. The view is along x; the court begins where the walls come into view, and its front
-// is open, so that what faces the player mirrors the background. A ray that meets an edge leaves the court from there, and
-// would be a speck; so ceiling, floor and back are as far from the eye as no pixel's slopes, wherever the eye is from side
-// to side.
+// is open, so that what faces the player mirrors the background. A ray that meets an edge leaves the court from there,
+// and would be a speck. So the distances of ceiling, floor and back from the eye are primes, which keeps the slopes of
+// every pixel of 320x240 off the edges, wherever the eye is from side to side.
 enum {
     FRONT = 80,
     BACK = 281,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Squash in a court of mirrors. The ball must hit the golden tile on the back wall; a dark veil hangs before it that the
-// ball passes through, and behind which only the mirrors show where ball and tile are.
+// Squash in a court of mirrors. The ball must hit the golden tile on the back wall; a dark veil hangs before it that
+// the ball passes through, and behind which only the mirrors show where ball and tile are.
 //
 // The same seed and the same buttons give the same frames. Nothing here knows of hardware but through the driver.
 
