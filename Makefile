@@ -47,8 +47,8 @@ help:
 	@echo "make quartus and make bitstream take  SCENE=path (default: scenes/mirror_room.toml)"
 	@echo "sim, verilog, quartus, bitstream and area take the configuration:"
 	@echo "  ENGINE=seed|exact|beam UNITS= RECTANGLES= REFLECTIONS= ROWS=240|200|180 SCALE=1|2|4"
-	@echo "  FRACTION_BITS= ROUNDING=truncate|nearest DIVIDER_BITS=auto|1|2|3 COLOUR_BITS= SCREEN=vga|tiny ALLOW_UNDERRUN=1 \
-	    CULLING=0|1"
+	@echo "  FRACTION_BITS= ROUNDING=truncate|nearest DIVIDER_BITS=auto|1|2|3 COLOUR_BITS= SCREEN=vga|tiny|play"
+	@echo "  ALLOW_UNDERRUN=1 CULLING=0|1"
 	@echo "  (rows and reflections come from the scene where they are not given)"
 	@echo "  and FIX=rects|all, which builds the rectangles of SCENE=path into the hardware, or all of it"
 	@echo "PYTHON3= is the Python, 3.11 or newer, that the environment is made with."

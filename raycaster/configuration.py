@@ -133,6 +133,12 @@ _TINY_48 = Screen(64, 48, 38, 2, Span(128, 8, 16, 8, active_high=False), _TINY_L
 # And this one for the beam engine to take up to 32 rectangles in its blanking.
 _TINY_BEAM_48 = replace(_TINY_48, horizontal=Span(128, 16, 32, 64, active_high=False))
 
+# A pixel a ray and the shortest blanking in which the beam engine takes 32 rectangles and two reflections, for programs
+# that are simulated; 60 frames a second.
+_PLAY_240 = Screen(
+    320, 240, 190, 1, Span(320, 2, 40, 50, active_high=False), Span(240, 1, 1, 1, active_high=False), pixel_hz=6_000_000
+)
+
 SCREENS: Mapping[tuple[str, int], Screen] = {
     ("vga", 240): _VGA_240,
     ("vga", 200): _VGA_200,
@@ -147,6 +153,7 @@ BEAM_SCREENS: Mapping[tuple[str, int], Screen] = {
         ("vga", 200): _VGA_200,
         ("vga", 180): _HD_180,
         ("tiny", 48): _TINY_BEAM_48,
+        ("play", 240): _PLAY_240,
     }.items()
 }
 """By screen name and rows, at scale 1, for the beam engine, which takes a clock a pixel."""
@@ -181,7 +188,10 @@ class Configuration:
     rounding: Literal["truncate", "nearest"] = Field("truncate", description="of quotients")
     divider_bits: int | Literal["auto"] = Field("auto", description="quotient bits a cycle: auto, 1, 2 or 3")
     colour_bits: int = Field(8, ge=1, le=CHANNEL_BITS, description="bits a colour channel on the VGA output")
-    screen: Literal["vga", "tiny"] = Field("vga", description="vga, or tiny (64x48) for slow simulators")
+    screen: Literal["vga", "tiny", "play"] = Field(
+        "vga",
+        description="vga, tiny (64x48) for slow simulators, or play (320x240, beam only), whose frames are short",
+    )
     allow_underrun: bool = Field(False, description="accept a design that cannot meet the row budget")
     culling: bool | None = Field(
         None, description="give up early what no ray of a group can hit, 1 or 0: 1 of the seed engine's general design"
@@ -217,6 +227,8 @@ class Configuration:
 
     def _choose_rows(self) -> None:
         allowed = [rows for screen, rows in self._screens if screen == self.screen]
+        if not allowed:
+            raise ValueError(f"screen: {self.screen} needs the beam engine, ENGINE=beam, not {self.engine}")
         if self.rows is None:
             object.__setattr__(self, "rows", allowed[0])
         elif self.rows not in allowed:

@@ -19,10 +19,14 @@ from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.rtl.dvi_encoder import DviPorts, dvi_encoder
 from raycaster.rtl.hierarchy import Module, convert_hierarchy, quick_elaboration
+from raycaster.rtl.processor_system import ProcessorPorts, processor_system
 from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
 from raycaster.rtl.ray_caster_system import SystemPorts, ray_caster_system
 from raycaster.rtl.take_home import FILE_LIST, write_take_home
 from raycaster.scene import Scene
+
+PROGRAM = "program.hex"
+"""The file that a processor's memory is loaded from, unless told otherwise."""
 
 _CONVERSION = threading.Lock()
 """MyHDL converts through globals, so one design at a time, whatever else runs."""
@@ -59,6 +63,29 @@ def write_system(config: Configuration, scene: Scene, directory: Path) -> list[P
 
     def elaborate() -> _Block:
         return ray_caster_system(**SystemPorts(config).all(), config=config, scene=scene)
+
+    return _write(elaborate, config, directory)
+
+
+def write_processor_system(config: Configuration, directory: Path, program: str = PROGRAM) -> list[Path]:
+    """Generate the Verilog of a system with a processor, otherwise as `write_verilog`.
+
+    Args:
+        config: what to generate.
+        directory: replaced as a whole, once everything is generated.
+        program: the file with the words of the program, in hexadecimal, which simulators open where they run, and
+            synthesis where it reads the Verilog.
+
+    Returns:
+        The modules' files, each after those that it instantiates; the top, `processor_system.v`, is the last. PicoRV32
+        is among them as it was given.
+
+    Raises:
+        UserError: PicoRV32 is not installed.
+    """
+
+    def elaborate() -> _Block:
+        return processor_system(**ProcessorPorts(config).all(), config=config, program=program)
 
     return _write(elaborate, config, directory)
 

@@ -9,17 +9,18 @@ parent's conversion it is replaced by text that instantiates the module. Equal b
 from __future__ import annotations
 
 import inspect
+import shutil
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from myhdl import Constant, ToVerilogWarning, intbv
+from myhdl import Constant, ToVerilogWarning, block, intbv
 from myhdl._block import _Block
-from myhdl._extractHierarchy import _UserVerilogCode
+from myhdl._extractHierarchy import _MemInfo, _UserVerilogCode
 from myhdl._instance import _Instantiator
 from myhdl._ShadowSignal import _SliceSignal
 from myhdl._Signal import _Signal
@@ -44,12 +45,24 @@ class Port:
 
 @dataclass(frozen=True)
 class Module:
-    """A converted module. `instances` are the modules it instantiates directly, by instance name."""
+    """A module. `instances` are the modules it instantiates directly, by instance name.
+
+    `parameters` are given to its instances in Verilog; a converted one has none, as its values are built in.
+    """
 
     name: str
     path: Path
     ports: tuple[Port, ...]
     instances: dict[str, str]
+    parameters: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True)
+class _GivenVerilog:
+    """What `given_verilog` says of a block."""
+
+    source: Callable[[], Path]
+    outputs: frozenset[str]
 
 
 class _Instance(_UserVerilogCode):
@@ -61,7 +74,20 @@ class _Instance(_UserVerilogCode):
 
     def __str__(self) -> str:
         pins = ",\n".join(f"    .{port}({_printed(signal)})" for port, signal in self._connections.items())
-        return f"\n{self._module.name} {self._name} (\n{pins}\n);\n"
+        values = ",\n".join(f"    .{name}({value})" for name, value in self._module.parameters)
+        kind = f"{self._module.name} #(\n{values}\n)" if values else self._module.name
+        return f"\n{kind} {self._name} (\n{pins}\n);\n"
+
+
+class _Loading(_UserVerilogCode):
+    """The text that stands for `load_words`; as with instances, the memory's name is known when it is printed."""
+
+    def __init__(self, memory: _MemInfo, file: str):
+        super().__init__("", {}, memory.name, None, None, None)
+        self._memory, self._file = memory, file
+
+    def __str__(self) -> str:
+        return f'\n// What the memory holds from the start.\ninitial $readmemh("{self._file}", {self._memory.name});\n'
 
 
 def _printed(connection: _Signal | str | None) -> str:
@@ -144,16 +170,31 @@ class _Converter:
             if known != signature:
                 raise HierarchyError(f"{name} stands in the design with different parameters or port widths")
             return module
-        module = self._convert_block(block, name, ports)
+        given = getattr(block.func, "given_verilog", None)
+        module = self._copy(given, name, ports, parameters) if given else self._convert_block(block, name, ports)
         self._modules[name] = signature, module
         return module
 
+    def _copy(self, given: _GivenVerilog, name: str, ports: dict[str, _Signal], parameters: Any) -> Module:
+        if strangers := given.outputs - set(ports):
+            raise HierarchyError(f"{name}: {', '.join(sorted(strangers))} is said to be an output, and is no argument")
+        path = self._directory / f"{name}.v"
+        shutil.copyfile(given.source(), path)
+        shapes = tuple(
+            Port(port, len(signal) or 1, (signal.min or 0) < 0, port in given.outputs) for port, signal in ports.items()
+        )
+        return Module(name, path, shapes, {}, parameters)
+
     def _convert_block(self, block: _Block, name: str, ports: dict[str, _Signal]) -> Module:
-        children = [sub for sub in block.subs if isinstance(sub, _Block)]
+        children = []
+        for sub in block.subs:
+            if isinstance(sub, _Block) and sub.func is load_words.func:
+                _replace_by_loading(sub, block)
+            elif isinstance(sub, _Block):
+                children.append(sub)
         modules = [self._module_of(child) for child in children]
         for signal in ports.values():
-            if isinstance(signal, _SliceSignal):
-                signal._read = False  # another block may have read it; this one has not been looked at
+            signal._read = False  # another block may have read it, or a slice of it; this one has not been looked at
         instances = {}
         for child, module in zip(children, modules, strict=True):
             count = sum(other.func is child.func for other in children)
@@ -242,6 +283,14 @@ def _replace_by_instance(child: _Block, module: Module, name: str, parent_ports:
             signal._driven = "wire"
         else:
             signal._markRead()
+
+
+def _replace_by_loading(loading: _Block, parent: _Block) -> None:
+    """Make the parent's conversion print where its memory's words come from."""
+    words, file = loading.args
+    [memory] = [known for known in parent.memdict.values() if known.mem is words]
+    loading.verilog_code = _Loading(memory, file)
+    loading.subs, loading.sigdict, loading.memdict = [], {}, {}
 
 
 def _mark_processes(block: _Block) -> None:
@@ -337,3 +386,30 @@ def constant(value: int, width: int) -> Constant:
 def signed_constant(value: int, width: int) -> Constant:
     """The same in two's complement."""
     return Constant(intbv(value, min=-(1 << (width - 1)), max=1 << (width - 1)))
+
+
+def given_verilog(source: Callable[[], Path], outputs: Collection[str]) -> Callable[[Any], Any]:
+    """Mark a block as one whose Verilog is given; it has no processes, so MyHDL cannot simulate it.
+
+    Its arguments without a signal are the module's parameters, of the same names. Ports of the module that are no
+    arguments stay unconnected.
+
+    Args:
+        source: finds the file, which is copied as it is; called when it is needed.
+        outputs: which of the block's arguments the module drives.
+    """
+
+    def mark(decorated: Any) -> Any:
+        decorated.func.given_verilog = _GivenVerilog(source, frozenset(outputs))
+        return decorated
+
+    return mark
+
+
+@block
+def load_words(memory, file: str):
+    """Verilog's $readmemh: a memory, a list of signals, holds a file's words from the start, as its block must, too.
+
+    The file is looked for where the simulation or synthesis runs, and not when the block is converted.
+    """
+    return ()

@@ -6,6 +6,7 @@ from raycaster.rtl.widths import (
     AXIS_BITS,
     COLOUR_BITS,
     DISTANCE_BITS,
+    LANES,
     SLOPE_BITS,
     TURN_BITS,
     WIDE_BITS,
@@ -247,3 +248,16 @@ class ParallelRects(Interface):
     def __init__(self, config: Configuration):
         self.usable = unsigned(config.rectangles)
         self.corner_0, self.corner_1, self.surface = (unsigned(WORD_BITS * config.rectangles) for _ in range(3))
+
+
+class ProcessorBus(Interface):
+    """PicoRV32's native memory interface: one access at a time, each held still from `valid` to `ready`.
+
+    address: of a byte, a multiple of four; data: what is written, and strobe which of its bytes, or 0 for a read; word:
+    what was read, while ready.
+    """
+
+    def __init__(self):
+        self.valid, self.ready = bit(), bit()
+        self.address, self.data, self.word = (unsigned(WORD_BITS) for _ in range(3))
+        self.strobe = unsigned(LANES)

@@ -20,6 +20,9 @@ TURN_BITS = COORDINATE_BITS + 2
 AXIS_BITS = 2
 COLOUR_BITS = 3 * CHANNEL_BITS
 WORD_BITS = 32
+LANES = 4
+"""Bytes of a word, each of which has an enable of its own."""
+
 CYCLE_BITS = 16
 """Of the counters that measure the row budget."""
 

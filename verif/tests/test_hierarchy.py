@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from myhdl import ConcatSignal, always, always_comb, block
+from myhdl import ConcatSignal, Signal, always, always_comb, block, intbv
 
 from raycaster.configuration import configure
 from raycaster.rtl import convert
@@ -23,6 +23,8 @@ from raycaster.rtl.hierarchy import (
     Port,
     constant,
     convert_hierarchy,
+    given_verilog,
+    load_words,
     quick_elaboration,
     unconnected,
 )
@@ -275,6 +277,134 @@ def test_a_connection_without_a_name_is_refused(tmp_path):
 
     with pytest.raises(HierarchyError, match=r"nameless: what step\.stepped connects to has no name"):
         converted(nameless(bit(), unsigned(4), unsigned(4)), tmp_path)
+
+
+ADDER = """// Adds, a cycle late.
+module adder #(parameter STEP = 1, parameter WIDTH = 8) (
+    input clk, input [3:0] value, output reg [WIDTH-1:0] sum, output unused
+);
+always @(posedge clk) sum <= value + STEP;
+endmodule
+"""
+
+
+def adder_of(source: Path, outputs: tuple[str, ...] = ("sum",)):
+    @given_verilog(lambda: source, outputs)
+    @block
+    def adder(clk, value, sum, STEP, WIDTH):
+        return ()
+
+    return adder
+
+
+@block
+def two_adders(clk, value, first, second, doubled, adder):
+    """Given Verilog beside a process; one sum goes on into the other."""
+    one = adder(clk, value, first, STEP=3, WIDTH=4)
+    two = adder(clk, first, second, STEP=3, WIDTH=4)
+
+    # What a process reads of it.
+    @always_comb
+    def double():
+        doubled.next = first + first
+
+    return one, two, double
+
+
+def two_adders_of(adder):
+    return two_adders(bit(), unsigned(4), unsigned(4), unsigned(4), unsigned(5), adder)
+
+
+def test_given_verilog_stands_in_the_design_as_it_is(tmp_path):
+    source = tmp_path / "given.v"
+    source.write_text(ADDER)
+    modules = converted(two_adders_of(adder_of(source)), tmp_path / "verilog")
+    assert list(modules) == ["adder", "two_adders"], "two instances of equal parameters are one module"
+    assert modules["adder"].path.read_text() == ADDER
+    assert modules["adder"].parameters == (("STEP", "3"), ("WIDTH", "4"))
+    assert modules["adder"].ports == (
+        Port("clk", 1, False, False), Port("value", 4, False, False), Port("sum", 4, False, True),
+    )  # fmt: skip
+    assert modules["two_adders"].instances == {"adder_0": "adder", "adder_1": "adder"}
+    text = modules["two_adders"].path.read_text()
+    assert "adder #(\n    .STEP(3),\n    .WIDTH(4)\n) adder_0_i (\n    .clk(clk),\n    .value(value)," in text
+    (tmp_path / "bench.v").write_text(
+        """module bench;
+reg clk = 0;
+wire [3:0] first, second;
+wire [4:0] doubled;
+two_adders dut (.clk(clk), .value(4'd5), .first(first), .second(second), .doubled(doubled));
+initial begin
+    repeat (4) #1 clk = ~clk;
+    $display("%0d %0d %0d", first, second, doubled);
+end
+endmodule
+"""
+    )
+    files = [str(module.path) for module in modules.values()]
+    compiled = str(tmp_path / "bench")
+    subprocess.run(["iverilog", "-g2005", "-o", compiled, str(tmp_path / "bench.v"), *files], check=True)
+    done = subprocess.run(["vvp", "-n", compiled], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["8", "11", "16"]
+
+
+def test_an_output_of_given_verilog_must_be_an_argument(tmp_path):
+    adder = adder_of(tmp_path / "given.v", ("sum", "carry"))
+    with pytest.raises(HierarchyError, match=r"adder: carry is said to be an output, and is no argument"):
+        converted(two_adders_of(adder), tmp_path / "verilog")
+
+
+@block
+def word_table(clk, index, word, values, file):
+    """A memory with a file's words, which are values."""
+    words = [Signal(intbv(value)[8:]) for value in values]
+
+    loading = load_words(words, file)
+
+    @always(clk.posedge)
+    def fetch():
+        word.next = words[index]
+
+    return loading, fetch
+
+
+def test_a_memory_holds_a_files_words(tmp_path):
+    values, file = [7, 250, 0, 99], tmp_path / "words.hex"
+    file.write_text("".join(f"{value:x}\n" for value in values))
+    leaf = Leaf(
+        word_table,
+        lambda: {"clk": bit(), "index": unsigned(2), "word": unsigned(8), "values": values, "file": str(file)},
+        tmp_path,
+    )
+    outputs = leaf.run_both([{"index": index} for index in (3, 0, 1, 2, 0)], settled=1)
+    assert [output["word"] for output in outputs[1:]] == [99, 7, 250, 0]
+    text = leaf.verilog[-1].read_text()
+    assert text.count(f'// What the memory holds from the start.\ninitial $readmemh("{file}", words);\n') == 1
+
+
+@block
+def sliced_elsewhere(clk, pair, swapped, narrow):
+    """One instance reads a slice of what another, which has the whole interface, does not look at."""
+    crossing = swap_low(pair, swapped)
+    stepping = step(clk, pair.high(2, 0), pair.high(2, 0), narrow, unconnected(1))
+
+    return crossing, stepping
+
+
+@block
+def swap_low(pair, swapped):
+    """Half of swap."""
+
+    @always_comb
+    def cross():
+        swapped.high.next = pair.low
+
+    return (cross,)
+
+
+def test_a_slice_elsewhere_is_no_port_here(tmp_path):
+    modules = converted(sliced_elsewhere(bit(), Pair(), Pair(), unsigned(2)), tmp_path)
+    assert [port.name for port in modules["swap_low"].ports] == ["pair_low", "swapped_high"]
 
 
 def test_elaboration_gives_the_stack_back():

@@ -98,6 +98,7 @@ by_screen = pytest.mark.parametrize(
         ({"rows": 180}, (1280, 720, 4, 1, 74_250_000)),
         ({"rows": 180, "scale": 1}, (320, 180, 1, 4, 74_250_000)),
         ({"screen": "tiny"}, (128, 96, 2, 1, 25_000_000)),
+        ({"screen": "play"}, (320, 240, 1, 1, 6_000_000)),
     ],
 )
 def test_a_beam_is_as_fine_as_its_monitor(options, shown):
@@ -124,6 +125,7 @@ def test_a_finer_view_is_the_same_view(options):
         ({"rows": 180, "scale": 8}, "^scale: the beam engine shows 180 rows at 1 or 2 or 4, not 8$"),
         ({"fraction_bits": 1}, "^fraction_bits: the beam engine has none, not 1$"),
         ({"engine": "seed", "scale": 2}, "^scale: the seed engine shows 240 rows at 1, not 2; scales need the beam"),
+        ({"engine": "exact", "screen": "play"}, "^screen: play needs the beam engine, ENGINE=beam, not exact$"),
         ({"engine": "exact", "rows": 180}, "180 rows need the beam engine, ENGINE=beam$"),
     ],
 )

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: MIT
+"""What the processor of a system finds where: its memory, the ray tracer, the buttons and the serial port."""
+
+MEMORY = 0x0000_0000
+"""Byte address of the memory, which holds the program; reset starts it at its first word."""
+
+MEMORY_WORDS = 8192
+
+RAY_TRACER = 0x8000_0000
+"""Byte address of the ray tracer's first register; the others follow as the register map has them."""
+
+BUTTONS = 0x9000_0000
+"""Byte address of the word that says which buttons are held, and whether the ray tracer interrupts."""
+
+BUTTON_NAMES = ("left", "right", "up", "down", "fire")
+"""By bit, from bit 0 on; 1 is held."""
+
+INTERRUPT_BIT = 8
+"""Of the same word: the level of the ray tracer's interrupt."""
+
+UART = 0x9000_0010
+"""Byte address of the serial transmitter: a byte written is sent, and waits while the last one is; a read's bit 0 is 1
+while a byte is being sent."""
+
+BAUD_RATE = 115_200
+"""Of the serial port: 8 data bits, no parity, a stop bit."""
+
+
+def clocks_per_bit(clock_hz: int) -> int:
+    """System clocks that a bit of the serial port lasts, to the nearest."""
+    return round(clock_hz / BAUD_RATE)
