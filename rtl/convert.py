@@ -16,6 +16,7 @@ from rich.console import Console
 
 from raycaster.configuration import Configuration
 from raycaster.fit.fixing import add_fix_option, configuration_of
+from raycaster.memory_map import PROGRAM_FILE
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.rtl.dvi_encoder import DviPorts, dvi_encoder
 from raycaster.rtl.hierarchy import Module, convert_hierarchy, quick_elaboration
@@ -24,9 +25,6 @@ from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
 from raycaster.rtl.ray_caster_system import SystemPorts, ray_caster_system
 from raycaster.rtl.take_home import FILE_LIST, write_take_home
 from raycaster.scene import Scene
-
-PROGRAM = "program.hex"
-"""The file that a processor's memory is loaded from, unless told otherwise."""
 
 _CONVERSION = threading.Lock()
 """MyHDL converts through globals, so one design at a time, whatever else runs."""
@@ -67,7 +65,7 @@ def write_system(config: Configuration, scene: Scene, directory: Path) -> list[P
     return _write(elaborate, config, directory)
 
 
-def write_processor_system(config: Configuration, directory: Path, program: str = PROGRAM) -> list[Path]:
+def write_processor_system(config: Configuration, directory: Path, program: str = PROGRAM_FILE) -> list[Path]:
     """Generate the Verilog of a system with a processor, otherwise as `write_verilog`.
 
     Args:

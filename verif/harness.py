@@ -13,26 +13,80 @@ from cocotb.triggers import FallingEdge, RisingEdge
 from raycaster.configuration import CHANNEL_BITS
 from raycaster.golden import engines
 from raycaster.golden.picture import count_wrong
+from raycaster.golden.rays import primary_slopes
 from raycaster.scene import Scene
 from raycaster.verif.avalon import AvalonBus
 from raycaster.verif.job import Job
 from raycaster.verif.monitor import CLOCK_NS, Monitor
+from raycaster.verif.register_model import LiveScene
 
 RESET_CLOCKS = 4
 RESET_TOLERANCE = 8
 """Clocks from the end of reset that registers on the way to the video output may add."""
 
 
-class Harness:
-    """The bench with a bus to program the design and a monitor that watches it."""
+class Viewer:
+    """A monitor that watches a bench, and what it must show there."""
 
     def __init__(self, bench: HierarchyObject):
         self.bench = bench
         self.job = Job.from_environment()
         self.configuration = self.job.configuration
         self.screen = self.configuration.screen_geometry
-        self.bus = AvalonBus(bench, self.configuration)
         self.monitor = Monitor(bench, self.configuration)
+
+    def shown(self, picture: np.ndarray) -> np.ndarray:
+        """What the monitor must show of a golden picture.
+
+        Args:
+            picture: uint8, rows x columns x 3.
+
+        Returns:
+            uint8, visible lines x visible pixels x 3: each pixel doubled, a channel's lost bits 0.
+        """
+        doubled = picture.repeat(self.screen.doubling, axis=0).repeat(self.screen.doubling, axis=1)
+        lost_bits = CHANNEL_BITS - self.configuration.colour_bits
+        return doubled >> lost_bits << lost_bits
+
+    def golden(self, scene: Scene, reflections: int) -> np.ndarray:
+        """The visible screen that this design must show of a scene; uint8, visible lines x visible pixels x 3."""
+        return self.shown(engines.render(self.configuration, scene, reflections))
+
+    def golden_live(self, scene: LiveScene | None) -> np.ndarray:
+        """The same of what the registers say, or nothing, for the time before the first StartScreen."""
+        slopes = primary_slopes(self.screen)
+        if scene is None or not scene.run:
+            return self.shown(np.zeros(slopes.shape, dtype=np.uint8))
+        traced = engines.trace(
+            self.configuration,
+            scene.rectangles,
+            scene.camera,
+            scene.background,
+            slopes.reshape(-1, 3),
+            scene.reflections,
+        )
+        return self.shown(traced.colours.reshape(slopes.shape))
+
+    def expect_picture(self, seen: np.ndarray, expected: np.ndarray, what: str) -> None:
+        """Check every visible pixel.
+
+        Raises:
+            AssertionError: says how many differ, and the first one.
+        """
+        if wrong := count_wrong(seen, expected):
+            line, pixel, _ = np.argwhere(seen != expected)[0]
+            raise AssertionError(
+                f"{what}: {wrong} of {seen[..., 0].size} pixels are wrong; the first at line {line}, pixel {pixel} "
+                f"is {seen[line, pixel].tolist()}, expected {expected[line, pixel].tolist()}"
+            )
+
+
+class Harness(Viewer):
+    """The bench with a bus to program the design and a monitor that watches it."""
+
+    def __init__(self, bench: HierarchyObject):
+        super().__init__(bench)
+        self.bus = AvalonBus(bench, self.configuration)
 
     async def reset(self) -> None:
         """Reset the design; returns at the first clock edge at which reset is low."""
@@ -71,33 +125,3 @@ class Harness:
         """Tell the parent, if it asked, how many lines of the picture have come."""
         if self.job.progress:
             Path(self.job.progress).write_text(str(visible_lines))
-
-    def shown(self, picture: np.ndarray) -> np.ndarray:
-        """What the monitor must show of a golden picture.
-
-        Args:
-            picture: uint8, rows x columns x 3.
-
-        Returns:
-            uint8, visible lines x visible pixels x 3: each pixel doubled, a channel's lost bits 0.
-        """
-        doubled = picture.repeat(self.screen.doubling, axis=0).repeat(self.screen.doubling, axis=1)
-        lost_bits = CHANNEL_BITS - self.configuration.colour_bits
-        return doubled >> lost_bits << lost_bits
-
-    def golden(self, scene: Scene, reflections: int) -> np.ndarray:
-        """The visible screen that this design must show of a scene; uint8, visible lines x visible pixels x 3."""
-        return self.shown(engines.render(self.configuration, scene, reflections))
-
-    def expect_picture(self, seen: np.ndarray, expected: np.ndarray, what: str) -> None:
-        """Check every visible pixel.
-
-        Raises:
-            AssertionError: says how many differ, and the first one.
-        """
-        if wrong := count_wrong(seen, expected):
-            line, pixel, _ = np.argwhere(seen != expected)[0]
-            raise AssertionError(
-                f"{what}: {wrong} of {seen[..., 0].size} pixels are wrong; the first at line {line}, pixel {pixel} "
-                f"is {seen[line, pixel].tolist()}, expected {expected[line, pixel].tolist()}"
-            )

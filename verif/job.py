@@ -37,6 +37,9 @@ class Job:
     stiff: bool = False
     """The seeds are places in the stiff catalogue instead."""
 
+    buttons: tuple[int, ...] = ()
+    """For a system with a processor: which are held from each frame's vertical sync on, a bit each."""
+
     def environment(self) -> dict[str, str]:
         """The environment in which a simulation finds this job."""
         return {JOB_VARIABLE: json.dumps(dataclasses.asdict(self))}

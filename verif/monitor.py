@@ -44,7 +44,7 @@ class Monitor:
     """Collects lines in the background, and makes frames of them."""
 
     def __init__(self, bench: HierarchyObject, configuration: Configuration):
-        self._bench = bench
+        self._sink = bench.sink
         self._screen = configuration.screen_geometry
         self._colour_bits = configuration.colour_bits
         self._lines: Queue[Line] = Queue()
@@ -54,10 +54,10 @@ class Monitor:
         cocotb.start_soon(self._collect())
 
     async def _collect(self) -> None:
-        bench = self._bench
+        sink = self._sink
         while True:
-            await bench.line_event.value_change
-            line = Line(str(bench.line.value), int(bench.line_samples.value), int(get_sim_time("ns")))
+            await sink.line_event.value_change
+            line = Line(str(sink.line.value), int(sink.line_samples.value), int(get_sim_time("ns")))
             self._lines.put_nowait(line)
 
     def forget(self) -> None:
@@ -120,8 +120,8 @@ class Monitor:
         Raises:
             VideoError: data changed at a rising edge of VGA_CLK, or that was not the halved system clock.
         """
-        unstable = int(self._bench.unstable_samples.value)
-        faults = int(self._bench.clock_faults.value)
+        unstable = int(self._sink.unstable_samples.value)
+        faults = int(self._sink.clock_faults.value)
         if unstable:
             raise VideoError(f"video data changed at {unstable} rising edges of vga_clk")
         if faults:

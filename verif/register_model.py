@@ -227,6 +227,62 @@ class LiveScene:
     rectangles: Rectangles
 
 
+def read_live(config: Configuration, control: Word, background: Word, camera: Word, table: Table) -> LiveScene:
+    """What live words say."""
+    registers = register_map(config.rectangles)
+    controls = registers["control"].unpack(control.live)
+    colours = registers["background"].unpack(background.live)
+    place = registers["camera"].unpack(camera.live)
+    return LiveScene(
+        run=bool(controls["run"]),
+        reflections=min(controls["reflections"], config.reflections),
+        background=tuple(colours[colour] for colour in COLOURS),
+        camera=tuple(place[axis] for axis in AXES),
+        rectangles=table.rectangles("live"),
+    )
+
+
+COMMIT_CLOCKS = 3
+"""From the clock in which a write that commits is taken to the first in which StartScreen shows it."""
+
+
+class SceneFollower:
+    """Which scene each StartScreen makes live, from nothing but the writes that the ray tracer took, and when."""
+
+    def __init__(self, config: Configuration):
+        self._config = config
+        registers = register_map(config.rectangles)
+        self._control, self._background, self._camera = (
+            Word(registers[name].implemented) for name in ("control", "background", "camera")
+        )
+        self._table = Table(config.rectangles)
+        kept = zip(("control", "background", "camera"), (self._control, self._background, self._camera), strict=True)
+        self._words = {registers[name].address: word for name, word in kept} | self._table.words
+        self._commit = registers["control"].fields["commit"].mask
+        self._control_address = registers["control"].address
+        self._commits: list[tuple[int, dict[int, int]]] = []
+        self.live: LiveScene | None = None
+        """What the last StartScreen made live; None before the first."""
+
+    def write(self, clock: int, address: int, data: int, lanes: int) -> None:
+        """A write was taken in this clock."""
+        mask = sum(0xFF << 8 * lane for lane in range(4) if lanes >> lane & 1)
+        if word := self._words.get(address):
+            word.shadow = (word.shadow & ~mask | data & mask) & word.implemented
+        if address == self._control_address and data & mask & self._commit:
+            self._commits.append((clock, {address: word.shadow for address, word in self._words.items()}))
+
+    def start_screen(self, clock: int) -> None:
+        """StartScreen was high in this clock."""
+        while self._commits and self._commits[0][0] + COMMIT_CLOCKS <= clock:
+            _, snapshot = self._commits.pop(0)
+            for address, shadow in snapshot.items():
+                self._words[address].pending = shadow
+        for word in self._words.values():
+            word.live = word.pending
+        self.live = read_live(self._config, self._control, self._background, self._camera, self._table)
+
+
 class RegisterFile:
     """The registers of a whole design, which see nothing but reset and the bus, and know StartScreen by counting.
 
@@ -297,22 +353,9 @@ class RegisterFile:
             self.clocks, self.live, self._least_cycles = 0, None, (0, 0)
             return False
         if start_screen:
-            self.live = self._read_live()
+            self.live = read_live(self.config, self.agent.control, self.agent.background, self.camera, self.table)
         self.clocks = (self.clocks + 1) % self._frame_cycles
         return taken
-
-    def _read_live(self) -> LiveScene:
-        registers = self.agent.registers
-        control = registers["control"].unpack(self.agent.control.live)
-        background = registers["background"].unpack(self.agent.background.live)
-        camera = registers["camera"].unpack(self.camera.live)
-        return LiveScene(
-            run=bool(control["run"]),
-            reflections=min(control["reflections"], self.config.reflections),
-            background=tuple(background[colour] for colour in COLOURS),
-            camera=tuple(camera[axis] for axis in AXES),
-            rectangles=self.table.rectangles("live"),
-        )
 
     def check_answer(self, word: int) -> None:
         """Hold what stands on the bus against the answer that is due there now.

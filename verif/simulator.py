@@ -25,6 +25,7 @@ import raycaster
 import raycaster.rtl
 from raycaster.configuration import Configuration
 from raycaster.errors import UserError
+from raycaster.memory_map import BUTTON_NAMES, clocks_per_bit
 from raycaster.registers import address_bits
 from raycaster.verif.job import Job
 
@@ -32,15 +33,14 @@ SIMULATORS = ("verilator", "icarus")
 BUILD = Path("build")
 """Where everything that is made goes, unless told otherwise."""
 
-BENCH = Path(__file__).with_name("bench.v")
-TOP = "bench"
+HERE = Path(__file__).parent
 
 MINIMUM_VERILATOR = (5, 36)
 """The oldest that cocotb accepts."""
 
 VERILATOR_FLAGS = (
     "--timing",
-    # After cocotb's --public-flat-rw: bench.v marks what Python touches, and all else may be optimised away.
+    # After cocotb's --public-flat-rw: the benches mark what Python touches, and all else may be optimised away.
     "--no-public-flat-rw",
     "-Wno-fatal",
     "-O3",
@@ -69,6 +69,37 @@ class Tool:
 
 
 @dataclass(frozen=True)
+class Bench:
+    """What a design is simulated in: the ray tracer alone, or, if `system`, with a processor that runs a program."""
+
+    top: str
+    system: bool = False
+
+    @property
+    def sources(self) -> list[Path]:
+        """Its Verilog."""
+        return [HERE / "line_sink.v", HERE / f"{self.top}.v"]
+
+    def parameters(self, configuration: Configuration) -> dict[str, int]:
+        """Of its Verilog, for a design."""
+        screen = configuration.screen_geometry
+        parameters = {
+            "ADDRESS_BITS": address_bits(configuration.table),
+            "COLOUR_BITS": configuration.colour_bits,
+            "H_TOTAL": screen.horizontal.total,
+            "HS_ACTIVE": int(screen.horizontal.active_high),
+            "CLOCKS_PER_PIXEL": screen.clocks_per_pixel,
+        }
+        if self.system:
+            parameters |= {"BUTTONS": len(BUTTON_NAMES), "CLOCKS_PER_BIT": clocks_per_bit(screen.clock_hz)}
+        return parameters
+
+
+MODULE_BENCH = Bench("bench")
+SYSTEM_BENCH = Bench("system_bench", system=True)
+
+
+@dataclass(frozen=True)
 class Model:
     """A built simulation of a design, ready to run benches."""
 
@@ -78,6 +109,8 @@ class Model:
     waves: bool
     fresh: bool
     """Whether it was built just now, rather than found."""
+
+    bench: Bench = MODULE_BENCH
 
 
 def find_tool(simulator: str) -> Tool:
@@ -130,9 +163,15 @@ def _output(*command: str) -> str:
     return subprocess.run(command, capture_output=True, text=True, check=False).stdout
 
 
-def convert(configuration: Configuration, build: Path = BUILD) -> list[Path]:
-    """The design's Verilog files, converted anew only where the sources of the hardware have changed."""
-    directory = build / "model" / configuration.name / "verilog"
+def convert(configuration: Configuration, build: Path = BUILD, *, system: bool = False) -> list[Path]:
+    """The design's Verilog files, converted anew only where the sources of the hardware have changed.
+
+    Args:
+        configuration: the design.
+        build: the directory that holds `model/`.
+        system: with a processor.
+    """
+    directory = build / "model" / configuration.name / ("system" if system else "verilog")
     digest = hashlib.sha256(repr(configuration).encode())
     for package in (raycaster, raycaster.rtl):
         for source in sorted(Path(package.__path__[0]).iterdir()):
@@ -142,9 +181,10 @@ def convert(configuration: Configuration, build: Path = BUILD) -> list[Path]:
         stamp = directory / "stamp.json"
         if (files := stamped(stamp, digest.hexdigest())) is not None:
             return [directory / name for name in files]
-        from raycaster.rtl.convert import write_verilog  # noqa: PLC0415 - MyHDL is only loaded where it has work
+        from raycaster.rtl import convert as converter  # noqa: PLC0415 - MyHDL is only loaded where it has work
 
-        files = [path.name for path in write_verilog(configuration, directory) if path.suffix == ".v"]
+        write = converter.write_processor_system if system else converter.write_verilog
+        files = [path.name for path in write(configuration, directory) if path.suffix == ".v"]
         write_stamp(stamp, digest.hexdigest(), files)
         return [directory / name for name in files]
 
@@ -158,6 +198,7 @@ def build_model(
     verilog: Sequence[Path] | None = None,
     flags: Sequence[str] = VERILATOR_FLAGS,
     variant: str = "",
+    bench: Bench = MODULE_BENCH,
 ) -> Model:
     """Build a model of a design, or find it built.
 
@@ -169,19 +210,22 @@ def build_model(
         verilog: files to use instead of the converted ones, for instance broken on purpose.
         flags: for Verilator.
         variant: names a model that differs by files or flags, so that it does not replace the plain one.
+        bench: what the design is simulated in.
 
     Raises:
         UserError: the simulator, or a library that it needs, is missing.
         SimulationError: it could not build the model.
     """
     tool = find_tool(simulator)
-    sources = [*(verilog if verilog is not None else convert(configuration, build)), BENCH]
-    parameters = _bench_parameters(configuration)
+    design = verilog if verilog is not None else convert(configuration, build, system=bench.system)
+    sources = [*design, *bench.sources]
+    parameters = bench.parameters(configuration)
     arguments = _build_arguments(simulator, waves, flags)
     digest = hashlib.sha256(repr((tool.name, tool.version, cocotb.__version__, parameters, arguments)).encode())
     for source in sources:
         digest.update(source.read_bytes())
-    parts = (configuration.name, simulator, variant, "waves" if waves else "")
+    kind = "system" if bench.system else ""
+    parts = (configuration.name, kind, simulator, variant, "waves" if waves else "")
     directory = build / "model" / "-".join(filter(None, parts))
     with lock(directory):
         stamp = directory / "stamp.json"
@@ -194,7 +238,7 @@ def build_model(
                 try:
                     get_runner(simulator).build(
                         sources=[source.resolve() for source in sources],
-                        hdl_toplevel=TOP,
+                        hdl_toplevel=bench.top,
                         parameters=parameters,
                         build_args=arguments,
                         build_dir=directory.resolve(),
@@ -205,7 +249,7 @@ def build_model(
                 except (RuntimeError, SystemExit):
                     raise _build_failure(configuration, simulator, log) from None
             write_stamp(stamp, digest.hexdigest(), [])
-    return Model(configuration, simulator, directory, waves, fresh)
+    return Model(configuration, simulator, directory, waves, fresh, bench)
 
 
 def _build_failure(configuration: Configuration, simulator: str, log: Path) -> Exception:
@@ -217,17 +261,6 @@ def _build_failure(configuration: Configuration, simulator: str, log: Path) -> E
             f"apt-get install liblz4-dev zlib1g-dev); the log is {log}"
         )
     return SimulationError(f"{simulator} could not build {configuration.name}; its log is {log}")
-
-
-def _bench_parameters(configuration: Configuration) -> dict[str, int]:
-    horizontal = configuration.screen_geometry.horizontal
-    return {
-        "ADDRESS_BITS": address_bits(configuration.table),
-        "COLOUR_BITS": configuration.colour_bits,
-        "H_TOTAL": horizontal.total,
-        "HS_ACTIVE": int(horizontal.active_high),
-        "CLOCKS_PER_PIXEL": configuration.screen_geometry.clocks_per_pixel,
-    }
 
 
 def _build_arguments(simulator: str, waves: bool, flags: Sequence[str]) -> list[str]:
@@ -272,7 +305,7 @@ def run_bench(
     with contextlib.suppress(RuntimeError, SystemExit):  # what went wrong stands in the log and the results
         get_runner(model.simulator).test(
             test_module=test_module,
-            hdl_toplevel=TOP,
+            hdl_toplevel=model.bench.top,
             hdl_toplevel_lang="verilog",
             testcase=testcase,
             build_dir=model.directory.resolve(),

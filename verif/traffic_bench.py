@@ -7,13 +7,10 @@ import random
 from collections.abc import Iterator
 
 import cocotb
-import numpy as np
 from cocotb.handle import HierarchyObject
 from cocotb.simtime import get_sim_time
 from cocotb.triggers import FallingEdge
 
-from raycaster.golden import engines
-from raycaster.golden.rays import primary_slopes
 from raycaster.program import scene_fields
 from raycaster.verif.harness import RESET_CLOCKS, Harness
 from raycaster.verif.random_scenes import random_scene
@@ -161,23 +158,7 @@ async def _watch(harness: Harness, model: RegisterFile, released_ns: int) -> Non
             live.append(model.live)
 
     seen = await harness.frame_after_reset(released_ns, remember)
-    harness.expect_picture(seen, _picture(harness, live[-1]), "the frame after reset")
+    harness.expect_picture(seen, harness.golden_live(live[-1]), "the frame after reset")
     for number in range(1, FRAMES):
         seen = await harness.monitor.frame(remember)
-        harness.expect_picture(seen, _picture(harness, live[-1]), f"frame {number} after reset")
-
-
-def _picture(harness: Harness, scene: LiveScene | None) -> np.ndarray:
-    """What the monitor must show; uint8, visible lines x visible pixels x 3."""
-    slopes = primary_slopes(harness.screen)
-    if scene is None or not scene.run:
-        return harness.shown(np.zeros(slopes.shape, dtype=np.uint8))
-    traced = engines.trace(
-        harness.configuration,
-        scene.rectangles,
-        scene.camera,
-        scene.background,
-        slopes.reshape(-1, 3),
-        scene.reflections,
-    )
-    return harness.shown(traced.colours.reshape(slopes.shape))
+        harness.expect_picture(seen, harness.golden_live(live[-1]), f"frame {number} after reset")

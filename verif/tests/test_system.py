@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT
+"""The system with a processor: it boots a program, which drives the ray tracer, the serial port and the buttons."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import BUILD, ROOT, SMALL_SCENE
+from PIL import Image
+from small_program import small_program
+
+from raycaster.configuration import Configuration, configure
+from raycaster.errors import UserError
+from raycaster.memory_map import BUTTON_NAMES, MEMORY_WORDS
+from raycaster.rtl import picorv32
+from raycaster.rtl.convert import write_processor_system
+from raycaster.scene import load_scene
+from raycaster.verif.play import check_program, play, read_buttons
+from raycaster.verif.simulator import SYSTEM_BENCH, SimulationError, build_model
+
+pytestmark = pytest.mark.skipif(
+    picorv32.importlib.util.find_spec(picorv32.PACKAGE) is None, reason="PicoRV32 is not installed"
+)
+
+MIRROR_ROOM = ROOT / "scenes" / "mirror_room.toml"
+FIRST_FRAME = 1
+"""The first that shows the scene."""
+
+
+def write_program(scene: Path, configuration: Configuration, directory: Path) -> Path:
+    words = small_program(load_scene(scene, configuration.rectangles), configuration.rectangles)
+    program = directory / "small.hex"
+    program.write_text("".join(f"{word:08x}\n" for word in words))
+    return program
+
+
+@pytest.mark.parametrize(
+    ("simulator", "options", "scene", "buttons"),
+    [
+        ("verilator", {"engine": "beam", "screen": "tiny"}, MIRROR_ROOM, "none*2,left*3,right*2,left+fire,up+down"),
+        ("verilator", {"engine": "beam", "screen": "play"}, MIRROR_ROOM, "none*2,left*2,right+fire"),
+        ("verilator", {"engine": "seed", "screen": "tiny"}, MIRROR_ROOM, "none*2,left*2,right"),
+        ("icarus", {"engine": "exact", "screen": "tiny", "rectangles": 3}, SMALL_SCENE, "none*2,left,none"),
+    ],
+    ids=lambda value: "-".join(value.values()) if isinstance(value, dict) and "rectangles" not in value else None,
+)
+def test_a_program_runs(simulator, options, scene, buttons, output, tmp_path):
+    """Every pixel is what golden draws of the committed words; text and pictures are the program's."""
+    configuration = configure(**options)
+    program = write_program(scene, configuration, tmp_path)
+    model = build_model(configuration, simulator, build=BUILD, bench=SYSTEM_BENCH)
+    held = read_buttons(buttons)
+    result = play(model, program, held, output / "play")
+    assert result["frames"] == len(held)
+    assert result["shown"] == len(held) - FIRST_FRAME
+    text = (output / "play" / "uart.txt").read_text()
+    greeting, letters = text.split("\n")
+    assert greeting == "RAYCMEgo"
+    # What is held when a frame starts is sent in it; the greeting takes a while, and the last letter is on its way.
+    sent = "".join(chr(ord("@") + one) for one in held)
+    assert len(letters) >= len(held) - 2
+    assert letters in sent
+    # What is held in a frame moves the camera of the next.
+    frames = [np.array(Image.open(output / "play" / f"frame_{number:04}.png")) for number in range(len(held))]
+    for number in range(FIRST_FRAME + 1, len(held)):
+        moves = held[number - 1] & 3 != 0
+        assert (frames[number] != frames[number - 1]).any() == moves, number
+
+
+@pytest.mark.parametrize(
+    ("module", "right", "wrong", "complaint"),
+    [
+        ("camera_mem", "camera_y = live[18:10]", "camera_y = live[18:10] ^ 1", "pixels are wrong"),
+        ("uart_transmitter", "bits_left <= 10;", "bits_left <= 9;", "start or stop bit"),
+        ("word_memory", "word <= memory[address];", "word <= ~memory[address];", "the processor halted"),
+    ],
+)
+def test_a_fault_is_noticed(module, right, wrong, complaint, output, tmp_path):
+    """The bench finds what is wrong beyond the ray tracer's bus; what is wrong before it shows in text and pictures."""
+    configuration = configure(engine="exact", screen="tiny", rectangles=3)
+    program = write_program(SMALL_SCENE, configuration, tmp_path)
+    files = write_processor_system(configuration, tmp_path / "verilog")
+    [broken] = [path for path in files if path.stem == module]
+    text = broken.read_text()
+    assert text.count(right) == 1, f"{module}.v has {text.count(right)} places for this fault"
+    broken.write_text(text.replace(right, wrong))
+    model = build_model(configuration, "icarus", build=tmp_path, verilog=files, variant="broken", bench=SYSTEM_BENCH)
+    with pytest.raises(SimulationError, match=complaint):
+        play(model, program, [0, 0, 0], output / "play")
+
+
+def test_buttons_of_each_frame():
+    left, right, _, _, fire = (1 << index for index in range(len(BUTTON_NAMES)))
+    assert read_buttons("none*2, left+fire*3,right,") == [0, 0] + [left | fire] * 3 + [right, 0]
+    for wrong in ("jump", "left*x", "left*-1"):
+        with pytest.raises(UserError, match=r"^buttons: .* is not understood; like none"):
+            read_buttons(wrong)
+
+
+@pytest.mark.parametrize("text", ["hello", "100000000", "0\n" * (MEMORY_WORDS + 1)])
+def test_a_program_that_is_none_is_refused(text, tmp_path):
+    path = tmp_path / "program.hex"
+    path.write_text(text)
+    with pytest.raises(UserError, match=r"program\.hex: expected "):
+        check_program(path)
+    with pytest.raises(UserError, match="nowhere"):
+        check_program(tmp_path / "nowhere.hex")
+
+
+def test_picorv32_is_said_to_be_missing(monkeypatch):
+    monkeypatch.setattr(picorv32.importlib.util, "find_spec", lambda _: None)
+    with pytest.raises(UserError, match=r"PicoRV32 is missing; pip install 'raycaster\[play\]'"):
+        picorv32.picorv32_source()
