@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from raycaster.configuration import Configuration, Screen, Span, configure
+from raycaster.configuration import MOST_RECTANGLES, Configuration, Screen, Span, configure
 from raycaster.fit.fixing import fixed_rectangle
 from raycaster.fixed import FixedScene
 from raycaster.program import scene_words
@@ -14,7 +14,7 @@ from raycaster.rtl.rect_rom import FIELDS, fixed_rects
 from raycaster.rtl.renderers import RECTS
 from raycaster.rtl.widths import bits_for, index_bits, offset_bits, pixel_bits, position_bits, row_bits, unit_bits
 from raycaster.scene import Camera, Rectangle, Scene
-from raycaster.verif.formal.prover import FixedTable, FoldWidths, Property, TesterWidths
+from raycaster.verif.formal.prover import FixedTable, FoldWidths, HostWidths, Property, TesterWidths
 
 TOY_SCREEN = Screen(3, 2, 1, 3, Span(9, 1, 2, 1, active_high=True), Span(6, 1, 1, 3, active_high=True))
 """Tripled pixels, and a frame short enough to be walked through whole."""
@@ -70,6 +70,21 @@ def _avalon(config: Configuration, small: bool) -> Property:
         },
         induction=3,
         reach=12,
+        small=small,
+    )
+
+
+def _host(address_bits: int, most_wait: int, most_latency: int, small: bool) -> Property:
+    """Of an agent that makes wait, and takes for an answer, at most so many cycles."""
+    return Property(
+        "host-transfers",
+        "each access of the processor is one transfer, held still while it waits, and ready once, in time",
+        HostWidths(address_bits),
+        f"{address_bits} bits, {most_wait} and {most_latency} cycles",
+        ("avalon_host",),
+        {"ADDRESS_BITS": address_bits, "MOST_WAIT": most_wait, "MOST_LATENCY": most_latency},
+        induction=1,
+        reach=2 * most_wait + most_latency + 5,
         small=small,
     )
 
@@ -296,6 +311,8 @@ PROPERTIES: list[Property] = [
     _video(TOY_SCREEN, "toy", small=True),
     _avalon(_one_unit(rectangles=2), small=True),
     _avalon(_one_unit(rectangles=2, reflections=2, rounding="nearest", fraction_bits=4, rows=200), small=False),
+    _host(address_bits(DEFAULT.table), 1, 2, small=True),
+    _host(address_bits(MOST_RECTANGLES), 9, 7, small=False),
     *(
         _order(
             _ray_control(rectangles, reflections, steps, culling),

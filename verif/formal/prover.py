@@ -16,6 +16,7 @@ from pathlib import Path
 from raycaster.configuration import Configuration, Screen, configure
 from raycaster.errors import UserError
 from raycaster.registers import address_bits
+from raycaster.rtl.avalon_host import avalon_host
 from raycaster.rtl.convert import write_verilog
 from raycaster.rtl.fold_tester import fold_tester
 from raycaster.rtl.hierarchy import convert_hierarchy, quick_elaboration
@@ -41,7 +42,7 @@ from raycaster.rtl.rect_rom import fixed_rects, rect_rom
 from raycaster.rtl.rect_tester import rect_tester
 from raycaster.rtl.renderers import RECTS
 from raycaster.rtl.video_generator import video_generator
-from raycaster.rtl.widths import WORD_BITS, bit, signed, unsigned
+from raycaster.rtl.widths import LANES, WORD_BITS, bit, signed, unsigned
 from raycaster.tools import TIMEOUT, find_program, run_program, run_yosys
 from raycaster.verif.leaf import reset_signal
 
@@ -106,7 +107,14 @@ class FixedTable:
         return RECTS[self.general.engine]
 
 
-Design = Configuration | Screen | TesterWidths | FoldWidths | FixedTable
+@dataclass(frozen=True)
+class HostWidths:
+    """`avalon_host` alone."""
+
+    address: int
+
+
+Design = Configuration | Screen | TesterWidths | FoldWidths | FixedTable | HostWidths
 
 
 @dataclass(frozen=True)
@@ -117,7 +125,7 @@ class Property:
         name: of the claim, and of its wrapper `<name>.v` with dashes for underscores.
         claim: in a few words.
         design: the configuration whose Verilog is read; a screen, for the video generator alone; widths, for a
-            rectangle test alone; or the two places that rectangles may come from.
+            rectangle test or the processor's host alone; or the two places that rectangles may come from.
         label: the design in a few characters.
         modules: the generated modules that are part of the proof.
         cut: of these, those whose outputs become arbitrary.
@@ -234,7 +242,7 @@ def _verilog(design: Design) -> dict[str, str]:
             directory.mkdir()
             converters = {
                 TesterWidths: _convert_rect_tester, FoldWidths: _convert_fold, Screen: _convert_video_generator,
-                FixedTable: _convert_tables,
+                FixedTable: _convert_tables, HostWidths: _convert_host,
             }  # fmt: skip
             converters[type(design)](design, directory)
         return {path.name: path.read_text() for path in directory.glob("*.v")}
@@ -300,6 +308,16 @@ def _convert_tables(tables: FixedTable, directory: Path) -> None:
             bit(), reset_signal(), bus, unsigned(WORD_BITS), bit(), tables.view(tables.general), tables.general
         )
     convert_hierarchy(memory, directory, "// {module}")
+
+
+def _convert_host(widths: HostWidths, directory: Path) -> None:
+    with quick_elaboration():
+        top = avalon_host(
+            bit(), reset_signal(), bit(), unsigned(LANES), unsigned(widths.address), unsigned(WORD_BITS), bit(),
+            unsigned(WORD_BITS), unsigned(widths.address), bit(), bit(), unsigned(WORD_BITS), unsigned(LANES),
+            unsigned(WORD_BITS), bit(), bit(),
+        )  # fmt: skip
+    convert_hierarchy(top, directory, "// {module}")
 
 
 def _make_model(proof: Property, directory: Path) -> None:

@@ -23,6 +23,7 @@ def chosen(name: str, label: str) -> Property:
 
 TIMING = chosen("video-timing", "tiny48")
 AGENT = chosen("avalon-agent", "vga240-u1-r2-m1-f0t-d3-c8")
+HOST = chosen("host-transfers", "6 bits, 1 and 2 cycles")
 ORDER = chosen("ray-order", "tiny48-u2-r2-m1-f0t-d3-c8")
 GIVING_UP = chosen("ray-order", "tiny48-u2-r2-m1-f3t-d3-c8")
 PATIENT = chosen("ray-order", "tiny48-u2-r2-m1-f3t-d3-c8-k0")
@@ -54,6 +55,11 @@ FAULTS = {
     "sticky-lost": (AGENT, "avalon_interface", "if (underrun) begin", "if (underrun && !bus_write) begin"),
     "irq-not-enabled": (AGENT, "avalon_interface", "assign irq = irq_pending && irq_enable;",
                         "assign irq = irq_pending;"),
+    "read-again": (HOST, "avalon_host", "avm_m0_read = reading && !waiting;", "avm_m0_read = reading;"),
+    "write-not-awaited": (HOST, "avalon_host", "ready = !avm_m0_waitrequest;", "ready = 1'b1;"),
+    "read-not-followed": (HOST, "avalon_host", "waiting <= reading && !avm_m0_waitrequest;", "waiting <= reading;"),
+    "read-never-over": (HOST, "avalon_host", "waiting <= !avm_m0_readdatavalid;", "waiting <= 1'b1;"),
+    "lanes-lost": (HOST, "avalon_host", "avm_m0_byteenable = strobe;", "avm_m0_byteenable = 15;"),
     "rectangle-twice": (ORDER, "rect_sequencer", "others[i] = 0;", "others[i] = waiting[1 - i];"),
     "last-rectangle-missed": (ORDER, "rect_sequencer", "offered <= candidates != 0;", "offered <= others != 0;"),
     "wrong-order": (ORDER, "rect_sequencer", "lowest = i;", "lowest = 1 - i;"),
@@ -107,7 +113,7 @@ FAULTS = {
 
 @pytest.mark.parametrize(
     "proof",
-    [TIMING, AGENT, ORDER, GIVING_UP, PATIENT, SECTIONS, COUNTERS, TESTER, FOLD, TABLE],
+    [TIMING, AGENT, HOST, ORDER, GIVING_UP, PATIENT, SECTIONS, COUNTERS, TESTER, FOLD, TABLE],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )
 def test_holds(proof, output):
