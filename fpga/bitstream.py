@@ -84,9 +84,16 @@ class Board:
         return HERE / self.name
 
     def dividers_for(self, config: Configuration) -> Dividers:
-        """Those for a design's screen."""
+        """Those for a design's screen.
+
+        Raises:
+            UserError: it is for no monitor.
+        """
         screen = config.screen_geometry
-        return self.dividers[screen.clocks_per_pixel, screen.pixel_hz / 1e6]
+        place = screen.clocks_per_pixel, screen.pixel_hz / 1e6
+        if place not in self.dividers:
+            raise UserError(f"screen: {config.screen} is for simulation only; leave it out, or choose vga")
+        return self.dividers[place]
 
 
 SYSTEM_CLOCK, SHIFT_CLOCK = "clk", "shift_clk"

@@ -172,6 +172,10 @@ def test_too_slow_gets_one_line(tmp_path, monkeypatch, capsys, clk, shift_clk, c
         (("--board", "ice40"), "error: board: ice40 is not known here; choose one of ulx3s"),
         (("--scene", "nowhere.toml"), "error: nowhere.toml: cannot be read"),
         (("--scene", str(SMALL_SCENE), "--colour-bits", "4"), "error: colour_bits: a DVI link carries 8 bits"),
+        (
+            ("--scene", str(SMALL_SCENE), "--engine", "beam", "--screen", "play"),
+            "error: screen: play is for simulation only; leave it out, or choose vga",
+        ),
     ],
 )
 @pytest.mark.parametrize("module", ["fpga.bitstream", "verif.dvi"])

@@ -274,6 +274,7 @@ def test_bus_decoder(tracer_address_bits, tmp_path):
     # Next to every edge, and where one bit of an address is wrong.
     addresses = [(edge + 4 * step) % (1 << WORD_BITS) for edge in edges for step in (-2, -1, 0, 1, 2)]
     addresses += [edge ^ 1 << index for edge in edges[:-1] for index in range(2, WORD_BITS)]
+    addresses += 30 * edges[:-1]
     addresses += [4 * int(random.integers(1 << WORD_BITS - 2)) for _ in range(200)]
     stimulus = []
     for address in addresses:
