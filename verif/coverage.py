@@ -34,7 +34,7 @@ from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.simulate import LOG_COLUMNS, SCENES
 from raycaster.verif.simulator import (
     BUILD,
-    TOP,
+    MODULE_BENCH,
     VERILATOR_FLAGS,
     Model,
     SimulationError,
@@ -125,7 +125,7 @@ def _run(model: Model, run: Run, directory: Path) -> Counter[Point]:
     run_bench(
         model, f"raycaster.verif.{run.bench}", job, directory, plusargs=[f"+verilator+coverage+file+{counts_file}"]
     )
-    return read_counts(counts_file, leave_out=[TOP])
+    return read_counts(counts_file, leave_out=MODULE_BENCH.modules)
 
 
 def show_code(counts: Counter[Point], judgement: Judgement, console: Console) -> None:

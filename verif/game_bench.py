@@ -63,21 +63,22 @@ async def play(bench: HierarchyObject) -> None:
     tap = Tap(viewer)
     bench.ready.value = 1
 
-    started, golden_seconds = time.perf_counter(), 0.0
+    # Time of this process, as others may work on the machine.
+    started, golden_seconds = time.process_time(), 0.0
     shown = 0
     for number in range(len(job.buttons)):
         frame = await viewer.monitor.frame()
         # The next frame's vertical sync has just begun, and its StartScreen is still to come.
         if number + 1 < len(job.buttons):
             bench.buttons.value = job.buttons[number + 1]
-        before = time.perf_counter()
+        before = time.process_time()
         Image.fromarray(frame).save(output / f"frame_{number:04}.png")
         scene = tap.scenes.live
         viewer.expect_picture(frame, viewer.golden_live(scene), f"frame {number}")
         shown += scene is not None and scene.run
-        golden_seconds += time.perf_counter() - before
+        golden_seconds += time.process_time() - before
         assert not int(bench.halted.value), f"frame {number}: the processor halted; sent was {bytes(tap.text)!r}"
-    seconds = time.perf_counter() - started
+    seconds = time.process_time() - started
 
     (output / "uart.txt").write_bytes(bytes(tap.text))
     frames = len(job.buttons)

@@ -76,9 +76,14 @@ class Bench:
     system: bool = False
 
     @property
+    def modules(self) -> list[str]:
+        """What it is made of; the top is the last."""
+        return ["line_sink", self.top]
+
+    @property
     def sources(self) -> list[Path]:
         """Its Verilog."""
-        return [HERE / "line_sink.v", HERE / f"{self.top}.v"]
+        return [HERE / f"{module}.v" for module in self.modules]
 
     def parameters(self, configuration: Configuration) -> dict[str, int]:
         """Of its Verilog, for a design."""
