@@ -23,8 +23,9 @@ class Tap:
     """What comes out of the system beside pictures: text on the serial port, and scenes on the ray tracer's bus."""
 
     def __init__(self, viewer: Viewer):
-        self.text = bytearray()
-        """What was sent so far."""
+        self.text = Path(viewer.job.output) / "uart.txt"
+        """Holds what was sent so far."""
+        self.text.write_bytes(b"")
         self.scenes = SceneFollower(viewer.configuration)
         self.writes = 0
         """Taken by the ray tracer."""
@@ -33,9 +34,10 @@ class Tap:
         cocotb.start_soon(self._follow())
 
     async def _receive(self) -> None:
-        while True:
-            await self._bench.uart_event.value_change
-            self.text.append(int(self._bench.uart_byte.value))
+        with self.text.open("ab", buffering=0) as file:
+            while True:
+                await self._bench.uart_event.value_change
+                file.write(bytes([int(self._bench.uart_byte.value)]))
 
     async def _follow(self) -> None:
         bench = self._bench
@@ -77,10 +79,9 @@ async def play(bench: HierarchyObject) -> None:
         viewer.expect_picture(frame, viewer.golden_live(scene), f"frame {number}")
         shown += scene is not None and scene.run
         golden_seconds += time.process_time() - before
-        assert not int(bench.halted.value), f"frame {number}: the processor halted; sent was {bytes(tap.text)!r}"
+        assert not int(bench.halted.value), f"frame {number}: the processor halted; sent was {tap.text.read_bytes()!r}"
     seconds = time.process_time() - started
 
-    (output / "uart.txt").write_bytes(bytes(tap.text))
     frames = len(job.buttons)
     clocks = frames * viewer.screen.frame_cycles
     result = {
