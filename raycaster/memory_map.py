@@ -5,6 +5,7 @@ MEMORY = 0x0000_0000
 """Byte address of the memory, which holds the program; reset starts it at its first word."""
 
 MEMORY_WORDS = 8192
+MEMORY_BYTES = 4 * MEMORY_WORDS
 
 PROGRAM_FILE = "program.hex"
 """What the memory is loaded from, unless told otherwise: its words in hexadecimal, one a line."""
@@ -22,8 +23,11 @@ INTERRUPT_BIT = 8
 """Of the same word: the level of the ray tracer's interrupt."""
 
 UART = 0x9000_0010
-"""Byte address of the serial transmitter: a byte written is sent, and waits while the last one is; a read's bit 0 is 1
-while a byte is being sent."""
+"""Byte address of the serial transmitter: a byte written is sent, and waits while the last one is; a read is
+`UART_BUSY` while a byte is being sent."""
+
+UART_BUSY = 1
+"""The bit that a read has while a byte is being sent."""
 
 BAUD_RATE = 115_200
 """Of the serial port: 8 data bits, no parity, a stop bit."""
@@ -32,3 +36,19 @@ BAUD_RATE = 115_200
 def clocks_per_bit(clock_hz: int) -> int:
     """System clocks that a bit of the serial port lasts, to the nearest."""
     return round(clock_hz / BAUD_RATE)
+
+
+def c_header() -> str:
+    """The same for C, and for a linker script that is preprocessed: numbers only."""
+    numbers = {
+        "RAM_BASE": MEMORY,
+        "RAM_BYTES": MEMORY_BYTES,
+        "RAYCASTER_BASE": RAY_TRACER,
+        "BUTTONS_BASE": BUTTONS,
+        "UART_BASE": UART,
+        "UART_BUSY": UART_BUSY,
+    }
+    lines = [f"#define SYSTEM_{name} {number:#x}" for name, number in numbers.items()]
+    source = "// Written by `make registers` from raycaster/memory_map.py, which explains it."
+    head = ["// SPDX-License-Identifier: MIT", source]
+    return "\n".join([*head, "", "#ifndef SYSTEM_H", "#define SYSTEM_H", "", *lines, "", "#endif", ""])

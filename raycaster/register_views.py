@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.register_views`: the register map for C and for people, from `registers.rdl`."""
+"""`python -m raycaster.register_views`: the register map for C and for people, and the memory map for C."""
 
 from __future__ import annotations
 
@@ -13,12 +13,14 @@ from peakrdl_cheader.exporter import CHeaderExporter
 from peakrdl_html import HTMLExporter
 
 from raycaster.configuration import Configuration, configure
+from raycaster.memory_map import c_header
 from raycaster.options import run_command
 from raycaster.registers import compile_registers
 
 HEADER = "ray_caster_registers.h"
+MEMORY_HEADER = Path("firmware") / "system.h"
 SOFTWARE = Path("sw")
-"""Folder of the header that is kept with the sources, from the root."""
+"""Folder of the headers that are kept with the sources, from the root."""
 
 
 def write_header(rectangles: int, path: Path) -> None:
@@ -59,7 +61,7 @@ def main() -> None:
     """The command."""
     parser = argparse.ArgumentParser(prog="python -m raycaster.register_views", description=__doc__)
     parser.add_argument("--output", type=Path, default=Path("build/registers"), help="the page (default: %(default)s)")
-    parser.add_argument("--software", type=Path, default=SOFTWARE, help="the C header (default: %(default)s)")
+    parser.add_argument("--software", type=Path, default=SOFTWARE, help="the C headers (default: %(default)s)")
     default = Configuration().rectangles
     parser.add_argument("--rectangles", default=default, help="entries of the table (default: %(default)s)")
     arguments = parser.parse_args()
@@ -68,7 +70,10 @@ def main() -> None:
     arguments.software.mkdir(parents=True, exist_ok=True)
     header = arguments.software / HEADER
     write_header(rectangles, header)
-    print(f"C header: {header}; page: {page}")
+    memory = arguments.software / MEMORY_HEADER
+    memory.parent.mkdir(exist_ok=True)
+    memory.write_text(c_header())
+    print(f"C headers: {header} and {memory}; page: {page}")
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import re
 import shutil
 import struct
 import sys
@@ -18,6 +17,7 @@ from rich.console import Console
 from rich.table import Table
 
 from raycaster.errors import UserError
+from raycaster.memory_map import MEMORY, MEMORY_BYTES
 from raycaster.options import run_command
 from raycaster.tools import run_program
 
@@ -44,12 +44,6 @@ class Firmware:
 
     sections: dict[str, int]
     """Bytes of each section that takes up RAM."""
-
-
-def memory_map() -> dict[str, int]:
-    """The numbers of `firmware/system.h` by name, without the `SYSTEM_` before it: `RAM_BYTES`, `UART_BASE`, ..."""
-    text = (FIRMWARE / "system.h").read_text()
-    return {name: int(number, 0) for name, number in re.findall(r"^#define SYSTEM_(\w+) (\w+)", text, re.M)}
 
 
 def build_firmware(output: Path) -> Firmware:
@@ -95,27 +89,25 @@ def _read_elf(path: Path) -> tuple[bytes, dict[str, int]]:
     from elftools.elf.constants import SH_FLAGS  # noqa: PLC0415
     from elftools.elf.elffile import ELFFile  # noqa: PLC0415
 
-    places = memory_map()
-    memory = bytearray(places["RAM_BYTES"])
+    memory = bytearray(MEMORY_BYTES)
     with path.open("rb") as file:
         elf = ELFFile(file)
         sections = [section for section in elf.iter_sections() if section["sh_flags"] & SH_FLAGS.SHF_ALLOC]
         for section in sections:
             if section["sh_type"] == "SHT_PROGBITS":
-                start = section["sh_addr"] - places["RAM_BASE"]
+                start = section["sh_addr"] - MEMORY
                 memory[start : start + section["sh_size"]] = section.data()
         return bytes(memory), {section.name: section["sh_size"] for section in sections}
 
 
 def show(sections: dict[str, int], console: Console) -> None:
     """Print what takes up the RAM."""
-    there = memory_map()["RAM_BYTES"]
-    table = Table("section", "bytes", "share", title=f"{there:,} bytes of RAM")
+    table = Table("section", "bytes", "share", title=f"{MEMORY_BYTES:,} bytes of RAM")
     for column in table.columns[1:]:
         column.justify = "right"
-    rest = there - sum(sections.values())
+    rest = MEMORY_BYTES - sum(sections.values())
     for name, size in (*sections.items(), ("left for the stack", rest)):
-        table.add_row(name, f"{size:,}", f"{size / there:.1%}")
+        table.add_row(name, f"{size:,}", f"{size / MEMORY_BYTES:.1%}")
     console.print(table)
 
 

@@ -6,9 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from raycaster.errors import UserError
-
-BUTTONS = ("left", "right", "up", "down", "fire")
-"""What each bit of a frame's buttons means, from bit 0 on."""
+from raycaster.memory_map import BUTTON_NAMES
 
 DEMO = Path(__file__).parent / "game" / "demo.txt"
 
@@ -32,7 +30,7 @@ def load(path: Path | str) -> tuple[int, ...]:
         path: the text file.
 
     Returns:
-        For each frame the buttons, as bits in the order of `BUTTONS`.
+        For each frame the buttons, as bits in the order of `BUTTON_NAMES`.
 
     Raises:
         PlayScriptError: the file cannot be read, or a line is wrong; one line says where and what was expected.
@@ -68,9 +66,9 @@ def load(path: Path | str) -> tuple[int, ...]:
             ended = True
             continue
         for name in names:
-            if name not in BUTTONS:
-                raise PlayScriptError(f"{place}: the buttons are {', '.join(BUTTONS)}, not {name}")
-        held = sum(1 << BUTTONS.index(name) for name in set(names))
+            if name not in BUTTON_NAMES:
+                raise PlayScriptError(f"{place}: the buttons are {', '.join(BUTTON_NAMES)}, not {name}")
+        held = sum(1 << BUTTON_NAMES.index(name) for name in set(names))
     if not ended:
         raise PlayScriptError(f"{path}: must end with the number of frames and the word end")
     return tuple(frames)
@@ -82,7 +80,7 @@ def dump(frames: tuple[int, ...]) -> str:
     held = 0
     for frame, buttons in enumerate(frames):
         if buttons != held:
-            names = [name for bit, name in enumerate(BUTTONS) if buttons >> bit & 1]
+            names = [name for bit, name in enumerate(BUTTON_NAMES) if buttons >> bit & 1]
             lines.append(" ".join([str(frame), *names]))
             held = buttons
     return "\n".join([*lines, f"{len(frames)} end"]) + "\n"

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from raycaster.configuration import Configuration, configure
+from raycaster.memory_map import BUTTON_NAMES
 from raycaster.registers import register_map
-from raycaster.sw.play_script import BUTTONS
 from raycaster.verif.register_model import LiveScene, RegisterFile, Request
 
 ROOT = Path(__file__).parents[2]
@@ -27,7 +27,7 @@ EVENTS = {
     name: int(bit)
     for name, bit in re.findall(r"GAME_(STARTED|RETURNED|TILE|LEVEL|MISSED|ENDED) = (\d+)", GAME_HEADER.read_text())
 }
-FIRE = 1 << BUTTONS.index("fire")
+FIRE = 1 << BUTTON_NAMES.index("fire")
 CONFIG = configure(engine="exact", screen="tiny", rectangles=12)
 """The design on whose registers the software is tried."""
 

@@ -12,12 +12,12 @@ from pathlib import Path
 import pytest
 from host_software import CONFIG, FIRE, Registers, Session, compile_library
 
+from raycaster.memory_map import BUTTONS, MEMORY, MEMORY_BYTES, RAY_TRACER, UART, UART_BUSY, c_header
 from raycaster.registers import register_map
-from raycaster.sw.firmware import Firmware, build_firmware, main, memory_map
+from raycaster.sw.firmware import FIRMWARE, Firmware, build_firmware, main
 from raycaster.sw.play_script import DEMO, load
 from raycaster.verif.register_model import LiveScene
 
-PLACES = memory_map()
 PAGE = 0x1000
 
 
@@ -46,18 +46,18 @@ class Machine:
         self.frames: list[tuple[list[tuple[int, int]], int]] = []
         self._frame_open = False
         self.uc = uc = unicorn.Uc(unicorn.UC_ARCH_RISCV, unicorn.UC_MODE_RISCV32)
-        uc.mem_map(PLACES["RAM_BASE"], PLACES["RAM_BYTES"])
+        uc.mem_map(MEMORY, MEMORY_BYTES)
         memory = b"".join(int(line, 16).to_bytes(4, "little") for line in words.read_text().split())
-        assert len(memory) == PLACES["RAM_BYTES"]
-        uc.mem_write(PLACES["RAM_BASE"], memory)
-        uc.mmio_map(PLACES["RAYCASTER_BASE"], PAGE, self._read_registers, None, self._write_registers, None)
-        uc.mmio_map(PLACES["BUTTONS_BASE"], PAGE, self._read_rest, None, self._write_rest, None)
+        assert len(memory) == MEMORY_BYTES
+        uc.mem_write(MEMORY, memory)
+        uc.mmio_map(RAY_TRACER, PAGE, self._read_registers, None, self._write_registers, None)
+        uc.mmio_map(BUTTONS, PAGE, self._read_rest, None, self._write_rest, None)
         uc.hook_add(unicorn.UC_HOOK_BLOCK, self._count)
         uc.hook_add(unicorn.UC_HOOK_MEM_READ | unicorn.UC_HOOK_MEM_WRITE, self._check_access)
 
     def run(self) -> None:
         """Until the script ends, or main does."""
-        self.uc.emu_start(PLACES["RAM_BASE"], PLACES["RAM_BYTES"], count=20_000_000)
+        self.uc.emu_start(MEMORY, MEMORY_BYTES, count=20_000_000)
 
     def _count(self, uc, address, size, _) -> None:
         self._instructions += size // 4
@@ -90,32 +90,25 @@ class Machine:
 
     def _read_rest(self, uc, offset, size, _) -> int:
         assert size == 4
-        address = PLACES["BUTTONS_BASE"] + offset
-        if address == PLACES["BUTTONS_BASE"]:
+        address = BUTTONS + offset
+        if address == BUTTONS:
             self._frame_open = True
             self._instructions = 0
             self._registers.written.clear()
             return self._script[len(self.frames)]
-        assert address == PLACES["UART_BASE"]
+        assert address == UART
         self._busy = max(self._busy - 1, 0)
-        return PLACES["UART_BUSY"] if self._busy else 0
+        return UART_BUSY if self._busy else 0
 
     def _write_rest(self, uc, offset, size, word, _) -> None:
-        assert (size, PLACES["BUTTONS_BASE"] + offset) == (4, PLACES["UART_BASE"])
+        assert (size, BUTTONS + offset) == (4, UART)
         assert not self._busy
         self._busy = 3
         self.said += chr(word)
 
 
-def test_the_memory_map():
-    assert PLACES == {
-        "RAM_BASE": 0,
-        "RAM_BYTES": 0x8000,
-        "RAYCASTER_BASE": 0x80000000,
-        "BUTTONS_BASE": 0x90000000,
-        "UART_BASE": 0x90000010,
-        "UART_BUSY": 1,
-    }
+def test_the_memory_map_for_c_is_up_to_date():
+    assert (FIRMWARE / "system.h").read_text() == c_header(), "run make registers"
 
 
 def test_the_demo_is_played_as_on_the_host(firmware, tmp_path):
@@ -187,7 +180,7 @@ def test_an_underrun_is_told(firmware, frame, told):
 def test_the_image_is_the_program(firmware):
     """The words are what is linked, from the first instruction on, and nothing is compressed."""
     words = firmware.words.read_text().split()
-    assert len(words) == PLACES["RAM_BYTES"] // 4
+    assert len(words) == MEMORY_BYTES // 4
     program = firmware.sections[".text"] // 4
     assert all(int(word, 16) & 3 == 3 for word in words[:program])
     used = sum(firmware.sections.values())

@@ -26,7 +26,8 @@ from host_software import (
 from raycaster.configuration import configure
 from raycaster.golden import exact
 from raycaster.golden.rays import primary_slopes
-from raycaster.sw.play_script import BUTTONS, DEMO, PlayScriptError, dump, load
+from raycaster.memory_map import BUTTON_NAMES
+from raycaster.sw.play_script import DEMO, PlayScriptError, dump, load
 from raycaster.verif.register_model import LiveScene
 
 ENTRIES = enumerators(GAME_HEADER, "game_entry")
@@ -310,7 +311,7 @@ def test_a_table_that_is_too_small(library):
 
 
 def test_buttons_have_the_same_bits_in_c():
-    for bit, name in enumerate(BUTTONS):
+    for bit, name in enumerate(BUTTON_NAMES):
         assert f"GAME_{name.upper()} = {1 << bit}" in GAME_HEADER.read_text()
 
 

@@ -161,8 +161,8 @@ def test_every_module_is_mutated(tmp_path):
     files += write_processor_system(config, tmp_path / "processor")
     known = expectations()
     # The system's scene is fixed when it is generated, so its leaf test cannot vary what goes over its wires. With a
-    # processor they are what a program makes of them, PicoRV32 is given, and the memory reads a file as it starts. A bit
-    # of what goes from part to part of the culler seldom decides about a rectangle.
+    # processor they are what a program makes of them, PicoRV32 is given, and the memory reads a file as it starts. Of
+    # what goes from part to part of the culler a bit seldom decides about a rectangle.
     unmutated = {"ray_caster_system", "processor_system", "processor_host", "picorv32", "word_memory", "group_culler"}
     assert set(known) == {path.stem for path in files} - unmutated
     assert all(expectation.tests for expectation in known.values())

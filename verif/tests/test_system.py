@@ -17,6 +17,7 @@ from raycaster.memory_map import BUTTON_NAMES, MEMORY_WORDS
 from raycaster.rtl import picorv32
 from raycaster.rtl.convert import write_processor_system
 from raycaster.scene import load_scene
+from raycaster.verif import game
 from raycaster.verif.play import check_program, play, read_buttons
 from raycaster.verif.simulator import SYSTEM_BENCH, SimulationError, build_model
 
@@ -88,8 +89,9 @@ def test_a_program_runs(simulator, options, scene, buttons, output, tmp_path):
         ("uart_transmitter", "bits_left <= 10;", "bits_left <= 9;", "start or stop bit"),
         ("camera_mem", "camera_y = live[18:10]", "camera_y = live[18:10] ^ 1", "pixels are wrong"),
         ("word_memory", "word <= memory[address];", "word <= ~memory[address];", "the processor halted"),
+        ("scene_word", "if (bus_go_live) begin", "if (1'b1) begin", "pixels are wrong"),
     ],
-    ids=["serial-port", "camera", "memory"],
+    ids=["serial-port", "camera", "memory", "torn-commit"],
 )
 def test_a_fault_is_noticed(module, right, wrong, complaint, output, tmp_path):
     """The bench finds what is wrong beyond the ray tracer's bus; what is wrong before it shows in text and pictures."""
@@ -127,3 +129,19 @@ def test_picorv32_is_said_to_be_missing(monkeypatch):
     monkeypatch.setattr(picorv32.importlib.util, "find_spec", lambda _: None)
     with pytest.raises(UserError, match=r"PicoRV32 is missing; pip install 'raycaster\[play\]'"):
         picorv32.picorv32_source()
+
+
+def test_a_recorded_game(capsys, tmp_path):
+    """The firmware's own pictures, on the small screen."""
+    pytest.importorskip("ziglang", reason="the extra firmware is not installed")
+    assert game.main(["--screen", "tiny", "--frames", "14", "--build", str(BUILD), "--output", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert "RayCaster 0." in said and "engine beam" in said
+    assert len(list(tmp_path.glob("frame_*.png"))) == 14
+    # Frames that are alike are one in the animation.
+    assert 2 <= Image.open(tmp_path / game.ANIMATION).n_frames <= 14
+
+
+def test_no_frames_are_one_line():
+    with pytest.raises(UserError, match=r"^frames: at least 1, not 0$"):
+        game.main(["--frames", "0"])
