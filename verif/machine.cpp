@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// A system in a loop without a test bench: reads which buttons are held, runs to the next vertical sync, and writes how
+// many clocks that took, the pixels that were shown, and what the serial port said; over and over.
+//
+// In: 32 bits, the buttons. Out: 32 bits each of clocks, pixels and characters; red, green and blue of each pixel; the
+// characters. VS_ACTIVE: level of VS in its pulse; CLOCKS_PER_BIT: of the serial port, 0 where there is none.
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "Vsystem.h"
+
+static const int RESET_CLOCKS = 8;
+
+// The receiving half: samples a byte in the middle of its bits.
+class SerialPort {
+public:
+    std::string text;
+
+    void clock(bool line) {
+        if (wait == 0) {
+            if (line) return;
+            wait = CLOCKS_PER_BIT + CLOCKS_PER_BIT / 2;
+            bits = 0;
+        }
+        if (--wait != 0) return;
+        if (bits == 8) {
+            text.push_back(static_cast<char>(byte));
+            return;
+        }
+        byte = static_cast<uint8_t>(byte >> 1 | line << 7);
+        bits++;
+        wait = CLOCKS_PER_BIT;
+    }
+
+private:
+    int wait = 0;
+    int bits = 0;
+    uint8_t byte = 0;
+};
+
+int main(int argc, char **argv) {
+    VerilatedContext context;
+    context.commandArgs(argc, argv);
+    Vsystem top{&context};
+    std::vector<uint8_t> pixels;
+    bool vga_clk = false, vs = true;
+#if CLOCKS_PER_BIT
+    SerialPort serial;
+#endif
+    top.ready = 0;
+    uint32_t buttons = 0;
+    for (uint64_t clocks = 0; fread(&buttons, sizeof buttons, 1, stdin) == 1;) {
+        top.buttons = buttons;
+        pixels.clear();
+        uint32_t taken = 0;
+        for (bool sync = false; !sync; taken++, clocks++) {
+            if (clocks == RESET_CLOCKS) top.ready = 1;
+            for (int level = 1; level >= 0; level--) {
+                top.clk = level;
+                top.eval();
+                if (top.vga_clk && !vga_clk) {
+                    if (top.vga_blank_n) {
+                        pixels.push_back(top.vga_r);
+                        pixels.push_back(top.vga_g);
+                        pixels.push_back(top.vga_b);
+                    }
+                    sync = top.vga_vs == VS_ACTIVE && !vs;
+                    vs = top.vga_vs == VS_ACTIVE;
+                }
+                vga_clk = top.vga_clk;
+                if (sync) break;
+            }
+#if CLOCKS_PER_BIT
+            if (top.ready) serial.clock(top.uart_tx);
+#endif
+        }
+#if CLOCKS_PER_BIT
+        const std::string text = std::move(serial.text);
+        serial.text.clear();
+#else
+        const std::string text;
+#endif
+        const uint32_t sizes[] = {taken, static_cast<uint32_t>(pixels.size() / 3), static_cast<uint32_t>(text.size())};
+        fwrite(sizes, sizeof sizes, 1, stdout);
+        fwrite(pixels.data(), 1, pixels.size(), stdout);
+        fwrite(text.data(), 1, text.size(), stdout);
+        fflush(stdout);
+    }
+}
