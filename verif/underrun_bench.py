@@ -68,17 +68,20 @@ async def underrun(bench: HierarchyObject) -> None:
 
 def _expect_abandoned_rows(harness: Harness, seen: np.ndarray, complete: np.ndarray, before: np.ndarray) -> None:
     """Every row must be new up to some group of columns, and from there on hold what its half of the buffer held."""
-    doubling, units = harness.screen.doubling, harness.configuration.units
+    screen, configuration = harness.screen, harness.configuration
     lengths = set()
-    for line in range(len(seen)):
-        # The halves were last written whole by the last two rows of the frame before.
-        row = line // doubling
-        stale = before[(harness.screen.rows - 2 + row % 2) * doubling]
-        for groups in range(harness.configuration.groups):
-            new = groups * units * doubling
-            if np.array_equal(seen[line], np.concatenate([complete[line, :new], stale[new:]])):
+    # The halves were last written whole by the last two rows of the frame before.
+    halves = [before[(screen.rows - 2 + half) * screen.doubling] for half in range(2)]
+    for row in range(screen.rows):
+        line = row * screen.doubling
+        for groups in range(configuration.groups + 1):
+            new = groups * configuration.units * screen.doubling
+            if np.array_equal(seen[line], np.concatenate([complete[line, :new], halves[row % 2][new:]])):
                 lengths.add(groups)
                 break
         else:
-            raise AssertionError(f"line {line}: not a new beginning and the old rest of its half of the buffer")
+            raise AssertionError(f"row {row}: not a new beginning and the old rest of its half of the buffer")
+        assert (seen[line : line + screen.doubling] == seen[line]).all(), f"row {row}: its lines differ"
+        halves[row % 2] = seen[line]
     assert max(lengths) > 0, "no group of columns was ever complete"
+    assert min(lengths) < configuration.groups, "no row was abandoned"

@@ -19,7 +19,7 @@ TRAFFIC_SEEDS = {"verilator": 2, "icarus": 1}
 FULL_SCENE = ROOT / "scenes" / "mirror_room.toml"
 DESIGNS = [
     pytest.param("verilator", configure(screen="tiny"), FULL_SCENE, id="verilator"),
-    pytest.param("icarus", configure(screen="tiny", units=8, rectangles=3), SMALL_SCENE, id="icarus"),
+    pytest.param("icarus", configure(screen="tiny", units=8, rectangles=3, culling=False), SMALL_SCENE, id="icarus"),
     pytest.param("verilator", configure(engine="beam", screen="tiny"), FULL_SCENE, id="beam"),
 ]
 
@@ -54,8 +54,8 @@ def test_traffic(bench: Bench, simulator: str, configuration: Configuration, sce
 @pytest.mark.parametrize(
     ("simulator", "options"),
     [
-        pytest.param("verilator", {"units": 8}, id="verilator"),
-        pytest.param("icarus", {"units": 4, "rectangles": 3, "divider_bits": 1}, id="icarus"),
+        pytest.param("verilator", {"units": 4}, id="verilator"),
+        pytest.param("icarus", {"units": 4, "rectangles": 3, "divider_bits": 1, "culling": False}, id="icarus"),
     ],
 )
 def test_underrun(bench: Bench, simulator: str, options: dict[str, int]):

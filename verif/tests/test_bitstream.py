@@ -126,7 +126,8 @@ def test_reflections_are_those_asked_for(tmp_path):
 
 def test_a_small_bitstream(tmp_path):
     """All the way, and every clock is fast enough."""
-    design = design_for(SMALL_SCENE, {"screen": "tiny", "units": 1, "rectangles": 4, "allow_underrun": True})
+    options = {"screen": "tiny", "units": 1, "rectangles": 4, "allow_underrun": True, "culling": False}
+    design = design_for(SMALL_SCENE, options)
     outcome = make_bitstream(ULX3S, design, tmp_path / "out")
     assert not outcome.missed
     assert outcome.cells["TRELLIS_IO"][0] >= 21

@@ -31,6 +31,8 @@ module ray_caster_module (
         clk, reset, avs_s0_address, avs_s0_read, avs_s0_write, avs_s0_writedata, avs_s0_byteenable, avs_s0_readdata,
         avs_s0_readdatavalid, avs_s0_waitrequest, irq, r, g, b, hs, vs, blank_n, vga_sync_n, pixel_clk
     );
+    // What the bench counts cycles by.
+    wire start_screen = inner.start_screen, busy = inner.busy;
     // The pixel's position in the picture, from 1, for faults in one place only.
     integer x, y;
     always @(negedge pixel_clk) #1 begin
