@@ -57,14 +57,16 @@ module bench #(
         .vga_clk(vga_clk)
     );
 
-    // Cycles of rendering since the last StartScreen.
+    // Cycles of rendering since the last StartScreen. A netlist does not keep the names, and has none.
     reg [31:0] busy_cycles /*verilator public_flat_rw*/;
     initial busy_cycles = 0;
+`ifndef NETLIST
     always @(posedge clk)
         if (dut.start_screen)
             busy_cycles = 0;
         else if (dut.busy)
             busy_cycles = busy_cycles + 1;
+`endif
 
     line_sink #(
         .COLOUR_BITS(COLOUR_BITS),

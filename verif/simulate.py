@@ -236,7 +236,7 @@ def _cells(outcome: Outcome) -> list[str]:
         str(result["pixels"]),
         f"[red]{wrong}[/]" if wrong else "0",
         str(result["wrong_vs_exact"]),
-        str(result["frame_cycles"]),
+        str(result["frame_cycles"] or ""),
         f"{row}/{configuration.screen_geometry.row_cycles}",
         f"{group}/{budget}",
         "[red]underrun[/]" if result["underrun"] else str(budget - group),

@@ -225,6 +225,7 @@ def build_model(
     design = verilog if verilog is not None else convert(configuration, build, system=bench.system)
     sources = [*design, *bench.sources]
     parameters = bench.parameters(configuration)
+    defines = {"NETLIST": 1} if variant == "gates" else {}
     arguments = _build_arguments(simulator, waves, flags)
     digest = hashlib.sha256(repr((tool.name, tool.version, cocotb.__version__, parameters, arguments)).encode())
     for source in sources:
@@ -245,6 +246,7 @@ def build_model(
                         sources=[source.resolve() for source in sources],
                         hdl_toplevel=bench.top,
                         parameters=parameters,
+                        defines=defines,
                         build_args=arguments,
                         build_dir=directory.resolve(),
                         waves=waves,
