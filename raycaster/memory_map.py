@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What the processor of a system finds where: its memory, the ray tracer, the buttons and the serial port."""
 
+from collections.abc import Iterable
+
 MEMORY = 0x0000_0000
 """Byte address of the memory, which holds the program; reset starts it at its first word."""
 
@@ -31,6 +33,15 @@ UART_BUSY = 1
 
 BAUD_RATE = 115_200
 """Of the serial port: 8 data bits, no parity, a stop bit."""
+
+
+def held_bits(names: Iterable[str]) -> int:
+    """The word in which these buttons are held.
+
+    Raises:
+        ValueError: one of them is none of `BUTTON_NAMES`.
+    """
+    return sum(1 << BUTTON_NAMES.index(name) for name in set(names))
 
 
 def clocks_per_bit(clock_hz: int) -> int:

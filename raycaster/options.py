@@ -23,10 +23,15 @@ def add_configuration_options(parser: argparse.ArgumentParser) -> None:
         option = "--" + name.replace("_", "-")
         shown = "what suits the rest" if field.default is None else field.default
         help_text = f"{field.description} (default: {shown})"
-        if field.annotation is bool or field.annotation == "bool":
+        if _is_switch(field):
             group.add_argument(option, action="store_true", default=None, help=help_text)
         else:
             group.add_argument(option, metavar=name.upper(), help=help_text)
+
+
+def _is_switch(field: FieldInfo) -> bool:
+    """Whether an option has no value, as its field is yes or no and nothing else."""
+    return field.annotation in (bool, "bool")
 
 
 def given_options(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -43,7 +48,7 @@ def as_options(config: Configuration) -> list[str]:
         value = getattr(config, name)
         if value != fields[name].default:
             words.append("--" + name.replace("_", "-"))
-            if fields[name].annotation is bool or fields[name].annotation == "bool":
+            if _is_switch(fields[name]):
                 continue
             words.append(str(int(value)) if isinstance(value, bool) else str(value))
     return words

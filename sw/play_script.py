@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from raycaster.errors import UserError
-from raycaster.memory_map import BUTTON_NAMES
+from raycaster.memory_map import BUTTON_NAMES, held_bits
 
 DEMO = Path(__file__).parent / "game" / "demo.txt"
 
@@ -68,7 +68,7 @@ def load(path: Path | str) -> tuple[int, ...]:
         for name in names:
             if name not in BUTTON_NAMES:
                 raise PlayScriptError(f"{place}: the buttons are {', '.join(BUTTON_NAMES)}, not {name}")
-        held = sum(1 << BUTTON_NAMES.index(name) for name in set(names))
+        held = held_bits(names)
     if not ended:
         raise PlayScriptError(f"{path}: must end with the number of frames and the word end")
     return tuple(frames)

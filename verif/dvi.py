@@ -26,7 +26,7 @@ from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.bitstream import BOARDS, DEFAULT_SCENE, find_board, write_project
 from raycaster.golden import engines
-from raycaster.golden.picture import count_wrong
+from raycaster.golden.picture import count_wrong, shown
 from raycaster.golden.tmds import CONTROL_SYMBOLS, decode
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.verif.monitor import Line, VideoError, decode_frame
@@ -88,11 +88,10 @@ def golden(design: Design, position: tuple[int, int, int] | None = None) -> np.n
     Returns:
         uint8 (visible lines, visible pixels, 3).
     """
-    scene, doubling = design.scene, design.configuration.screen_geometry.doubling
+    scene = design.scene
     if position is not None:
         scene = scene.model_copy(update={"camera": scene.camera.model_copy(update={"position": position})})
-    picture = engines.render(design.configuration, scene, design.reflections)
-    return picture.repeat(doubling, axis=0).repeat(doubling, axis=1)
+    return shown(engines.render(design.configuration, scene, design.reflections), design.configuration)
 
 
 def _record(sources: Sequence[Path], directory: Path, simulator: str, arguments: Sequence[str]) -> np.ndarray:

@@ -20,16 +20,13 @@ from raycaster.errors import UserError
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.sw.firmware import build_firmware
 from raycaster.sw.play_script import DEMO, load
-from raycaster.verif.play import play
+from raycaster.verif.play import FASTEST, play
 from raycaster.verif.simulator import BUILD, SYSTEM_BENCH, SimulationError, build_model
 
 FRAMES = 240
 ANIMATION = "game.webp"
 SHOWN_HZ = 30
 """Pictures a second of the animation: half the speed of the monitor, which browsers keep up with."""
-
-DEFAULTS = {"engine": "beam", "screen": "play"}
-"""What simulates fastest, where nothing is given."""
 
 POLL_SECONDS = 0.5
 
@@ -58,7 +55,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     if arguments.frames < 1:
         raise UserError(f"frames: at least 1, not {arguments.frames}")
     buttons = load(arguments.script)[: arguments.frames]
-    configuration = configure(**DEFAULTS | given_options(arguments))
+    configuration = configure(**FASTEST | given_options(arguments))
     console = Console()
     build, output = arguments.build, arguments.output or arguments.build / "game"
     firmware = build_firmware((build / "firmware").absolute())

@@ -10,10 +10,8 @@ import numpy as np
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import FallingEdge, RisingEdge
 
-from raycaster.configuration import CHANNEL_BITS
 from raycaster.golden import engines
-from raycaster.golden.picture import count_wrong
-from raycaster.golden.rays import primary_slopes
+from raycaster.golden.picture import count_wrong, shown
 from raycaster.scene import Scene
 from raycaster.verif.avalon import AvalonBus
 from raycaster.verif.job import Job
@@ -36,17 +34,8 @@ class Viewer:
         self.monitor = Monitor(bench, self.configuration)
 
     def shown(self, picture: np.ndarray) -> np.ndarray:
-        """What the monitor must show of a golden picture.
-
-        Args:
-            picture: uint8, rows x columns x 3.
-
-        Returns:
-            uint8, visible lines x visible pixels x 3: each pixel doubled, a channel's lost bits 0.
-        """
-        doubled = picture.repeat(self.screen.doubling, axis=0).repeat(self.screen.doubling, axis=1)
-        lost_bits = CHANNEL_BITS - self.configuration.colour_bits
-        return doubled >> lost_bits << lost_bits
+        """What the monitor must show of a golden picture; see `raycaster.golden.picture.shown`."""
+        return shown(picture, self.configuration)
 
     def golden(self, scene: Scene, reflections: int) -> np.ndarray:
         """The visible screen that this design must show of a scene; uint8, visible lines x visible pixels x 3."""
@@ -54,18 +43,11 @@ class Viewer:
 
     def golden_live(self, scene: LiveScene | None) -> np.ndarray:
         """The same of what the registers say, or nothing, for the time before the first StartScreen."""
-        slopes = primary_slopes(self.screen)
         if scene is None or not scene.run:
-            return self.shown(np.zeros(slopes.shape, dtype=np.uint8))
-        traced = engines.trace(
-            self.configuration,
-            scene.rectangles,
-            scene.camera,
-            scene.background,
-            slopes.reshape(-1, 3),
-            scene.reflections,
+            return self.shown(np.zeros((self.screen.rows, self.screen.columns, 3), dtype=np.uint8))
+        return self.shown(
+            engines.picture(self.configuration, scene.rectangles, scene.camera, scene.background, scene.reflections)
         )
-        return self.shown(traced.colours.reshape(slopes.shape))
 
     def expect_picture(self, seen: np.ndarray, expected: np.ndarray, what: str) -> None:
         """Check every visible pixel.

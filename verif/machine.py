@@ -16,9 +16,9 @@ import numpy as np
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.memory_map import PROGRAM_FILE, clocks_per_bit
-from raycaster.rtl.convert import write_processor_system, write_system
+from raycaster.rtl.convert import write_system
 from raycaster.scene import Scene
-from raycaster.verif.simulator import BUILD, SimulationError, find_tool, lock, stamped, write_stamp
+from raycaster.verif.simulator import BUILD, SimulationError, convert, find_tool, lock, stamped, write_stamp
 
 LOOP = Path(__file__).with_name("machine.cpp")
 TIMEOUT = 900
@@ -108,8 +108,7 @@ def build_machine(config: Configuration, scene: Scene | None = None, build: Path
     tool = find_tool("verilator")
     directory = build / "machine" / f"{config.name}-{'scene' if scene else 'processor'}"
     with lock(directory):
-        files = write_system(config, scene, directory / "verilog") if scene else None
-        files = files or write_processor_system(config, directory / "verilog")
+        files = write_system(config, scene, directory / "verilog") if scene else convert(config, build, system=True)
         screen = config.screen_geometry
         defines = (
             f"-DVS_ACTIVE={int(screen.vertical.active_high)}",

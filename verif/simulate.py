@@ -147,10 +147,11 @@ def build_models(
     models: dict[str, Model] = {}
     for configuration in configurations(runs):
         netlist = netlists.get(configuration.name)
-        files, variant = (netlist.files, "gates") if netlist else (None, "")
+        # A netlist keeps no names for the bench to look at.
+        given = {"verilog": netlist.files, "variant": "gates", "defines": {"NETLIST": 1}} if netlist else {}
         with console.status(f"building {configuration.name} with {simulator}"):
             started = time.perf_counter()
-            model = build_model(configuration, simulator, waves=waves, build=build, verilog=files, variant=variant)
+            model = build_model(configuration, simulator, waves=waves, build=build, **given)
         took = f"built in {time.perf_counter() - started:.1f} s" if model.fresh else "was built before"
         console.print(f"{configuration.name} ({simulator}) {took}", highlight=False)
         models[configuration.name] = model

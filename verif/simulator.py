@@ -203,6 +203,7 @@ def build_model(
     verilog: Sequence[Path] | None = None,
     flags: Sequence[str] = VERILATOR_FLAGS,
     variant: str = "",
+    defines: Mapping[str, int] | None = None,
     bench: Bench = MODULE_BENCH,
 ) -> Model:
     """Build a model of a design, or find it built.
@@ -215,6 +216,7 @@ def build_model(
         verilog: files to use instead of the converted ones, for instance broken on purpose.
         flags: for Verilator.
         variant: names a model that differs by files or flags, so that it does not replace the plain one.
+        defines: macros of the bench.
         bench: what the design is simulated in.
 
     Raises:
@@ -225,9 +227,11 @@ def build_model(
     design = verilog if verilog is not None else convert(configuration, build, system=bench.system)
     sources = [*design, *bench.sources]
     parameters = bench.parameters(configuration)
-    defines = {"NETLIST": 1} if variant == "gates" else {}
+    defines = dict(defines or {})
     arguments = _build_arguments(simulator, waves, flags)
-    digest = hashlib.sha256(repr((tool.name, tool.version, cocotb.__version__, parameters, arguments)).encode())
+    digest = hashlib.sha256(
+        repr((tool.name, tool.version, cocotb.__version__, parameters, defines, arguments)).encode()
+    )
     for source in sources:
         digest.update(source.read_bytes())
     kind = "system" if bench.system else ""

@@ -18,7 +18,7 @@ from raycaster.configuration import WORLD_SIZE, Configuration, configure
 from raycaster.design import design_for
 from raycaster.errors import UserError
 from raycaster.golden import exact
-from raycaster.golden.picture import count_wrong
+from raycaster.golden.picture import count_wrong, shown
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.rtl import scene_player
@@ -26,10 +26,8 @@ from raycaster.rtl.camera_axis import STEP
 from raycaster.scene import Scene
 from raycaster.sw.firmware import build_firmware
 from raycaster.verif.machine import Frame, Machine, build_machine
+from raycaster.verif.play import FASTEST
 from raycaster.verif.simulator import BUILD, SimulationError
-
-DEFAULTS = {"engine": "beam", "screen": "play"}
-"""What simulates fastest, where nothing is given."""
 
 GAME_KEYS = {"left": ("left", "a"), "right": ("right", "d"), "up": ("up", "w"), "down": ("down", "s")}
 GAME_KEYS |= {"fire": ("space", "return")}
@@ -59,7 +57,7 @@ class Walk:
     """
 
     def __init__(self, scene: Scene, config: Configuration):
-        self._scene, self._screen = scene, config.screen_geometry
+        self._scene, self._config = scene, config
         self.camera = scene.camera.position
         """Of the picture that comes next."""
         self._pool = ThreadPoolExecutor(1)
@@ -89,9 +87,8 @@ class Walk:
 
     def _count(self, picture: np.ndarray, camera: tuple[int, int, int]) -> int:
         scene = self._scene.model_copy(update={"camera": self._scene.camera.model_copy(update={"position": camera})})
-        perfect = exact.render(scene, self._screen, reflections=self._scene.reflections)
-        shown = perfect.repeat(self._screen.doubling, axis=0).repeat(self._screen.doubling, axis=1)
-        return count_wrong(picture, shown)
+        perfect = exact.render(scene, self._config.screen_geometry, reflections=scene.reflections)
+        return count_wrong(picture, shown(perfect, self._config))
 
 
 class Window:
@@ -198,13 +195,13 @@ def main(argv: Sequence[str] | None = None) -> None:
     add_configuration_options(parser)
     arguments = parser.parse_args(argv)
     console = Console()
-    options = DEFAULTS | given_options(arguments)
+    options = given_options(arguments)
     if arguments.scene:
-        design = design_for(arguments.scene, options)
+        design = design_for(arguments.scene, options, FASTEST)
         config, scene, program = design.configuration, design.shown, None
         keys, names, walk = SCENE_KEYS, scene_player.BUTTONS, Walk(scene, config)
     else:
-        config, scene = configure(**options), None
+        config, scene = configure(**FASTEST | options), None
         program = build_firmware((arguments.build / "firmware").absolute()).words
         keys, names, walk = GAME_KEYS, BUTTON_NAMES, None
 

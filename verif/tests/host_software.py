@@ -221,7 +221,7 @@ class Session:
     """A game and its ray tracer."""
 
     def __init__(self, library: ctypes.CDLL, seed: int = SEED):
-        self.library = library
+        self.software = library
         self.game = Game()
         self.registers = Registers(CONFIG)
         with attached(library, self.registers):
@@ -232,17 +232,17 @@ class Session:
 
     def draw(self) -> int:
         """The driver's error."""
-        with attached(self.library, self.registers):
-            return self.library.game_draw(ctypes.byref(self.game), ctypes.byref(self.device))
+        with attached(self.software, self.registers):
+            return self.software.game_draw(ctypes.byref(self.game), ctypes.byref(self.device))
 
     def step(self, buttons: int) -> set[str]:
         """What happens in a frame with these buttons, without a picture."""
-        bits = self.library.game_step(ctypes.byref(self.game), buttons)
+        bits = self.software.game_step(ctypes.byref(self.game), buttons)
         return {name for name, bit in EVENTS.items() if bits & bit}
 
     def autoplay(self) -> int:
         """What a good player would hold now."""
-        return self.library.game_autoplay(ctypes.byref(self.game))
+        return self.software.game_autoplay(ctypes.byref(self.game))
 
     def play(self, script: Iterable[int]) -> Iterator[Frame]:
         """Frame after frame, drawn and shown; the sticky errors stay clear."""
@@ -251,10 +251,10 @@ class Session:
             events = self.step(buttons)
             assert self.draw() == 0
             written = list(self.registers.written)
-            with attached(self.library, self.registers):
-                assert self.library.raycaster_commit(ctypes.byref(self.device)) == 0
+            with attached(self.software, self.registers):
+                assert self.software.raycaster_commit(ctypes.byref(self.device)) == 0
                 live = self.registers.start_screen()
-                assert self.library.raycaster_check(ctypes.byref(self.device)) == 0
+                assert self.software.raycaster_check(ctypes.byref(self.device)) == 0
             yield Frame(events, live, written)
 
     def start(self) -> None:

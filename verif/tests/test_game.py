@@ -82,7 +82,7 @@ def test_a_step_off_the_demo_still_plays_well(session):
     script = load(DEMO)
     scores = set()
     for late in (0, 1, 17):
-        other = Session(session.library)
+        other = Session(session.software)
         for buttons in [0] * late + list(script):
             other.step(buttons)
         scores.add((other.game.score, other.game.level, other.game.lives))
@@ -99,15 +99,15 @@ def test_equal_seeds_give_equal_frames(library):
 
 def test_what_is_not_written_is_as_if_it_were(session):
     """Frames of which only changes were written are those of a table that was written as a whole."""
-    anew = Session(session.library)
+    anew = Session(session.software)
     for number, frame in enumerate(session.play(load(DEMO)[:480])):
         if number % 60 == 0:
             anew.game = Game.from_buffer_copy(session.game)
             anew.game.drawn = False
             anew.registers.written.clear()
             assert anew.draw() == 0
-            with attached(anew.library, anew.registers):
-                assert anew.library.raycaster_commit(ctypes.byref(anew.device)) == 0
+            with attached(anew.software, anew.registers):
+                assert anew.software.raycaster_commit(ctypes.byref(anew.device)) == 0
             assert_same_scene(frame.live, anew.registers.start_screen())
 
 
