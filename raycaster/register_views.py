@@ -17,7 +17,7 @@ from raycaster.memory_map import c_header
 from raycaster.options import run_command
 from raycaster.registers import compile_registers
 
-HEADER = "ray_caster_registers.h"
+HEADER = "raycaster_regs.h"
 MEMORY_HEADER = Path("firmware") / "system.h"
 SOFTWARE = Path("sw")
 """Folder of the headers that are kept with the sources, from the root."""

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The ray tracer's driver. Every offset and field is that of ray_caster_registers.h, which is made of the register map.
+// The ray tracer's driver. Every offset and field is that of raycaster_regs.h, which is made of the register map.
 
 #include "raycaster.h"
 
 #include <stddef.h>
 
-#include "ray_caster_registers.h"
+#include "raycaster_regs.h"
 
 typedef ray_caster__rectangle__stride10_t entry_t;
 

@@ -15,7 +15,7 @@ set_sw_property bsp_subdirectory drivers
 
 add_sw_property c_source raycaster.c
 add_sw_property include_source raycaster.h
-add_sw_property include_source ray_caster_registers.h
+add_sw_property include_source raycaster_regs.h
 
 add_sw_property supported_bsp_type HAL
 add_sw_property supported_bsp_type UCOSII
