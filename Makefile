@@ -48,6 +48,7 @@ help:
 	@echo "make sim takes  SCENE=path (default: all of scenes/)  SIM=verilator|icarus  WAVES=1  GATES=1"
 	@echo "  (GATES=1 simulates the netlist that Yosys makes of a small design; pictures in build/gates/)"
 	@echo "make quartus and make bitstream take  SCENE=path (default: scenes/mirror_room.toml)"
+	@echo "make bitstream takes  SEED= of the placement, and GAME=1: the game on a processor instead of a scene"
 	@echo "sim, verilog, quartus, bitstream and area take the configuration:"
 	@echo "  ENGINE=seed|exact|beam UNITS= RECTANGLES= REFLECTIONS= ROWS=240|200|180 SCALE=1|2|4"
 	@echo "  FRACTION_BITS= ROUNDING=truncate|nearest DIVIDER_BITS=auto|1|2|3 COLOUR_BITS= SCREEN=vga|tiny|play"
@@ -81,9 +82,9 @@ quartus: $(VENV)/base
 	@$(PYTHON) -m raycaster.fpga.quartus --board '$(or $(BOARD),de2)' $(call option,SCENE,scene) \
 	    $(call option,FIX,fix) $(call switch,FIT,fit) $(CONFIGURATION)
 
-bitstream: $(VENV)/fpga
+bitstream: $(VENV)/fpga $(if $(filter-out 0,$(GAME)),$(VENV)/play $(VENV)/firmware)
 	@$(PYTHON) -m raycaster.fpga.bitstream --board '$(or $(BOARD),ulx3s)' $(call option,SCENE,scene) \
-	    $(call option,SEED,seed) $(call option,FIX,fix) $(call switch,FIT,fit) $(CONFIGURATION)
+	    $(call option,SEED,seed) $(call switch,GAME,game) $(call option,FIX,fix) $(call switch,FIT,fit) $(CONFIGURATION)
 
 area: $(VENV)/fpga
 	@$(PYTHON) -m raycaster.fpga.area $(call option,FAMILY,family) $(call switch,ROUTE,route) \

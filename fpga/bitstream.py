@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """`python -m raycaster.fpga.bitstream`: a bitstream for a board, with nothing but what pip installs.
 
-One scene, whose camera the board's buttons move, on its DVI connector. Not run on a board: what the connector sends is
-decoded in simulation instead, and compared with golden in every pixel.
+On its DVI connector: one scene, whose camera the board's buttons move, or the game, played with them. Not run on a
+board: what the connector sends is decoded in simulation instead, and compared with golden in every pixel.
 """
 
 from __future__ import annotations
@@ -21,16 +21,21 @@ from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from raycaster.configuration import CHANNEL_BITS, Configuration
-from raycaster.design import Design
+from raycaster.configuration import CHANNEL_BITS, Configuration, configure
+from raycaster.design import Design, ProcessorDesign
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
+from raycaster.memory_map import PROGRAM_FILE
 from raycaster.options import add_configuration_options, given_options, run_command
-from raycaster.rtl.convert import write_dvi_encoder, write_system
+from raycaster.rtl.convert import write_dvi_encoder, write_processor_system, write_system
+from raycaster.sw.firmware import build_firmware
 from raycaster.tools import find_program, prepare_wasm, run_program, run_yosys
 
 HERE = Path(__file__).parent
 DEFAULT_SCENE = Path("scenes/mirror_room.toml")
+GAME_ENGINE = "exact"
+"""What draws the game where no engine is given: no pixel is wrong, and it is placed and routed soonest."""
+
 TIMEOUT = 5400
 """Seconds that placing and routing may take."""
 
@@ -147,33 +152,37 @@ class Outcome:
         return clocks + [name for name, (taken, allowed) in self.crossings.items() if taken > allowed]
 
 
-def write_project(board: Board, design: Design, directory: Path) -> list[Path]:
+def write_project(board: Board, design: Design | ProcessorDesign, directory: Path) -> list[Path]:
     """Write all of a board's Verilog, and its pin file, into a directory.
 
     A DVI link carries whole bytes, so the design must have all bits of a colour.
 
     Args:
         board: one of `BOARDS`.
-        design: what to show, with which hardware.
-        directory: exists; gets files and the directories `system` and `dvi`.
+        design: what to show or run, with which hardware.
+        directory: exists; gets files and the directories `system` and `dvi`. Synthesis and simulation run there, as a
+            program is looked for in it.
 
     Returns:
         The Verilog files; the board's top is among the last.
 
     Raises:
-        UserError: the design has fewer bits a colour.
+        UserError: the design has fewer bits a colour, or its processor is not installed.
     """
     config = design.configuration
     if config.colour_bits != CHANNEL_BITS:
         raise UserError(f"colour_bits: a DVI link carries {CHANNEL_BITS} bits a colour, not {config.colour_bits}")
-    generated = [
-        *write_system(config, design.shown, directory / "system"),
-        *write_dvi_encoder(config, directory / "dvi"),
-    ]
+    if isinstance(design, ProcessorDesign):
+        system, kind = write_processor_system(config, directory / "system"), "game"
+        shutil.copy(design.path, directory / PROGRAM_FILE)
+    else:
+        system, kind = write_system(config, design.shown, directory / "system"), "scene"
+    generated = [*system, *write_dvi_encoder(config, directory / "dvi")]
     clocks = directory / f"{board.name}_clocks.v"
     clocks.write_text(_clocks(board, config))
-    own = [shutil.copy(path, directory) for path in sorted(board.directory.iterdir()) if path.suffix in (".v", ".lpf")]
-    return [*generated, clocks, *(Path(path) for path in own if Path(path).suffix == ".v")]
+    sources = sorted([*board.directory.iterdir(), *(board.directory / kind).iterdir()])
+    own = [Path(shutil.copy(path, directory)) for path in sources if path.suffix in (".v", ".lpf")]
+    return [*generated, clocks, *(path for path in own if path.suffix == ".v")]
 
 
 def _clocks(board: Board, config: Configuration) -> str:
@@ -209,13 +218,13 @@ endmodule
 
 
 def make_bitstream(
-    board: Board, design: Design, output: Path, *, seed: int = 1, console: Console | None = None
+    board: Board, design: Design | ProcessorDesign, output: Path, *, seed: int = 1, console: Console | None = None
 ) -> Outcome:
     """Synthesise, place and route, and pack.
 
     Args:
         board: one of `BOARDS`.
-        design: what to show, with which hardware.
+        design: what to show or run, with which hardware.
         output: replaced as a whole when the bitstream is there; gets sources, netlist, reports and `<board>.bit`.
         seed: of the placement; the same seed gives the same bitstream.
         console: where to show progress.
@@ -266,7 +275,7 @@ def make_bitstream(
     return outcome
 
 
-def _synthesise(board: Board, design: Design, work: Path) -> None:
+def _synthesise(board: Board, design: Design | ProcessorDesign, work: Path) -> None:
     sources = [path.relative_to(work) for path in write_project(board, design, work)]
     script = [f"read_verilog {source}" for source in sources]
     run_yosys(work, "synthesis", [*script, f"synth_ecp5 -top {board.name} -json {board.name}.json"])
@@ -324,7 +333,8 @@ def main() -> None:
     """The command."""
     parser = argparse.ArgumentParser(prog="python -m raycaster.fpga.bitstream", description=__doc__.splitlines()[0])
     parser.add_argument("--board", default="ulx3s", help=f"one of {', '.join(BOARDS)} (default: %(default)s)")
-    parser.add_argument("--scene", type=Path, default=DEFAULT_SCENE, help="(default: %(default)s)")
+    parser.add_argument("--scene", type=Path, help=f"(default: {DEFAULT_SCENE})")
+    parser.add_argument("--game", action="store_true", help="the game on a processor, instead of a scene")
     parser.add_argument("--output", type=Path, default=Path("build/bitstream"), help="(default: %(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="of the placement (default: %(default)s)")
     add_fix_option(parser)
@@ -332,7 +342,14 @@ def main() -> None:
     arguments = parser.parse_args()
     board = find_board(arguments.board)
     console = Console()
-    design = design_of(arguments.scene, given_options(arguments), arguments.fix, console)
+    options = given_options(arguments)
+    if arguments.game:
+        if arguments.scene or arguments.fix:
+            raise UserError("game: it sets up its own scene; leave SCENE, FIX and FIT out")
+        configuration = configure(**{"engine": GAME_ENGINE} | options)
+        design = ProcessorDesign(build_firmware(arguments.output.absolute() / "firmware").words, configuration)
+    else:
+        design = design_of(arguments.scene or DEFAULT_SCENE, options, arguments.fix, console)
     output = arguments.output / board.name
     outcome = make_bitstream(board, design, output, seed=arguments.seed, console=console)
     show(board, outcome, console)

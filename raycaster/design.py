@@ -33,6 +33,16 @@ class Design:
         return self.scene.model_copy(update={"reflections": self.reflections})
 
 
+@dataclass(frozen=True)
+class ProcessorDesign:
+    """Hardware with a processor, and the program that it runs."""
+
+    path: Path
+    """The program: words of 32 bits in hexadecimal, one a line, from address 0 on."""
+
+    configuration: Configuration
+
+
 def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, Any] | None = None) -> Design:
     """Read a scene and choose its hardware: rows and reflections are the scene's unless they are given.
 

@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: MIT
 // A system in a loop without a test bench: reads which buttons are held, runs to the next vertical sync, and writes how
-// many clocks that took, the pixels that were shown, and what the serial port said; over and over.
+// many clocks that took, the pixels that were shown, what happened on the ray tracer's bus, and what the serial port said;
+// over and over.
 //
-// In: 32 bits, the buttons. Out: 32 bits each of clocks, pixels and characters; red, green and blue of each pixel; the
-// characters. VS_ACTIVE: level of VS in its pulse; CLOCKS_PER_BIT: of the serial port, 0 where there is none.
+// In: 32 bits, the buttons. Out: 32 bits each of clocks, clocks in which a picture was computed, pixels, events and
+// characters; red, green and blue of each pixel; the events; the characters. VS_ACTIVE: level of VS in its pulse;
+// CLOCKS_PER_BIT: of the serial port, 0 where there is none.
 
 #include <cstdint>
 #include <cstdio>
 #include <string>
 #include <vector>
 
-#include "Vsystem.h"
+#include "Vmachine.h"
 
 static const int RESET_CLOCKS = 8;
+
+// A StartScreen, a write, or both in a clock.
+struct Event {
+    uint32_t clock, start_screen, written, address, writedata, byteenable;
+};
 
 // The receiving half: samples a byte in the middle of its bits.
 class SerialPort {
@@ -44,8 +51,9 @@ private:
 int main(int argc, char **argv) {
     VerilatedContext context;
     context.commandArgs(argc, argv);
-    Vsystem top{&context};
+    Vmachine top{&context};
     std::vector<uint8_t> pixels;
+    std::vector<Event> events;
     bool vga_clk = false, vs = true;
 #if CLOCKS_PER_BIT
     SerialPort serial;
@@ -55,9 +63,14 @@ int main(int argc, char **argv) {
     for (uint64_t clocks = 0; fread(&buttons, sizeof buttons, 1, stdin) == 1;) {
         top.buttons = buttons;
         pixels.clear();
-        uint32_t taken = 0;
+        events.clear();
+        uint32_t taken = 0, busy = 0;
         for (bool sync = false; !sync; taken++, clocks++) {
             if (clocks == RESET_CLOCKS) top.ready = 1;
+            busy += top.busy;
+            if (top.start_screen || top.written)
+                events.push_back({static_cast<uint32_t>(clocks), top.start_screen, top.written, top.address,
+                                  top.writedata, top.byteenable});
             for (int level = 1; level >= 0; level--) {
                 top.clk = level;
                 top.eval();
@@ -67,11 +80,10 @@ int main(int argc, char **argv) {
                         pixels.push_back(top.vga_g);
                         pixels.push_back(top.vga_b);
                     }
-                    sync = top.vga_vs == VS_ACTIVE && !vs;
+                    sync |= top.vga_vs == VS_ACTIVE && !vs;
                     vs = top.vga_vs == VS_ACTIVE;
                 }
                 vga_clk = top.vga_clk;
-                if (sync) break;
             }
 #if CLOCKS_PER_BIT
             if (top.ready) serial.clock(top.uart_tx);
@@ -83,9 +95,11 @@ int main(int argc, char **argv) {
 #else
         const std::string text;
 #endif
-        const uint32_t sizes[] = {taken, static_cast<uint32_t>(pixels.size() / 3), static_cast<uint32_t>(text.size())};
+        const uint32_t sizes[] = {taken, busy, static_cast<uint32_t>(pixels.size() / 3),
+                                  static_cast<uint32_t>(events.size()), static_cast<uint32_t>(text.size())};
         fwrite(sizes, sizeof sizes, 1, stdout);
         fwrite(pixels.data(), 1, pixels.size(), stdout);
+        fwrite(events.data(), sizeof(Event), events.size(), stdout);
         fwrite(text.data(), 1, text.size(), stdout);
         fflush(stdout);
     }

@@ -15,12 +15,19 @@ from pathlib import Path
 import numpy as np
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
-from raycaster.memory_map import PROGRAM_FILE, clocks_per_bit
+from raycaster.memory_map import BUTTON_NAMES, PROGRAM_FILE, clocks_per_bit
+from raycaster.registers import address_bits
+from raycaster.rtl import scene_player
 from raycaster.rtl.convert import write_system
 from raycaster.scene import Scene
+from raycaster.verif.register_model import LiveScene, SceneFollower
 from raycaster.verif.simulator import BUILD, SimulationError, convert, find_tool, lock, stamped, write_stamp
 
-LOOP = Path(__file__).with_name("machine.cpp")
+TOP = "machine"
+BENCH, LOOP = (Path(__file__).with_name(f"{TOP}.{kind}") for kind in ("v", "cpp"))
+EVENT_WORDS = 6
+"""Of 32 bits, that the loop writes for what happens in a clock."""
+
 TIMEOUT = 900
 
 
@@ -32,6 +39,12 @@ class Frame:
     """uint8 (lines, pixels, 3), as the monitor shows it; the first frame after reset lacks what was over by then."""
 
     clocks: int
+    busy: int
+    """Clocks in which a picture was computed."""
+
+    scene: LiveScene | None
+    """What the registers told the renderer for this picture; None before the first StartScreen."""
+
     text: str
     """From the serial port."""
 
@@ -47,6 +60,7 @@ class Machine:
 
     def __init__(self, executable: Path, config: Configuration, program: Path | None = None):
         self._screen, self._lost_bits = config.screen_geometry, CHANNEL_BITS - config.colour_bits
+        self._scenes = SceneFollower(config)
         self._directory = tempfile.TemporaryDirectory(prefix="raycaster-")
         if program:
             shutil.copyfile(program, Path(self._directory.name) / PROGRAM_FILE)
@@ -75,13 +89,21 @@ class Machine:
         """
         self._process.stdin.write(struct.pack("<I", buttons))
         self._process.stdin.flush()
-        clocks, count, characters = struct.unpack("<III", self._read(12))
+        clocks, busy, count, events, characters = struct.unpack("<5I", self._read(20))
         pixels = np.frombuffer(self._read(3 * count), dtype=np.uint8) << self._lost_bits
         width, height = self._screen.horizontal.visible, self._screen.vertical.visible
         picture = np.zeros((height * width, 3), dtype=np.uint8)
         shown = pixels.reshape(-1, 3)[-height * width :]
         picture[len(picture) - len(shown) :] = shown
-        return Frame(picture.reshape(height, width, 3), clocks, self._read(characters).decode("ascii", "replace"))
+        words = np.frombuffer(self._read(4 * EVENT_WORDS * events), dtype="<u4").reshape(-1, EVENT_WORDS).tolist()
+        for clock, start_screen, written, address, data, lanes in words:
+            # What is written in StartScreen's clock is too late for it.
+            if start_screen:
+                self._scenes.start_screen(clock)
+            if written:
+                self._scenes.write(clock, address, data, lanes)
+        text = self._read(characters).decode("ascii", "replace")
+        return Frame(picture.reshape(height, width, 3), clocks, busy, self._scenes.live, text)
 
     def _read(self, size: int) -> bytes:
         data = self._process.stdout.read(size)
@@ -114,16 +136,20 @@ def build_machine(config: Configuration, scene: Scene | None = None, build: Path
             f"-DVS_ACTIVE={int(screen.vertical.active_high)}",
             f"-DCLOCKS_PER_BIT={0 if scene else clocks_per_bit(screen.clock_hz)}",
         )
-        options = ("--prefix", "Vsystem", "-O3", "--x-assign", "fast", "-Wno-fatal", "-Wno-lint", "-Wno-style")
+        options = (
+            "-O3", "--x-assign", "fast", "-Wno-fatal", "-Wno-lint", "-Wno-style", f"-DSYSTEM={files[-1].stem}",
+            *(() if scene else ("-DSERIAL",)), f"-GBUTTONS={len(scene_player.BUTTONS if scene else BUTTON_NAMES)}",
+            f"-GCOLOUR_BITS={config.colour_bits}", f"-GADDRESS_BITS={address_bits(config.table)}",
+        )  # fmt: skip
         digest = hashlib.sha256(repr((tool.version, options, defines)).encode())
-        for path in (*files, LOOP):
+        for path in (*files, BENCH, LOOP):
             digest.update(path.read_bytes())
-        executable = directory / "model" / "Vsystem"
+        executable = directory / "model" / f"V{TOP}"
         if stamped(directory / "stamp.json", digest.hexdigest()) is None:
             shutil.rmtree(directory / "model", ignore_errors=True)
             command = [
-                "verilator", "--cc", "--exe", "--build", "-j", "2", *options, "--top-module", files[-1].stem,
-                "--Mdir", executable.parent, "-CFLAGS", f"-O2 -std=gnu++20 {' '.join(defines)}", *files, LOOP,
+                "verilator", "--cc", "--exe", "--build", "-j", "2", *options, "--top-module", TOP,
+                "--Mdir", executable.parent, "-CFLAGS", f"-O2 -std=gnu++20 {' '.join(defines)}", *files, BENCH, LOOP,
             ]  # fmt: skip
             done = subprocess.run(
                 [str(part.resolve()) if isinstance(part, Path) else part for part in command],

@@ -9,21 +9,21 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from rich.console import Console
 
-from raycaster.configuration import WORLD_SIZE, Configuration, configure
+from raycaster.configuration import Configuration, configure
 from raycaster.design import design_for
 from raycaster.errors import UserError
 from raycaster.golden import exact
 from raycaster.golden.picture import count_wrong, shown
+from raycaster.golden.rays import primary_slopes
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.rtl import scene_player
-from raycaster.rtl.camera_axis import STEP
-from raycaster.scene import Scene
 from raycaster.sw.firmware import build_firmware
 from raycaster.verif.machine import Frame, Machine, build_machine
 from raycaster.verif.play import FASTEST
@@ -40,55 +40,43 @@ LEAST_WIDTH = 960
 
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
 BAR = 28
-MOVES = {"forward": (0, STEP), "back": (0, -STEP), "left": (1, -STEP), "right": (1, STEP)}
-MOVES |= {"up": (2, STEP), "down": (2, -STEP)}
-"""By button, the camera's axis and its step; see `scene_player.BUTTONS`."""
-
-SETTLED = 3
-"""Frames without a move after which a picture is surely one from where the camera is."""
 
 
-class Walk:
-    """Where the camera is, and what is wrong with the picture once it stands still.
+class Judge:
+    """How many pixels of the pictures are not those of rational arithmetic, of as many pictures as there is time for.
 
     Args:
-        scene: with the camera's first place.
-        config: the design that draws it.
+        config: the design that draws.
     """
 
-    def __init__(self, scene: Scene, config: Configuration):
-        self._scene, self._config = scene, config
-        self.camera = scene.camera.position
-        """Of the picture that comes next."""
+    def __init__(self, config: Configuration):
+        self._config = config
         self._pool = ThreadPoolExecutor(1)
         self._asked: Future[int] | None = None
-        self._still = 0
         self.wrong: int | None = None
-        """Pixels that are not those of rational arithmetic; None: not known."""
+        """Of the last picture that was looked at; None: of none yet."""
+        self.pictures = self.all_wrong = 0
+        """That were looked at, and what was wrong in them together."""
 
-    def follow(self, held: int, frame: Frame) -> None:
-        """Look at a frame, and move as the hardware does for the buttons that were held at its StartScreen."""
-        if self._asked and self._asked.done():
-            self.wrong, self._asked = self._asked.result(), None
-        camera = list(self.camera)
-        pressed = {name for bit, name in enumerate(scene_player.BUTTONS) if held >> bit & 1}
-        for name in pressed:
-            axis, step = MOVES[name]
-            alone = not any(other != name and MOVES[other][0] == axis for other in pressed)
-            if alone and 0 <= camera[axis] + step < WORLD_SIZE:
-                camera[axis] += step
-        if tuple(camera) != self.camera:
-            self.camera, self._still, self.wrong, self._asked = tuple(camera), 0, None, None
+    def look(self, frame: Frame) -> None:
+        """Have a picture looked at, unless the one before still is."""
+        if self._asked is not None and not self._asked.done():
             return
-        self._still += 1
-        # The first frame after a move still comes, and a picture takes the processor a while.
-        if self._still == SETTLED and self._asked is None:
-            self._asked = self._pool.submit(self._count, frame.picture, self.camera)
+        self.finish()
+        if frame.scene is not None and frame.scene.run:
+            self._asked = self._pool.submit(self._count, frame)
 
-    def _count(self, picture: np.ndarray, camera: tuple[int, int, int]) -> int:
-        scene = self._scene.model_copy(update={"camera": self._scene.camera.model_copy(update={"position": camera})})
-        perfect = exact.render(scene, self._config.screen_geometry, reflections=scene.reflections)
-        return count_wrong(picture, shown(perfect, self._config))
+    def finish(self) -> None:
+        """Wait for the picture that is being looked at."""
+        if self._asked is not None:
+            self.wrong, self._asked = self._asked.result(), None
+            self.pictures += 1
+            self.all_wrong += self.wrong
+
+    def _count(self, frame: Frame) -> int:
+        scene, slopes = frame.scene, primary_slopes(self._config.screen_geometry)
+        traced = exact.trace(scene.rectangles, scene.camera, scene.background, slopes.reshape(-1, 3), scene.reflections)
+        return count_wrong(frame.picture, shown(traced.colours.reshape(slopes.shape), self._config))
 
 
 class Window:
@@ -154,15 +142,21 @@ def _pygame():
 
 
 def loop(
-    machine: Machine, window: Window, config: Configuration, watch: Callable[[int, Frame], str], frames: int | None
+    machine: Machine,
+    window: Window,
+    judge: Judge,
+    config: Configuration,
+    say: Callable[[str], None],
+    frames: int | None,
 ) -> tuple[int, float]:
     """Show frame after frame.
 
     Args:
         machine: what draws.
         window: what shows.
+        judge: looks at pictures on the way.
         config: the design.
-        watch: told the buttons and each frame; returns what is to be said of its error.
+        say: told what the serial port said.
         frames: after which it ends, or None to go on until the window is closed.
 
     Returns:
@@ -172,11 +166,15 @@ def loop(
     while (frames is None or count < frames) and (held := window.held()) is not None:
         before = time.perf_counter()
         frame = machine.frame(held)
-        said = watch(held, frame)
+        say(frame.text)
+        judge.look(frame)
         took = time.perf_counter() - before
         rate = 0.9 * rate + 0.1 / took if rate else 1 / took
-        text = f"{config.engine} engine    {rate:.1f} frames a second    {frame.clocks:,} clocks a frame    {said}"
-        window.show(frame.picture, text)
+        parts = [f"{config.engine} engine", f"{rate:.1f} frames a second"]
+        parts += [f"{frame.clocks:,} clocks a frame, {frame.busy:,} of them computing"]
+        if judge.wrong is not None:
+            parts += [f"{judge.wrong:,} pixels unlike exact arithmetic"]
+        window.show(frame.picture, "    ".join(parts))
         count += 1
     return count, count / (time.perf_counter() - started)
 
@@ -199,19 +197,14 @@ def main(argv: Sequence[str] | None = None) -> None:
     if arguments.scene:
         design = design_for(arguments.scene, options, FASTEST)
         config, scene, program = design.configuration, design.shown, None
-        keys, names, walk = SCENE_KEYS, scene_player.BUTTONS, Walk(scene, config)
+        keys, names = SCENE_KEYS, scene_player.BUTTONS
     else:
         config, scene = configure(**FASTEST | options), None
         program = build_firmware((arguments.build / "firmware").absolute()).words
-        keys, names, walk = GAME_KEYS, BUTTON_NAMES, None
+        keys, names = GAME_KEYS, BUTTON_NAMES
 
-    def watch(held: int, frame: Frame) -> str:
-        if walk is None:
-            console.print(frame.text, end="", highlight=False, markup=False)
-            return ""
-        walk.follow(held, frame)
-        return "" if walk.wrong is None else f"{walk.wrong:,} pixels unlike exact arithmetic"
-
+    judge = Judge(config)
+    say = partial(console.print, end="", highlight=False, markup=False)
     # A window that cannot be opened is known before anything is built.
     window = Window(config, "RayCaster", keys, names)
     try:
@@ -220,14 +213,22 @@ def main(argv: Sequence[str] | None = None) -> None:
         with console.status(f"building {config.name}"):
             executable = build_machine(config, scene, arguments.build)
         with Machine(executable, config, program) as machine:
-            count, rate = loop(machine, window, config, watch, arguments.frames)
+            count, rate = loop(machine, window, judge, config, say, arguments.frames)
+        judge.finish()
         if arguments.screenshot:
             window.save(arguments.screenshot)
     except SimulationError as error:
         raise UserError(str(error)) from None
     finally:
         window.close()
-    console.print(f"{count} frames, {rate:.1f} a second", highlight=False)
+    # The serial port may stop within a line.
+    console.print()
+    console.print(
+        f"{count} frames, {rate:.1f} a second; in {judge.pictures} of them, held against exact arithmetic, "
+        f"{judge.all_wrong:,} pixels are wrong",
+        highlight=False,
+        soft_wrap=True,
+    )
 
 
 if __name__ == "__main__":

@@ -12,12 +12,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import SMALL_SCENE
+from small_program import small_program
 
-from raycaster.design import Design, design_for
+from raycaster.configuration import configure
+from raycaster.design import Design, ProcessorDesign, design_for
 from raycaster.errors import UserError
 from raycaster.fpga import bitstream
 from raycaster.fpga.bitstream import BOARDS, Outcome, make_bitstream, write_project
+from raycaster.golden import engines
+from raycaster.golden.picture import shown as as_shown
 from raycaster.rtl.camera_axis import STEP
+from raycaster.scene import load_scene
 from raycaster.verif.dvi import golden, watch
 from raycaster.verif.monitor import VideoError
 
@@ -79,6 +84,33 @@ def test_buttons_move_the_camera(design, shown, buttons, direction):
     assert np.array_equal(first, golden(design))
     assert np.array_equal(second, golden(design, (x, y, z)))
     assert not np.array_equal(first, second)
+
+
+PROGRAM_STEP = 8
+"""World units that the small program moves the camera each frame."""
+
+
+def test_a_processor_on_the_board(tmp_path):
+    """Its program says on the serial port what it says, and shows what it shows, moved by the board's buttons."""
+    config = configure(engine="exact", screen="tiny", rectangles=4)
+    scene = load_scene(SMALL_SCENE)
+    program = tmp_path / "small.hex"
+    program.write_text("".join(f"{word:08x}\n" for word in small_program(scene, config.rectangles)))
+    project = tmp_path / "project"
+    project.mkdir()
+    files = write_project(ULX3S, ProcessorDesign(program, config), project)
+    right = 1 << 6
+    frames = watch(files, config.screen_geometry, 6, project, simulator="verilator", buttons=right)
+    # Nothing is shown before the program has started, and by then an interrupt waits: the first picture is a step on.
+    blank, *drawn = frames
+    assert not blank.any()
+    x, y, z = scene.camera.position
+    for step, frame in enumerate(drawn, 1):
+        camera = scene.camera.model_copy(update={"position": (x, y + step * PROGRAM_STEP, z)})
+        picture = engines.render(config, scene.model_copy(update={"camera": camera}), scene.reflections)
+        assert np.array_equal(frame, as_shown(picture, config)), step
+    # Buttons are sent as letters.
+    assert (project / "serial.txt").read_text().startswith("RAYCMEgo\nBBB")
 
 
 LINKED = ".blue({}),\n    .green(green),\n    .red({}),\n    .pixel(pixel),\n    .gpdi_dp"
@@ -187,3 +219,11 @@ def test_bad_options_get_one_line(tmp_path, module, options, complaint):
     assert done.stderr.startswith(complaint)
     assert done.stderr.count("\n") == 1
     assert not list(tmp_path.rglob("*.bit"))
+
+
+@pytest.mark.parametrize("given", [("--scene", str(SMALL_SCENE)), ("--fix", "all")], ids=["scene", "fix"])
+def test_the_game_takes_no_scene(tmp_path, monkeypatch, given):
+    monkeypatch.setattr(sys, "argv", ["bitstream", "--game", *given, "--output", str(tmp_path / "out")])
+    with pytest.raises(UserError, match=r"^game: it sets up its own scene; leave SCENE, FIX and FIT out$"):
+        bitstream.main()
+    assert not list(tmp_path.iterdir())
