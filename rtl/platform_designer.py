@@ -6,6 +6,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from importlib.metadata import version
+from pathlib import Path
 
 from raycaster.configuration import Configuration
 from raycaster.registers import compile_registers
@@ -13,6 +14,9 @@ from raycaster.rtl.hierarchy import Port
 
 COMPONENT = "raycaster_hw.tcl"
 """The file's name; Platform Designer looks for `*_hw.tcl`."""
+
+NIOS_SYSTEM = Path(__file__).with_name("nios_system.tcl")
+"""A script for Platform Designer: a system with a Nios processor around the component."""
 
 QSYS_VERSION = "13.0"
 """Of the commands that the file uses: the last release for the Cyclone II has them, and later ones still take them."""

@@ -13,7 +13,7 @@ from raycaster.register_views import HEADER, write_header
 from raycaster.registers import address_bits
 from raycaster.rtl.avalon_interface import size_word
 from raycaster.rtl.hierarchy import Module
-from raycaster.rtl.platform_designer import COMPONENT, component
+from raycaster.rtl.platform_designer import COMPONENT, NIOS_SYSTEM, component
 
 TOP = "ray_caster_module"
 FILE_LIST = f"{TOP}.f"
@@ -37,6 +37,7 @@ def write_take_home(config: Configuration, modules: Sequence[Module], directory:
     (directory / f"{TOP}.sdc").write_text(_constraints(config))
     (directory / f"{TOP}.core").write_text(_core(config, sources))
     (directory / COMPONENT).write_text(component(config, modules[-1].ports, sources))
+    shutil.copyfile(NIOS_SYSTEM, directory / NIOS_SYSTEM.name)
     write_header(config.table, directory / HEADER)
     shutil.copyfile(WAIVERS, directory / f"{TOP}.vlt")
     (directory / BENCHES).mkdir()

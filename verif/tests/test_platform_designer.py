@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ from raycaster.configuration import Configuration, configure
 from raycaster.registers import register_map
 from raycaster.rtl.convert import write_verilog
 from raycaster.rtl.hierarchy import Port
-from raycaster.rtl.platform_designer import COMPONENT, READS_IN_FLIGHT, component
+from raycaster.rtl.platform_designer import COMPONENT, NIOS_SYSTEM, READS_IN_FLIGHT, component, interfaces
 from raycaster.rtl.take_home import FILE_LIST, TOP
 from raycaster.tools import run_yosys
 
@@ -169,3 +170,121 @@ def _partition_port(text: str, declaration: str) -> tuple[str, str, str]:
 def test_an_unknown_port_is_refused():
     with pytest.raises(ValueError, match="strange belongs to 0 interfaces"):
         component(CONFIGURATIONS[0], [Port("strange", 1, False, True)], [f"{TOP}.v"])
+
+
+SYSTEM_COMMANDS = (
+    "create_system", "set_project_property", "add_instance", "set_instance_parameter_value", "add_connection",
+    "set_connection_parameter_value", "add_interface", "set_interface_property", "save_system",
+)  # fmt: skip
+
+AGENT, HOST, CLOCK, RESET, SENDER, RECEIVER, CONDUIT = (
+    "agent", "host", "clock", "reset", "interrupt sender", "interrupt receiver", "conduit",
+)  # fmt: skip
+ENDS = {
+    "clock_source": {"clk": CLOCK, "clk_reset": RESET, "clk_in": "clock input", "clk_in_reset": "reset input"},
+    "altera_nios2_gen2": {
+        "clk": CLOCK, "reset": RESET, "instruction_master": HOST, "data_master": HOST, "debug_mem_slave": AGENT,
+        "irq": RECEIVER,
+    },
+    "intel_niosv_m": {
+        "clk": CLOCK, "reset": RESET, "instruction_manager": HOST, "data_manager": HOST, "dm_agent": AGENT,
+        "timer_sw_agent": AGENT, "platform_irq_rx": RECEIVER,
+    },
+    "altera_avalon_onchip_memory2": {"clk1": CLOCK, "reset1": RESET, "s1": AGENT},
+    "altera_avalon_pio": {"clk": CLOCK, "reset": RESET, "s1": AGENT, "external_connection": CONDUIT},
+    "altera_avalon_jtag_uart": {"clk": CLOCK, "reset": RESET, "avalon_jtag_slave": AGENT, "irq": SENDER},
+}  # fmt: skip
+"""By Intel's component, its interfaces as its user guides have them."""
+
+SPANS = {"memory.s1": 65536, "cpu.debug_mem_slave": 2048, "cpu.dm_agent": 65536, "cpu.timer_sw_agent": 64}
+SPANS |= {"buttons.s1": 16, "serial.avalon_jtag_slave": 8}
+"""Bytes that each agent takes; the ray tracer's follow from its registers."""
+
+
+def own_ends(config: Configuration) -> dict[str, str]:
+    """The ray tracer's interfaces, by the names that its component gives them."""
+    kinds = {"clock": CLOCK, "reset": RESET, "avalon": AGENT, "interrupt": SENDER, "conduit": CONDUIT}
+    return {interface.name: kinds[interface.kind.split()[0]] for interface in interfaces(config)}
+
+
+def run_system(directory: Path, settings: str, script: str) -> subprocess.CompletedProcess[str]:
+    if not shutil.which("tclsh"):
+        pytest.skip("no tclsh here: Debian's package tcl")
+    commands = "".join(f"proc {name} {{args}} {{ record {name} {{*}}$args }}\n" for name in SYSTEM_COMMANDS)
+    record = 'rename package real_package\nproc package {args} {}\nproc record {args} { puts [join $args "\\t"] }\n'
+    (directory / NIOS_SYSTEM.name).write_text(script)
+    (directory / "main.tcl").write_text(f"{record}{commands}{settings}\nsource {NIOS_SYSTEM.name}\n")
+    return subprocess.run(["tclsh", "main.tcl"], cwd=directory, capture_output=True, text=True, check=False)
+
+
+def check_system(directory: Path, processor: str, script: str) -> None:
+    """Every end is there and connected to what it fits, and no two agents of a host have an address in common."""
+    config = CONFIGURATIONS[0]
+    done = run_system(directory, f"set processor {processor}\nset family {{MAX 10}}\nset device 10M50", script)
+    assert (done.returncode, done.stderr) == (0, "")
+    calls = [line.split("\t") for line in done.stdout.splitlines()]
+    ends: dict[str, str] = {}
+    for command, *arguments in calls:
+        if command == "add_instance":
+            name, kind = arguments
+            ends |= {f"{name}.{end}": what for end, what in (own_ends(config) if kind == TOP else ENDS[kind]).items()}
+    fits = {(CLOCK, CLOCK), (RESET, RESET), (HOST, AGENT), (RECEIVER, SENDER)}
+    connections = [tuple(call[1:]) for call in calls if call[0] == "add_connection"]
+    assert len(set(connections)) == len(connections)
+    for source, sink in connections:
+        assert (ends[source], ends[sink]) in fits, (source, sink)
+    exported = {call[3] for call in calls if call[0] == "set_interface_property" and call[2] == "EXPORT_OF"}
+    used = {end for pair in connections for end in pair} | exported
+    assert used == set(ends), f"unconnected or unknown: {used ^ set(ends)}"
+    last = max(register.address for register in register_map(config.rectangles).values())
+    spans = SPANS | {"raycaster.s0": 4 << last.bit_length()}
+    values = {(call[1], call[2]): call[3] for call in calls if call[0] == "set_connection_parameter_value"}
+    ranges: dict[str, list[tuple[int, int]]] = {}
+    for source, sink in connections:
+        if ends[source] == HOST:
+            base = int(values.pop((f"{source}/{sink}", "baseAddress")), 0)
+            assert base % spans[sink] == 0
+            ranges.setdefault(source, []).append((base, base + spans[sink]))
+        elif ends[source] == RECEIVER:
+            number = values.pop((f"{source}/{sink}", "irqNumber"))
+            assert (number == "0") == (sink == "raycaster.irq")
+    assert not values, "of no connection"
+    for taken in ranges.values():
+        taken.sort()
+        for (_, end), (start, _) in pairwise(taken):
+            assert end <= start
+
+
+@pytest.mark.parametrize("processor", ["nios2", "niosv"])
+def test_a_nios_system_fits_together(tmp_path, processor):
+    check_system(tmp_path, processor, NIOS_SYSTEM.read_text())
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("raycaster.s0 0x00040000", "raycaster.s0 0x00041000"),
+        ("raycaster.clock raycaster.reset", "raycaster.clk raycaster.reset"),
+        ("{raycaster.irq serial.irq}", "{serial.irq raycaster.irq}"),
+        ("    vga conduit end raycaster.vga\n", ""),
+    ],
+    ids=["overlap", "clock", "interrupt", "export"],
+)
+def test_a_nios_system_that_does_not_fit_is_noticed(tmp_path, right, wrong):
+    script = NIOS_SYSTEM.read_text()
+    assert script.count(right) == 1
+    with pytest.raises((AssertionError, KeyError)):
+        check_system(tmp_path, "nios2", script.replace(right, wrong))
+
+
+@pytest.mark.parametrize(
+    ("settings", "complaint"),
+    [
+        ("set processor nios2\nset family {MAX 10}", "device is not set; see the head of nios_system.tcl"),
+        ("set processor arm\nset family x\nset device x", "processor: nios2 or niosv, not arm"),
+    ],
+)
+def test_a_nios_system_says_what_it_needs(tmp_path, settings, complaint):
+    done = run_system(tmp_path, settings, NIOS_SYSTEM.read_text())
+    assert done.returncode
+    assert done.stderr.startswith(f"{complaint}\n")
