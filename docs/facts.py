@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: MIT
+"""Tables of the pages that the project itself knows: options, cycles, registers. In Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from pydantic.fields import FieldInfo
+from systemrdl.node import FieldNode, Node, RegNode
+
+from raycaster.configuration import OPTION_NAMES, RESULT_LATENCY, Configuration, configure
+from raycaster.docs.timing import CONFIGURATION, DIAGRAMS, kept, measured
+from raycaster.registers import compile_registers
+from raycaster.rtl import color_blend, fold_tester, nearest_of_two, ray_fold, rect_setup
+from raycaster.rtl.beam_caster import beam_latency, pass_latency, rounds
+
+ACCESS = {"r": "read", "rw": "read, write", "woclr": "read, write 1 to clear", "woset": "read, write 1 to set"}
+
+
+def table(headings: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """A table; numbers stand to the right."""
+    rows = list(rows)
+    texts = [[f"{cell:,}" if isinstance(cell, int) else str(cell) for cell in row] for row in rows]
+    rules = ["---:" if all(isinstance(cell, int) for cell in column) else "---" for column in zip(*rows, strict=True)]
+    return "\n".join(f"| {' | '.join(line)} |" for line in [headings, rules, *texts])
+
+
+def options() -> str:
+    """What a design is configured with, on the command line of make."""
+    fields: dict[str, FieldInfo] = Configuration.__pydantic_fields__
+
+    def default(field: FieldInfo) -> str:
+        value = int(field.default) if isinstance(field.default, bool) else field.default
+        return "as suits the rest" if value is None else f"`{value}`"
+
+    rows = ([f"`{name.upper()}`", fields[name].description, default(fields[name])] for name in OPTION_NAMES)
+    return table(["option", "what it is", "where it is not given"], rows)
+
+
+def seed_cycles() -> str:
+    """A group's cycles and its budget, by reflections and quotient bits a cycle."""
+    rows = []
+    for reflections in range(3):
+        for bits in (1, 2, 3):
+            config = configure(reflections=reflections, divider_bits=bits, allow_underrun=True)
+            fits = "yes" if config.group_cycles <= config.group_budget else "no"
+            rows.append([reflections, bits, config.slot_cycles, config.group_cycles, config.group_budget, fits])
+    return table(
+        ["reflections", "quotient bits a cycle", "a rectangle", "a group, worst case", "a group may take", "fits"], rows
+    )
+
+
+def seed_steps() -> str:
+    """Cycles between the steps of the control, as they were measured for the timing diagrams."""
+    [diagram] = [diagram for diagram in DIAGRAMS if diagram.name == "ray_control_and_ray_unit"]
+    lines = measured(diagram, kept(diagram.name))
+    return table(["from", "to", "cycles"], ([f"`{start}`", f"`{end}`", cycles] for start, end, cycles in lines))
+
+
+def exact_cycles() -> str:
+    """The fewest units, and their cycles, by reflections and rectangles."""
+    rows = []
+    for reflections in range(3):
+        for rectangles in (12, 32):
+            config = configure(engine="exact", reflections=reflections, rectangles=rectangles)
+            rows.append([reflections, rectangles, config.units, config.group_cycles, config.group_budget])
+    return table(["reflections", "rectangles", "units, the fewest", "a group, worst case", "a group may take"], rows)
+
+
+def beam_screens() -> str:
+    """What the beam engine shows, and how fast it must be clocked."""
+    rows = []
+    for rows_of_rays, scale in ((240, 1), (240, 2), (200, 2), (180, 4)):
+        config = configure(engine="beam", rows=rows_of_rays, scale=scale)
+        screen = config.screen_geometry
+        size = f"{screen.columns}x{screen.rows}"
+        setup = rect_setup.LATENCY + config.rectangles
+        rows.append([size, f"{screen.clock_hz / 1e6:g} MHz", beam_latency(config), setup, screen.horizontal.blank])
+    return table(["rays", "clock", "cycles from a column to its colour", "to set up a row", "blanking before it"], rows)
+
+
+def beam_latencies() -> str:
+    """What the latency is made of."""
+    config = configure(engine="beam")
+    rows = [
+        ["`fold_tester`", "whether the ray hits, all rectangles at once", fold_tester.LATENCY],
+        ["`nearest_of_two`", f"a round; {config.rectangles} rectangles take {rounds(config)}", nearest_of_two.LATENCY],
+        ["`ray_fold`", "how the ray folds at its mirror", ray_fold.LATENCY],
+        ["", "all of it, from a ray to its reflection", pass_latency(config)],
+        ["`color_blend`", "the pixel's colour", color_blend.LATENCY],
+    ]
+    return table(["block", "what it does", "cycles"], rows)
+
+
+def registers() -> str:
+    """Every register with its fields."""
+    parts = []
+    for node in compile_registers(Configuration().rectangles).descendants():
+        if not isinstance(node, RegNode):
+            continue
+        entry = node.parent if node.parent.is_array else None
+        offset, stride = node.raw_absolute_address, ""
+        if entry:
+            offset, stride = entry.raw_absolute_address + node.address_offset, f" + {entry.array_stride:#x} i"
+        path = node.get_path(empty_array_suffix="[i]").removeprefix("ray_caster.")
+        rows = [
+            [_bits(field), f"`{field.inst_name}`", _access(field), _about(field)]
+            for field in sorted(node.fields(), key=lambda field: -field.high)
+        ]
+        about = _about(node) or (_about(entry) if entry else "")
+        heading = f"## `{path}`, {offset:#04x}{stride}"
+        parts += filter(None, [heading, about, table(["bits", "field", "access", "meaning"], rows)])
+    return "\n\n".join(parts)
+
+
+def _about(node: Node) -> str:
+    """Its description, in one line."""
+    return " ".join((node.get_property("desc") or "").split())
+
+
+def _bits(field: FieldNode) -> str:
+    """Where it is in the word."""
+    return f"{field.high}:{field.low}" if field.width > 1 else f"{field.low}"
+
+
+def _access(field: FieldNode) -> str:
+    """What software may do with it."""
+    onwrite = field.get_property("onwrite")
+    return ACCESS[onwrite.name if onwrite else field.get_property("sw").name]
+
+
+def facts() -> dict[str, str]:
+    """What the pages name in double braces."""
+    default, exact, beam = configure(), configure(engine="exact"), configure(engine="beam")
+    traced = CONFIGURATION
+    return {
+        "options": options(),
+        "seed_cycles": seed_cycles(),
+        "seed_steps": seed_steps(),
+        "exact_cycles": exact_cycles(),
+        "beam_screens": beam_screens(),
+        "beam_latencies": beam_latencies(),
+        "registers": registers(),
+        "units": str(default.units),
+        "rectangles": str(default.rectangles),
+        "slot": str(default.slot_cycles),
+        "seed_latency": str(RESULT_LATENCY["seed"]),
+        "exact_latency": str(RESULT_LATENCY["exact"]),
+        "group": str(default.group_cycles),
+        "budget": str(default.group_budget),
+        "row": f"{default.screen_geometry.row_cycles:,}",
+        "exact_units": str(exact.units),
+        "beam_latency": str(beam_latency(beam)),
+        "setup": str(rect_setup.LATENCY),
+        "traced_units": str(traced.units),
+        "traced_group": str(traced.group_cycles),
+    }

@@ -1,0 +1,282 @@
+# SPDX-License-Identifier: MIT
+"""The documentation: its drawings are of the design as it is, its pages hang together, and its commands exist."""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+from conftest import BUILD, ROOT
+
+from raycaster.configuration import configure
+from raycaster.docs import blocks, facts, timing
+from raycaster.errors import UserError
+from raycaster.rtl.hierarchy import find_block, look_inside, quick_elaboration
+from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
+from raycaster.verif.simulator import convert
+
+PAGES = sorted((ROOT / "docs").glob("*.md"))
+MAKEFILE = (ROOT / "Makefile").read_text()
+
+
+def shell_lines(page: Path) -> list[str]:
+    """The commands of a page's blocks that are marked as shell, without their comments."""
+    blocks_of_shell = re.findall(r"^```sh\n(.*?)^```", page.read_text(), re.MULTILINE | re.DOTALL)
+    lines = (line.partition(" #")[0].strip() for block in blocks_of_shell for line in block.splitlines())
+    return [line for line in lines if line]
+
+
+def commands_of(pages: list[Path]) -> list[str]:
+    """Each once."""
+    return list(dict.fromkeys(line for page in pages for line in shell_lines(page)))
+
+
+COMMANDS = commands_of([*PAGES, ROOT / "README.md", *ROOT.glob("CONTRIBUTING.md")])
+QUICK = ("make verilog ENGINE=exact RECTANGLES=20", "make registers")
+"""Of these, run for real. The others are long, and other tests run their modules."""
+
+
+def make(*arguments: str, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(["make", *arguments], cwd=cwd, capture_output=True, text=True, check=False)
+
+
+@cache
+def help_of(module: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-m", module, "--help"], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_command(command: str):
+    """Its target and variables are the Makefile's, its module takes what it is given, and its files are there."""
+    words = shlex.split(command)
+    if words[0] == "make":
+        for variable, _, value in (word.partition("=") for word in words if "=" in word):
+            assert re.search(rf"(\(call (option|switch),|\$\(|\b(or|filter-out 0,) ?\$\(){variable}\b", MAKEFILE), (
+                variable
+            )
+            if value.endswith(".toml"):
+                assert (ROOT / value).is_file()
+        done = make("-n", *words[1:])
+        assert done.returncode == 0, done.stderr
+        lines = done.stdout.splitlines()
+    else:
+        lines = [command]
+    for line in lines:
+        if found := re.match(r"(?:\S*/)?python3? -m (raycaster\.\S+)(.*)", line):
+            for option in re.findall(r"(?<= )--[\w-]+", found[2]):
+                assert option in help_of(found[1]).split(), f"{found[1]} has no {option}"
+
+
+@pytest.mark.parametrize("command", QUICK)
+def test_quick_command(command: str, tmp_path: Path):
+    """As a reader would run it, but in another directory, and with the environment that is there."""
+    assert command in COMMANDS
+    for name in ("Makefile", "pyproject.toml"):
+        shutil.copy(ROOT / name, tmp_path)
+    (tmp_path / ".venv").mkdir()
+    (tmp_path / ".venv" / "base").touch()
+    done = make(*shlex.split(command)[1:], f"PYTHON={sys.executable}", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    written = re.search(r"build/\S+?(?=[/,;]? |/?$)", done.stdout, re.MULTILINE)
+    assert written, done.stdout
+    assert (tmp_path / written[0]).exists()
+
+
+@pytest.fixture(scope="module")
+def drawn() -> dict[str, str]:
+    """The timing diagrams of the design as it is now."""
+    BUILD.mkdir(exist_ok=True)
+    return dict(timing.simulate(BUILD))
+
+
+@pytest.mark.parametrize("diagram", timing.DIAGRAMS, ids=lambda diagram: diagram.name)
+def test_timing_is_true(diagram: timing.Diagram, drawn):
+    """What is kept with the sources is what the converted Verilog does, lane by lane."""
+    old, new = timing.kept(diagram.name).splitlines(), drawn[diagram.name].splitlines()
+    parted = [
+        f"  kept {before.strip()}\n   now {after.strip()}"
+        for before, after in zip(old, new, strict=False)
+        if before != after
+    ]
+    assert old == new, f"{diagram.name} is not what the design does any more; make docs draws it anew:\n" + "\n".join(
+        parted
+    )
+
+
+def test_a_changed_design_is_noticed(drawn, output: Path):
+    """The halves of the line buffer trade places: the picture stays right, so that golden says nothing."""
+    files = []
+    for path in convert(timing.CONFIGURATION, BUILD):
+        files.append(output / path.name)
+        files[-1].write_text(
+            path.read_text().replace("assign line_buf_sel = row[0];", "assign line_buf_sel = ~row[0];")
+        )
+    changed = dict(timing.simulate(BUILD, files))
+    parted = {
+        (name, json.loads(line.strip().rstrip(","))["name"])
+        for name, kept in drawn.items()
+        for line, now in zip(kept.splitlines(), changed[name].splitlines(), strict=True)
+        if line != now
+    }
+    # The address in the line buffer has the half in its highest bit.
+    assert parted == {
+        ("video_and_counters", "line_buf_sel"),
+        ("renderer_and_ray_unit", "line_buf_sel"),
+        ("renderer_and_ray_unit", "write_address"),
+    }
+
+
+def test_timing_says_what_the_configuration_says(drawn):
+    """Two accounts of the same cycles: counted in the simulation, and computed for the row budget."""
+    cycles = {}
+    for diagram in timing.DIAGRAMS:
+        for start, end, measured in timing.measured(diagram, drawn[diagram.name]):
+            cycles[diagram.name, start, end] = measured
+    config = timing.CONFIGURATION
+    assert cycles["renderer_and_ray_unit", "done", "done"] == config.group_cycles
+    assert cycles["ray_control_and_ray_unit", "find_intersection", "find_intersection"] == config.slot_cycles
+    a_ray = config.rectangles * config.slot_cycles + config.result_latency
+    assert cycles["ray_control_and_ray_unit", "add_color", "add_color"] == a_ray
+    assert cycles["video_and_counters", "start_screen", "start_row"] == config.screen_geometry.row_cycles
+
+
+class FakeFrame:
+    """Lanes' texts instead of a waveform."""
+
+    def __init__(self, **lanes: str):
+        self._lanes = lanes
+
+    def texts(self, lane: timing.Lane, cycles: range) -> list[str]:
+        return [self._lanes[lane.name][cycle] for cycle in cycles]
+
+
+def fake_diagram(*arrows: timing.Arrow) -> timing.Diagram:
+    lanes = [timing.Lane("strobe", ("s",)), timing.Lane("number", ("n",), str)]
+    return timing.Diagram("fake", {"group": lanes}, lambda _: [(0, 4), (6, 9)], arrows)
+
+
+def test_wave_json():
+    """Gaps, repeated values, unknown ones, and an arrow over a gap."""
+    frame = FakeFrame(strobe="x010000100", number="xx5577778")
+    source = timing.wave_json(fake_diagram(timing.Arrow("strobe", 0, "strobe", 1)), frame)
+    clock, cycle, _, (group, strobe, number) = json.loads(source)["signal"]
+    assert (clock["wave"], group) == ("p...|...", "group")
+    assert cycle == {"name": "cycle", "wave": "2...|2..", "data": ["0", "6"]}
+    assert strobe == {"name": "strobe", "wave": "x010|.10", "node": "..A...B"}
+    assert number == {"name": "number", "wave": "x.5.|5.5", "data": ["5", "7", "8"]}
+    assert json.loads(source)["edge"] == ["A~>B 5"]
+
+
+def test_an_arrow_without_its_edge():
+    with pytest.raises(UserError, match="strobe rises 1 times in what is drawn, not 2"):
+        timing.wave_json(
+            fake_diagram(timing.Arrow("strobe", 0, "strobe", 1)), FakeFrame(strobe="001000000", number=9 * "1")
+        )
+
+
+def test_a_drawing_that_is_missing():
+    with pytest.raises(UserError, match=r"nothing\.json: cannot be read: .*; make docs draws it"):
+        timing.kept("nothing")
+
+
+@pytest.fixture(scope="module")
+def top():
+    """A small design."""
+    config = configure(screen="tiny", units=2, rectangles=1, reflections=0, divider_bits=3, culling=False)
+    with quick_elaboration():
+        return ray_caster_module(**ModulePorts(config).all(), config=config)
+
+
+@pytest.fixture(scope="module")
+def renderer(top):
+    """The inside of its renderer, whose ray_caster is opened."""
+    return look_inside(find_block(top, "ray_caster_renderer"), {"ray_caster"})
+
+
+def test_look_inside(renderer):
+    """Blocks and processes; equal blocks each; who drives what, through slices and concatenations too."""
+    names = [part.name for part in renderer.parts]
+    assert names.count("line_buffer") == names.count("ray_unit") == 2
+    assert "ray_caster" not in names
+    parts = {part.name: part for part in renderer.parts}
+    assert parts["ray_control"].within == ("ray_caster",)
+    assert not parts["delay_reset"].is_block
+
+    def called(signals: frozenset[int]) -> set[str]:
+        return {renderer.names[signal][1] for signal in signals}
+
+    assert called(parts["delay_reset"].reads) == {"restart"}
+    assert called(parts["delay_reset"].drives) == {"reset_delay"}
+    # Its input is a slice of all colours, and join puts those together of the units' pixels.
+    assert "colors" in called(parts["line_buffer"].reads)
+    assert called(parts["join"].reads) == {"pixels_0", "pixels_1"}
+    assert "done" in called(parts["ray_control"].drives) & called(parts["finish_group"].reads)
+    # A counter reads itself; that goes nowhere.
+    assert "row" not in called(parts["count_rows"].reads)
+
+
+def test_find_block_of_no_such_name(top):
+    with pytest.raises(KeyError, match="exact_unit"):
+        find_block(top, "exact_unit")
+
+
+def test_nets(renderer):
+    """Signals that go the same way are one net; ports have no driver where they come in."""
+    nets = {net.names: net for net in blocks.nets(renderer)}
+    assert nets["reset_delay",].drivers == {"delay_reset"}
+    assert nets["reset_delay",].readers == {"join_resets"}
+    assert nets["vga_*",].is_port
+    assert nets["vga_*",].drivers == {"video_generator"}
+    assert not nets["run",].drivers
+    assert "steps_*" in {name for net in nets.values() for name in net.names}
+    assert not any("clk" in name for name in nets)
+
+
+def test_table():
+    """Columns of numbers stand to the right, with commas."""
+    assert facts.table(["a", "b"], [["x", 1234], ["y", 5]]) == "| a | b |\n| --- | ---: |\n| x | 1,234 |\n| y | 5 |"
+
+
+def test_pages(tmp_path: Path):
+    """All of them, without a warning, in a directory that appears whole; the fonts may be others elsewhere."""
+    output = tmp_path / "site"
+    done = subprocess.run(
+        [sys.executable, "-m", "raycaster.docs", "--keep-timing", "--output", str(output)],
+        cwd=ROOT, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["site"]
+    text = "".join(path.read_text() for path in output.glob("*.html"))
+    assert {page.with_suffix(".html").name for page in PAGES} <= {path.name for path in output.iterdir()}
+    assert "{{" not in text, "a fact that was not filled in"
+    drawings = {f"{drawing.name}.svg" for drawing in (*blocks.DRAWINGS, *timing.DIAGRAMS)}
+    assert {path.name for path in output.glob("_images/*.svg")} == drawings, "each drawing is on a page"
+    assert (output / "register_map" / "index.html").is_file()
+
+
+def test_pages_with_a_fault(tmp_path: Path):
+    """A warning is one too."""
+    shutil.copytree(ROOT / "docs", tmp_path / "docs", ignore=shutil.ignore_patterns("__pycache__"))
+    (tmp_path / "docs" / "scenes.md").write_text("# Scenes\n\n[nowhere](nowhere.md)\n")
+    script = (
+        "import sys; from pathlib import Path; from raycaster.docs import __main__ as docs; "
+        "docs.HERE = Path('docs'); docs.blocks.DRAWINGS = (); docs.run_command(docs.main)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script, "--keep-timing"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 2
+    assert "scenes.md" in done.stderr
+    assert "error: the pages have faults" in done.stderr
+    assert [path.name for path in (tmp_path / "build").iterdir()] == []
