@@ -22,8 +22,8 @@ from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
 FONT = "Helvetica,Arial,sans-serif"
 BLOCK_FILL, PROCESS_FILL, OPENED_FILL = "#d6e6f2", "#ffffff", "#f6f8fa"
 INK, PALE, PORT_INK = "#20303c", "#8a99a5", "#0b5394"
-CLOCK = "clk"
-"""Not drawn: it goes everywhere."""
+EVERYWHERE = ("clk", "reset")
+"""Not drawn."""
 
 MOST_NAMES = 3
 """In a label, before names that begin alike stand there as one."""
@@ -83,7 +83,7 @@ def nets(inside: Inside) -> list[Net]:
             readers[signal].add(_key(part))
     together = defaultdict(list)
     for signal, name in inside.names.items():
-        if name[1] == CLOCK:
+        if name[1] in EVERYWHERE:
             continue
         is_port = signal in inside.ports
         ends = frozenset(drivers[signal]), frozenset(readers[signal] - drivers[signal]), is_port

@@ -124,7 +124,8 @@ class _RecordingConvertor(_ToVerilogConvertor):
 class Part:
     """A block or a process inside a design, with the signals that it drives, and those that it reads of others.
 
-    A signal stands for itself by its identity; `Inside.names` has what it is called.
+    What only clocks and resets it does not count. A signal stands for itself by its identity; `Inside.names` has what
+    it is called.
     """
 
     name: str
@@ -323,7 +324,7 @@ def _traffic(block: _Block) -> tuple[Signals, Signals]:
 
 
 def _traffic_of_process(process: _Instantiator) -> tuple[Signals, Signals]:
-    """The signals that a process reads, and drives."""
+    """The signals that a process reads, and drives; the edges and the reset that it waits for are not among them."""
 
     def find(names: Collection[str]) -> Signals:
         return {id(signal): signal for name in names for _, signal in _signals_in(name, process.symdict[name])}
