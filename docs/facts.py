@@ -8,11 +8,12 @@ from collections.abc import Iterable, Sequence
 from pydantic.fields import FieldInfo
 from systemrdl.node import FieldNode, Node, RegNode
 
-from raycaster.configuration import OPTION_NAMES, RESULT_LATENCY, Configuration, configure
+from raycaster.configuration import GROUP_OVERHEAD, OPTION_NAMES, RESULT_LATENCY, Configuration, configure
 from raycaster.docs.timing import CONFIGURATION, DIAGRAMS, kept, measured
 from raycaster.registers import compile_registers
 from raycaster.rtl import color_blend, fold_tester, nearest_of_two, ray_fold, rect_setup
 from raycaster.rtl.beam_caster import beam_latency, pass_latency, rounds
+from raycaster.rtl.exact_control import WRITE_AT
 
 ACCESS = {"r": "read", "rw": "read, write", "woclr": "read, write 1 to clear", "woset": "read, write 1 to set"}
 
@@ -131,8 +132,7 @@ def _access(field: FieldNode) -> str:
 
 def facts() -> dict[str, str]:
     """What the pages name in double braces."""
-    default, exact, beam = configure(), configure(engine="exact"), configure(engine="beam")
-    traced = CONFIGURATION
+    default = configure()
     return {
         "options": options(),
         "seed_cycles": seed_cycles(),
@@ -145,13 +145,13 @@ def facts() -> dict[str, str]:
         "rectangles": str(default.rectangles),
         "slot": str(default.slot_cycles),
         "seed_latency": str(RESULT_LATENCY["seed"]),
+        "overhead": str(GROUP_OVERHEAD),
+        "verdict": str(WRITE_AT + 1),
         "exact_latency": str(RESULT_LATENCY["exact"]),
         "group": str(default.group_cycles),
         "budget": str(default.group_budget),
         "row": f"{default.screen_geometry.row_cycles:,}",
-        "exact_units": str(exact.units),
-        "beam_latency": str(beam_latency(beam)),
         "setup": str(rect_setup.LATENCY),
-        "traced_units": str(traced.units),
-        "traced_group": str(traced.group_cycles),
+        "traced_units": str(CONFIGURATION.units),
+        "traced_group": str(CONFIGURATION.group_cycles),
     }

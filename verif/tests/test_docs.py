@@ -12,6 +12,7 @@ import subprocess
 import sys
 import sysconfig
 from functools import cache
+from itertools import zip_longest
 from pathlib import Path
 
 import pytest
@@ -99,28 +100,25 @@ def test_quick_command(command: str, tmp_path: Path):
     assert (tmp_path / written[0]).exists()
 
 
-@pytest.fixture(scope="module")
-def drawn() -> dict[str, str]:
-    """The timing diagrams of the design as it is now."""
+def draw_anew(verilog: list[Path] | None = None) -> dict[str, list[tuple[str, str]]]:
+    """Simulate; by diagram, the lines that are not as they are kept with the sources, and those."""
     BUILD.mkdir(exist_ok=True)
-    return dict(timing.simulate(BUILD))
+    parted = {}
+    for name, drawn in timing.simulate(BUILD, verilog):
+        pairs = zip_longest(timing.kept(name).splitlines(), drawn.splitlines(), fillvalue="")
+        parted[name] = [(old.strip(), new.strip()) for old, new in pairs if old != new]
+    return parted
 
 
-@pytest.mark.parametrize("diagram", timing.DIAGRAMS, ids=lambda diagram: diagram.name)
-def test_timing_is_true(diagram: timing.Diagram, drawn):
+def test_timing_is_true():
     """What is kept with the sources is what the converted Verilog does, lane by lane."""
-    old, new = timing.kept(diagram.name).splitlines(), drawn[diagram.name].splitlines()
-    parted = [
-        f"  kept {before.strip()}\n   now {after.strip()}"
-        for before, after in zip(old, new, strict=False)
-        if before != after
-    ]
-    assert old == new, f"{diagram.name} is not what the design does any more; make docs draws it anew:\n" + "\n".join(
-        parted
-    )
+    parted = draw_anew()
+    assert set(parted) == {path.stem for path in timing.SOURCES.iterdir()}
+    lines = [f"{name}\n  kept {old}\n   now {new}" for name, pairs in parted.items() for old, new in pairs]
+    assert not lines, "the design does something else by now; make docs draws it anew:\n" + "\n".join(lines)
 
 
-def test_a_changed_design_is_noticed(drawn, output: Path):
+def test_a_changed_design_is_noticed(output: Path):
     """The halves of the line buffer trade places: the picture stays right, so that golden says nothing."""
     files = []
     for path in convert(timing.CONFIGURATION, BUILD):
@@ -128,12 +126,8 @@ def test_a_changed_design_is_noticed(drawn, output: Path):
         files[-1].write_text(
             path.read_text().replace("assign line_buf_sel = row[0];", "assign line_buf_sel = ~row[0];")
         )
-    changed = dict(timing.simulate(BUILD, files))
     parted = {
-        (name, json.loads(line.strip().rstrip(","))["name"])
-        for name, kept in drawn.items()
-        for line, now in zip(kept.splitlines(), changed[name].splitlines(), strict=True)
-        if line != now
+        (name, json.loads(old.rstrip(","))["name"]) for name, pairs in draw_anew(files).items() for old, _ in pairs
     }
     # The address in the line buffer has the half in its highest bit.
     assert parted == {
@@ -143,12 +137,13 @@ def test_a_changed_design_is_noticed(drawn, output: Path):
     }
 
 
-def test_timing_says_what_the_configuration_says(drawn):
+def test_timing_says_what_the_configuration_says():
     """Two accounts of the same cycles: counted in the simulation, and computed for the row budget."""
-    cycles = {}
-    for diagram in timing.DIAGRAMS:
-        for start, end, measured in timing.measured(diagram, drawn[diagram.name]):
-            cycles[diagram.name, start, end] = measured
+    cycles = {
+        (diagram.name, start, end): measured
+        for diagram in timing.DIAGRAMS
+        for start, end, measured in timing.measured(diagram, timing.kept(diagram.name))
+    }
     config = timing.CONFIGURATION
     assert cycles["renderer_and_ray_unit", "done", "done"] == config.group_cycles
     assert cycles["ray_control_and_ray_unit", "find_intersection", "find_intersection"] == config.slot_cycles
@@ -252,6 +247,12 @@ def test_nets(renderer):
 def test_table():
     """Columns of numbers stand to the right, with commas."""
     assert facts.table(["a", "b"], [["x", 1234], ["y", 5]]) == "| a | b |\n| --- | ---: |\n| x | 1,234 |\n| y | 5 |"
+
+
+def test_facts():
+    """Each has its place on a page."""
+    text = "".join(page.read_text() for page in PAGES)
+    assert {name for name in facts.facts() if f"{{{{ {name} }}}}" not in text} == set()
 
 
 def test_pages(tmp_path: Path):
