@@ -73,17 +73,19 @@ def test_tools_have_nothing_to_say(config: Configuration, tmp_path):
 
 
 def test_every_waiver_is_needed(tmp_path):
-    said = []
-    for number, config in enumerate(CONFIGURATIONS):
+    waivers = re.findall(r'^lint_off -rule (\w+) -file "(.*?)"(?: -match "(.*)")?$', WAIVERS.read_text(), re.M)
+    assert len(waivers) == WAIVERS.read_text().count("lint_off")
+    patterns = {f"%Warning-{rule}: {file}:*{match or '*'}" for rule, file, match in waivers}
+    # The small designs first, as they may be all that is needed.
+    for number, config in enumerate(sorted(CONFIGURATIONS, key=lambda config: config.units * config.rectangles)):
         directory = tmp_path / str(number)
         write_verilog(config, directory)
         (directory / f"{TOP}.vlt").write_text("`verilator_config\n")
-        said += verilator_says(directory)
-    waivers = re.findall(r'^lint_off -rule (\w+) -file "(.*?)"(?: -match "(.*)")?$', WAIVERS.read_text(), re.M)
-    assert len(waivers) == WAIVERS.read_text().count("lint_off")
-    for rule, file, match in waivers:
-        pattern = f"%Warning-{rule}: {file}:*{match or '*'}"
-        assert fnmatch.filter(said, pattern), f"nothing needs the waiver of {rule} in {file} {match}"
+        said = verilator_says(directory)
+        patterns = {pattern for pattern in patterns if not fnmatch.filter(said, pattern)}
+        if not patterns:
+            return
+    pytest.fail(f"nothing needs the waivers of {sorted(patterns)}")
 
 
 def test_a_waiver_has_its_reason():
