@@ -22,6 +22,7 @@ localparam [4:0] THIRD = 5'b01000;      // of a pixel's cycles, from the one tha
 reg  [2:0] seen = 3'b000;
 reg        changed = 1'b0;
 reg        restart = 1'b0;
+reg  [4:0] leaving = 5'b00000;
 reg  [4:0] phase = WAITING;             // one bit is high, that of the cycle in the pixel
 
 // Two registers bring pixel over, and one more remembers it.
@@ -35,6 +36,11 @@ always @(posedge shift_clk) begin
     restart <= changed && !phase[0] && !phase[1] && !phase[2];
 end
 
+// The wires are across the chip. A whole pixel later they count alike, and a register for each cycle of it leaves each of
+// them but a part of the way.
+always @(posedge shift_clk)
+    leaving <= {leaving[3:0], restart};
+
 // Five cycles a pixel, counted from the first.
 always @(posedge shift_clk)
     if (restart)
@@ -42,9 +48,9 @@ always @(posedge shift_clk)
     else
         phase <= {phase[3:0], phase[4]};
 
-dvi_lane blue_lane (.shift_clk(shift_clk), .restart(restart), .symbol(blue), .wire_p(gpdi_dp[0]));
-dvi_lane green_lane (.shift_clk(shift_clk), .restart(restart), .symbol(green), .wire_p(gpdi_dp[1]));
-dvi_lane red_lane (.shift_clk(shift_clk), .restart(restart), .symbol(red), .wire_p(gpdi_dp[2]));
-dvi_lane clock_lane (.shift_clk(shift_clk), .restart(restart), .symbol(LINK_CLOCK), .wire_p(gpdi_dp[3]));
+dvi_lane blue_lane (.shift_clk(shift_clk), .restart(leaving[4]), .symbol(blue), .wire_p(gpdi_dp[0]));
+dvi_lane green_lane (.shift_clk(shift_clk), .restart(leaving[4]), .symbol(green), .wire_p(gpdi_dp[1]));
+dvi_lane red_lane (.shift_clk(shift_clk), .restart(leaving[4]), .symbol(red), .wire_p(gpdi_dp[2]));
+dvi_lane clock_lane (.shift_clk(shift_clk), .restart(leaving[4]), .symbol(LINK_CLOCK), .wire_p(gpdi_dp[3]));
 
 endmodule
