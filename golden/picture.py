@@ -49,6 +49,12 @@ def count_wrong(picture: np.ndarray, reference: np.ndarray) -> int:
     return int(wrong_pixels(picture, reference).sum())
 
 
+def first_wrong(picture: np.ndarray, reference: np.ndarray) -> tuple[int, int] | None:
+    """Column and row of the first pixel that differs, in the order in which a monitor shows them, or None."""
+    places = np.argwhere(wrong_pixels(picture, reference))
+    return (int(places[0][1]), int(places[0][0])) if len(places) else None
+
+
 def diff_picture(picture: np.ndarray, reference: np.ndarray) -> np.ndarray:
     """The reference in dim grey with every wrong pixel in bright pink, for a person to look at.
 

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, NoReturn
 
 from pydantic.fields import FieldInfo
@@ -52,6 +53,12 @@ def as_options(config: Configuration) -> list[str]:
                 continue
             words.append(str(int(value)) if isinstance(value, bool) else str(value))
     return words
+
+
+def as_make_variables(options: Mapping[str, Any]) -> list[str]:
+    """Options by field name, as `given_options` returns them, in the form in which make takes them."""
+    values = ((name, int(value) if isinstance(value, bool) else value) for name, value in options.items())
+    return [f"{name.upper()}={shlex.quote(str(value))}" for name, value in values]
 
 
 def run_command(main: Callable[[], int | None]) -> NoReturn:

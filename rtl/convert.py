@@ -19,7 +19,7 @@ from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.rtl.dvi_encoder import DviPorts, dvi_encoder
-from raycaster.rtl.hierarchy import Module, convert_hierarchy, quick_elaboration
+from raycaster.rtl.hierarchy import Module, convert_hierarchy, quick_elaboration, state_names
 from raycaster.rtl.processor_system import ProcessorPorts, processor_system
 from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
 from raycaster.rtl.ray_caster_system import SystemPorts, ray_caster_system
@@ -45,6 +45,12 @@ def write_verilog(config: Configuration, directory: Path) -> list[Path]:
         return ray_caster_module(**ModulePorts(config).all(), config=config)
 
     return _write(elaborate, config, directory, partial(write_take_home, config))
+
+
+def design_states(config: Configuration) -> dict[tuple[str, str], dict[int, str]]:
+    """The enumerated signals of a configuration's design; see `raycaster.rtl.hierarchy.state_names`."""
+    with _CONVERSION, quick_elaboration():
+        return state_names(ray_caster_module(**ModulePorts(config).all(), config=config))
 
 
 def write_system(config: Configuration, scene: Scene, directory: Path) -> list[Path]:

@@ -20,6 +20,7 @@ from typing import Any
 
 from myhdl import ConcatSignal, Constant, ToVerilogWarning, block, intbv
 from myhdl._block import _Block
+from myhdl._enum import EnumItemType
 from myhdl._extractHierarchy import _MemInfo, _UserVerilogCode
 from myhdl._instance import _Instantiator
 from myhdl._ShadowSignal import _SliceSignal
@@ -345,6 +346,23 @@ def _whole(signals: Signals, around: Collection[int] | None = None) -> frozenset
         else:
             found.add(id(signal))
     return frozenset(found)
+
+
+def state_names(top: _Block) -> dict[tuple[str, str], dict[int, str]]:
+    """The enumerated signals of an elaborated design.
+
+    Returns:
+        By module and signal, the name of each value as the Verilog encodes it.
+    """
+    found = {}
+    for name, signal in top.sigdict.items():
+        if isinstance(signal.val, EnumItemType):
+            states = signal.val._type
+            found[top.func.__name__, name] = {int(getattr(states, item)._val, 2): item for item in states._names}
+    for sub in top.subs:
+        if isinstance(sub, _Block):
+            found |= state_names(sub)
+    return found
 
 
 def port_signals(arguments: Mapping[str, Any]) -> dict[str, _Signal]:

@@ -68,6 +68,14 @@ module bench #(
             busy_cycles = busy_cycles + 1;
 `endif
 
+    // A waveform of part of a frame, for who asks for one.
+`ifdef WAVE_WINDOW
+    wave_window window (
+        .clk(clk),
+        .start_screen(dut.start_screen)
+    );
+`endif
+
     line_sink #(
         .COLOUR_BITS(COLOUR_BITS),
         .H_TOTAL(H_TOTAL),

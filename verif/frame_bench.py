@@ -12,7 +12,7 @@ from cocotb.handle import HierarchyObject
 from PIL import Image
 
 from raycaster.golden import exact
-from raycaster.golden.picture import count_wrong, diff_picture
+from raycaster.golden.picture import count_wrong, diff_picture, first_wrong
 from raycaster.scene import load_scene
 from raycaster.verif.harness import Harness
 
@@ -42,11 +42,14 @@ async def one_frame(bench: HierarchyObject) -> None:
     pictures = {"frame": frame, "golden": golden, "exact": perfect, "diff": diff_picture(frame, golden)}
     for name, picture in pictures.items():
         Image.fromarray(picture).save(output / f"{name}.png")
+    doubling = harness.screen.doubling
+    place = first_wrong(frame, golden)
     result = {
         "configuration": configuration.name,
         "reflections": reflections,
         "pixels": golden[..., 0].size,
         "wrong_vs_golden": count_wrong(frame, golden),
+        "first_wrong_ray": [coordinate // doubling for coordinate in place] if place else None,
         "wrong_vs_exact": count_wrong(frame, perfect),
         "frame_cycles": frame_cycles,
         "worst_row_cycles": cycles["row"],

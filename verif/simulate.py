@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import shlex
 import shutil
 import sys
 import tempfile
@@ -25,7 +26,7 @@ from raycaster.configuration import Configuration
 from raycaster.design import Design
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
-from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.options import add_configuration_options, as_make_variables, given_options, run_command
 from raycaster.verif.job import Job
 from raycaster.verif.netlist import COUNTED_CELLS, Netlist, find_yosys, synthesise
 from raycaster.verif.simulator import (
@@ -220,6 +221,20 @@ def show(outcomes: list[Outcome], console: Console, title: str | None = None) ->
             console.print(f"{outcome.run.path.stem}: {outcome.failure}", style="red", markup=False, soft_wrap=True)
 
 
+def show_traces(outcomes: list[Outcome], options: Mapping[str, Any], simulator: str, console: Console) -> None:
+    """Print what to ask next of each scene that has a wrong pixel; a scene that is built in has no trace."""
+    for outcome in outcomes:
+        if outcome.result is None or not outcome.result["wrong_vs_golden"] or outcome.run.configuration.fixed:
+            continue
+        column, row = outcome.result["first_wrong_ray"]
+        words = ["make trace", f"SCENE={shlex.quote(str(outcome.run.path))}", f"PIXEL={column},{row}"]
+        words += as_make_variables(options)
+        words += [f"SIM={simulator}"] if simulator != SIMULATORS[0] else []
+        console.print(
+            f"to see where its first wrong pixel goes wrong: {' '.join(words)}", highlight=False, soft_wrap=True
+        )
+
+
 def _frames_per_second(configuration: Configuration, row_cycles: int) -> float:
     """How often a picture could be computed; the beam engine computes each line of a doubled row."""
     screen = configuration.screen_geometry
@@ -302,6 +317,8 @@ def main() -> int:
     if gates:
         show_cells(netlists, console)
     show(outcomes, console, "through the netlist" if gates else None)
+    if not gates:
+        show_traces(outcomes, given_options(arguments), arguments.simulator, console)
     return int(any(outcome.failure for outcome in outcomes))
 
 

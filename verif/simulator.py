@@ -35,6 +35,8 @@ BUILD = Path("build")
 
 HERE = Path(__file__).parent
 
+WINDOW = HERE / "wave_window.v"
+
 MINIMUM_VERILATOR = (5, 36)
 """The oldest that cocotb accepts."""
 
@@ -117,6 +119,8 @@ class Model:
     """Whether it was built just now, rather than found."""
 
     bench: Bench = MODULE_BENCH
+    window: bool = False
+    """Whether its bench writes waveforms of part of a frame, as `wave_window.v` says."""
 
 
 def find_tool(simulator: str) -> Tool:
@@ -206,6 +210,7 @@ def build_model(
     variant: str = "",
     defines: Mapping[str, int] | None = None,
     bench: Bench = MODULE_BENCH,
+    window: bool = False,
 ) -> Model:
     """Build a model of a design, or find it built.
 
@@ -219,6 +224,7 @@ def build_model(
         variant: names a model that differs by files or flags, so that it does not replace the plain one.
         defines: macros of the bench.
         bench: what the design is simulated in.
+        window: whether runs write a waveform of part of a frame; not together with `waves`.
 
     Raises:
         UserError: the simulator, or a library that it needs, is missing.
@@ -226,17 +232,19 @@ def build_model(
     """
     tool = find_tool(simulator)
     design = verilog if verilog is not None else convert(configuration, build, system=bench.system)
-    sources = [*design, *bench.sources]
+    sources = [*design, *bench.sources, *([WINDOW] if window else [])]
     parameters = bench.parameters(configuration)
-    defines = dict(defines or {})
-    arguments = _build_arguments(simulator, waves, flags)
+    defines = {**(defines or {}), **({"WAVE_WINDOW": 1} if window else {})}
+    # Verilator's main program must know of waveforms for a bench to write one, and Icarus would write all of it.
+    built_for_waves = waves or (window and simulator == "verilator")
+    arguments = _build_arguments(simulator, built_for_waves, flags)
     digest = hashlib.sha256(
         repr((tool.name, tool.version, cocotb.__version__, parameters, defines, arguments)).encode()
     )
     for source in sources:
         digest.update(source.read_bytes())
     kind = "system" if bench.system else ""
-    parts = (configuration.name, kind, simulator, variant, "waves" if waves else "")
+    parts = (configuration.name, kind, simulator, variant, "waves" if waves else "", "window" if window else "")
     directory = build / "model" / "-".join(filter(None, parts))
     with lock(directory):
         stamp = directory / "stamp.json"
@@ -254,14 +262,14 @@ def build_model(
                         defines=defines,
                         build_args=arguments,
                         build_dir=directory.resolve(),
-                        waves=waves,
+                        waves=built_for_waves,
                         timescale=("1ns", "1ns"),
                         log_file=log,
                     )
                 except (RuntimeError, SystemExit):
                     raise _build_failure(configuration, simulator, log) from None
             write_stamp(stamp, digest.hexdigest(), [])
-    return Model(configuration, simulator, directory, waves, fresh, bench)
+    return Model(configuration, simulator, directory, waves, fresh, bench, window)
 
 
 def _build_failure(configuration: Configuration, simulator: str, log: Path) -> Exception:
@@ -324,7 +332,8 @@ def run_bench(
             test_dir=directory,
             results_xml=str(results),
             log_file=log,
-            waves=model.waves,
+            # Icarus must be told what kind of waveform its bench writes, and Verilator would begin one of its own.
+            waves=model.waves or (model.window and model.simulator == "icarus"),
             # Threads of numpy's would spin beside the simulation, and never have work.
             extra_env=job.environment() | {"OPENBLAS_NUM_THREADS": "1"},
             **{"plusargs": plusargs} | (dump_options[model.simulator] if waves else {}),

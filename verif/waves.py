@@ -72,6 +72,8 @@ class Waves:
         }
         self._changes: dict[str, tuple[list[int], list[int | None]]] = {}
         scale = self._file.timescale
+        self.tick_units = scale.factor
+        """Of its unit (s, ms, ns, ps ...), how many a tick of the file has: 1, 10 or 100."""
         self._tick_ns = scale.factor * 10.0 ** (scale.unit.to_exponent() + 9)
 
     @property
@@ -100,6 +102,10 @@ class Waves:
             raise self._missing(pattern)
         return found[0]
 
+    def ticks(self, time_ns: float) -> int:
+        """A time as the file counts it."""
+        return round(time_ns / self._tick_ns)
+
     def width(self, name: str) -> int:
         """Bits of a signal.
 
@@ -126,7 +132,7 @@ class Waves:
             UserError: there is no such signal.
         """
         times, values = self._history(name)
-        place = bisect_right(times, round(time_ns / self._tick_ns))
+        place = bisect_right(times, self.ticks(time_ns))
         return values[place - 1] if place else None
 
     def changes(self, name: str) -> list[tuple[float, int | None]]:

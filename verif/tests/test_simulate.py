@@ -79,6 +79,8 @@ def test_a_wrong_pixel_fails(build, scenes):
     assert "pixels are wrong" in ran.stdout
     assert str(build / "sim" / "small" / "sim.log") in ran.stdout
     assert str(build / "sim" / "small" / "diff.png") in ran.stdout
+    command = f"make trace SCENE={SMALL_SCENE} PIXEL=0,0 UNITS=8 RECTANGLES=3 SCREEN=tiny SIM=icarus"
+    assert command in ran.stdout
 
 
 SCENE = """

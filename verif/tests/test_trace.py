@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: MIT
+"""The life of a pixel: the trace says nothing of a sound design, and names the module of each planted fault."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+from conftest import BUILD, ROOT, SMALL_SCENE
+from rich.console import Console
+
+from raycaster.design import Design, design_for
+from raycaster.errors import UserError
+from raycaster.verif.probes import Ray, Reading, first_difference, module_of, read
+from raycaster.verif.probes_of import description_of
+from raycaster.verif.recorder import record
+from raycaster.verif.simulator import build_model, convert
+from raycaster.verif.trace import difference_line, pixel_place, show
+from raycaster.verif.waves import Waves
+
+OPTIONS = {
+    "seed": {"units": "8"},
+    "exact": {"engine": "exact", "units": "4"},
+    "beam": {"engine": "beam", "scale": "1"},
+}
+PIXEL = (48, 10)
+"""Column and row: the post hides the wall there, and mirrors it."""
+
+
+@cache
+def design(engine: str) -> Design:
+    """The small scene on a small screen; Icarus builds it at once."""
+    return design_for(SMALL_SCENE, {"screen": "tiny", "rectangles": "3", **OPTIONS[engine]})
+
+
+def recorded(engine: str, directory: Path, edit: tuple[str, str, str] | None = None) -> Waves:
+    """The pixel's row as the design computes it, or as it does with a text in one of its modules replaced."""
+    sources = convert(design(engine).configuration, BUILD)
+    if edit:
+        module, old, new = edit
+        copies = []
+        for source in sources:
+            text = source.read_text()
+            if source.stem == module:
+                assert old in text, f"{module} has changed: there is no {old}"
+                text = text.replace(old, new)
+            copies.append(directory / source.name)
+            copies[-1].write_text(text)
+        sources = copies
+    model = build_model(design(engine).configuration, "icarus", build=directory, verilog=sources, window=True)
+    return Waves(record(model, design(engine), (PIXEL[1], PIXEL[1]), directory / "row"))
+
+
+def traced(waves: Waves, engine: str, column: int = PIXEL[0]) -> tuple[Ray, list[Reading]]:
+    """A pixel's life."""
+    ray = Ray(design(engine), PIXEL[1], column)
+    return ray, read(waves, description_of(design(engine).configuration, ray.unit), ray)
+
+
+@pytest.mark.parametrize("engine", OPTIONS)
+def test_a_sound_design_has_no_difference(tmp_path, engine):
+    """In no pixel of the row; the one that is looked at hits something with both of its rays."""
+    waves = recorded(engine, tmp_path)
+    for column in range(0, design(engine).configuration.screen_geometry.columns, 3):
+        ray, readings = traced(waves, engine, column)
+        first = first_difference(readings)
+        assert first is None, difference_line(ray, first)
+    ray, readings = traced(waves, engine)
+    assert [ray.winner(bounce) for bounce in (0, 1)] == [2, 1]
+    quantities = {reading.probe.quantity for reading in readings}
+    # A value that is never read would never be wrong.
+    missing = {probe.quantity for probe in description_of(design(engine).configuration, ray.unit).probes} - quantities
+    assert not missing, f"never read: {missing}"
+
+
+FAULTS = {
+    "seed": [
+        ("rect_sorter", "rect_v_low = v_0", "rect_v_low = v_0 + 1"),
+        ("group_culler", "possible <= found", "possible <= 0"),
+        ("ray_generator", "dy = column - 32", "dy = column - 31"),
+        ("intersection_helper", "forward = a + quotient", "forward = a - quotient"),
+        ("divider", "quotient <= last_pending[8:0]", "quotient <= last_pending[8:0] ^ 1"),
+        ("ray_control", "finishing_rect_u_high <= dividing_rect_u_high", "finishing_rect_u_high <= 0"),
+        ("intersection_finder", "assign inside_u = ", "assign inside_u = 0 && "),
+        ("z_buffer", "depth < nearest", "depth > nearest"),
+        ("ray_mem", "reflected_signs_dy <= !signs_dy", "reflected_signs_dy <= signs_dy"),
+        ("ray_sequencer", "bounce == reflections", "bounce == 0"),
+        ("color_channel", "total + weighted", "total - weighted"),
+        ("color_combiner", "seen_color = found_color", "seen_color = ~found_color"),
+        ("line_buffer", "read_address = read_offset", "read_address = 1 + read_offset"),
+        ("video_generator", "vga_g <= green", "vga_g <= red"),
+    ],
+    "exact": [
+        ("rect_tester", "way_u = n_u_1 * slope_u_1", "way_u = n_u_1 + slope_u_1"),
+        ("nearest_hit", "offered_product < nearest_product", "offered_product > nearest_product"),
+        ("eye_mem", "difference = twice_signed - mirrored", "difference = twice_signed + mirrored"),
+    ],
+    "beam": [
+        ("rect_setup", "way_u = distance_2 * slope_u_2", "way_u = distance_2 + slope_u_2"),
+        ("rect_walker", "walk_way_u <= walk_way_u + growth_way_u", "walk_way_u <= walk_way_u - growth_way_u"),
+        ("fold_tester", "hit_valid <= ", "hit_valid <= 0 && "),
+        ("nearest_of_two", "second_product < first_product", "second_product > first_product"),
+        ("ray_fold", "doubled = last_distance + last_distance", "doubled = last_distance"),
+        ("color_mean", "mean <= ", "mean <= ~"),
+    ],
+}
+
+
+@pytest.mark.parametrize(
+    ("engine", "edit"),
+    [pytest.param(engine, edit, id=f"{engine}-{edit[0]}") for engine, edits in FAULTS.items() for edit in edits],
+)
+def test_names_the_module_of_a_fault(tmp_path, engine, edit):
+    """One fault at a time, each in a module of its own."""
+    ray, readings = traced(recorded(engine, tmp_path, edit), engine)
+    first = first_difference(readings)
+    assert first is not None
+    line = difference_line(ray, first)
+    print(line)
+    assert first.module == edit[0], line
+    assert f"module {edit[0]}, signal bench.dut." in line
+    console = Console(width=160, record=True, file=open("/dev/null", "w"))  # noqa: SIM115
+    show(ray, readings, console)
+    text = console.export_text()
+    assert "<- first" in text
+    assert line in text.replace("\n", "")
+
+
+def _trace(*arguments: object) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "raycaster.verif.trace", "--simulator", "icarus", *map(str, arguments)]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+def test_the_command(tmp_path):
+    """Its exit code is 0 without a difference, and 1 with one."""
+    options = ("--scene", SMALL_SCENE, "--screen", "tiny", "--units", 8, "--rectangles", 3, "--pixel", "48,10")
+    sound = _trace(*options, "--build", tmp_path)
+    assert sound.returncode == 0, sound.stdout + sound.stderr
+    assert "The hardware does what golden does." in sound.stdout
+    assert "golden has #" in sound.stdout
+    # What was converted before is taken as it is.
+    (buffer,) = tmp_path.glob("model/*/verilog/z_buffer.v")
+    buffer.write_text(buffer.read_text().replace("depth < nearest", "depth > nearest"))
+    broken = _trace(*options, "--build", tmp_path)
+    assert broken.returncode == 1, broken.stdout + broken.stderr
+    assert "module z_buffer" in broken.stdout
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        ((), "pixel: say which one"),
+        (("--pixel", "48"), "pixel: a column and a row of rays, as in 160,120, not 48"),
+        (("--pixel", "64,9", "--screen", "tiny"), "pixel: column from 0 to 63 and row from 0 to 47, not 64,9"),
+        (("--pixel", "1,1", "--units", "7"), "units: 7 does not divide"),
+        (("--pixel", "1,1", "--scene", "no.toml"), "no.toml"),
+    ],
+)
+def test_mistakes(options, complaint):
+    """One line, and no traceback."""
+    ran = _trace(*options)
+    assert ran.returncode == 2
+    assert ran.stderr.startswith("error: ")
+    assert complaint in ran.stderr
+    assert ran.stderr.count("\n") == 1
+
+
+def test_names():
+    """What is read from a signal's name, and from a pixel's."""
+    assert module_of("bench.dut.ray_caster_renderer_i.ray_caster_i.ray_unit_12_i.z_buffer_i.found") == "z_buffer"
+    assert module_of("bench.dut.ray_caster_renderer_i.line_buffer_3_i.write") == "line_buffer"
+    assert module_of("bench.dut.irq") == "ray_caster_module"
+    assert pixel_place("3, 4") == (3, 4)
+    with pytest.raises(UserError, match="a column and a row"):
+        pixel_place("3,-4")

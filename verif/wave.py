@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: MIT
+"""A waveform of some rows of a scene's frame, with what viewers open it with: `make wave`."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+from rich.console import Console
+
+from raycaster.design import Design, design_for
+from raycaster.errors import UserError
+from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.rtl.convert import design_states
+from raycaster.verif.probes import Ray
+from raycaster.verif.probes_of import description_of
+from raycaster.verif.recorder import check_rows, record
+from raycaster.verif.simulator import BUILD, SIMULATORS, Model, SimulationError, build_model, find_tool
+from raycaster.verif.trace import SCENE, pixel_place
+from raycaster.verif.wave_files import View, write_files
+from raycaster.verif.waves import Waves
+
+MEGABYTE = 1_000_000
+
+
+def rows_of(text: str | None, row: int) -> tuple[int, int]:
+    """The rows that are asked for, or the one alone.
+
+    Raises:
+        UserError: they are not one number or two.
+    """
+    if text is None:
+        return row, row
+    numbers = [number.strip() for number in text.split(",")]
+    if len(numbers) > 2 or not all(number.isdecimal() for number in numbers):
+        raise UserError(f"window: the first row and the last one, as in 118,122, not {text}")
+    return int(numbers[0]), int(numbers[-1])
+
+
+def write_wave(model: Model, design: Design, ray: Ray, rows: tuple[int, int], target: Path) -> tuple[Path, list[Path]]:
+    """Record rows of a frame, and write viewers' files with the cursor at a pixel's ray.
+
+    Args:
+        model: built for windows.
+        design: the scene, and what the model is of.
+        ray: of the pixel, which lies in the rows.
+        rows: the first and the last.
+        target: the directory for it all.
+
+    Returns:
+        The waveform, and the files of GTKWave and Surfer.
+
+    Raises:
+        UserError: there are no such rows.
+        SimulationError: the simulation failed.
+    """
+    path = record(model, design, rows, target)
+    waves = Waves(path)
+    description = description_of(design.configuration, ray.unit)
+    samples = waves.sample(description.controls())
+    events = description.events(samples, ray)
+    cycles = [event.cycle for event in events if event.kind != "shown"] or [0, len(samples.times_ns) - 1]
+    begin, end = (samples.times_ns[max(0, cycle - 1)] for cycle in (cycles[0], max(cycles)))
+    view = View(description.groups(ray), design_states(design.configuration), begin, end)
+    return path, write_files(waves, view)
+
+
+def viewer(waves: Path, files: list[Path]) -> list[str] | None:
+    """The command that shows a waveform, where there is a viewer and a screen to show it on."""
+    if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        return None
+    return next((command for command in commands(waves, files) if shutil.which(command[0])), None)
+
+
+def commands(waves: Path, files: list[Path]) -> list[list[str]]:
+    """How to open a waveform: in GTKWave, and in Surfer, which finds the names of states where it is started."""
+    gtkwave, surfer = files
+    return [["gtkwave", str(gtkwave.resolve())], ["surfer", "--command-file", surfer.name, waves.name]]
+
+
+def parse_arguments() -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(prog="python -m raycaster.verif.wave", description=__doc__)
+    parser.add_argument("--scene", type=Path, default=SCENE, metavar="PATH", help="a scene file (default: %(default)s)")
+    parser.add_argument(
+        "--pixel", metavar="COLUMN,ROW", help="of rays, from 0 on; the cursor is put there (the middle)"
+    )
+    parser.add_argument("--window", metavar="FIRST,LAST", help="rows to write (default: that of the pixel)")
+    parser.add_argument("--simulator", default="verilator", metavar="SIM", help=" or ".join(SIMULATORS))
+    parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes")
+    parser.add_argument("--no-viewer", action="store_true", help="open nothing")
+    add_configuration_options(parser)
+    return parser.parse_args()
+
+
+def main() -> int:
+    """The command; returns its exit code."""
+    arguments = parse_arguments()
+    if arguments.simulator not in SIMULATORS:
+        raise UserError(f"simulator: {' or '.join(SIMULATORS)}, not {arguments.simulator}")
+    design = design_for(arguments.scene, given_options(arguments))
+    screen = design.configuration.screen_geometry
+    column, row = pixel_place(arguments.pixel or f"{screen.centre_column},{screen.rows // 2}")
+    ray = Ray(design, row, column)
+    rows = rows_of(arguments.window, row)
+    check_rows(design.configuration, rows)
+    if not rows[0] <= row <= rows[1]:
+        raise UserError(f"window: rows {rows[0]} to {rows[1]} do not have the pixel's, which is {row}")
+    console = Console(soft_wrap=True)
+    find_tool(arguments.simulator)
+    try:
+        with console.status(f"building {design.configuration.name} with {arguments.simulator}"):
+            model = build_model(design.configuration, arguments.simulator, build=arguments.build, window=True)
+        with console.status("simulating"):
+            waves, files = write_wave(model, design, ray, rows, arguments.build / "wave" / design.name)
+    except SimulationError as error:
+        console.print(str(error), style="red", markup=False)
+        return 1
+    size = waves.stat().st_size / MEGABYTE
+    console.print(f"{waves}: rows {rows[0]} to {rows[1]}, {size:.1f} MB", highlight=False)
+    command = None if arguments.no_viewer else viewer(waves, files)
+    if command:
+        with (waves.parent / "viewer.log").open("w") as log:
+            subprocess.Popen(command, cwd=waves.parent, stdout=log, stderr=log, start_new_session=True)
+        return 0
+    _, surfer = commands(waves, files)
+    console.print(f"to open it: gtkwave {waves.parent / files[0].name}", highlight=False)
+    console.print(f"        or: cd {waves.parent} && {' '.join(surfer)}", highlight=False)
+    return 0
+
+
+if __name__ == "__main__":
+    run_command(main)
