@@ -82,6 +82,9 @@ def show(ray: Ray, readings: Sequence[Reading], console: Console) -> None:
             console.print(_rectangles(ray, bounce, rectangles, first))
     console.print("\n[bold]the pixel[/]")
     console.print(_others(ray, [reading for reading in readings if _of_pixel(reading)], first))
+    console.print(
+        "*: what the ray sees. left out: what culling found it cannot see. exact: without rounding.", style="dim"
+    )
     if first is None:
         console.print("The hardware does what golden does.", highlight=False)
         return
@@ -94,6 +97,8 @@ def difference_line(ray: Ray, reading: Reading) -> str:
     golden = _text(ray, reading.probe, reading.golden[part : part + 1])
     found = _text(ray, reading.probe, reading.found[part : part + 1])
     of = "the ray" if reading.place.bounce == 0 else f"reflection {reading.place.bounce}"
+    if _of_pixel(reading):
+        of = "the pixel"
     if reading.place.rectangle is not None:
         of += f", rectangle {_label(ray, reading.place.rectangle)}"
     return (

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import io
 import subprocess
 import sys
 from functools import cache
@@ -14,11 +15,13 @@ from rich.console import Console
 
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
+from raycaster.options import run_command
 from raycaster.verif.probes import Ray, Reading, first_difference, module_of, read
 from raycaster.verif.probes_of import description_of
 from raycaster.verif.recorder import record
 from raycaster.verif.simulator import build_model, convert
-from raycaster.verif.trace import difference_line, pixel_place, show
+from raycaster.verif.trace import difference_line, main, pixel_place, show
+from raycaster.verif.wave_files import View, signal_names
 from raycaster.verif.waves import Waves
 
 OPTIONS = {
@@ -69,6 +72,8 @@ def test_a_sound_design_has_no_difference(tmp_path, engine):
         first = first_difference(readings)
         assert first is None, difference_line(ray, first)
     ray, readings = traced(waves, engine)
+    view = View(description_of(design(engine).configuration, ray.unit).groups(ray), {}, 0, 1)
+    assert not set(signal_names(view)) - set(waves.names), "a viewer would be told of signals that are not there"
     assert [ray.winner(bounce) for bounce in (0, 1)] == [2, 1]
     quantities = {reading.probe.quantity for reading in readings}
     # A value that is never read would never be wrong.
@@ -119,10 +124,9 @@ def test_names_the_module_of_a_fault(tmp_path, engine, edit):
     first = first_difference(readings)
     assert first is not None
     line = difference_line(ray, first)
-    print(line)
     assert first.module == edit[0], line
     assert f"module {edit[0]}, signal bench.dut." in line
-    console = Console(width=160, record=True, file=open("/dev/null", "w"))  # noqa: SIM115
+    console = Console(width=160, record=True, file=io.StringIO())
     show(ray, readings, console)
     text = console.export_text()
     assert "<- first" in text
@@ -159,13 +163,16 @@ def test_the_command(tmp_path):
         (("--pixel", "1,1", "--scene", "no.toml"), "no.toml"),
     ],
 )
-def test_mistakes(options, complaint):
+def test_mistakes(monkeypatch, capsys, options, complaint):
     """One line, and no traceback."""
-    ran = _trace(*options)
-    assert ran.returncode == 2
-    assert ran.stderr.startswith("error: ")
-    assert complaint in ran.stderr
-    assert ran.stderr.count("\n") == 1
+    monkeypatch.setattr("sys.argv", ["trace", *options])
+    with pytest.raises(SystemExit) as ended:
+        run_command(main)
+    assert ended.value.code == 2
+    error = capsys.readouterr().err
+    assert error.startswith("error: ")
+    assert complaint in error
+    assert error.count("\n") == 1
 
 
 def test_names():

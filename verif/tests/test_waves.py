@@ -3,11 +3,21 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
+from conftest import BUILD, SMALL_SCENE
 
+from raycaster.design import Design, design_for
 from raycaster.errors import UserError
+from raycaster.options import run_command
+from raycaster.rtl.ray_sequencer import RayState
+from raycaster.verif.monitor import CLOCK_NS
+from raycaster.verif.probes import Ray
+from raycaster.verif.simulator import build_model
+from raycaster.verif.wave import main, viewer, write_wave
+from raycaster.verif.wave_files import View, write_files
 from raycaster.verif.waves import Waves, signed
 
 VCD = """
@@ -108,3 +118,128 @@ def test_what_is_wrong_is_said_in_one_line(vcd, tmp_path):
 
 def test_twos_complement():
     assert [signed(value, 3) for value in (0, 3, 4, 7, None)] == [0, 3, -4, -1, None]
+
+
+# Not the defaults: with these, every waveform that is traced is asked for what a viewer shows.
+OPTIONS = {
+    "seed": {"units": "8", "culling": "0", "rounding": "nearest"},
+    "exact": {"engine": "exact"},
+    "beam": {"engine": "beam", "reflections": "2"},
+}
+PIXEL = (48, 10)
+
+
+@pytest.fixture(scope="module", params=OPTIONS)
+def wave(request, tmp_path_factory) -> tuple[Design, Ray, Waves, list[Path]]:
+    """A window of each engine's frame, by Icarus, which builds at once, and what viewers get."""
+    design = design_for(SMALL_SCENE, {"screen": "tiny", "rectangles": "3", **OPTIONS[request.param]})
+    directory = tmp_path_factory.mktemp("wave")
+    model = build_model(design.configuration, "icarus", build=BUILD, window=True)
+    ray = Ray(design, PIXEL[1], PIXEL[0])
+    waves, files = write_wave(model, design, ray, (9, 11), directory / "small")
+    return design, ray, Waves(waves), files
+
+
+def test_window_has_its_rows_alone(wave):
+    """From when the first is computed until the last has been shown."""
+    design, _, waves, _ = wave
+    row_ns = design.configuration.screen_geometry.row_cycles * CLOCK_NS
+    begin, end = waves.span_ns()
+    rows = 4 if design.configuration.engine != "beam" else 3
+    assert rows * row_ns < end - begin < (rows + 0.2) * row_ns
+    assert [path.name for path in waves.path.parent.parent.iterdir()] == ["small"], "nothing half-written is left"
+
+
+def test_viewers_show_what_there_is(wave):
+    """Every signal of the save files stands in the waveform, with its width; the states have the design's names."""
+    _, _, waves, (gtkwave, surfer) = wave
+    shown = re.findall(r"^(?:\+\{.*\} )?(bench\.\S+)$", gtkwave.read_text(), re.MULTILINE)
+    assert len(shown) > 30
+    for name in shown:
+        signal, _, last_bit = name.removesuffix(":0]").partition("[")
+        assert waves.width(signal) == int(last_bit or 0) + 1, name
+    added = re.findall(r"^variable_add (\S+)$", surfer.read_text(), re.MULTILINE)
+    assert added == [name.partition("[")[0] for name in shown]
+    groups = re.findall(r"^divider_add (\S+)$", surfer.read_text(), re.MULTILINE)
+    assert groups[0] == "control"
+    assert groups[-2:] == ["video", "bus"]
+    labels = re.findall(r"^\+\{(.*)\}", gtkwave.read_text(), re.MULTILINE)
+    assert len(set(labels)) == len(labels), "two signals have one label"
+
+
+def test_states_have_their_names(wave):
+    """In a file that both viewers are told of, from the enumeration of the hardware's source."""
+    design, _, waves, (gtkwave, surfer) = wave
+    names = [f"{item._val} {name}" for name, item in ((name, getattr(RayState, name)) for name in RayState._names)]
+    filters = re.findall(r"^\^\d+ (\S+)$", gtkwave.read_text(), re.MULTILINE)
+    if design.configuration.engine == "beam":
+        assert not filters, "it has no states"
+        return
+    assert [Path(path).read_text().split("\n")[:-1] for path in filters] == [names]
+    assert "item_set_format ray_sequencer.state\n" in surfer.read_text()
+    mapping = (waves.path.parent / ".surfer" / "mappings" / "ray_sequencer.state.txt").read_text()
+    assert mapping.startswith("Name = ray_sequencer.state\nBits = 3\n0 IDLE\n1 GENERATE\n")
+    state = waves.find("*.ray_sequencer_i.state")
+    assert {value for _, value in waves.changes(state)} == set(range(len(names))), "every state is passed through"
+
+
+def test_cursor_is_at_the_pixel(wave):
+    """The ray of the pixel starts where the cursor stands."""
+    design, ray, waves, (gtkwave, surfer) = wave
+    (units,) = re.findall(r"^\*-\d+\.\d+ (\d+) ", gtkwave.read_text(), re.MULTILINE)
+    (ticks,) = re.findall(r"^cursor_set (\d+)$", surfer.read_text(), re.MULTILINE)
+    assert int(units) == int(ticks) * waves.tick_units
+    time_ns = int(ticks) / waves.ticks(1)
+    if design.configuration.engine == "beam":
+        assert waves.value("bench.dut.beam_renderer_i.row", time_ns) == ray.row
+        assert waves.value("bench.dut.beam_renderer_i.next_column", time_ns) == 1
+        return
+    assert waves.value("bench.dut.ray_caster_renderer_i.row", time_ns) == ray.row
+    assert waves.value("bench.dut.ray_caster_renderer_i.column_offset", time_ns) == ray.offset
+    assert waves.value(waves.find("*.ray_sequencer_i.steps_screen_to_ray"), time_ns) == 1
+
+
+def test_a_signal_that_is_missing_is_said(wave):
+    """Instead of a file that the viewer would complain about."""
+    _, _, waves, _ = wave
+    with pytest.raises(UserError, match=r"has no signal bench\.dut\.nothing"):
+        write_files(waves, View({"control": ["bench.dut.nothing"]}, {}, 0, 1))
+    with pytest.raises(UserError, match="no such number format as octal"):
+        write_files(waves, View({"control": ["bench.clk:octal"]}, {}, 0, 1))
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        (("--pixel", "3,3", "--window", "4,5"), "window: rows 4 to 5 do not have the pixel's, which is 3"),
+        (("--pixel", "3,3", "--window", "0,48"), "window: rows from 0 to 47, the first one first, not 0,48"),
+        (("--pixel", "3,3", "--window", "few"), "window: the first row and the last one"),
+        (("--pixel", "3,48"), "pixel: column from 0 to 63 and row from 0 to 47, not 3,48"),
+        (("--simulator", "questa"), "simulator: verilator or icarus, not questa"),
+    ],
+)
+def test_mistakes(monkeypatch, capsys, options, complaint):
+    """One line, and no traceback."""
+    monkeypatch.setattr("sys.argv", ["wave", "--screen", "tiny", *options])
+    with pytest.raises(SystemExit) as ended:
+        run_command(main)
+    assert ended.value.code == 2
+    error = capsys.readouterr().err
+    assert error.startswith("error: ")
+    assert complaint in error
+    assert error.count("\n") == 1
+
+
+def test_the_viewer_that_is_there_is_opened(tmp_path, monkeypatch):
+    """GTKWave or Surfer, where there is a screen."""
+    waves, files = tmp_path / "waves.fst", [tmp_path / "view.gtkw", tmp_path / "view.sucl"]
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    monkeypatch.setenv("DISPLAY", ":0")
+    assert viewer(waves, files) is None
+    for name in ("surfer", "gtkwave"):
+        (tmp_path / name).write_text("#!/bin/sh\n")
+        (tmp_path / name).chmod(0o755)
+        assert viewer(waves, files)[0] == name
+    monkeypatch.delenv("DISPLAY")
+    assert viewer(waves, files) is None
