@@ -28,6 +28,9 @@ from raycaster.verif.waves import Samples, Waves, signed
 DUT = "bench.dut"
 AXES = "xyz"
 
+ENDS = ("blend", "done")
+"""Events after which a ray has seen all that it will see."""
+
 Value = int | Fraction | str | None
 """What is held against what; None means nothing, and is like everything."""
 
@@ -328,6 +331,7 @@ def read(waves: Waves, description: Description, ray: Ray) -> list[Reading]:
         for probe, event, golden in found
         if event.cycle + probe.late < len(samples.times_ns)
     ]
+    omissions = []
     happened = {(event.kind, event.place) for event in events}
     for kind, place in description.expected(ray):
         if (kind, place) not in happened:
@@ -335,13 +339,10 @@ def read(waves: Waves, description: Description, ray: Ray) -> list[Reading]:
             cycle = min(ends, default=len(samples.times_ns) - 1)
             quantity, signal = description.tells[kind]
             probe = Probe(quantity, (signal,), kind, _happens)
-            readings.append(Reading(probe, place, cycle, _begin(samples, cycle), ("yes",), ("no",)))
-    # Sorting keeps the order of the description within a cycle, which is that in which values depend on each other.
-    return sorted(readings, key=lambda reading: reading.cycle)
-
-
-ENDS = ("blend", "done")
-"""Events after which a ray has seen all that it will see."""
+            omissions.append(Reading(probe, place, cycle, _begin(samples, cycle), ("yes",), ("no",)))
+    # Sorting keeps the order of the description within a cycle, which is that in which values depend on each other; and
+    # what is missed by then should have happened before.
+    return sorted(omissions + readings, key=lambda reading: reading.cycle)
 
 
 def _happens(ray: Ray, place: Place) -> Sequence[Value]:
@@ -353,11 +354,11 @@ def _reading(
 ) -> Reading:
     cycle = event.cycle + probe.late
     raw = [samples.values[name][cycle] for name in probe.signals]
-    found: tuple[Value, ...] = len(golden) * (None,)
-    if None not in raw:
-        for number in range(len(raw)) if probe.signed is True else probe.signed or ():
-            raw[number] = signed(raw[number], waves.width(probe.signals[number]))
-        found = tuple(probe.decode(ray, event.place, *raw) if probe.decode else raw)
+    for number in range(len(raw)) if probe.signed is True else probe.signed or ():
+        raw[number] = signed(raw[number], waves.width(probe.signals[number]))
+    found: tuple[Value, ...] = tuple(raw)
+    if probe.decode:
+        found = tuple(probe.decode(ray, event.place, *raw)) if None not in raw else len(golden) * (None,)
     return Reading(probe, event.place, cycle, _begin(samples, cycle), golden, found)
 
 

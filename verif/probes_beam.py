@@ -274,7 +274,7 @@ class BeamProbes:
                 "bench.clk",
                 *(f"{RENDERER}.{name}" for name in control),
                 f"{SETUP}.load",
-                f"{CASTER}.steps",
+                f"{CASTER}.steps:hex",
             ],
             "ray": [self.named(name, place) for name in unit],
             "colours": [
@@ -318,9 +318,9 @@ class BeamProbes:
         events = [Event("column", column, Place(0))]
         count = len(ray.rectangles)
         for cycle in range(line, column):
-            if values[f"{RENDERER}.rects_fetch"][cycle] and values[f"{RENDERER}.rects_index"][cycle] < count:
-                events.append(Event("fetch", cycle, Place(0, values[f"{RENDERER}.rects_index"][cycle])))
-            load = values[f"{SETUP}.load"][cycle]
+            index, load = values[f"{RENDERER}.rects_index"][cycle], values[f"{SETUP}.load"][cycle] or 0
+            if values[f"{RENDERER}.rects_fetch"][cycle] and index in range(count):
+                events.append(Event("fetch", cycle, Place(0, index)))
             events += [Event("load", cycle, Place(0, i)) for i in range(count) if load >> i & 1]
         end = column + self.starts[-1] + beam.winner_latency(self.config)
         for bounce, start in enumerate(self.starts[: ray.reflections + 1]):

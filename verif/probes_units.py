@@ -212,13 +212,14 @@ class UnitProbes:
         bounce, at_hand, done = 0, None, int(RayState.DONE._val, 2)
         tried: list[tuple[int, int]] = []
         for cycle in range(start, len(samples.times_ns)):
+            ends = values[f"{step}_add_color"][cycle] == 1
             if values[f"{step}_find_intersection"][cycle] and at_hand is not None:
                 tried.append((cycle, at_hand))
             if values[f"{self.sequencer}.rects_fetch"][cycle]:
                 at_hand = values[f"{self.sequencer}.rects_index"][cycle]
                 # In the cycle in which a ray ends, the next one's first is fetched.
-                events.append(Event("fetch", cycle, Place(bounce + values[f"{step}_add_color"][cycle], at_hand)))
-            if values[f"{step}_add_color"][cycle]:
+                events.append(Event("fetch", cycle, Place(bounce + int(ends), at_hand)))
+            if ends:
                 events += self._tried(samples, tried, bounce, cycle)
                 events.append(Event("blend", cycle, Place(bounce)))
                 if values[f"{step}_store_ray"][cycle]:

@@ -125,6 +125,7 @@ def main() -> int:
     if command:
         with (waves.parent / "viewer.log").open("w") as log:
             subprocess.Popen(command, cwd=waves.parent, stdout=log, stderr=log, start_new_session=True)
+        console.print(f"opened in {command[0]}", highlight=False)
         return 0
     _, surfer = commands(waves, files)
     console.print(f"to open it: gtkwave {waves.parent / files[0].name}", highlight=False)

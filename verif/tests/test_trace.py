@@ -92,6 +92,7 @@ FAULTS = {
         ("intersection_finder", "assign inside_u = ", "assign inside_u = 0 && "),
         ("z_buffer", "depth < nearest", "depth > nearest"),
         ("ray_mem", "reflected_signs_dy <= !signs_dy", "reflected_signs_dy <= signs_dy"),
+        ("rect_sequencer", "offered <= candidates != 0", "offered <= 0"),
         ("ray_sequencer", "bounce == reflections", "bounce == 0"),
         ("color_channel", "total + weighted", "total - weighted"),
         ("color_combiner", "seen_color = found_color", "seen_color = ~found_color"),
@@ -99,6 +100,7 @@ FAULTS = {
         ("video_generator", "vga_g <= green", "vga_g <= red"),
     ],
     "exact": [
+        ("exact_control", "steps_write_z_buf = in_flight[2]", "steps_write_z_buf = 0"),
         ("rect_tester", "way_u = n_u_1 * slope_u_1", "way_u = n_u_1 + slope_u_1"),
         ("nearest_hit", "offered_product < nearest_product", "offered_product > nearest_product"),
         ("eye_mem", "difference = twice_signed - mirrored", "difference = twice_signed + mirrored"),
