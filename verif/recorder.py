@@ -37,7 +37,7 @@ def check_rows(configuration: Configuration, rows: tuple[int, int]) -> None:
     """
     (first, last), most = rows, configuration.screen_geometry.rows - 1
     if not 0 <= first <= last <= most:
-        raise UserError(f"window: rows from 0 to {most}, the first one first, not {first},{last}")
+        raise UserError(f"span: rows from 0 to {most}, the first one first, not {first},{last}")
 
 
 def record(model: Model, design: Design, rows: tuple[int, int], target: Path) -> Path:

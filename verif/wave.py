@@ -36,7 +36,7 @@ def rows_of(text: str | None, row: int) -> tuple[int, int]:
         return row, row
     numbers = [number.strip() for number in text.split(",")]
     if len(numbers) > 2 or not all(number.isdecimal() for number in numbers):
-        raise UserError(f"window: the first row and the last one, as in 118,122, not {text}")
+        raise UserError(f"span: the first row and the last one, as in 118,122, not {text}")
     return int(numbers[0]), int(numbers[-1])
 
 
@@ -88,7 +88,7 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument(
         "--pixel", metavar="COLUMN,ROW", help="of rays, from 0 on; the cursor is put there (the middle)"
     )
-    parser.add_argument("--window", metavar="FIRST,LAST", help="rows to write (default: that of the pixel)")
+    parser.add_argument("--span", metavar="FIRST,LAST", help="rows to write (default: that of the pixel)")
     parser.add_argument("--simulator", default="verilator", metavar="SIM", help=" or ".join(SIMULATORS))
     parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes")
     parser.add_argument("--no-viewer", action="store_true", help="open nothing")
@@ -105,10 +105,10 @@ def main() -> int:
     screen = design.configuration.screen_geometry
     column, row = pixel_place(arguments.pixel or f"{screen.centre_column},{screen.rows // 2}")
     ray = Ray(design, row, column)
-    rows = rows_of(arguments.window, row)
+    rows = rows_of(arguments.span, row)
     check_rows(design.configuration, rows)
     if not rows[0] <= row <= rows[1]:
-        raise UserError(f"window: rows {rows[0]} to {rows[1]} do not have the pixel's, which is {row}")
+        raise UserError(f"span: rows {rows[0]} to {rows[1]} do not have the pixel's, which is {row}")
     console = Console(soft_wrap=True)
     find_tool(arguments.simulator)
     try:

@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from conftest import BUILD, ROOT, SMALL_SCENE
+from conftest import BUILD, ROOT
 from rich.console import Console
 
 from raycaster.design import Design, design_for
@@ -24,19 +24,20 @@ from raycaster.verif.trace import difference_line, main, pixel_place, show
 from raycaster.verif.wave_files import View, signal_names
 from raycaster.verif.waves import Waves
 
+SCENE = Path(__file__).with_name("tall.toml")
 OPTIONS = {
     "seed": {"units": "8"},
     "exact": {"engine": "exact", "units": "4"},
     "beam": {"engine": "beam", "scale": "1"},
 }
-PIXEL = (48, 10)
+PIXEL = (48, 2)
 """Column and row: the post hides the wall there, and mirrors it."""
 
 
 @cache
 def design(engine: str) -> Design:
-    """The small scene on a small screen; Icarus builds it at once."""
-    return design_for(SMALL_SCENE, {"screen": "tiny", "rectangles": "3", **OPTIONS[engine]})
+    """A small scene on a small screen; Icarus builds it at once."""
+    return design_for(SCENE, {"screen": "tiny", "rectangles": "3", **OPTIONS[engine]})
 
 
 def recorded(engine: str, directory: Path, edit: tuple[str, str, str] | None = None) -> Waves:
@@ -142,7 +143,7 @@ def _trace(*arguments: object) -> subprocess.CompletedProcess[str]:
 
 def test_the_command(tmp_path):
     """Its exit code is 0 without a difference, and 1 with one."""
-    options = ("--scene", SMALL_SCENE, "--screen", "tiny", "--units", 8, "--rectangles", 3, "--pixel", "48,10")
+    options = ("--scene", SCENE, "--screen", "tiny", "--units", 8, "--rectangles", 3, "--pixel", "48,2")
     sound = _trace(*options, "--build", tmp_path)
     assert sound.returncode == 0, sound.stdout + sound.stderr
     assert "The hardware does what golden does." in sound.stdout

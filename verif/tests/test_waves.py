@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from conftest import BUILD, SMALL_SCENE
+from conftest import BUILD
 
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
@@ -120,23 +120,25 @@ def test_twos_complement():
     assert [signed(value, 3) for value in (0, 3, 4, 7, None)] == [0, 3, -4, -1, None]
 
 
+SCENE = Path(__file__).with_name("tall.toml")
+
 # Not the defaults: with these, every waveform that is traced is asked for what a viewer shows.
 OPTIONS = {
     "seed": {"units": "8", "culling": "0", "rounding": "nearest"},
     "exact": {"engine": "exact"},
     "beam": {"engine": "beam", "reflections": "2"},
 }
-PIXEL = (48, 10)
+PIXEL = (48, 2)
 
 
 @pytest.fixture(scope="module", params=OPTIONS)
 def wave(request, tmp_path_factory) -> tuple[Design, Ray, Waves, list[Path]]:
     """A window of each engine's frame, by Icarus, which builds at once, and what viewers get."""
-    design = design_for(SMALL_SCENE, {"screen": "tiny", "rectangles": "3", **OPTIONS[request.param]})
+    design = design_for(SCENE, {"screen": "tiny", "rectangles": "3", **OPTIONS[request.param]})
     directory = tmp_path_factory.mktemp("wave")
     model = build_model(design.configuration, "icarus", build=BUILD, window=True)
     ray = Ray(design, PIXEL[1], PIXEL[0])
-    waves, files = write_wave(model, design, ray, (9, 11), directory / "small")
+    waves, files = write_wave(model, design, ray, (1, 3), directory / "tall")
     return design, ray, Waves(waves), files
 
 
@@ -147,7 +149,7 @@ def test_window_has_its_rows_alone(wave):
     begin, end = waves.span_ns()
     rows = 4 if design.configuration.engine != "beam" else 3
     assert rows * row_ns < end - begin < (rows + 0.2) * row_ns
-    assert [path.name for path in waves.path.parent.parent.iterdir()] == ["small"], "nothing half-written is left"
+    assert [path.name for path in waves.path.parent.parent.iterdir()] == ["tall"], "nothing half-written is left"
 
 
 def test_viewers_show_what_there_is(wave):
@@ -211,9 +213,9 @@ def test_a_signal_that_is_missing_is_said(wave):
 @pytest.mark.parametrize(
     ("options", "complaint"),
     [
-        (("--pixel", "3,3", "--window", "4,5"), "window: rows 4 to 5 do not have the pixel's, which is 3"),
-        (("--pixel", "3,3", "--window", "0,48"), "window: rows from 0 to 47, the first one first, not 0,48"),
-        (("--pixel", "3,3", "--window", "few"), "window: the first row and the last one"),
+        (("--pixel", "3,3", "--span", "4,5"), "span: rows 4 to 5 do not have the pixel's, which is 3"),
+        (("--pixel", "3,3", "--span", "0,48"), "span: rows from 0 to 47, the first one first, not 0,48"),
+        (("--pixel", "3,3", "--span", "few"), "span: the first row and the last one"),
         (("--pixel", "3,48"), "pixel: column from 0 to 63 and row from 0 to 47, not 3,48"),
         (("--simulator", "questa"), "simulator: verilator or icarus, not questa"),
     ],
