@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raycaster.golden.picture import WRONG, count_wrong, diff_picture, wrong_pixels
+from raycaster.golden.picture import WRONG, count_wrong, diff_picture, first_wrong, wrong_pixels
 
 REFERENCE = np.array([[(0, 0, 0), (255, 255, 255)], [(200, 100, 0), (9, 9, 9)]], dtype=np.uint8)
 
@@ -50,3 +50,12 @@ def test_wrong_pixels_stand_out_from_any_grey():
 def test_shapes_must_agree():
     with pytest.raises(ValueError, match=r"different shapes: \(1, 2, 3\) and \(2, 2, 3\)"):
         count_wrong(REFERENCE[:1], REFERENCE)
+
+
+def test_first_wrong():
+    """In the order in which a monitor shows pixels, as column and row."""
+    picture = np.zeros((4, 6, 3), dtype=np.uint8)
+    other = picture.copy()
+    assert first_wrong(picture, other) is None
+    other[2, 1, 0] = other[1, 4, 2] = 9
+    assert first_wrong(picture, other) == (4, 1)
