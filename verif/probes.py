@@ -140,7 +140,7 @@ class Description(Protocol):
     def controls(self) -> Iterable[str]:
         """The signals that `events` reads."""
 
-    def named(self, signal: str, place: Place) -> str:
+    def named(self, signal: str, place: Place, ray: Ray) -> str:
         """The whole name of a probe's signal at a place."""
 
     def groups(self, ray: Ray) -> Mapping[str, Sequence[str]]:
@@ -316,14 +316,14 @@ def read(waves: Waves, description: Description, ray: Ray) -> list[Reading]:
     if not samples.times_ns:
         raise UserError(f"{waves.path}: the clock never rises")
     events = description.events(samples, ray)
-    found = []
+    found, probes = [], description.probes
     for event in events:
-        for probe in description.probes:
+        for probe in probes:
             if probe.event != event.kind:
                 continue
             golden = tuple(probe.golden(ray, event.place))
             if any(value is not None for value in golden):
-                names = tuple(description.named(signal, event.place) for signal in probe.signals)
+                names = tuple(description.named(signal, event.place, ray) for signal in probe.signals)
                 found.append((replace(probe, signals=names), event, golden))
     samples = waves.sample(sorted({signal for probe, _, _ in found for signal in probe.signals}))
     readings = [

@@ -216,7 +216,7 @@ class BeamProbes:
                 left = -(-left // 2)
         return {key: self._numbered(module, number, counts[module]) for key, module, number in placed}
 
-    def named(self, signal: str, place: Place) -> str:
+    def named(self, signal: str, place: Place, ray: Ray) -> str:
         """A signal of the instances that a place has."""
         config, bounce, rectangle = self.config, place.bounce, place.rectangle or 0
         passes, count = len(self.starts), config.rectangles
@@ -238,11 +238,9 @@ class BeamProbes:
             bounce=bounce,
             seen=SEEN[bounce],
             mirror="only" if bounce == 0 else "last",
-            axis=AXES[int(self._axes[rectangle])] if self._axes is not None else "x",
+            axis=AXES[int(ray.rectangles.axes[rectangle])],
             **{f"round_{turn}": self._contest(bounce, turn, rectangle) for turn in range(last_round + 1)},
         )
-
-    _axes: Sequence[int] | None = None
 
     def _contest(self, bounce: int, turn: int, rectangle: int) -> str:
         """The instance in which a rectangle stands in a round."""
@@ -257,7 +255,6 @@ class BeamProbes:
     def groups(self, ray: Ray) -> dict[str, Sequence[str]]:
         """For viewers: signals by group; of all rectangles that one which the pixel shows."""
         place = Place(0, max(0, ray.winner(0)))
-        self._axes = ray.rectangles.axes
         control = ("start_screen", "start_row", "start_line", "next_column", "row", "row_slope:signed", "in_picture")
         unit = [
             "{early}.column_slope:signed",
@@ -276,7 +273,7 @@ class BeamProbes:
                 f"{SETUP}.load",
                 f"{CASTER}.steps:hex",
             ],
-            "ray": [self.named(name, place) for name in unit],
+            "ray": [self.named(name, place, ray) for name in unit],
             "colours": [
                 *(f"{CASTER}.found_{number}" for number in range(3)),
                 *(f"{CASTER}.color_{number}:hex" for number in range(3)),
@@ -299,7 +296,6 @@ class BeamProbes:
 
     def events(self, samples: Samples, ray: Ray) -> list[Event]:
         """What the hardware did for the pixel, in the first line that shows it."""
-        self._axes = ray.rectangles.axes
         values, screen = samples.values, ray.config.screen_geometry
         bits = exact_slope_bits(self.config) + 1
         line, passed, column = 0, 0, None

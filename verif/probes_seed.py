@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from raycaster.configuration import Configuration
 from raycaster.golden.world import OTHER_AXES
-from raycaster.verif.probes import AXES, Event, Place, Probe, Ray, Value, fields
+from raycaster.verif.probes import AXES, Event, Place, Probe, Ray, Read, Value, fields
 from raycaster.verif.probes_units import RECT_FIELDS, SIGNS, UnitProbes, slope_signs, sorted_rect
 from raycaster.verif.waves import Samples
 
@@ -32,7 +32,7 @@ def true_origin(ray: Ray, place: Place) -> Sequence[Value]:
     return ray.true_origin(place.bounce)
 
 
-def of_rectangle(name: str, when: str | None = None):
+def of_rectangle(name: str, when: str | None = None) -> Read:
     """Reads an array of golden's, where another one says that it means something."""
 
     def read(ray: Ray, place: Place) -> Sequence[Value]:
@@ -49,7 +49,7 @@ def of_rectangle(name: str, when: str | None = None):
     return read
 
 
-def one(read):
+def one(read: Read) -> Read:
     """The same of what has one component."""
     return lambda ray, place: tuple(read(ray, place))[:1]
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.ray_sequencer import RayState
 from raycaster.verif.probes import (
     AXES,
     DUT,
@@ -136,7 +135,7 @@ class UnitProbes:
             "shown": ("the pixel is shown", f"{VIDEO}.y"),
         }
 
-    def named(self, signal: str, place: Place) -> str:
+    def named(self, signal: str, place: Place, ray: Ray) -> str:
         """The whole name, which probes have already."""
         return signal
 
@@ -173,7 +172,7 @@ class UnitProbes:
         return [
             f"{RENDERER}.row",
             f"{RENDERER}.column_offset",
-            f"{self.sequencer}.state",
+            f"{self.sequencer}.done",
             *(f"{self.sequencer}.steps_{name}" for name in steps),
             f"{self.control}.steps_write_z_buf",
             f"{self.sequencer}.rects_fetch",
@@ -209,7 +208,7 @@ class UnitProbes:
         if start is None:
             return shown
         events = [Event("start", start, Place(0)), Event("ray", start, Place(0))]
-        bounce, at_hand, done = 0, None, int(RayState.DONE._val, 2)
+        bounce, at_hand = 0, None
         tried: list[tuple[int, int]] = []
         for cycle in range(start, len(samples.times_ns)):
             ends = values[f"{step}_add_color"][cycle] == 1
@@ -225,7 +224,7 @@ class UnitProbes:
                 if values[f"{step}_store_ray"][cycle]:
                     events.append(Event("ray", cycle, Place(bounce + 1)))
                 bounce, tried = bounce + 1, []
-            if values[f"{self.sequencer}.state"][cycle] == done:
+            if values[f"{self.sequencer}.done"][cycle]:
                 events.append(Event("done", cycle, Place(max(0, bounce - 1))))
                 break
         known = [
