@@ -18,8 +18,8 @@ from raycaster.configuration import CHANNEL_BITS
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
 from raycaster.options import add_configuration_options, given_options, run_command
-from raycaster.verif.probes import Place, Probe, Ray, Reading, Value, first_difference, read
-from raycaster.verif.probes_of import description_of
+from raycaster.verif.probes.engines import description_of
+from raycaster.verif.probes.ray import Place, Probe, Ray, Reading, Value, first_difference, read
 from raycaster.verif.recorder import record
 from raycaster.verif.simulator import BUILD, SIMULATORS, Model, SimulationError, build_model, find_tool
 from raycaster.verif.waves import Waves

@@ -15,8 +15,8 @@ from raycaster.design import Design, design_for
 from raycaster.errors import UserError
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.rtl.convert import design_states
-from raycaster.verif.probes import Ray
-from raycaster.verif.probes_of import description_of
+from raycaster.verif.probes.engines import description_of
+from raycaster.verif.probes.ray import Ray
 from raycaster.verif.recorder import check_rows, record
 from raycaster.verif.simulator import BUILD, SIMULATORS, Model, SimulationError, build_model, find_tool
 from raycaster.verif.trace import SCENE, pixel_place

@@ -12,7 +12,7 @@ from pathlib import Path
 from vcd.gtkw import GTKWSave, make_translation_filter
 
 from raycaster.errors import UserError
-from raycaster.verif.probes import module_of
+from raycaster.verif.probes.ray import module_of
 from raycaster.verif.waves import Waves
 
 GTKWAVE_FILE = "view.gtkw"
@@ -43,7 +43,7 @@ class View:
     """What a viewer is to show."""
 
     groups: Mapping[str, Sequence[str]]
-    """Signals by group; see `raycaster.verif.probes.Description`."""
+    """Signals by group; see `raycaster.verif.probes.ray.Description`."""
 
     states: States
     """By module and signal, the names of an enumerated signal's values."""

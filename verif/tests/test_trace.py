@@ -16,8 +16,8 @@ from rich.console import Console
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
 from raycaster.options import run_command
-from raycaster.verif.probes import Ray, Reading, first_difference, module_of, read
-from raycaster.verif.probes_of import description_of
+from raycaster.verif.probes.engines import description_of
+from raycaster.verif.probes.ray import Ray, Reading, first_difference, module_of, read
 from raycaster.verif.recorder import record
 from raycaster.verif.simulator import build_model, convert
 from raycaster.verif.trace import difference_line, main, pixel_place, show

@@ -14,7 +14,7 @@ from raycaster.errors import UserError
 from raycaster.options import run_command
 from raycaster.rtl.ray_sequencer import RayState
 from raycaster.verif.monitor import CLOCK_NS
-from raycaster.verif.probes import Ray
+from raycaster.verif.probes.ray import Ray
 from raycaster.verif.simulator import build_model
 from raycaster.verif.wave import main, viewer, write_wave
 from raycaster.verif.wave_files import View, write_files

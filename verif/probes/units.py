@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from raycaster.configuration import Configuration
-from raycaster.verif.probes import (
+from raycaster.verif.probes.ray import (
     AXES,
     DUT,
     Event,

@@ -15,9 +15,9 @@ from raycaster.rtl import beam_caster as beam
 from raycaster.rtl import fold_tester as tester
 from raycaster.rtl import nearest_of_two as contest
 from raycaster.rtl.widths import exact_slope_bits
-from raycaster.verif.probes import AXES, DUT, Event, Place, Probe, Ray, Read, Value, channels_of, fields
-from raycaster.verif.probes_exact import fraction, hit
-from raycaster.verif.probes_units import (
+from raycaster.verif.probes.exact import fraction, hit
+from raycaster.verif.probes.ray import AXES, DUT, Event, Place, Probe, Ray, Read, Value, channels_of, fields
+from raycaster.verif.probes.units import (
     COLOURS,
     PINS,
     RECT_FIELDS,
@@ -184,7 +184,7 @@ def of_mirrors(passes: int, read: Read) -> Read:
 
 
 class BeamProbes:
-    """The description; see `raycaster.verif.probes.Description`."""
+    """The description; see `raycaster.verif.probes.ray.Description`."""
 
     tells: Mapping[str, tuple[str, str]] = {
         "column": ("the column is announced", f"{RENDERER}.next_column"),

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 from raycaster.configuration import Configuration
 from raycaster.golden.world import OTHER_AXES
-from raycaster.verif.probes import AXES, Event, Place, Probe, Ray, Value, fields
-from raycaster.verif.probes_units import SIGNS, UnitProbes, slope_signs
+from raycaster.verif.probes.ray import AXES, Event, Place, Probe, Ray, Value, fields
+from raycaster.verif.probes.units import SIGNS, UnitProbes, slope_signs
 from raycaster.verif.waves import Samples
 
 SURFACE = ("axis", "position", "colour")
@@ -120,7 +120,7 @@ def offered_surface(ray: Ray, place: Place) -> Sequence[Value]:
 
 
 class ExactProbes(UnitProbes):
-    """The description; see `raycaster.verif.probes.Description`."""
+    """The description; see `raycaster.verif.probes.ray.Description`."""
 
     def __init__(self, config: Configuration, unit: int):
         super().__init__(config, unit, "exact_caster_i", "exact_control_i", "exact_unit")

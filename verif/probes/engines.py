@@ -2,10 +2,10 @@
 """The description of whatever engine a design has."""
 
 from raycaster.configuration import Configuration
-from raycaster.verif.probes import Description
-from raycaster.verif.probes_beam import BeamProbes
-from raycaster.verif.probes_exact import ExactProbes
-from raycaster.verif.probes_seed import SeedProbes
+from raycaster.verif.probes.beam import BeamProbes
+from raycaster.verif.probes.exact import ExactProbes
+from raycaster.verif.probes.ray import Description
+from raycaster.verif.probes.seed import SeedProbes
 
 DESCRIPTIONS = {"seed": SeedProbes, "exact": ExactProbes, "beam": BeamProbes}
 """By the configuration's name for the engine."""

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 
 from raycaster.configuration import Configuration
 from raycaster.golden.world import OTHER_AXES
-from raycaster.verif.probes import AXES, Event, Place, Probe, Ray, Read, Value, fields
-from raycaster.verif.probes_units import RECT_FIELDS, SIGNS, UnitProbes, slope_signs, sorted_rect
+from raycaster.verif.probes.ray import AXES, Event, Place, Probe, Ray, Read, Value, fields
+from raycaster.verif.probes.units import RECT_FIELDS, SIGNS, UnitProbes, slope_signs, sorted_rect
 from raycaster.verif.waves import Samples
 
 
@@ -152,7 +152,7 @@ def nearest_surface(ray: Ray, place: Place) -> Sequence[Value]:
 
 
 class SeedProbes(UnitProbes):
-    """The description; see `raycaster.verif.probes.Description`."""
+    """The description; see `raycaster.verif.probes.ray.Description`."""
 
     def __init__(self, config: Configuration, unit: int):
         super().__init__(config, unit, "ray_caster_i", "ray_control_i", "ray_unit")
