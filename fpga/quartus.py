@@ -13,7 +13,6 @@ import argparse
 import re
 import shutil
 import subprocess
-import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -24,6 +23,7 @@ from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.board import BOARDS, TOP, Board, check_project, find_board, top_ports
 from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.output import replaced
 from raycaster.rtl.convert import write_system
 from raycaster.rtl.take_home import clock_period
 from raycaster.scene import Scene
@@ -68,9 +68,7 @@ def write_project(board: Board, config: Configuration, scene: Scene, directory: 
             f"engine: the boards' projects run at 50 MHz, and the {config.engine} engine at the pixel clock; take "
             "make verilog, and a PLL"
         )
-    directory.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=directory.parent, prefix=f".{directory.name}-") as scratch:
-        written = Path(scratch) / directory.name
+    with replaced(directory) as written:
         modules = write_system(config, scene, written / VERILOG)
         sources = [f"{VERILOG}/{path.name}" for path in modules] + [HELPER.name, f"{TOP}.v"]
         shutil.copyfile(HELPER, written / HELPER.name)
@@ -78,9 +76,6 @@ def write_project(board: Board, config: Configuration, scene: Scene, directory: 
         (written / f"{TOP}.qpf").write_text(f'PROJECT_REVISION = "{TOP}"\n')
         (written / f"{TOP}.qsf").write_text(_settings(board, config, sources) + pins)
         (written / f"{TOP}.sdc").write_text(_constraints(board, config, ports))
-        if directory.exists():
-            shutil.rmtree(directory)
-        written.rename(directory)
 
 
 def compile_project(board: Board, directory: Path) -> Path:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import shutil
 import tempfile
 from pathlib import Path
 
@@ -15,6 +14,7 @@ from peakrdl_html import HTMLExporter
 from raycaster.configuration import Configuration, configure
 from raycaster.memory_map import c_header
 from raycaster.options import run_command
+from raycaster.output import replaced
 from raycaster.registers import compile_registers
 
 HEADER = "raycaster_regs.h"
@@ -47,13 +47,8 @@ def write_page(rectangles: int, directory: Path) -> Path:
     Returns:
         The page's first file.
     """
-    directory.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=directory.parent, prefix=f".{directory.name}-") as scratch:
-        written = Path(scratch) / "page"
+    with replaced(directory) as written:
         HTMLExporter().export(compile_registers(rectangles), str(written), title="RayCaster registers")
-        if directory.exists():
-            shutil.rmtree(directory)
-        written.rename(directory)
     return directory / "index.html"
 
 

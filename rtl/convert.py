@@ -4,8 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import shutil
-import tempfile
 import threading
 from collections.abc import Callable
 from functools import partial
@@ -18,6 +16,7 @@ from raycaster.configuration import Configuration
 from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.output import replaced
 from raycaster.rtl.dvi_encoder import DviPorts, dvi_encoder
 from raycaster.rtl.hierarchy import Module, convert_hierarchy, quick_elaboration, state_names
 from raycaster.rtl.processor_system import ProcessorPorts, processor_system
@@ -117,17 +116,11 @@ def _write(
     directory: Path,
     complete: Callable[[list[Module], Path], None] | None = None,
 ) -> list[Path]:
-    directory.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=directory.parent, prefix=f".{directory.name}-") as scratch:
-        written = Path(scratch) / "verilog"
-        written.mkdir()
+    with replaced(directory) as written:
         with _CONVERSION, quick_elaboration():
             modules = convert_hierarchy(elaborate(), written, _header(config))
         if complete:
             complete(modules, written)
-        if directory.exists():
-            shutil.rmtree(directory)
-        written.rename(directory)
     return [directory / module.path.name for module in modules]
 
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import shutil
 import struct
 import sys
 import tempfile
@@ -19,6 +18,7 @@ from rich.table import Table
 from raycaster.errors import UserError
 from raycaster.memory_map import MEMORY, MEMORY_BYTES
 from raycaster.options import run_command
+from raycaster.output import replaced
 from raycaster.tools import run_program
 
 SOFTWARE = Path(__file__).parent
@@ -58,10 +58,7 @@ def build_firmware(output: Path) -> Firmware:
     for module in ("ziglang", "elftools"):
         if find_spec(module) is None:
             raise UserError(f"{module} is missing; pip install 'raycaster[firmware]'")
-    output.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=output.parent, prefix=f".{output.name}-") as scratch:
-        work = Path(scratch) / output.name
-        work.mkdir()
+    with replaced(output) as work, tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
         script = Path(scratch) / "link.ld"
         _compile("-E", "-P", "-x", "c", FIRMWARE / "link.ld", "-o", script)
         _compile(
@@ -71,9 +68,6 @@ def build_firmware(output: Path) -> Firmware:
         memory, sections = _read_elf(work / "firmware.elf")
         lines = (f"{word:08x}\n" for (word,) in struct.iter_unpack("<I", memory))
         (work / "firmware.hex").write_text("".join(lines))
-        if output.exists():
-            shutil.rmtree(output)
-        work.rename(output)
     return Firmware(output / "firmware.elf", output / "firmware.hex", sections)
 
 

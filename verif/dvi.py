@@ -22,7 +22,6 @@ from rich.console import Console
 
 from raycaster.configuration import Screen
 from raycaster.design import Design
-from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.bitstream import BOARDS, DEFAULT_SCENE, find_board, write_project
 from raycaster.golden import engines
@@ -30,7 +29,7 @@ from raycaster.golden.picture import count_wrong, shown
 from raycaster.golden.tmds import CONTROL_SYMBOLS, decode
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.verif.monitor import Line, VideoError, decode_frame
-from raycaster.verif.simulator import SIMULATORS, SimulationError, find_tool
+from raycaster.verif.simulator import SimulationError, add_simulator_option, find_tool
 
 SYMBOL_BITS = 10
 HERE = Path(__file__).parent
@@ -228,13 +227,11 @@ def main() -> int:
     parser.add_argument("--board", default="ulx3s", help=f"one of {', '.join(BOARDS)} (default: %(default)s)")
     parser.add_argument("--scene", type=Path, default=DEFAULT_SCENE, help="(default: %(default)s)")
     parser.add_argument("--frames", type=int, default=1, help="to look at (default: %(default)s)")
-    parser.add_argument("--simulator", default="verilator", metavar="SIM", help=" or ".join(SIMULATORS))
+    add_simulator_option(parser)
     parser.add_argument("--output", type=Path, default=Path("build/dvi"), help="(default: %(default)s)")
     add_fix_option(parser)
     add_configuration_options(parser)
     arguments = parser.parse_args()
-    if arguments.simulator not in SIMULATORS:
-        raise UserError(f"simulator: {' or '.join(SIMULATORS)}, not {arguments.simulator}")
     board = find_board(arguments.board)
     console = Console()
     design = design_of(arguments.scene, given_options(arguments), arguments.fix, console)

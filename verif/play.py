@@ -16,7 +16,15 @@ from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, MEMORY_WORDS, PROGRAM_FILE, held_bits
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.verif.job import Job
-from raycaster.verif.simulator import BUILD, SIMULATORS, SYSTEM_BENCH, Model, SimulationError, build_model, run_bench
+from raycaster.verif.simulator import (
+    BUILD,
+    SYSTEM_BENCH,
+    Model,
+    SimulationError,
+    add_simulator_option,
+    build_model,
+    run_bench,
+)
 
 FASTEST = {"engine": "beam", "screen": "play"}
 """What a system with a processor has where nothing is given: the configuration that simulates fastest."""
@@ -83,12 +91,10 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m raycaster.verif.play", description=__doc__.splitlines()[0])
     parser.add_argument("program", type=Path, help="file of 32-bit words in hexadecimal, from address 0 on")
     parser.add_argument("--buttons", default="none*4", help="of each frame, like none*5,left+fire*20 (default: none*4)")
-    parser.add_argument("--simulator", default="verilator", metavar="SIM", help=" or ".join(SIMULATORS))
+    add_simulator_option(parser)
     parser.add_argument("--output", type=Path, default=Path("build/play"), help="(default: %(default)s)")
     add_configuration_options(parser)
     arguments = parser.parse_args()
-    if arguments.simulator not in SIMULATORS:
-        raise UserError(f"simulator: {' or '.join(SIMULATORS)}, not {arguments.simulator}")
     check_program(arguments.program)
     buttons = read_buttons(arguments.buttons)
     configuration = configure(**FASTEST | given_options(arguments))

@@ -34,6 +34,7 @@ from raycaster.verif.simulator import (
     SIMULATORS,
     Model,
     SimulationError,
+    add_simulator_option,
     build_model,
     convert,
     find_tool,
@@ -271,7 +272,7 @@ def parse_arguments() -> argparse.Namespace:
         metavar="PATH",
         help="a scene file; may be repeated (default: all of scenes/)",
     )
-    parser.add_argument("--simulator", default="verilator", metavar="SIM", help=" or ".join(SIMULATORS))
+    add_simulator_option(parser)
     parser.add_argument(
         "--gates",
         action="store_true",
@@ -291,8 +292,6 @@ def parse_arguments() -> argparse.Namespace:
 def main() -> int:
     """The command; returns its exit code."""
     arguments = parse_arguments()
-    if arguments.simulator not in SIMULATORS:
-        raise UserError(f"simulator: {' or '.join(SIMULATORS)}, not {arguments.simulator}")
     # make hands its variables down in the environment, where cocotb would take them for its own.
     for name in ("WAVES", "GUI"):
         os.environ.pop(name, None)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import contextlib
 import fcntl
 import hashlib
@@ -121,6 +122,19 @@ class Model:
     bench: Bench = MODULE_BENCH
     window: bool = False
     """Whether its bench writes waveforms of part of a frame, as `wave_window.v` says."""
+
+
+def add_simulator_option(parser: argparse.ArgumentParser) -> None:
+    """Add `--simulator`."""
+    parser.add_argument(
+        "--simulator", type=_known_simulator, default=SIMULATORS[0], metavar="SIM", help=" or ".join(SIMULATORS)
+    )
+
+
+def _known_simulator(name: str) -> str:
+    if name not in SIMULATORS:
+        raise UserError(f"simulator: {' or '.join(SIMULATORS)}, not {name}")
+    return name
 
 
 def find_tool(simulator: str) -> Tool:

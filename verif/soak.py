@@ -21,7 +21,7 @@ from raycaster.golden.catalogue import catalogue
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.verif.job import Job
 from raycaster.verif.random_scenes import style_of
-from raycaster.verif.simulator import BUILD, SIMULATORS, Model, SimulationError, build_model, run_bench
+from raycaster.verif.simulator import BUILD, Model, SimulationError, add_simulator_option, build_model, run_bench
 
 POLL_SECONDS = 0.2
 
@@ -112,7 +112,7 @@ def main() -> int:
     parser.add_argument("--first", type=int, default=0, metavar="SEED", help="the first one's (default: %(default)s)")
     parser.add_argument("--stiff", action="store_true", help="all cases of the stiff catalogue instead")
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="simulations at a time (default: %(default)s)")
-    parser.add_argument("--simulator", default="verilator", choices=SIMULATORS)
+    add_simulator_option(parser)
     parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes")
     add_configuration_options(parser)
     arguments = parser.parse_args()

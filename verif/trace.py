@@ -21,7 +21,7 @@ from raycaster.options import add_configuration_options, given_options, run_comm
 from raycaster.verif.probes.engines import description_of
 from raycaster.verif.probes.ray import Place, Probe, Ray, Reading, Value, first_difference, read
 from raycaster.verif.recorder import record
-from raycaster.verif.simulator import BUILD, SIMULATORS, Model, SimulationError, build_model, find_tool
+from raycaster.verif.simulator import BUILD, Model, SimulationError, add_simulator_option, build_model, find_tool
 from raycaster.verif.waves import Waves
 
 SCENE = Path("scenes/mirror_room.toml")
@@ -236,7 +236,7 @@ def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m raycaster.verif.trace", description=__doc__)
     parser.add_argument("--scene", type=Path, default=SCENE, metavar="PATH", help="a scene file (default: %(default)s)")
     parser.add_argument("--pixel", metavar="COLUMN,ROW", help="of rays, from 0 on")
-    parser.add_argument("--simulator", default="verilator", metavar="SIM", help=" or ".join(SIMULATORS))
+    add_simulator_option(parser)
     parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes")
     add_configuration_options(parser)
     return parser.parse_args()
@@ -245,8 +245,6 @@ def parse_arguments() -> argparse.Namespace:
 def main() -> int:
     """The command; returns its exit code."""
     arguments = parse_arguments()
-    if arguments.simulator not in SIMULATORS:
-        raise UserError(f"simulator: {' or '.join(SIMULATORS)}, not {arguments.simulator}")
     if arguments.pixel is None:
         raise UserError("pixel: say which one, as in PIXEL=160,120")
     column, row = pixel_place(arguments.pixel)

@@ -18,7 +18,7 @@ from raycaster.rtl.convert import design_states
 from raycaster.verif.probes.engines import description_of
 from raycaster.verif.probes.ray import Ray
 from raycaster.verif.recorder import check_rows, record
-from raycaster.verif.simulator import BUILD, SIMULATORS, Model, SimulationError, build_model, find_tool
+from raycaster.verif.simulator import BUILD, Model, SimulationError, add_simulator_option, build_model, find_tool
 from raycaster.verif.trace import SCENE, pixel_place
 from raycaster.verif.wave_files import View, write_files
 from raycaster.verif.waves import Waves
@@ -89,7 +89,7 @@ def parse_arguments() -> argparse.Namespace:
         "--pixel", metavar="COLUMN,ROW", help="of rays, from 0 on; the cursor is put there (the middle)"
     )
     parser.add_argument("--span", metavar="FIRST,LAST", help="rows to write (default: that of the pixel)")
-    parser.add_argument("--simulator", default="verilator", metavar="SIM", help=" or ".join(SIMULATORS))
+    add_simulator_option(parser)
     parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes")
     parser.add_argument("--no-viewer", action="store_true", help="open nothing")
     add_configuration_options(parser)
@@ -99,8 +99,6 @@ def parse_arguments() -> argparse.Namespace:
 def main() -> int:
     """The command; returns its exit code."""
     arguments = parse_arguments()
-    if arguments.simulator not in SIMULATORS:
-        raise UserError(f"simulator: {' or '.join(SIMULATORS)}, not {arguments.simulator}")
     design = design_for(arguments.scene, given_options(arguments))
     screen = design.configuration.screen_geometry
     column, row = pixel_place(arguments.pixel or f"{screen.centre_column},{screen.rows // 2}")
