@@ -179,5 +179,6 @@ def _add_net(drawn: pygraphviz.AGraph, cluster: pygraphviz.AGraph, net: Net, nam
 def draw(drawing: Drawing, directory: Path) -> Path:
     """Write a diagram as `<name>.svg` into a directory."""
     path = directory / f"{drawing.name}.svg"
-    graph(drawing, inside_of(drawing)).draw(str(path), prog="dot")
+    # To a file it would open for itself, as some versions of Python do not let it.
+    path.write_bytes(graph(drawing, inside_of(drawing)).draw(format="svg", prog="dot"))
     return path

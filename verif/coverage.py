@@ -58,9 +58,6 @@ FLAGS = (
     # The widest bus of the design; what the bench gathers a line in is wider.
     "--coverage-max-width",
     "1024",
-    # Counting costs more than -O2 gains, and so does compiling it.
-    "-CFLAGS",
-    "-O1",
 )
 
 

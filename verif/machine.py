@@ -146,7 +146,8 @@ def build_machine(config: Configuration, scene: Scene | None = None, build: Path
             digest.update(path.read_bytes())
         executable = directory / "model" / f"V{TOP}"
         if stamped(directory / "stamp.json", digest.hexdigest()) is None:
-            shutil.rmtree(directory / "model", ignore_errors=True)
+            shutil.rmtree(executable.parent, ignore_errors=True)
+            executable.parent.mkdir(parents=True)
             command = [
                 "verilator", "--cc", "--exe", "--build", "-j", "2", *options, "--top-module", TOP,
                 "--Mdir", executable.parent, "-CFLAGS", f"-O2 -std=gnu++20 {' '.join(defines)}", *files, BENCH, LOOP,
