@@ -173,7 +173,7 @@ $(VENV)/waves: $(VENV)/sim
 
 $(VENV)/docs: $(VENV)/waves
 	@echo "installing Sphinx, WaveDrom and Graphviz"
-	@$(PYTHON) -m pip install -q --disable-pip-version-check 'raycaster[docs]'
+	@$(PYTHON) -m pip install -q --disable-pip-version-check --use-pep517 'raycaster[docs]'
 	@touch $@
 
 $(VENV)/formal: $(VENV)/base
