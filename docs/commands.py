@@ -16,6 +16,7 @@ from rich.table import Table
 
 from raycaster.errors import UserError
 from raycaster.options import run_command
+from raycaster.tools import find_program
 
 ROOT = Path(__file__).parents[1]
 PAGES = (*sorted((ROOT / "docs").glob("*.md")), ROOT / "README.md", ROOT / "CONTRIBUTING.md")
@@ -25,6 +26,9 @@ LEFT_OUT = {
     ".venv/bin/pre-commit install": "it would change this clone",
 }
 """By command, why it is not run."""
+
+NEEDED = {"make quartus": "quartus_sh"}
+"""By how a command begins, the program that it is left out without."""
 
 UNATTENDED = {"make play": ("FRAMES=10",)}
 """By how a command begins, what ends it without a person."""
@@ -40,6 +44,12 @@ def shell_lines(page: Path) -> list[str]:
 def commands_of(pages: Iterable[Path]) -> list[str]:
     """The commands of pages, each once."""
     return list(dict.fromkeys(line for page in pages for line in shell_lines(page)))
+
+
+def left_out(command: str) -> str | None:
+    """Why a command is not run; None where it is."""
+    missing = (tool for start, tool in NEEDED.items() if command.startswith(start) and find_program(tool) is None)
+    return LEFT_OUT.get(command) or next((f"{tool} is not on the path" for tool in missing), None)
 
 
 def outside_make() -> dict[str, str]:
@@ -85,8 +95,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     console, failed = Console(), 0
     table = Table("command", "seconds", "exit code", "log")
     for number, command in enumerate(chosen):
-        if command in LEFT_OUT:
-            table.add_row(command, "", "", f"left out: {LEFT_OUT[command]}")
+        if reason := left_out(command):
+            table.add_row(command, "", "", f"left out: {reason}")
             continue
         log = arguments.output / f"{number:02}.log"
         with console.status(f"{number + 1} of {len(chosen)}: {command}"):
