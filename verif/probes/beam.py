@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.golden.rays import primary_slopes
 from raycaster.rtl import beam_caster as beam
 from raycaster.rtl import fold_tester as tester
@@ -408,7 +408,7 @@ class BeamProbes:
             Probe("found", (f"{CASTER}.found_{{bounce}}",), "blend", found),
             Probe("its colour", (f"{CASTER}.color_{{bounce}}",), "blend", found_colour, colour=True),
             Probe("colour seen", tuple(f"{BLEND}.{{seen}}_{name}" for name in COLOURS), "blend",
-                lambda ray, place: channels_of(seen_colour(ray, place)[0], 8), late=1),
+                lambda ray, place: channels_of(seen_colour(ray, place)[0], CHANNEL_BITS), late=1),
             Probe("pixel", tuple(f"{BLEND}.color_mean_{number}_i.mean" for number in range(3)), "done", pixel_channels),
             Probe("pixel to the monitor", tuple(f"{RENDERER}.shown_{name}" for name in COLOURS), "shown",
                 pixel_channels),

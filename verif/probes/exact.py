@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from raycaster.configuration import Configuration
 from raycaster.golden.world import OTHER_AXES
 from raycaster.verif.probes.ray import AXES, Event, Place, Probe, Ray, Value, fields
-from raycaster.verif.probes.units import SIGNS, UnitProbes, slope_signs
+from raycaster.verif.probes.units import SIGNS, UnitProbes, nearest_found, slope_signs
 from raycaster.verif.waves import Samples
 
 SURFACE = ("axis", "position", "colour")
@@ -91,11 +91,6 @@ def fraction(ray: Ray, place: Place) -> Sequence[Value]:
 def nearest(ray: Ray, place: Place) -> int:
     """The nearest rectangle up to this one, -1 for none."""
     return ray.nearest(place) if ray.alive(place.bounce) else -1
-
-
-def nearest_found(ray: Ray, place: Place) -> Sequence[Value]:
-    """Whether there is one."""
-    return (int(nearest(ray, place) >= 0) if ray.alive(place.bounce) else None,)
 
 
 def nearest_fraction(ray: Ray, place: Place) -> Sequence[Value]:

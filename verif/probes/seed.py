@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from raycaster.configuration import Configuration
 from raycaster.golden.world import OTHER_AXES
 from raycaster.verif.probes.ray import AXES, Event, Place, Probe, Ray, Read, Value, fields
-from raycaster.verif.probes.units import RECT_FIELDS, SIGNS, UnitProbes, slope_signs, sorted_rect
+from raycaster.verif.probes.units import RECT_FIELDS, SIGNS, UnitProbes, nearest_found, slope_signs, sorted_rect
 from raycaster.verif.waves import Samples
 
 
@@ -132,11 +132,6 @@ def nearest_depth(ray: Ray, place: Place) -> Sequence[Value]:
     """Of the nearest rectangle up to this one."""
     nearest = ray.nearest(place) if ray.alive(place.bounce) else -1
     return (ray.of_rectangle(Place(place.bounce, nearest), "depths") if nearest >= 0 else None,)
-
-
-def nearest_found(ray: Ray, place: Place) -> Sequence[Value]:
-    """Whether there is one."""
-    return (int(ray.nearest(place) >= 0) if ray.alive(place.bounce) else None,)
 
 
 def nearest_point(ray: Ray, place: Place) -> Sequence[Value]:

@@ -67,6 +67,11 @@ def found_colour(ray: Ray, place: Place) -> Sequence[Value]:
     return (ray.colour(winner) if winner >= 0 else None,)
 
 
+def nearest_found(ray: Ray, place: Place) -> Sequence[Value]:
+    """Whether any rectangle up to this one is hit; nothing of a ray that is lost."""
+    return (int(ray.nearest(place) >= 0) if ray.alive(place.bounce) else None,)
+
+
 def pixel(ray: Ray, place: Place) -> Sequence[Value]:
     """The pixel's colour."""
     return (ray.pixel,)

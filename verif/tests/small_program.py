@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+from raycaster.configuration import Configuration
 from raycaster.memory_map import BUTTONS, INTERRUPT_BIT, MEMORY_WORDS, RAY_TRACER, UART
 from raycaster.program import scene_words
 from raycaster.registers import register_map
-from raycaster.scene import Scene
+from raycaster.scene import Scene, load_scene
 
 REGISTERS = {f"x{number}": number for number in range(32)}
 _I, _LOAD, _STORE, _BRANCH, _R = 0x13, 0x03, 0x23, 0x63, 0x33
@@ -173,3 +176,11 @@ def small_program(scene: Scene, rectangles: int) -> list[int]:
         ("label", "end"),
     ]
     return assemble(lines)
+
+
+def write_program(scene: Path, configuration: Configuration, directory: Path) -> Path:
+    """The program for a scene and a design, as a file that a memory is loaded from."""
+    words = small_program(load_scene(scene, configuration.rectangles), configuration.rectangles)
+    program = directory / "small.hex"
+    program.write_text("".join(f"{word:08x}\n" for word in words))
+    return program

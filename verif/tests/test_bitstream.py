@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import SMALL_SCENE
-from small_program import small_program
+from small_program import write_program
 
 from raycaster.configuration import configure
 from raycaster.design import Design, ProcessorDesign, design_for
@@ -94,8 +94,7 @@ def test_a_processor_on_the_board(tmp_path):
     """Its program says on the serial port what it says, and shows what it shows, moved by the board's buttons."""
     config = configure(engine="exact", screen="tiny", rectangles=4)
     scene = load_scene(SMALL_SCENE)
-    program = tmp_path / "small.hex"
-    program.write_text("".join(f"{word:08x}\n" for word in small_program(scene, config.rectangles)))
+    program = write_program(SMALL_SCENE, config, tmp_path)
     project = tmp_path / "project"
     project.mkdir()
     files = write_project(ULX3S, ProcessorDesign(program, config), project)

@@ -3,20 +3,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from conftest import BUILD, ROOT, SMALL_SCENE
 from PIL import Image
-from small_program import small_program
+from small_program import write_program
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import configure
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, MEMORY_WORDS
 from raycaster.rtl import picorv32
 from raycaster.rtl.convert import write_processor_system
-from raycaster.scene import load_scene
 from raycaster.verif import game
 from raycaster.verif.play import check_program, play, read_buttons
 from raycaster.verif.simulator import SYSTEM_BENCH, SimulationError, build_model
@@ -28,13 +25,6 @@ pytestmark = pytest.mark.skipif(
 MIRROR_ROOM = ROOT / "scenes" / "mirror_room.toml"
 FIRST_FRAME = 1
 """The first that shows the scene."""
-
-
-def write_program(scene: Path, configuration: Configuration, directory: Path) -> Path:
-    words = small_program(load_scene(scene, configuration.rectangles), configuration.rectangles)
-    program = directory / "small.hex"
-    program.write_text("".join(f"{word:08x}\n" for word in words))
-    return program
 
 
 @pytest.mark.parametrize(
