@@ -97,15 +97,20 @@ def render(scene: Scene, screen: Screen, reflections: int | None = None) -> np.n
     Returns:
         uint8 (rows, columns, 3).
     """
+    reflections = scene.reflections if reflections is None else reflections
+    return picture(screen, Rectangles.of_scene(scene), scene.camera.position, scene.background, reflections)
+
+
+def picture(
+    screen: Screen,
+    rectangles: Rectangles,
+    camera: Sequence[int] | np.ndarray,
+    background: Sequence[int],
+    reflections: int,
+) -> np.ndarray:
+    """The same of what a scene comes down to; the arguments are those of `trace`."""
     slopes = primary_slopes(screen)
-    traced = trace(
-        Rectangles.of_scene(scene),
-        scene.camera.position,
-        scene.background,
-        slopes.reshape(-1, 3),
-        scene.reflections if reflections is None else reflections,
-    )
-    return traced.colours.reshape(slopes.shape)
+    return trace(rectangles, camera, background, slopes.reshape(-1, 3), reflections).colours.reshape(slopes.shape)
 
 
 def trace(

@@ -3,20 +3,60 @@
 
 from __future__ import annotations
 
+import argparse
 import shutil
 import tempfile
 from pathlib import Path
 
+from rich.console import Console
+
 from raycaster.configuration import Configuration
 from raycaster.design import Design
 from raycaster.errors import UserError
+from raycaster.options import add_configuration_options
 from raycaster.verif.job import Job
-from raycaster.verif.simulator import Model, SimulationError, run_bench
+from raycaster.verif.simulator import (
+    BUILD,
+    WINDOW_BENCH,
+    Model,
+    SimulationError,
+    add_simulator_option,
+    build_model,
+    find_tool,
+    run_bench,
+)
 
 FILE = "waves.fst"
+SCENE = Path("scenes/mirror_room.toml")
 
 MARGIN = 32
 """Clocks after the last row's time, in which its last pixels reach the pins."""
+
+
+def add_recording_options(parser: argparse.ArgumentParser, pixel: str) -> None:
+    """Add the options that say what is recorded of which design.
+
+    Args:
+        parser: gets them.
+        pixel: what `--pixel` is for.
+    """
+    parser.add_argument("--scene", type=Path, default=SCENE, metavar="PATH", help="a scene file (default: %(default)s)")
+    parser.add_argument("--pixel", metavar="COLUMN,ROW", help=pixel)
+    add_simulator_option(parser)
+    parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes")
+    add_configuration_options(parser)
+
+
+def pixel_place(text: str) -> tuple[int, int]:
+    """Column and row, as they are given.
+
+    Raises:
+        UserError: they are not two numbers.
+    """
+    column, comma, row = text.partition(",")
+    if not (comma and column.strip().isdecimal() and row.strip().isdecimal()):
+        raise UserError(f"pixel: a column and a row of rays, as in 160,120, not {text}")
+    return int(column), int(row)
 
 
 def window_clocks(configuration: Configuration, first_row: int, last_row: int) -> tuple[int, int]:
@@ -75,3 +115,30 @@ def record(model: Model, design: Design, rows: tuple[int, int], target: Path) ->
     shutil.rmtree(target, ignore_errors=True)
     partial.rename(target)
     return target / FILE
+
+
+def build_and_record(
+    design: Design, simulator: str, rows: tuple[int, int], target: Path, *, build: Path, console: Console
+) -> Path:
+    """Record some rows with a model that is built where there is none, telling a person what is being waited for.
+
+    Args:
+        design: the scene and what shows it.
+        simulator: one of `SIMULATORS`.
+        rows: the first and the last one, of rays.
+        target: a directory; see `record`.
+        build: the directory that holds `model/`.
+        console: for the telling.
+
+    Returns:
+        The waveform.
+
+    Raises:
+        UserError: there are no such rows, or the simulator is missing.
+        SimulationError: it could not build the model, or the simulation failed.
+    """
+    find_tool(simulator)
+    with console.status(f"building {design.configuration.name} with {simulator}"):
+        model = build_model(design.configuration, simulator, build=build, bench=WINDOW_BENCH)
+    with console.status("simulating"):
+        return record(model, design, rows, target)

@@ -36,8 +36,6 @@ BUILD = Path("build")
 
 HERE = Path(__file__).parent
 
-WINDOW = HERE / "wave_window.v"
-
 MINIMUM_VERILATOR = (5, 36)
 """The oldest that cocotb accepts."""
 
@@ -74,20 +72,32 @@ class Tool:
 
 @dataclass(frozen=True)
 class Bench:
-    """What a design is simulated in: the ray tracer alone, or, if `system`, with a processor that runs a program."""
+    """What a design is simulated in."""
 
     top: str
+    kind: str = ""
+    """Tells its models from those of the plain bench."""
+
     system: bool = False
+    """Whether the design comes with a processor that runs a program."""
+
+    window: bool = False
+    """Whether it writes waveforms of part of a frame, as `wave_window.v` says."""
 
     @property
     def modules(self) -> list[str]:
         """What it is made of; the top is the last."""
-        return ["line_sink", self.top]
+        return ["line_sink", *(["wave_window"] if self.window else []), self.top]
 
     @property
     def sources(self) -> list[Path]:
         """Its Verilog."""
         return [HERE / f"{module}.v" for module in self.modules]
+
+    @property
+    def defines(self) -> dict[str, int]:
+        """Macros of its Verilog."""
+        return {"WAVE_WINDOW": 1} if self.window else {}
 
     def parameters(self, configuration: Configuration) -> dict[str, int]:
         """Of its Verilog, for a design."""
@@ -105,7 +115,8 @@ class Bench:
 
 
 MODULE_BENCH = Bench("bench")
-SYSTEM_BENCH = Bench("system_bench", system=True)
+WINDOW_BENCH = Bench("bench", kind="window", window=True)
+SYSTEM_BENCH = Bench("system_bench", kind="system", system=True)
 
 
 @dataclass(frozen=True)
@@ -120,8 +131,6 @@ class Model:
     """Whether it was built just now, rather than found."""
 
     bench: Bench = MODULE_BENCH
-    window: bool = False
-    """Whether its bench writes waveforms of part of a frame, as `wave_window.v` says."""
 
 
 def add_simulator_option(parser: argparse.ArgumentParser) -> None:
@@ -224,21 +233,19 @@ def build_model(
     variant: str = "",
     defines: Mapping[str, int] | None = None,
     bench: Bench = MODULE_BENCH,
-    window: bool = False,
 ) -> Model:
     """Build a model of a design, or find it built.
 
     Args:
         configuration: the design.
         simulator: one of `SIMULATORS`.
-        waves: whether runs can write waveforms.
+        waves: whether runs can write waveforms; not in a bench that writes its own.
         build: the directory that holds `model/`.
         verilog: files to use instead of the converted ones, for instance broken on purpose.
         flags: for Verilator.
         variant: names a model that differs by files or flags, so that it does not replace the plain one.
-        defines: macros of the bench.
+        defines: more macros than the bench's own.
         bench: what the design is simulated in.
-        window: whether runs write a waveform of part of a frame; not together with `waves`.
 
     Raises:
         UserError: the simulator, or a library that it needs, is missing.
@@ -246,19 +253,18 @@ def build_model(
     """
     tool = find_tool(simulator)
     design = verilog if verilog is not None else convert(configuration, build, system=bench.system)
-    sources = [*design, *bench.sources, *([WINDOW] if window else [])]
+    sources = [*design, *bench.sources]
     parameters = bench.parameters(configuration)
-    defines = {**(defines or {}), **({"WAVE_WINDOW": 1} if window else {})}
+    defines = {**(defines or {}), **bench.defines}
     # Verilator's main program must know of waveforms for a bench to write one, and Icarus would write all of it.
-    built_for_waves = waves or (window and simulator == "verilator")
+    built_for_waves = waves or (bench.window and simulator == "verilator")
     arguments = _build_arguments(simulator, built_for_waves, flags)
     digest = hashlib.sha256(
         repr((tool.name, tool.version, cocotb.__version__, parameters, defines, arguments)).encode()
     )
     for source in sources:
         digest.update(source.read_bytes())
-    kind = "system" if bench.system else ""
-    parts = (configuration.name, kind, simulator, variant, "waves" if waves else "", "window" if window else "")
+    parts = (configuration.name, bench.kind, simulator, variant, "waves" if waves else "")
     directory = build / "model" / "-".join(filter(None, parts))
     with lock(directory):
         stamp = directory / "stamp.json"
@@ -283,7 +289,7 @@ def build_model(
                 except (RuntimeError, SystemExit):
                     raise _build_failure(configuration, simulator, log) from None
             write_stamp(stamp, digest.hexdigest(), [])
-    return Model(configuration, simulator, directory, waves, fresh, bench, window)
+    return Model(configuration, simulator, directory, waves, fresh, bench)
 
 
 def _build_failure(configuration: Configuration, simulator: str, log: Path) -> Exception:
@@ -347,7 +353,7 @@ def run_bench(
             results_xml=str(results),
             log_file=log,
             # Icarus must be told what kind of waveform its bench writes, and Verilator would begin one of its own.
-            waves=model.waves or (model.window and model.simulator == "icarus"),
+            waves=model.waves or (model.bench.window and model.simulator == "icarus"),
             # Threads of numpy's would spin beside the simulation, and never have work.
             extra_env=job.environment() | {"OPENBLAS_NUM_THREADS": "1"},
             **{"plusargs": plusargs} | (dump_options[model.simulator] if waves else {}),

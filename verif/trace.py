@@ -7,7 +7,6 @@ import argparse
 import sys
 from collections.abc import Sequence
 from fractions import Fraction
-from pathlib import Path
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -15,54 +14,19 @@ from rich.table import Table
 from rich.text import Text
 
 from raycaster.configuration import CHANNEL_BITS
-from raycaster.design import Design, design_for
+from raycaster.design import design_for
 from raycaster.errors import UserError
-from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.options import given_options, run_command
 from raycaster.verif.probes.engines import description_of
 from raycaster.verif.probes.ray import Place, Probe, Ray, Reading, Value, first_difference, read
-from raycaster.verif.recorder import record
-from raycaster.verif.simulator import BUILD, Model, SimulationError, add_simulator_option, build_model, find_tool
+from raycaster.verif.recorder import add_recording_options, build_and_record, pixel_place
+from raycaster.verif.simulator import SimulationError
 from raycaster.verif.waves import Waves
 
-SCENE = Path("scenes/mirror_room.toml")
 LOG_COLUMNS = 140
 PIXEL_EVENTS = ("done", "shown")
 WRONG = "bold red"
 ERROR_DIGITS = 3
-
-
-def pixel_place(text: str) -> tuple[int, int]:
-    """Column and row, as they are given.
-
-    Raises:
-        UserError: they are not two numbers.
-    """
-    column, comma, row = text.partition(",")
-    if not (comma and column.strip().isdecimal() and row.strip().isdecimal()):
-        raise UserError(f"pixel: a column and a row of rays, as in 160,120, not {text}")
-    return int(column), int(row)
-
-
-def trace_pixel(model: Model, design: Design, row: int, column: int, target: Path) -> tuple[Ray, list[Reading], Path]:
-    """Record a pixel's row, and read the pixel's life in it.
-
-    Args:
-        model: built for windows.
-        design: the scene, and what the model is of.
-        row: of rays.
-        column: of rays.
-        target: the directory of the waveform.
-
-    Returns:
-        What golden knows, all readings in the order of time, and the waveform.
-
-    Raises:
-        UserError: there is no such pixel.
-        SimulationError: the simulation failed.
-    """
-    ray = Ray(design, row, column)
-    waves = record(model, design, (row, row), target)
-    return ray, read(Waves(waves), description_of(design.configuration, ray.unit), ray), waves
 
 
 def show(ray: Ray, readings: Sequence[Reading], console: Console) -> None:
@@ -234,11 +198,7 @@ def _error_text(ray: Ray, probe: Probe, golden: Sequence[Value], true: Sequence[
 def parse_arguments() -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(prog="python -m raycaster.verif.trace", description=__doc__)
-    parser.add_argument("--scene", type=Path, default=SCENE, metavar="PATH", help="a scene file (default: %(default)s)")
-    parser.add_argument("--pixel", metavar="COLUMN,ROW", help="of rays, from 0 on")
-    add_simulator_option(parser)
-    parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes")
-    add_configuration_options(parser)
+    add_recording_options(parser, "of rays, from 0 on")
     return parser.parse_args()
 
 
@@ -250,17 +210,16 @@ def main() -> int:
     column, row = pixel_place(arguments.pixel)
     console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
     design = design_for(arguments.scene, given_options(arguments))
-    Ray(design, row, column)  # refuses a pixel that there is not, before anything is built
-    find_tool(arguments.simulator)
+    ray = Ray(design, row, column)
+    target = arguments.build / "trace" / design.name
     try:
-        with console.status(f"building {design.configuration.name} with {arguments.simulator}"):
-            model = build_model(design.configuration, arguments.simulator, build=arguments.build, window=True)
-        with console.status("simulating"):
-            target = arguments.build / "trace" / design.name
-            ray, readings, waves = trace_pixel(model, design, row, column, target)
+        waves = build_and_record(
+            design, arguments.simulator, (row, row), target, build=arguments.build, console=console
+        )
     except SimulationError as error:
         console.print(str(error), style="red", markup=False, soft_wrap=True)
         return 1
+    readings = read(Waves(waves), description_of(design.configuration, ray.unit), ray)
     show(ray, readings, console)
     console.print(f"The waveform of its row is {waves}", highlight=False, soft_wrap=True)
     return int(first_difference(readings) is not None)

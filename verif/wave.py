@@ -13,13 +13,12 @@ from rich.console import Console
 
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
-from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.options import given_options, run_command
 from raycaster.rtl.convert import design_states
 from raycaster.verif.probes.engines import description_of
 from raycaster.verif.probes.ray import Ray
-from raycaster.verif.recorder import check_rows, record
-from raycaster.verif.simulator import BUILD, Model, SimulationError, add_simulator_option, build_model, find_tool
-from raycaster.verif.trace import SCENE, pixel_place
+from raycaster.verif.recorder import add_recording_options, build_and_record, check_rows, pixel_place
+from raycaster.verif.simulator import SimulationError
 from raycaster.verif.wave_files import View, write_files
 from raycaster.verif.waves import Waves
 
@@ -40,24 +39,17 @@ def rows_of(text: str | None, row: int) -> tuple[int, int]:
     return int(numbers[0]), int(numbers[-1])
 
 
-def write_wave(model: Model, design: Design, ray: Ray, rows: tuple[int, int], target: Path) -> tuple[Path, list[Path]]:
-    """Record rows of a frame, and write viewers' files with the cursor at a pixel's ray.
+def write_view(path: Path, design: Design, ray: Ray) -> list[Path]:
+    """Write viewers' files with the cursor at a pixel's ray.
 
     Args:
-        model: built for windows.
-        design: the scene, and what the model is of.
-        ray: of the pixel, which lies in the rows.
-        rows: the first and the last.
-        target: the directory for it all.
+        path: a waveform that has the pixel's row.
+        design: what it is of.
+        ray: of the pixel.
 
     Returns:
-        The waveform, and the files of GTKWave and Surfer.
-
-    Raises:
-        UserError: there are no such rows.
-        SimulationError: the simulation failed.
+        The files of GTKWave and Surfer, beside the waveform.
     """
-    path = record(model, design, rows, target)
     waves = Waves(path)
     description = description_of(design.configuration, ray.unit)
     samples = waves.sample(description.controls())
@@ -65,7 +57,7 @@ def write_wave(model: Model, design: Design, ray: Ray, rows: tuple[int, int], ta
     cycles = [event.cycle for event in events if event.kind != "shown"] or [0, len(samples.times_ns) - 1]
     begin, end = (samples.times_ns[max(0, cycle - 1)] for cycle in (cycles[0], max(cycles)))
     view = View(description.groups(ray), design_states(design.configuration), begin, end)
-    return path, write_files(waves, view)
+    return write_files(waves, view)
 
 
 def viewer(waves: Path, files: list[Path]) -> list[str] | None:
@@ -84,15 +76,9 @@ def commands(waves: Path, files: list[Path]) -> list[list[str]]:
 def parse_arguments() -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(prog="python -m raycaster.verif.wave", description=__doc__)
-    parser.add_argument("--scene", type=Path, default=SCENE, metavar="PATH", help="a scene file (default: %(default)s)")
-    parser.add_argument(
-        "--pixel", metavar="COLUMN,ROW", help="of rays, from 0 on; the cursor is put there (the middle)"
-    )
+    add_recording_options(parser, "of rays, from 0 on; the cursor is put there (the middle)")
     parser.add_argument("--span", metavar="FIRST,LAST", help="rows to write (default: that of the pixel)")
-    add_simulator_option(parser)
-    parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes")
     parser.add_argument("--no-viewer", action="store_true", help="open nothing")
-    add_configuration_options(parser)
     return parser.parse_args()
 
 
@@ -108,15 +94,13 @@ def main() -> int:
     if not rows[0] <= row <= rows[1]:
         raise UserError(f"span: rows {rows[0]} to {rows[1]} do not have the pixel's, which is {row}")
     console = Console(soft_wrap=True)
-    find_tool(arguments.simulator)
+    target = arguments.build / "wave" / design.name
     try:
-        with console.status(f"building {design.configuration.name} with {arguments.simulator}"):
-            model = build_model(design.configuration, arguments.simulator, build=arguments.build, window=True)
-        with console.status("simulating"):
-            waves, files = write_wave(model, design, ray, rows, arguments.build / "wave" / design.name)
+        waves = build_and_record(design, arguments.simulator, rows, target, build=arguments.build, console=console)
     except SimulationError as error:
         console.print(str(error), style="red", markup=False)
         return 1
+    files = write_view(waves, design, ray)
     size = waves.stat().st_size / MEGABYTE
     console.print(f"{waves}: rows {rows[0]} to {rows[1]}, {size:.1f} MB", highlight=False)
     command = None if arguments.no_viewer else viewer(waves, files)

@@ -20,7 +20,6 @@ from raycaster.design import design_for
 from raycaster.errors import UserError
 from raycaster.golden import exact
 from raycaster.golden.picture import count_wrong, shown
-from raycaster.golden.rays import primary_slopes
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.rtl import scene_player
@@ -74,9 +73,11 @@ class Judge:
             self.all_wrong += self.wrong
 
     def _count(self, frame: Frame) -> int:
-        scene, slopes = frame.scene, primary_slopes(self._config.screen_geometry)
-        traced = exact.trace(scene.rectangles, scene.camera, scene.background, slopes.reshape(-1, 3), scene.reflections)
-        return count_wrong(frame.picture, shown(traced.colours.reshape(slopes.shape), self._config))
+        scene = frame.scene
+        perfect = exact.picture(
+            self._config.screen_geometry, scene.rectangles, scene.camera, scene.background, scene.reflections
+        )
+        return count_wrong(frame.picture, shown(perfect, self._config))
 
 
 class Window:

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from raycaster.configuration import Configuration
+from raycaster.options import run_command
 from raycaster.verif.job import Job
 from raycaster.verif.simulator import build_model, run_bench
 
@@ -56,6 +57,23 @@ def bench(output: Path) -> Bench:
         return output
 
     return run
+
+
+@pytest.fixture
+def refuses(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
+    """Runs a command's body that must end with one line on standard error, which it returns."""
+
+    def refused(main: Callable[[], int | None], *options: str) -> str:
+        monkeypatch.setattr("sys.argv", ["command", *options])
+        with pytest.raises(SystemExit) as ended:
+            run_command(main)
+        assert ended.value.code == 2
+        error = capsys.readouterr().err
+        assert error.startswith("error: ")
+        assert error.count("\n") == 1
+        return error
+
+    return refused
 
 
 @pytest.fixture

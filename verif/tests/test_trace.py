@@ -15,12 +15,11 @@ from rich.console import Console
 
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
-from raycaster.options import run_command
 from raycaster.verif.probes.engines import description_of
 from raycaster.verif.probes.ray import Ray, Reading, first_difference, module_of, read
-from raycaster.verif.recorder import record
-from raycaster.verif.simulator import build_model, convert
-from raycaster.verif.trace import difference_line, main, pixel_place, show
+from raycaster.verif.recorder import pixel_place, record
+from raycaster.verif.simulator import WINDOW_BENCH, build_model, convert
+from raycaster.verif.trace import difference_line, main, show
 from raycaster.verif.wave_files import View, signal_names
 from raycaster.verif.waves import Waves
 
@@ -54,7 +53,7 @@ def recorded(engine: str, directory: Path, edit: tuple[str, str, str] | None = N
             copies.append(directory / source.name)
             copies[-1].write_text(text)
         sources = copies
-    model = build_model(design(engine).configuration, "icarus", build=directory, verilog=sources, window=True)
+    model = build_model(design(engine).configuration, "icarus", build=directory, verilog=sources, bench=WINDOW_BENCH)
     return Waves(record(model, design(engine), (PIXEL[1], PIXEL[1]), directory / "row"))
 
 
@@ -166,16 +165,9 @@ def test_the_command(tmp_path):
         (("--pixel", "1,1", "--scene", "no.toml"), "no.toml"),
     ],
 )
-def test_mistakes(monkeypatch, capsys, options, complaint):
+def test_mistakes(refuses, options, complaint):
     """One line, and no traceback."""
-    monkeypatch.setattr("sys.argv", ["trace", *options])
-    with pytest.raises(SystemExit) as ended:
-        run_command(main)
-    assert ended.value.code == 2
-    error = capsys.readouterr().err
-    assert error.startswith("error: ")
-    assert complaint in error
-    assert error.count("\n") == 1
+    assert complaint in refuses(main, *options)
 
 
 def test_names():

@@ -3,20 +3,21 @@
 
 from __future__ import annotations
 
+import io
 import re
 from pathlib import Path
 
 import pytest
 from conftest import BUILD
+from rich.console import Console
 
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
-from raycaster.options import run_command
 from raycaster.rtl.ray_sequencer import RayState
 from raycaster.verif.monitor import CLOCK_NS
 from raycaster.verif.probes.ray import Ray
-from raycaster.verif.simulator import build_model
-from raycaster.verif.wave import main, viewer, write_wave
+from raycaster.verif.recorder import build_and_record
+from raycaster.verif.wave import main, viewer, write_view
 from raycaster.verif.wave_files import View, write_files
 from raycaster.verif.waves import Waves, signed
 
@@ -135,10 +136,10 @@ PIXEL = (48, 2)
 def wave(request, tmp_path_factory) -> tuple[Design, Ray, Waves, list[Path]]:
     """A window of each engine's frame, by Icarus, which builds at once, and what viewers get."""
     design = design_for(SCENE, {"screen": "tiny", "rectangles": "3", **OPTIONS[request.param]})
-    directory = tmp_path_factory.mktemp("wave")
-    model = build_model(design.configuration, "icarus", build=BUILD, window=True)
     ray = Ray(design, PIXEL[1], PIXEL[0])
-    waves, files = write_wave(model, design, ray, (1, 3), directory / "tall")
+    target = tmp_path_factory.mktemp("wave") / "tall"
+    waves = build_and_record(design, "icarus", (1, 3), target, build=BUILD, console=Console(file=io.StringIO()))
+    files = write_view(waves, design, ray)
     return design, ray, Waves(waves), files
 
 
@@ -220,16 +221,9 @@ def test_a_signal_that_is_missing_is_said(wave):
         (("--simulator", "questa"), "simulator: verilator or icarus, not questa"),
     ],
 )
-def test_mistakes(monkeypatch, capsys, options, complaint):
+def test_mistakes(refuses, options, complaint):
     """One line, and no traceback."""
-    monkeypatch.setattr("sys.argv", ["wave", "--screen", "tiny", *options])
-    with pytest.raises(SystemExit) as ended:
-        run_command(main)
-    assert ended.value.code == 2
-    error = capsys.readouterr().err
-    assert error.startswith("error: ")
-    assert complaint in error
-    assert error.count("\n") == 1
+    assert complaint in refuses(main, "--screen", "tiny", *options)
 
 
 def test_the_viewer_that_is_there_is_opened(tmp_path, monkeypatch):
