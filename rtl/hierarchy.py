@@ -14,7 +14,6 @@ import warnings
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -149,16 +148,26 @@ class Inside:
 
 @contextmanager
 def quick_elaboration() -> Iterator[None]:
-    """Elaborate without the source text of every frame, which MyHDL asks for at each instance and never looks at.
+    """Elaborate without looking for the source of every frame: MyHDL asks for the stack at each instance and process.
 
-    Without this a design of 32 units takes ten times as long to elaborate.
+    It only wants a few frames and their functions' names. Python's own answer opens files, and goes through all modules
+    for each frame that has no file: 64 units take twice as long with it, and six times as long under pytest.
     """
     with_source = inspect.stack
-    inspect.stack = partial(with_source, 0)
+    inspect.stack = _callers
     try:
         yield
     finally:
         inspect.stack = with_source
+
+
+def _callers() -> list[inspect.FrameInfo]:
+    """What `inspect.stack` returns, but for the source."""
+    found, frame = [], inspect.currentframe()
+    while frame := frame.f_back:
+        code = frame.f_code
+        found.append(inspect.FrameInfo(frame, code.co_filename, frame.f_lineno, code.co_name, None, None))
+    return found
 
 
 def convert_hierarchy(top: _Block, directory: Path, header: str) -> list[Module]:
