@@ -39,7 +39,7 @@ help:
 	@echo "make report   error against run time and cells, and the stiff catalogue: build/report/index.html; QUICK=1 for a"
 	@echo "              first look, SCHEDULER=tcp://host:port for a Dask cluster's workers"
 	@echo "make docs     the documentation, its diagrams and numbers made anew: build/docs/index.html"
-	@echo "make commands  run every command of the documentation, which takes hours; ONLY=text for those with that in them"
+	@echo "make commands  run every command of the documentation, which takes half an hour; ONLY=text for those with that in them"
 	@echo "make registers  write what is made of the register map: the C header in sw/, the page in build/registers/"
 	@echo "make test     run all tests, in both simulators"
 	@echo "make soak     show random scenes at full size: SEEDS=100 of them, from FIRST=0 on; STIFF=1 shows the stiff catalogue"
