@@ -15,7 +15,7 @@ from myhdl._block import _Block
 
 from raycaster.configuration import Configuration, configure
 from raycaster.memory_map import PROGRAM_FILE
-from raycaster.rtl.hierarchy import Inside, Part, find_block, look_inside, quick_elaboration
+from raycaster.rtl.hierarchy import Inside, Part, elaboration, find_block, look_inside
 from raycaster.rtl.processor_system import ProcessorPorts, processor_system
 from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
 
@@ -120,7 +120,7 @@ def _in_common(sequences: Iterable[Sequence[str]]) -> tuple[str, ...]:
 @cache
 def _elaborate(design: Callable[[Configuration], _Block], engine: str) -> _Block:
     """The design with all defaults; one serves several drawings."""
-    with quick_elaboration():
+    with elaboration():
         return design(configure(engine=engine))
 
 

@@ -16,7 +16,7 @@ from myhdl import Constant, Signal, always_comb, always_seq, block, intbv
 from raycaster.configuration import Configuration, configure
 from raycaster.program import scene_words
 from raycaster.registers import address_bits
-from raycaster.rtl.hierarchy import constant, convert_hierarchy, quick_elaboration, unconnected
+from raycaster.rtl.hierarchy import constant, convert_hierarchy, elaboration, unconnected
 from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
 from raycaster.scene import Scene, load_scene
 
@@ -104,7 +104,7 @@ def ports(config: Configuration) -> dict[str, Signal]:
 def convert(scene: Scene, config: Configuration, directory: Path) -> list[Path]:
     """Write the design as Verilog, one file a module, the top last."""
     directory.mkdir(parents=True, exist_ok=True)
-    with quick_elaboration():
+    with elaboration():
         top = picture_frame(**ports(config), scene=scene, config=config)
     return [module.path for module in convert_hierarchy(top, directory, "// {module}")]
 

@@ -18,7 +18,7 @@ from raycaster.memory_map import PROGRAM_FILE
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.output import replaced
 from raycaster.rtl.dvi_encoder import DviPorts, dvi_encoder
-from raycaster.rtl.hierarchy import Module, convert_hierarchy, quick_elaboration, state_names
+from raycaster.rtl.hierarchy import Module, convert_hierarchy, elaboration, state_names
 from raycaster.rtl.processor_system import ProcessorPorts, processor_system
 from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
 from raycaster.rtl.ray_caster_system import SystemPorts, ray_caster_system
@@ -48,7 +48,7 @@ def write_verilog(config: Configuration, directory: Path) -> list[Path]:
 
 def design_states(config: Configuration) -> dict[tuple[str, str], dict[int, str]]:
     """The enumerated signals of a configuration's design; see `raycaster.rtl.hierarchy.state_names`."""
-    with _CONVERSION, quick_elaboration():
+    with _CONVERSION, elaboration():
         return state_names(ray_caster_module(**ModulePorts(config).all(), config=config))
 
 
@@ -117,7 +117,7 @@ def _write(
     complete: Callable[[list[Module], Path], None] | None = None,
 ) -> list[Path]:
     with replaced(directory) as written:
-        with _CONVERSION, quick_elaboration():
+        with _CONVERSION, elaboration():
             modules = convert_hierarchy(elaborate(), written, _header(config))
         if complete:
             complete(modules, written)

@@ -24,6 +24,7 @@ from myhdl._extractHierarchy import _MemInfo, _UserVerilogCode
 from myhdl._instance import _Instantiator
 from myhdl._ShadowSignal import _SliceSignal
 from myhdl._Signal import _Signal
+from myhdl._simulator import _signals
 from myhdl.conversion._toVerilog import _ToVerilogConvertor, toVerilog
 
 from raycaster.rtl.verilog_style import restyle
@@ -147,18 +148,21 @@ class Inside:
 
 
 @contextmanager
-def quick_elaboration() -> Iterator[None]:
-    """Elaborate without looking for the source of every frame: MyHDL asks for the stack at each instance and process.
+def elaboration() -> Iterator[None]:
+    """Elaborate quickly, and have MyHDL forget the signals afterwards; what is to be simulated must be within too.
 
-    It only wants a few frames and their functions' names. Python's own answer opens files, and goes through all modules
-    for each frame that has no file: 64 units take twice as long with it, and six times as long under pytest.
+    MyHDL asks for the stack at each instance and process, of which it only wants a few frames and their functions'
+    names. Python's own answer opens files, and goes through all modules for each frame that has no file: 64 units take
+    twice as long with it, and six times as long under pytest. And MyHDL keeps every signal ever made, and resets them
+    all after each simulation, so that each takes longer than the one before.
     """
-    with_source = inspect.stack
+    with_source, known = inspect.stack, len(_signals)
     inspect.stack = _callers
     try:
         yield
     finally:
         inspect.stack = with_source
+        del _signals[known:]
 
 
 def _callers() -> list[inspect.FrameInfo]:

@@ -48,7 +48,7 @@ from raycaster.configuration import COORDINATE_BITS, Configuration, configure
 from raycaster.errors import UserError
 from raycaster.options import run_command
 from raycaster.rtl.divider import divider
-from raycaster.rtl.hierarchy import convert_hierarchy, quick_elaboration
+from raycaster.rtl.hierarchy import convert_hierarchy, elaboration
 from raycaster.rtl.interfaces import Steps
 from raycaster.rtl.intersection_helper import intersection_helper
 from raycaster.rtl.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
@@ -224,7 +224,7 @@ class Builder:
         with _widths(bench):
             function, arguments = _arguments(bench)
             steps = bench.config.divider_steps
-            with quick_elaboration():
+            with elaboration():
                 top = function(**arguments)
             modules = convert_hierarchy(top, directory, "// {module}")
         for module in modules:

@@ -18,7 +18,7 @@ from myhdl import ResetSignal, Simulation, StopSimulation, block, delay, instanc
 
 from raycaster.configuration import Configuration
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.hierarchy import Module, Port, convert_hierarchy, port_signals, quick_elaboration
+from raycaster.rtl.hierarchy import Module, Port, convert_hierarchy, elaboration, port_signals
 from raycaster.rtl.interfaces import RaySteps, Steps
 from raycaster.rtl.ray_sequencer import GIVE_UP_AT, impatient
 
@@ -39,7 +39,7 @@ class Leaf:
 
     def __init__(self, function: Callable, arguments: Callable[[], dict[str, Any]], directory: Path):
         self._function, self._arguments, self._directory = function, arguments, directory
-        with quick_elaboration():
+        with elaboration():
             top = function(**arguments())
         self.modules: list[Module] = convert_hierarchy(top, directory, "// {module}")
         self.verilog: Sequence[Path] = [module.path for module in self.modules]
@@ -49,6 +49,7 @@ class Leaf:
         self.outputs = {port.name: port for port in ports if port.output}
         self._clocked = any(port.name == "clk" for port in ports)
 
+    @elaboration()
     def run_myhdl(self, stimulus: Sequence[Cycle]) -> list[dict[str, int]]:
         """Outputs of each cycle in MyHDL, as two's complement bit patterns, just before the clock rises."""
         arguments = self._arguments()
@@ -79,8 +80,7 @@ class Leaf:
 
             return dut, drive
 
-        with quick_elaboration():
-            simulation = Simulation(bench())
+        simulation = Simulation(bench())
         try:
             simulation.run(quiet=1)
         finally:

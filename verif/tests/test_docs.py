@@ -21,7 +21,7 @@ from raycaster.configuration import configure
 from raycaster.docs import blocks, commands, facts, timing
 from raycaster.docs.commands import commands_of, outside_make
 from raycaster.errors import UserError
-from raycaster.rtl.hierarchy import find_block, look_inside, quick_elaboration
+from raycaster.rtl.hierarchy import elaboration, find_block, look_inside
 from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
 from raycaster.verif.simulator import convert
 
@@ -199,7 +199,7 @@ def test_a_drawing_that_is_missing():
 def top():
     """A small design."""
     config = configure(screen="tiny", units=2, rectangles=1, reflections=0, divider_bits=3, culling=False)
-    with quick_elaboration():
+    with elaboration():
         return ray_caster_module(**ModulePorts(config).all(), config=config)
 
 

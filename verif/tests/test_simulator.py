@@ -84,6 +84,15 @@ def test_builds_once(tmp_path):
     assert build()
 
 
+def test_models_share_a_library(tmp_path):
+    """What Verilator's models have in common is compiled with the first; another compiler flag is another library."""
+    first, second = (build_model(TINY, build=tmp_path, variant=variant) for variant in ("first", "second"))
+    assert (first.directory / "verilated_vpi.o").exists()
+    assert list(second.directory.glob("verilated*.o")) == []
+    assert (second.directory / "bench").exists()
+    assert len(list(tmp_path.glob("model/runtime-*/verilated_vpi.o"))) == 1
+
+
 def test_failed_build_does_not_count(tmp_path):
     """A design that does not compile says where the log is, and is not taken for built the next time."""
     broken = tmp_path / "broken.v"
