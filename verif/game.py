@@ -20,6 +20,7 @@ from raycaster.errors import UserError
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.sw.firmware import build_firmware
 from raycaster.sw.play_script import DEMO, load
+from raycaster.verif.contact_sheet import write_contact_sheet
 from raycaster.verif.play import FASTEST, play
 from raycaster.verif.simulator import BUILD, SYSTEM_BENCH, SimulationError, build_model
 
@@ -27,6 +28,11 @@ FRAMES = 240
 ANIMATION = "game.webp"
 SHOWN_HZ = 30
 """Pictures a second of the animation: half the speed of the monitor, which browsers keep up with."""
+
+SHEET = "sheet.png"
+SHEET_COLUMNS = 3
+SHEET_FRAMES = 9
+"""Of the game, evenly spread."""
 
 POLL_SECONDS = 0.5
 
@@ -72,7 +78,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     except SimulationError as error:
         print(error, file=sys.stderr)
         return 1
-    write_animation(sorted(output.glob("frame_*.png")), output / ANIMATION)
+    frames = sorted(output.glob("frame_*.png"))
+    write_animation(frames, output / ANIMATION)
+    step = max(1, len(frames) // SHEET_FRAMES)
+    write_contact_sheet(frames[step - 1 :: step][:SHEET_FRAMES], output / SHEET, SHEET_COLUMNS)
     console.print((output / "uart.txt").read_text(errors="replace"), highlight=False, markup=False, end="")
     rate = result["clocks_a_second"]
     table = Table("design", "frames", "with a scene", "wrong pixels", "clocks/s", "frames/s")
@@ -82,7 +91,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     shown = str(result["frames"]), str(result["shown"]), "0", f"{rate:,}", f"{speed:.2f}"
     table.add_row(configuration.name, *shown)
     console.print(table)
-    console.print(f"{output / ANIMATION}, with each frame beside it", highlight=False)
+    console.print(f"{output / ANIMATION}, with each frame beside it, and {SHEET}", highlight=False)
     return 0
 
 

@@ -27,6 +27,7 @@ from raycaster.design import Design
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.options import add_configuration_options, as_make_variables, given_options, run_command
+from raycaster.verif.contact_sheet import write_contact_sheet
 from raycaster.verif.job import Job
 from raycaster.verif.netlist import COUNTED_CELLS, Netlist, find_yosys, synthesise
 from raycaster.verif.simulator import (
@@ -44,6 +45,9 @@ from raycaster.verif.simulator import (
 SCENES = Path("scenes")
 GATES_OPTIONS: Mapping[str, Any] = {"screen": "tiny", "units": 16, "reflections": 2}
 """Of a netlist, where they are not given: the fewest units with which one design shows all of `SCENES` in time."""
+
+SHEET = "scenes.png"
+SHEET_COLUMNS = 5
 
 POLL_SECONDS = 0.1
 LOG_COLUMNS = 120
@@ -222,6 +226,14 @@ def show(outcomes: list[Outcome], console: Console, title: str | None = None) ->
             console.print(f"{outcome.run.path.stem}: {outcome.failure}", style="red", markup=False, soft_wrap=True)
 
 
+def show_pictures(outcomes: list[Outcome], path: Path, console: Console) -> None:
+    """Write one picture of all frames, where there are several, and print its name."""
+    frames = [path.parent / outcome.run.name / "frame.png" for outcome in outcomes if outcome.result is not None]
+    if len(frames) > 1:
+        write_contact_sheet(frames, path, SHEET_COLUMNS)
+        console.print(f"{path} has all their pictures", highlight=False, soft_wrap=True)
+
+
 def show_traces(outcomes: list[Outcome], options: Mapping[str, Any], simulator: str, console: Console) -> None:
     """Print what to ask next of each scene that has a wrong pixel; a scene that is built in has no trace."""
     for outcome in outcomes:
@@ -316,6 +328,7 @@ def main() -> int:
     if gates:
         show_cells(netlists, console)
     show(outcomes, console, "through the netlist" if gates else None)
+    show_pictures(outcomes, outputs / SHEET, console)
     if not gates:
         show_traces(outcomes, given_options(arguments), arguments.simulator, console)
     return int(any(outcome.failure for outcome in outcomes))

@@ -57,6 +57,19 @@ def test_one_scene(build, scenes):
     assert "was built before" in _sim(*SMALL_OPTIONS, build=build).stdout
 
 
+def test_two_scenes(build, tmp_path):
+    """One picture has both."""
+    other = tmp_path / "other.toml"
+    other.write_text(SMALL_SCENE.read_text().replace("#c8c8b4", "#ff0000"))
+    ran = _sim(*SMALL_OPTIONS, "--scene", other, build=build)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    sheet = Image.open(build / "sim" / "scenes.png")
+    assert sheet.size == (2 * 320 + 8, 240)
+    floors = [sheet.getpixel((left + 160, 235)) for left in (0, 328)]
+    assert floors == [Image.open(build / "sim" / name / "frame.png").getpixel((64, 94)) for name in ("small", "other")]
+    assert str(build / "sim" / "scenes.png") in ran.stdout
+
+
 def test_waves(build, scenes):
     """Waveforms are written where the last lines say."""
     ran = _sim(*SMALL_OPTIONS, "--waves", build=build)

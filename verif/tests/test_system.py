@@ -130,6 +130,7 @@ def test_a_recorded_game(capsys, tmp_path):
     assert len(list(tmp_path.glob("frame_*.png"))) == 14
     # Frames that are alike are one in the animation.
     assert 2 <= Image.open(tmp_path / game.ANIMATION).n_frames <= 14
+    assert Image.open(tmp_path / game.SHEET).size == (3 * 320 + 2 * 8, 3 * 240 + 2 * 8)
 
 
 def test_no_frames_are_one_line():
