@@ -97,19 +97,19 @@ def _order(config: Configuration, small: bool) -> Property:
         "budget's cycles",
         config,
         _label(config),
-        ("ray_control", "ray_sequencer", "rect_sequencer"),
+        ("ray_control" if config.engine == "seed" else "exact_control", "ray_sequencer", "rect_sequencer"),
         {
             "RECTANGLES": config.rectangles,
             "INDEX_BITS": index_bits(config),
-            "STEPS": config.divider_steps,
-            "SLOT_BITS": bits_for(config.divider_steps),
+            "STEPS": config.slot_cycles,
+            "SLOT_BITS": bits_for(config.slot_cycles),
             "REFLECTIONS": config.reflections,
             "RESULT_LATENCY": config.result_latency,
             "RUN_BOUND": bound,
             "CULLING": int(config.culling),
         },
         induction=1,
-        reach=bound + 2 if config.rectangles == 2 and config.reflections == 1 and config.divider_steps < 5 else 0,
+        reach=bound + 2 if config.rectangles == 2 and config.reflections == 1 and config.slot_cycles < 5 else 0,
         small=small,
     )
 
@@ -278,7 +278,7 @@ def _fixed(engine: str, alike: bool, small: bool) -> Property:
 
 
 def _label(config: Configuration) -> str:
-    return config.name.removeprefix(f"{config.engine}-")
+    return config.name.removeprefix("seed-")
 
 
 def _tiny(**values: int | str) -> Configuration:
@@ -324,6 +324,15 @@ PROPERTIES: list[Property] = [
         for steps in SLOWEST
     ),
     _order(_one_unit(divider_bits=1), small=False),  # the default's control
+    *(
+        _order(
+            _tiny(engine="exact", rectangles=rectangles, reflections=reflections, culling=True),
+            small=(rectangles, reflections) in {(2, 1), (4, 2)},
+        )
+        for rectangles in (2, 3, 4)
+        for reflections in (0, 1, 2)
+    ),
+    _order(_one_unit(engine="exact"), small=False),
     _sections(DEFAULT, small=True),
     _sections(configure(reflections=2), small=False),
     _sections(_tiny(rectangles=2), small=True),

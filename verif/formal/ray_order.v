@@ -4,6 +4,9 @@
 // The memory's answer is modelled by a tag: a cycle after a fetch the plane at hand is the one with the fetched index,
 // and the tag takes the place of the rectangle's plane, so that it can be followed to the z buffer.
 //
+// A slot is as long as a division, or one cycle of the exact engine, whose rectangles are on their way one behind the
+// other.
+//
 // Assumed, as the renderer has it: one cycle of reset at first; the usable rectangles, the possible ones and the
 // reflections hold still from the cycle in which the control starts, until the next reset; reflections are at most what
 // was configured. As the units have it: who was not alive at the end of a ray is not at the end of the next one, which
@@ -17,33 +20,59 @@ module ray_order #(
     input clk, input reset, input enable, input [RECTANGLES-1:0] usable, input [1:0] reflections,
     input [RECTANGLES-1:0] possible, input ahead, input alive
 );
-localparam TRAVEL = STEPS + 4;  // from a rectangle's start to its offer to the z buffer
+localparam DIVIDES = STEPS > 1;
+localparam TRAVEL = DIVIDES ? STEPS + 4 : 3;  // from a rectangle's start to its offer to the z buffer
 localparam GIVE_UP = 3;  // from the start of a rectangle that is given up to the next one's
 localparam GIVES_UP = CULLING && STEPS > GIVE_UP;
 localparam TIME_BITS = $clog2(RUN_BOUND) + 1;
 
-wire done, fetch, screen_to_ray, initial_ray, find_intersection, load_divider, store_quotient, reset_z_buf, write_z_buf,
-    reset_color, add_color, store_ray;
+wire done, fetch, screen_to_ray, initial_ray, find_intersection, reset_z_buf, write_z_buf, reset_color, add_color,
+    store_ray;
 wire [INDEX_BITS-1:0] index;
-wire [8:0] finishing;
 reg [8:0] tag;
 
-ray_control dut (
-    .clk(clk), .reset_ray_caster(reset), .enable(enable), .reflections(reflections), .done(done),
-    .rects_usable(usable), .rects_index(index), .rects_fetch(fetch), .rects_rect_axis(2'd0),
-    .rects_rect_position(tag), .rects_rect_u_low(9'd0), .rects_rect_u_high(9'd0), .rects_rect_v_low(9'd0),
-    .rects_rect_v_high(9'd0), .rects_rect_colour(24'd0), .prospects_possible(possible), .prospects_alive(alive),
-    .steps_screen_to_ray(screen_to_ray), .steps_initial_ray(initial_ray), .steps_find_intersection(find_intersection),
-    .steps_load_divider(load_divider), .steps_store_quotient(store_quotient), .steps_reset_z_buf(reset_z_buf),
-    .steps_write_z_buf(write_z_buf), .steps_reset_color(reset_color), .steps_add_color(add_color),
-    .steps_store_ray(store_ray),
-    .finishing_rect_axis(), .finishing_rect_position(finishing), .finishing_rect_u_low(), .finishing_rect_u_high(),
-    .finishing_rect_v_low(), .finishing_rect_v_high(), .finishing_rect_colour()
-);
-
-// A port of the control that gives up; beside another it is a wire that leads nowhere.
-(* hierconn *) wire \dut.prospects_ahead ;
-assign \dut.prospects_ahead = ahead;
+// Beside the control, of either engine: the stages between start and offer, and the tag there.
+wire load_divider, store_quotient;
+wire [8:0] under_way, offered_tag;
+generate
+    if (DIVIDES) begin: engine
+        ray_control dut (
+            .clk(clk), .reset_ray_caster(reset), .enable(enable), .reflections(reflections), .done(done),
+            .rects_usable(usable), .rects_index(index), .rects_fetch(fetch), .rects_rect_axis(2'd0),
+            .rects_rect_position(tag), .rects_rect_u_low(9'd0), .rects_rect_u_high(9'd0), .rects_rect_v_low(9'd0),
+            .rects_rect_v_high(9'd0), .rects_rect_colour(24'd0), .prospects_possible(possible),
+            .prospects_alive(alive), .steps_screen_to_ray(screen_to_ray), .steps_initial_ray(initial_ray),
+            .steps_find_intersection(find_intersection), .steps_load_divider(load_divider),
+            .steps_store_quotient(store_quotient), .steps_reset_z_buf(reset_z_buf), .steps_write_z_buf(write_z_buf),
+            .steps_reset_color(reset_color), .steps_add_color(add_color), .steps_store_ray(store_ray),
+            .finishing_rect_axis(), .finishing_rect_position(offered_tag), .finishing_rect_u_low(),
+            .finishing_rect_u_high(), .finishing_rect_v_low(), .finishing_rect_v_high(), .finishing_rect_colour()
+        );
+        // A port of the control that gives up; beside another it is a wire that leads nowhere.
+        (* hierconn *) wire \dut.prospects_ahead ;
+        assign \dut.prospects_ahead = ahead;
+        (* hierconn *) wire [8:0] \dut.dividing_rect_position ;
+        assign under_way = \dut.dividing_rect_position ;
+    end
+    else begin: engine
+        exact_control dut (
+            .clk(clk), .reset_ray_caster(reset), .enable(enable), .reflections(reflections), .done(done),
+            .rects_usable(usable), .rects_index(index), .rects_fetch(fetch), .rects_rect_axis(2'd0),
+            .rects_rect_position(tag), .rects_rect_colour(24'd0), .prospects_possible(possible),
+            .prospects_alive(alive), .steps_screen_to_ray(screen_to_ray), .steps_initial_ray(initial_ray),
+            .steps_find_intersection(find_intersection), .steps_reset_z_buf(reset_z_buf),
+            .steps_write_z_buf(write_z_buf), .steps_reset_color(reset_color), .steps_add_color(add_color),
+            .steps_store_ray(store_ray),
+            .offered_axis(), .offered_position(offered_tag), .offered_colour()
+        );
+        assign load_divider = 0;
+        assign store_quotient = 0;
+        (* hierconn *) wire [8:0] \dut.first_position ;
+        (* hierconn *) wire [8:0] \dut.second_position ;
+        assign under_way = \dut.second_position ;
+        always @* if (known && starts[0]) assert (\dut.first_position == tags[0]);
+    end
+endgenerate
 
 always @(posedge clk) if (fetch) tag <= index;
 
@@ -107,34 +136,45 @@ always @* if (known && started) begin
 end
 always @* if (known && !started) assert (!done && !find_intersection && !write_z_buf && !add_color);
 
-// Each start on its way: loaded after 2 cycles, stored STEPS later, offered 2 later, with the rectangle it belongs to.
-// One whose plane was not ahead in the cycle after it is given up as it is loaded, and goes no further.
+// Each start on its way. One whose plane was not ahead in the cycle after it is given up two cycles after it, and goes no
+// further.
 reg [TRAVEL-1:0] starts;
 reg [8:0] tags [0:TRAVEL-1];
 wire given_up = GIVES_UP && starts[1] && !last_ahead;
 always @(posedge clk) begin: follow
     integer i;
-    starts <= reset ? 0 : {starts[TRAVEL-2:2], starts[1] && !given_up, starts[0], find_intersection};
+    starts[0] <= !reset && find_intersection;
     tags[0] <= tag;
-    for (i = 1; i < TRAVEL; i = i + 1) tags[i] <= tags[i-1];
+    for (i = 1; i < TRAVEL; i = i + 1) begin
+        starts[i] <= !reset && starts[i-1] && !(i == 2 && given_up);
+        tags[i] <= tags[i-1];
+    end
 end
 always @* if (known) begin
-    assert (load_divider == starts[1]);
-    assert (store_quotient == starts[1+STEPS]);
-    assert (write_z_buf == starts[3+STEPS]);
-    // The plane at hand while the divider is loaded, and the one whose quotients stand.
-    if (load_divider) assert (tag == tags[1]);
-    if (starts[2+STEPS]) assert (finishing == tags[2+STEPS]);
-    if (starts[3+STEPS]) assert (finishing == tags[3+STEPS]);
+    assert (write_z_buf == starts[TRAVEL-1]);
+    if (write_z_buf) assert (offered_tag == tags[TRAVEL-1]);
     // No result is still under way when the ray is blended.
     if (add_color) assert (starts == 0);
 end
 
-// The divider is never loaded before it is finished, or its division given up.
+// A division: loaded 2 cycles after the start, stored STEPS later, offered 2 later.
 reg [7:0] since_load;
 always @(posedge clk) since_load <= reset || given_up || (since_load >= STEPS && !load_divider) ? STEPS
     : load_divider ? 1 : since_load + 1;
-always @* if (known && load_divider) assert (since_load >= STEPS);
+generate
+    if (DIVIDES) begin: divisions
+        always @* if (known) begin
+            assert (load_divider == starts[1]);
+            assert (store_quotient == starts[1+STEPS]);
+            // The plane at hand while the divider is loaded, and the one whose quotients stand.
+            if (load_divider) assert (tag == tags[1]);
+            if (starts[2+STEPS]) assert (offered_tag == tags[2+STEPS]);
+            // The divider is never loaded before it is finished, or its division given up.
+            if (load_divider) assert (since_load >= STEPS);
+            if (since_load < STEPS) assert (since_load != 0 && (starts >> since_load) & 2);
+        end
+    end
+endgenerate
 
 // A ray's time: where the slots end that have begun, and where the last that was kept did; 0: none was. One slot
 // follows the other, and the ray is blended when nothing is under way any more.
@@ -146,7 +186,7 @@ always @(posedge clk) begin
     else if (find_intersection) slots_end <= slots_end + STEPS;
     else if (given_up) slots_end <= slots_end - (STEPS - GIVE_UP);
     if (reset_z_buf) kept_end <= 0;
-    else if (starts[1] && !given_up) kept_end <= slots_end;
+    else if (DIVIDES ? starts[1] && !given_up : find_intersection) kept_end <= DIVIDES ? slots_end : slots_end + STEPS;
 end
 always @* if (known && started && tracing) begin
     if (find_intersection) assert (place == slots_end);
@@ -179,36 +219,35 @@ always @* if (known && started) begin
 end
 
 // Counters in range.
-(* hierconn *) wire [SLOT_BITS-1:0] \dut.ray_sequencer_i.rect_sequencer_i.slot ;
-(* hierconn *) wire [1:0] \dut.ray_sequencer_i.bounce ;
+(* hierconn *) wire [SLOT_BITS-1:0] \engine.dut.ray_sequencer_i.rect_sequencer_i.slot ;
+(* hierconn *) wire [1:0] \engine.dut.ray_sequencer_i.bounce ;
 always @* if (known && tracing) begin
-    assert (\dut.ray_sequencer_i.rect_sequencer_i.slot < STEPS);
-    assert (\dut.ray_sequencer_i.bounce <= reflections);
+    assert (\engine.dut.ray_sequencer_i.rect_sequencer_i.slot < STEPS);
+    assert (\engine.dut.ray_sequencer_i.bounce <= reflections);
 end
 
 // Invariants: the state machine is where the counts say, what waits follows what was visited, and of what is in flight,
 // none started within STEPS cycles of another.
-(* hierconn *) wire [2:0] \dut.ray_sequencer_i.state ;
-(* hierconn *) wire \dut.ray_sequencer_i.rect_sequencer_i.fetched ;
-(* hierconn *) wire \dut.ray_sequencer_i.rect_sequencer_i.offered ;
-(* hierconn *) wire [INDEX_BITS-1:0] \dut.ray_sequencer_i.rect_sequencer_i.upcoming ;
-(* hierconn *) wire [RECTANGLES-1:0] \dut.ray_sequencer_i.rect_sequencer_i.waiting ;
-(* hierconn *) wire \dut.ray_sequencer_i.give_up ;
-(* hierconn *) wire [TRAVEL-1:0] \dut.in_flight ;
-(* hierconn *) wire [8:0] \dut.dividing_rect_position ;
+(* hierconn *) wire [2:0] \engine.dut.ray_sequencer_i.state ;
+(* hierconn *) wire \engine.dut.ray_sequencer_i.rect_sequencer_i.fetched ;
+(* hierconn *) wire \engine.dut.ray_sequencer_i.rect_sequencer_i.offered ;
+(* hierconn *) wire [INDEX_BITS-1:0] \engine.dut.ray_sequencer_i.rect_sequencer_i.upcoming ;
+(* hierconn *) wire [RECTANGLES-1:0] \engine.dut.ray_sequencer_i.rect_sequencer_i.waiting ;
+(* hierconn *) wire \engine.dut.ray_sequencer_i.give_up ;
+(* hierconn *) wire [TRAVEL-1:0] \engine.dut.in_flight ;
 localparam IDLE = 0, GENERATE = 1, TRACE = 2, BLEND = 3, DONE = 4;
-wire [2:0] state = \dut.ray_sequencer_i.state ;
-wire [SLOT_BITS-1:0] slot = \dut.ray_sequencer_i.rect_sequencer_i.slot ;
-wire fetched = \dut.ray_sequencer_i.rect_sequencer_i.fetched ;
-wire [RECTANGLES-1:0] waiting = \dut.ray_sequencer_i.rect_sequencer_i.waiting ;
+wire [2:0] state = \engine.dut.ray_sequencer_i.state ;
+wire [SLOT_BITS-1:0] slot = \engine.dut.ray_sequencer_i.rect_sequencer_i.slot ;
+wire fetched = \engine.dut.ray_sequencer_i.rect_sequencer_i.fetched ;
+wire [RECTANGLES-1:0] waiting = \engine.dut.ray_sequencer_i.rect_sequencer_i.waiting ;
 wire [RECTANGLES-1:0] lowest_waiting = waiting & -waiting;
-wire [RECTANGLES-1:0] offered = {{RECTANGLES-1{1'b0}}, \dut.ray_sequencer_i.rect_sequencer_i.offered } << \dut.ray_sequencer_i.rect_sequencer_i.upcoming ;
+wire [RECTANGLES-1:0] offered = {{RECTANGLES-1{1'b0}}, \engine.dut.ray_sequencer_i.rect_sequencer_i.offered } << \engine.dut.ray_sequencer_i.rect_sequencer_i.upcoming ;
 wire [RECTANGLES-1:0] left = offered | waiting;
 wire starting = state == TRACE && fetched && slot == 0;
 wire [RECTANGLES-1:0] taken = starting ? visited | tagged : visited;
 wire [TIME_BITS-1:0] whole_slots = count(visited) * STEPS;
 always @* if (known) begin
-    assert (\dut.in_flight == starts && \dut.ray_sequencer_i.give_up == given_up);
+    assert (\engine.dut.in_flight == starts && \engine.dut.ray_sequencer_i.give_up == given_up);
     if (!started) assert (cycles == 0 && state == IDLE && starts == 0 && !tracing && !lost);
     else assert (state != IDLE && state <= DONE && (state == GENERATE ? cycles == 1 : cycles > 1));
     assert ((tracing || lost) == (started && (state == TRACE || state == BLEND)));
@@ -219,10 +258,10 @@ always @* if (known) begin
     if (state == BLEND && tracing) assert (!fetched && left == usable);
     if (state != IDLE) begin
         assert (waiting == 0 || offered < lowest_waiting && offered != 0 && (offered & waiting) == 0);
-        assert (\dut.ray_sequencer_i.rect_sequencer_i.offered == (offered != 0));
+        assert (\engine.dut.ray_sequencer_i.rect_sequencer_i.offered == (offered != 0));
     end
     if (tracing || lost) begin
-        assert (rays == \dut.ray_sequencer_i.bounce );
+        assert (rays == \engine.dut.ray_sequencer_i.bounce );
         assert (cycles <= 2 + rays_cycles + place && (spared || cycles == 2 + rays_cycles + place));
     end
     if (lost) assert (state == BLEND && place == 0 && rays != 0 && some_lost);
@@ -248,21 +287,23 @@ always @* if (known) begin
         if (!fetched || slot == 0) assert ((starts & ((1 << (STEPS - 1)) - 1)) == 0);
     end
 end
-always @* if (known && since_load < STEPS) assert (since_load != 0 && (starts >> since_load) & 2);
-
 genvar age;
 generate
     for (age = 0; age < TRAVEL; age = age + 1) begin: ages
         always @* if (known && starts[age]) begin
             assert (place > age && ((starts << (STEPS - 1)) >> age & ((1 << (STEPS - 1)) - 1)) == 0);
-            if (age < 2) assert (fetched && slot == age + 1 && tag == tags[age]);
-            else if (age < 2 + STEPS) assert (\dut.dividing_rect_position == tags[age] && since_load == age - 1);
-            else assert (finishing == tags[age]);
-            if (age >= 2) assert (kept_end != 0 && kept_end + age + 1 >= place + STEPS);
+            if (!DIVIDES) begin
+                if (age == 1) assert (under_way == tags[age]);
+                if (age == 2) assert (offered_tag == tags[age]);
+            end
+            else if (age < 2) assert (fetched && slot == age + 1 && tag == tags[age]);
+            else if (age < 2 + STEPS) assert (under_way == tags[age] && since_load == age - 1);
+            else assert (offered_tag == tags[age]);
+            if (age >= 2 || !DIVIDES) assert (kept_end != 0 && kept_end + age + 1 >= place + STEPS);
         end
         // The last that was kept is on its way for so long.
         always @* if (known && state == TRACE && kept_end != 0 && kept_end + age + 1 == place + STEPS)
-            assert (age >= 2 && starts[age]);
+            assert ((age >= 2 || !DIVIDES) && starts[age]);
     end
     for (age = 1; age < STEPS; age = age + 1) begin: slots
         always @* if (known && state == TRACE && fetched && slot == age)

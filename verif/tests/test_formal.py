@@ -27,6 +27,7 @@ HOST = chosen("host-transfers", "6 bits, 1 and 2 cycles")
 ORDER = chosen("ray-order", "tiny48-u2-r2-m1-f0t-d3-c8")
 GIVING_UP = chosen("ray-order", "tiny48-u2-r2-m1-f3t-d3-c8")
 PATIENT = chosen("ray-order", "tiny48-u2-r2-m1-f3t-d3-c8-k0")
+PIPELINED = chosen("ray-order", "exact-tiny48-u2-r2-m1-c8-k1")
 SECTIONS = chosen("line-sections", "tiny48-u2-r2-m1-f0t-d3-c8")
 COUNTERS = chosen("render-counters", "vga240-u16-r4-m1-f0t-d1-c8")
 TESTER = chosen("tester-exact", "2 bits, 1 mirrors")
@@ -88,6 +89,12 @@ FAULTS = {
     "slot-runs-on": (GIVING_UP, "rect_sequencer", "if (start_ray || give_up || (slot == 3)) begin",
                      "if (start_ray || (slot == 3)) begin"),
     "given-up-by-itself": (PATIENT, "ray_control", ".give_up(1'd0)", ".give_up(in_flight[1] && !prospects_alive)"),
+    "verdict-too-early": (PIPELINED, "exact_control", "write_z_buf = in_flight[2];", "write_z_buf = in_flight[1];"),
+    "another-verdict": (PIPELINED, "exact_control", "offered_position <= second_position;",
+                        "offered_position <= first_position;"),
+    "blended-before-the-last": (PIPELINED, "ray_sequencer", "(in_flight[1:0] == 0)", "(in_flight[0] == 0)"),
+    "slot-of-two": (PIPELINED, "rect_sequencer", "if (start_ray || give_up || (slot == 0)) begin",
+                    "if (start_ray || give_up) begin"),
     "halves-overlap": (SECTIONS, "line_buffer", "read_address = read_offset + 32;",
                        "read_address = read_offset + 31;"),
     "one-half": (SECTIONS, "line_buffer", "if (line_buf_sel) begin", "if (line_buf_sel && !write) begin"),
@@ -113,7 +120,7 @@ FAULTS = {
 
 @pytest.mark.parametrize(
     "proof",
-    [TIMING, AGENT, HOST, ORDER, GIVING_UP, PATIENT, SECTIONS, COUNTERS, TESTER, FOLD, TABLE],
+    [TIMING, AGENT, HOST, ORDER, GIVING_UP, PATIENT, PIPELINED, SECTIONS, COUNTERS, TESTER, FOLD, TABLE],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )
 def test_holds(proof, output):
