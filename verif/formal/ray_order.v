@@ -31,9 +31,9 @@ wire done, fetch, screen_to_ray, initial_ray, find_intersection, reset_z_buf, wr
 wire [INDEX_BITS-1:0] index;
 reg [8:0] tag;
 
-// Beside the control, of either engine: the stages between start and offer, and the tag there.
+// What the control of either engine shows between start and offer, and the tag on its way.
 wire load_divider, store_quotient;
-wire [8:0] under_way, offered_tag;
+wire [8:0] first_tag, second_tag, offered_tag;
 generate
     if (DIVIDES) begin: engine
         ray_control dut (
@@ -52,7 +52,8 @@ generate
         (* hierconn *) wire \dut.prospects_ahead ;
         assign \dut.prospects_ahead = ahead;
         (* hierconn *) wire [8:0] \dut.dividing_rect_position ;
-        assign under_way = \dut.dividing_rect_position ;
+        assign first_tag = tag;
+        assign second_tag = \dut.dividing_rect_position ;
     end
     else begin: engine
         exact_control dut (
@@ -69,8 +70,8 @@ generate
         assign store_quotient = 0;
         (* hierconn *) wire [8:0] \dut.first_position ;
         (* hierconn *) wire [8:0] \dut.second_position ;
-        assign under_way = \dut.second_position ;
-        always @* if (known && starts[0]) assert (\dut.first_position == tags[0]);
+        assign first_tag = \dut.first_position ;
+        assign second_tag = \dut.second_position ;
     end
 endgenerate
 
@@ -292,12 +293,9 @@ generate
     for (age = 0; age < TRAVEL; age = age + 1) begin: ages
         always @* if (known && starts[age]) begin
             assert (place > age && ((starts << (STEPS - 1)) >> age & ((1 << (STEPS - 1)) - 1)) == 0);
-            if (!DIVIDES) begin
-                if (age == 1) assert (under_way == tags[age]);
-                if (age == 2) assert (offered_tag == tags[age]);
-            end
-            else if (age < 2) assert (fetched && slot == age + 1 && tag == tags[age]);
-            else if (age < 2 + STEPS) assert (under_way == tags[age] && since_load == age - 1);
+            if (!DIVIDES) assert ((age == 0 ? first_tag : age == 1 ? second_tag : offered_tag) == tags[age]);
+            else if (age < 2) assert (fetched && slot == age + 1 && first_tag == tags[age]);
+            else if (age < 2 + STEPS) assert (second_tag == tags[age] && since_load == age - 1);
             else assert (offered_tag == tags[age]);
             if (age >= 2 || !DIVIDES) assert (kept_end != 0 && kept_end + age + 1 >= place + STEPS);
         end
