@@ -29,3 +29,20 @@ async def every_bit_of_the_live_scene(bench: HierarchyObject) -> None:
         await harness.bus.commit(reflections=0)
         golden = harness.golden(scene, 0)
         harness.expect_picture(await harness.monitor.frame(), golden, "all ones" if high else "all zeros")
+
+
+@cocotb.test()
+async def every_axis_in_every_entry(bench: HierarchyObject) -> None:
+    """The whole table along each axis, one frame after the other."""
+    harness = Harness(bench)
+    await harness.reset()
+    for axis in (1, 2, 0):
+        corners = [[100, 100, 100], [400, 400, 400]]
+        corners[1][axis] = corners[0][axis]
+        scene = Scene(
+            camera=Camera(position=(20, 256, 200)),
+            rect=(Rectangle(corners=corners, colour=(200, 100, 50)),) * harness.configuration.rectangles,
+        )
+        await harness.bus.load_scene(scene)
+        await harness.bus.commit(reflections=0)
+        harness.expect_picture(await harness.monitor.frame(), harness.golden(scene, 0), f"along {'xyz'[axis]}")

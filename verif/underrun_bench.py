@@ -20,15 +20,13 @@ def _light() -> Scene:
 
 
 def _heavy(rectangles: int) -> Scene:
-    """As many rectangles as fit, across the view in all columns."""
-    walls = [
-        {
-            "corners": [[100 + 30 * n, 0, 20 * n], [100 + 30 * n, 511, 20 * n + 30]],
-            "colour": _COLOURS[n % len(_COLOURS)],
-        }
-        for n in range(rectangles)
+    """Two mirrors that a ray goes to and fro between, under ceilings that it rises to: culling spares few of these."""
+    mirrors = [{"corners": [[x, 0, 0], [x, 511, 511]], "colour": "#50a0ff"} for x in (10, 30)]
+    ceilings = [
+        {"corners": [[0, 0, 120 + n], [511, 511, 120 + n]], "colour": _COLOURS[n % len(_COLOURS)]}
+        for n in range(rectangles - len(mirrors))
     ]
-    return Scene.model_validate({"background": "#104020", "camera": _CAMERA, "rect": walls})
+    return Scene.model_validate({"background": "#104020", "camera": _CAMERA, "rect": mirrors + ceilings})
 
 
 @cocotb.test()
@@ -52,6 +50,9 @@ async def underrun(bench: HierarchyObject) -> None:
     await bus.commit(reflections=reflections)
     _expect_abandoned_rows(harness, await monitor.frame(), heavy_picture, light_picture)
     assert (await bus.read("status"))["underrun"] == 1
+    assert (await bus.read("cycles"))["row"] == harness.screen.row_cycles, "a row is abandoned when its time is over"
+    await bus.write("cycles")
+    assert (await bus.read("cycles"))["row"] < harness.screen.row_cycles
 
     await bus.load_scene(light)
     await bus.commit(reflections=reflections)
