@@ -6,6 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from raycaster.configuration import Configuration
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.rtl.group_culler import MARGIN
 from raycaster.verif.leaf import Leaf, TraceCycle
 
 
@@ -37,3 +41,27 @@ def prospects_in(random: np.random.Generator, cycle: TraceCycle, leaf: Leaf) -> 
 def mask_of(indices: Sequence[int]) -> int:
     """A bit for each."""
     return sum(1 << index for index in indices)
+
+
+def possible_mask(config: Configuration, table: Rectangles, camera, row: int, offset: int) -> int:
+    """The culler's rule, for the rays at a group's ends: a bit for each rectangle that is enabled and has a plane."""
+    first = [int(d) for d in primary_slopes(config.screen_geometry)[row, offset * config.units]]
+    ends = [first, [first[0], first[1] + config.units, first[2]]]
+    margin = MARGIN[config.engine]
+    mask = 0
+    for index in map(int, np.flatnonzero(table.visible)):
+        axis = int(table.axes[index])
+        low, high = (bound[index].astype(object) - camera for bound in (table.low, table.high))
+        n = int(low[axis])
+        backs = [end[axis] < 0 for end in ends]
+        impossible = n == 0 or all((n < 0) != back for back in backs)
+        if backs[0] == backs[1]:
+            for u in OTHER_AXES[axis]:
+                sign = -1 if backs[0] else 1
+                ways = [sign * n * end[u] for end in ends]
+                impossible |= all(way < (low[u] - margin) * abs(end[axis]) for way, end in zip(ways, ends, strict=True))
+                impossible |= all(
+                    way > (high[u] + margin) * abs(end[axis]) for way, end in zip(ways, ends, strict=True)
+                )
+        mask |= (not impossible) << index
+    return mask

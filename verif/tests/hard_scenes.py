@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Scenes for leaf tests in which one ray tells a lot: it meets mirrors to its end, and edges where it does."""
 
+from collections.abc import Callable
 from fractions import Fraction
 from functools import partial
 
@@ -52,6 +53,13 @@ def edged(random: np.random.Generator, config: Configuration, golden, table: Rec
     return Rectangles(corners, table.colours, table.enabled)
 
 
+def tracer(config: Configuration, **given) -> Callable:
+    """Golden's trace by a design's engine, with these of its arguments, to be called with the others."""
+    if config.engine != "seed":
+        return partial(exact.trace, keep=True, **given)
+    return partial(seed_engine.trace, fraction_bits=config.fraction_bits, rounding=config.rounding, keep=True, **given)
+
+
 def traced_scene(random: np.random.Generator, config: Configuration, slopes: np.ndarray) -> tuple:
     """Camera, table, background and reflections, and golden's trace of them.
 
@@ -62,11 +70,7 @@ def traced_scene(random: np.random.Generator, config: Configuration, slopes: np.
         camera, table = scene_of(random, slopes, config.rectangles)
         background = random.integers(256, size=3)
         reflections = config.reflections if rich else int(random.integers(config.reflections + 1))
-        given = {"camera": camera, "background": background, "slopes": slopes, "reflections": reflections, "keep": True}
-        if config.engine != "seed":
-            trace = partial(exact.trace, **given)
-        else:
-            trace = partial(seed_engine.trace, **given, fraction_bits=config.fraction_bits, rounding=config.rounding)
+        trace = tracer(config, camera=camera, background=background, slopes=slopes, reflections=reflections)
         golden = trace(table)
         if rich and all(winner[0] >= 0 for winner in golden.winners):
             table = edged(random, config, golden, table)

@@ -4,6 +4,7 @@ Python's integers, and golden, whose hits are all among them."""
 
 import numpy as np
 import pytest
+from fates import possible_mask
 
 from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
 from raycaster.golden import exact, seed_engine
@@ -42,30 +43,6 @@ def culling_config(**options) -> Configuration:
 
 def any_place(random: np.random.Generator) -> int:
     return int(random.choice(EXTREMES)) if random.random() < 0.3 else int(random.integers(WORLD_SIZE))
-
-
-def possible_mask(config: Configuration, table: Rectangles, camera, row: int, offset: int) -> int:
-    """The rule, for the rays at a group's ends: a bit for each rectangle."""
-    first = [int(d) for d in primary_slopes(config.screen_geometry)[row, offset * config.units]]
-    ends = [first, [first[0], first[1] + config.units, first[2]]]
-    margin = MARGIN[config.engine]
-    mask = 0
-    for index in range(len(table)):
-        axis = int(table.axes[index])
-        low, high = (bound[index].astype(object) - camera for bound in (table.low, table.high))
-        n = int(low[axis])
-        backs = [end[axis] < 0 for end in ends]
-        impossible = n == 0 or all((n < 0) != back for back in backs)
-        if backs[0] == backs[1]:
-            for u in OTHER_AXES[axis]:
-                sign = -1 if backs[0] else 1
-                ways = [sign * n * end[u] for end in ends]
-                impossible |= all(way < (low[u] - margin) * abs(end[axis]) for way, end in zip(ways, ends, strict=True))
-                impossible |= all(
-                    way > (high[u] + margin) * abs(end[axis]) for way, end in zip(ways, ends, strict=True)
-                )
-        mask |= (not impossible) << index
-    return mask
 
 
 def hit_mask(config: Configuration, table: Rectangles, camera, row: int, offset: int) -> int:

@@ -3,23 +3,23 @@
 golden on one set of scenes, and the control's steps cycle by cycle."""
 
 from dataclasses import replace
-from functools import partial
 from itertools import pairwise
 from typing import Any
 from unittest import mock
 
 import numpy as np
 import pytest
-from fates import mask_of, prospects_in, random_fate
-from hard_scenes import edged, pixel_word, rectangles_in_view, traced_scene
+from fates import mask_of, possible_mask, prospects_in, random_fate
+from hard_scenes import edged, pixel_word, rectangles_in_view, traced_scene, tracer
 
 from raycaster.configuration import BEAM_SCREENS, SCREENS, WORLD_SIZE, Configuration, Screen, Span, configure
-from raycaster.golden import engines, exact, seed_engine
+from raycaster.golden import engines, seed_engine
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.registers import register_map
 from raycaster.rtl.camera_axis import STEP
 from raycaster.rtl.engines import ENGINES
+from raycaster.rtl.group_culler import LATENCY
 from raycaster.rtl.interfaces import Outlook, Plane, Point, Prospects, Rect, SequentialRects, Steps
 from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
 from raycaster.rtl.ray_caster_system import SystemPorts, ray_caster_system
@@ -39,7 +39,7 @@ from raycaster.rtl.widths import (
     unsigned,
 )
 from raycaster.scene import Camera, Rectangle, Scene
-from raycaster.verif.leaf import Leaf, reset_signal, sorted_rect, trace_cycles
+from raycaster.verif.leaf import Leaf, TraceCycle, reset_signal, sorted_rect, trace_cycles
 from raycaster.verif.seeds import repeat, seed
 
 AXES = "xyz"
@@ -307,10 +307,48 @@ def check_ray_unit(leaf: Leaf, config: Configuration, rays: int = 24) -> None:
     ids=config_id,
 )  # fmt: skip
 def test_ray_unit(config, tmp_path):
-    check_ray_unit(ray_unit_leaf(config, tmp_path), config, rays=80 if config.fraction_bits == 0 else 40)
+    check_ray_unit(ray_unit_leaf(config, tmp_path), config, rays=120 if config.fraction_bits == 0 else 40)
 
 
 # ray_caster ----------------------------------------------------------------------------------------------------------
+
+
+def place_after(config: Configuration, place: tuple[int, int]) -> tuple[int, int]:
+    """The row and the group that follow in a frame."""
+    row, offset = place
+    return (row, offset + 1) if offset < config.groups - 1 else (row + 1, 0)
+
+
+def places_before(random: np.random.Generator, config: Configuration, place: tuple[int, int]) -> list[tuple[int, int]]:
+    """Groups that a frame comes by on its way to this one: its first, at times its second, mostly the one before this.
+
+    The rows between are abandoned.
+    """
+    row, offset = place
+    before = (row, offset - 1) if offset else (row - 1, config.groups - 1)
+    second = [(0, 1)] * int(random.random() < 0.2)
+    return [(0, 0), *second, *([before] if random.random() < 0.8 else [])]
+
+
+def remembered(config: Configuration, cycles: list[TraceCycle], usable: list[int]) -> list[int]:
+    """The rectangle that the memory holds in each cycle of a trace, in that of done and in the next.
+
+    The control fetches one for each slot and each pass, whether anybody waits for it or not; where none is left, the
+    lowest.
+    """
+    queue = [*usable, *[0] * len(cycles)]
+    held, blends, indices = 0, 0, []
+    for before, cycle in pairwise([None, *cycles]):
+        if cycle.current is not None:
+            held = cycle.current
+        elif blends:
+            held = queue[blends - 1]
+        elif before is not None and (before.current is not None or before.steps["steps_screen_to_ray"]):
+            held = 0
+        blends = blends + 1 if cycle.steps["steps_add_color"] else 0
+        indices.append(held)
+    # A slot of one cycle is over in that of done.
+    return [*indices, queue[blends - 1], queue[blends - (config.slot_cycles > 1)]]
 
 
 @pytest.mark.parametrize(
@@ -328,7 +366,10 @@ def test_ray_unit(config, tmp_path):
     ids=config_id,
 )
 def test_ray_caster(config, tmp_path):
-    """Of either engine, whose ports are the same. No group is a frame's first, so none is foreseen."""
+    """Of either engine, whose ports are the same: pixels, and the cycle in which they are done.
+
+    Where groups are culled, a group comes after others of its frame, from which it is foreseen or not.
+    """
     leaf = Leaf(
         ENGINES[config.engine],
         lambda: {
@@ -348,38 +389,64 @@ def test_ray_caster(config, tmp_path):
         tmp_path,
     )
     random = np.random.default_rng(seed())
-    slopes = primary_slopes(config.screen_geometry)
-    stimulus, results = [], []
+    groups = primary_slopes(config.screen_geometry)[:, : config.groups * config.units]
+    groups = groups.reshape(len(groups), config.groups, config.units, 3)
+    stimulus, results, shown, culled = [], [], {}, 0
     for _ in range((160 if config.engine == "exact" else 80) if config.units == 1 else 12):
-        row, offset = int(random.integers(1, len(slopes))), int(random.integers(config.groups))
-        group = slopes[row, offset * config.units : (offset + 1) * config.units]
-        camera, table, background, reflections, golden = traced_scene(random, config, group)
-        held = {
-            "row": row,
-            "column_offset": offset,
+        last = int(random.integers(1, len(groups))), int(random.integers(config.groups))
+        camera, table, background, reflections, _ = traced_scene(random, config, groups[last])
+        trace = tracer(config, camera=camera, background=background, reflections=reflections)
+        usable = visible_indices(table)
+        scene = {
             "background": colour_word(background),
             "reflections": reflections,
             "rects_usable": usable_mask(table),
             **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
         }
-        stimulus += [{**held, "reset_ray_caster": 1, "enable": 1}] * 2
-        stimulus += [{**held, "reset_ray_caster": 0, "enable": 0}] * int(random.integers(3))
-        stimulus.append({**held, "reset_ray_caster": 0, "enable": 1})
-        fate = fate_of(golden) if config.culling else {}
-        for cycle in trace_cycles(config, visible_indices(table), reflections, **fate):
-            rect = {} if cycle.current is None else sorted_rect(table, cycle.current, "rects_rect")
-            stimulus.append({**held, **rect, "reset_ray_caster": 0, "enable": int(random.integers(2))})
-        colours = [pixel_word(config, colour) for colour in golden.colours]
-        case = f"row {row}, group {offset}, camera {camera}, corners {table.corners.tolist()}; {repeat()}"
-        results.append((len(stimulus), colours, case))
-        stimulus += [{}] * 2
+        rects = {index: sorted_rect(table, index, "rects_rect") for index in usable}
+        following, at_hand = None, 0
+        places = [*places_before(random, config, last), last] if config.culling else [last]
+        for place in places:
+            golden = trace(table, slopes=groups[place])
+            fate = fate_of(golden) if config.culling else {}
+            if place == following:
+                mask = possible_mask(config, table, camera, *place)
+                fate["possible"] = [index for index in usable if mask >> index & 1]
+                culled += len(usable) - len(fate["possible"])
+            held = {**scene, "row": place[0], "column_offset": place[1]}
+            if place == places[0]:
+                stimulus.append({**held, "reset_ray_caster": 1, "enable": 1})
+            stimulus.append({**held, **rects.get(at_hand, {}), "reset_ray_caster": 1, "enable": 1})
+            stimulus += [{**held, "reset_ray_caster": 0, "enable": 0}] * int(random.integers(3))
+            stimulus.append({**held, "reset_ray_caster": 0, "enable": 1})
+            cycles = trace_cycles(config, usable, reflections, **fate)
+            *indices, at_hand = remembered(config, cycles, usable)
+            shown |= {len(stimulus) + number: index for number, index in enumerate(indices) if number}
+            for index in indices:
+                rect = rects.get(index, {})
+                stimulus.append({**held, **rect, "reset_ray_caster": 0, "enable": int(random.integers(2))})
+            # In a frame the cycle of done is the first of a reset.
+            stimulus[-1]["reset_ray_caster"] = int(place != last)
+            colours = [pixel_word(config, colour) for colour in golden.colours]
+            case = f"group {place} of {places}, camera {camera}, corners {table.corners.tolist()}; {repeat()}"
+            results.append((len(stimulus) - 1, colours, case))
+            # The first teaches what there is; the others look ahead if they take long enough.
+            foresees = place != (0, 0) and len(cycles) >= config.rectangles + LATENCY
+            following = place_after(config, place) if foresees else None
+        stimulus.append({})
+        results.append((len(stimulus) - 1, *results[-1][1:]))
     outputs = leaf.run_both(stimulus, settled=results[0][0])
     width = pixel_bits(config)
+    done = {cycle for cycle, *_ in results}
     for cycle, colours, case in results:
-        for shown in outputs[cycle : cycle + 2]:
-            assert shown["done"], case
-            assert [shown["colors"] >> width * unit & (1 << width) - 1 for unit in range(config.units)] == colours, case
-        assert not outputs[cycle - 1]["done"], case
+        assert outputs[cycle]["done"], case
+        assert outputs[cycle - 1]["done"] == (cycle - 1 in done), case
+        units = [outputs[cycle]["colors"] >> width * unit & (1 << width) - 1 for unit in range(config.units)]
+        assert units == colours, case
+    for cycle, index in shown.items():
+        before = next(past for past in range(cycle - 1, -1, -1) if outputs[past]["rects_fetch"])
+        assert outputs[before]["rects_index"] == index, f"cycle {cycle}: it fetched another rectangle; {repeat()}"
+    assert bool(culled) == config.culling, "some groups were to be foreseen"
 
 
 # The picture ---------------------------------------------------------------------------------------------------------
@@ -533,13 +600,9 @@ TINY_SCREEN = Screen(
 """With many frames in little time."""
 
 
-def seed_engine_of(config: Configuration):
-    """Its golden model, with the fraction and the rounding of a design."""
-    return partial(seed_engine.trace, fraction_bits=config.fraction_bits, rounding=config.rounding)
-
-
 def scene_in_view(random: np.random.Generator, config: Configuration, axis: int) -> tuple:
-    """Camera, table, background, reflections and the picture; most show several colours and a plane of this axis."""
+    """Camera, table, background, reflections and the picture; most show several colours and a plane of this axis, and
+    are another picture from a camera one unit away along it."""
     slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
     anything = random.random() < 0.2
     for _ in range(300):
@@ -548,14 +611,15 @@ def scene_in_view(random: np.random.Generator, config: Configuration, axis: int)
         table = Rectangles(table.corners, table.colours, random.random(config.rectangles) < 0.7)
         background = random.integers(256, size=3)
         reflections = int(random.integers(config.reflections + 1))
-        trace = partial(
-            exact.trace if config.engine != "seed" else seed_engine_of(config), camera=camera, background=background,
-            reflections=reflections, keep=True,
-        )  # fmt: skip
+        trace = tracer(config, background=background, reflections=reflections)
         ray = slopes[random.integers(len(slopes))][None]
-        table = edged(random, config, trace(table, slopes=ray), table)
-        words = golden_words(config, trace(table, slopes=slopes).colours)
-        if anything or (len(np.unique(words)) > 1 and axis in table.axes[table.visible]):
+        table = edged(random, config, trace(table, camera=camera, slopes=ray), table)
+        words = golden_words(config, trace(table, camera=camera, slopes=slopes).colours)
+        beside = camera ^ (np.arange(3) == axis)
+        moved = golden_words(config, trace(table, camera=beside, slopes=slopes).colours)
+        if anything or (
+            len(np.unique(words)) > 1 and axis in table.axes[table.visible] and not np.array_equal(moved, words)
+        ):
             break
     return camera, table, background, reflections, words
 
@@ -624,7 +688,7 @@ class Bus:
         self.reads[name] = len(self.stimulus) + 2
         self.stimulus.append({**self._idle, "avs_s0_address": self.registers[name].address, "avs_s0_read": 1})
 
-    def write_scene(self, camera, background, reflections: int, table: Rectangles) -> None:
+    def write_scene(self, camera, background, reflections: int, table: Rectangles, run: bool = True) -> None:
         self.write("camera", **dict(zip(AXES, camera, strict=True)))
         self.write("background", **dict(zip(("red", "green", "blue"), background, strict=True)))
         for index, (corners, colour, enabled) in enumerate(
@@ -634,7 +698,7 @@ class Bus:
                 self.write(f"rectangle[{index}].corner_{number}", **dict(zip(AXES, corner, strict=True)))
             channels = dict(zip(("red", "green", "blue"), colour, strict=True))
             self.write(f"rectangle[{index}].surface", enable=enabled, **channels)
-        self.write("control", run=1, commit=1, reflections=reflections)
+        self.write("control", run=run, commit=1, reflections=reflections)
 
 
 @pytest.mark.parametrize(
@@ -701,7 +765,10 @@ def test_ray_caster_module(config, tmp_path):
     ids=config_id,
 )
 def test_ray_caster_module_scenes(config, tmp_path):
-    """A scene a frame over the bus, which is never idle: words are read back, and written in part."""
+    """A scene a frame over the bus, which is never idle: words are read back, and written in part.
+
+    Some frames are black, as the module does not run.
+    """
     screen = config.screen_geometry
     random = np.random.default_rng(seed())
     bus = Bus(config)
@@ -719,14 +786,15 @@ def test_ray_caster_module_scenes(config, tmp_path):
 
     for number in range(40):
         camera, table, background, reflections, words = scene_in_view(random, config, number % 3)
-        pictures.append(words)
+        run = random.random() < 0.9
+        pictures.append(words * run)
         start = 2 + start_screen_cycle(screen) + number * screen.frame_cycles
         # Whatever is committed before the scene is never shown; whatever is written after it waits for a commit.
         traffic(start - screen.frame_cycles + int(random.integers(10, 400)))
         bus.write("control", run=1, commit=1, reflections=0)
         bus.read("status")
         traffic(start - int(random.integers(50, 290)))
-        bus.write_scene(camera, background, reflections, table)
+        bus.write_scene(camera, background, reflections, table, run)
         traffic(start + 1)
     bus.wait(screen.frame_cycles)
     leaf = Leaf(ray_caster_module, lambda: {**ModulePorts(config).all(), "config": config}, tmp_path)

@@ -461,7 +461,7 @@ def test_controls(function, config, tmp_path):
     count = config.rectangles
     every = (1 << count) - 1
     masks = [every, 0, 1, 1 << (count - 1), every]
-    masks += [int(random.integers(1 << count)) & int(random.integers(1 << count)) for _ in range(6)]
+    masks += [int(random.integers(1 << count)) & int(random.integers(1 << count)) for _ in range(16)]
     masks += [1 << index for index in range(count)] + [1 | 1 << index for index in range(count)]
     table = Rectangles(
         random.integers(WORLD_SIZE, size=(count, 2, 3)),
@@ -506,7 +506,10 @@ def test_controls(function, config, tmp_path):
             drive(inputs | prospects_in(random, cycle, leaf), wanted, cycle.current, cycle.finishing)
         if not abandoned:
             for _ in range(int(random.integers(1, 4))):
-                drive({**held, "reset_ray_caster": 0, "enable": int(random.integers(2))}, {**quiet, "done": 1})
+                # Nothing is rendered any more, so that reflections may change.
+                after = {"reflections": int(random.integers(config.reflections + 1))}
+                after |= {"reset_ray_caster": 0, "enable": int(random.integers(2))}
+                drive({**held, **after}, {**quiet, "done": 1})
 
     settled = next(cycle for cycle, (_, _, finishing) in enumerate(expected) if finishing is not None)
     outputs = leaf.run_both(stimulus, settled=settled)

@@ -344,21 +344,25 @@ def test_avalon_interface(config, tmp_path):
     control = agent.registers["control"]
     stimulus = []
     row = group = 0
-    for cycle in range(4000):
+    committing = False
+    for cycle in range(7500):
         # Now and then what stands a little above, or below, what stood.
         row, group = (max(0, value + int(random.integers(-9, 10))) % (1 << CYCLE_BITS) for value in (row, group))
         if random.random() < 0.05:
             row = int(random.choice([0, 1, random.integers(1 << CYCLE_BITS), (1 << CYCLE_BITS) - 1]))
             group = int(random.integers(1 << int(random.integers(1, CYCLE_BITS + 1))))
-        # Many frames without a reset.
+        # Then so many frames without a reset that the counter's upper bits change.
         busy_bus = cycle < 3000
         address = int(random.choice([*registers, control.address, int(random.integers(1 << width))]))
         # Ones and zeros in what is cleared by ones, and often a commit.
         data = int(random.choice([0, 1, 2, 4, 6, 0x303, 0x102, EVERY_BIT, random.integers(1 << WORD_BITS)]))
         transfer = random.choice(["read", "write", "none"], p=[0.4, 0.4, 0.2])
+        # Often while a commit is on its way.
+        reset = random.random() < (0.1 if committing else 0.003)
+        committing = transfer == "write" and address == control.address
         stimulus.append(
             {
-                "reset": int(cycle < 2 or (busy_bus and random.random() < 0.003)),
+                "reset": int(cycle < 2 or (busy_bus and reset)),
                 "avs_s0_address": address,
                 "avs_s0_read": int(transfer == "read"),
                 "avs_s0_write": int(transfer == "write"),
@@ -367,7 +371,7 @@ def test_avalon_interface(config, tmp_path):
                 "camera_word": int(random.integers(1 << WORD_BITS)),
                 "rect_word": int(random.integers(1 << WORD_BITS)),
                 "bad_rectangle": int(random.random() < 0.3),
-                "start_screen": int(random.random() < (0.05 if busy_bus else 0.9)),
+                "start_screen": int(random.random() < (0.05 if busy_bus else 0.95)),
                 "busy": int(random.integers(2)),
                 "underrun": int(random.random() < 0.05),
                 "row_cycles": row,

@@ -152,7 +152,8 @@ def aimed_ray(config: Configuration, random: np.random.Generator) -> tuple:
         low[axis] = high[axis] = random.choice([*EXTREMES, random.integers(limit), origin[axis] >> fraction_bits])
         point, _ = meet(config, origin, slope, axis, low[axis])
         for other in OTHER_AXES[axis]:
-            away = random.choice([-1, 0, 1, 1, *(sign << place for sign in (-1, 1) for place in range(1, 9))])
+            # A bound that has another bit is seen from near it; the lowest bits from nearest.
+            away = random.choice([-1, 1]) * int(random.integers(1 << int(random.integers(9))))
             near = int(np.clip((point[other] >> fraction_bits) + away, 0, limit))
             if random.random() < 0.7:
                 low[other], high[other] = random.choice([(near, limit), (0, near), (near, near)])
@@ -168,7 +169,7 @@ def aimed_ray(config: Configuration, random: np.random.Generator) -> tuple:
 @finders
 def test_intersection_finder(config, tmp_path):
     random = np.random.default_rng(seed())
-    rays = traced_rays(config, random, 15) + [aimed_ray(config, random) for _ in range(140)]
+    rays = traced_rays(config, random, 15) + [aimed_ray(config, random) for _ in range(180)]
     stimulus, results = finder_stimulus(config, [ray[:3] for ray in rays])
     outputs = finder_leaf(config, tmp_path).run_both(stimulus, settled=config.divider_steps + 5)
     seen = set()
