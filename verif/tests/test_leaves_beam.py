@@ -11,7 +11,7 @@ from raycaster.configuration import BEAM_SCREENS, WORLD_SIZE, Configuration, Con
 from raycaster.golden import exact
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
-from raycaster.golden.world import Rectangles
+from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl import fold_tester as tester
 from raycaster.rtl import nearest_of_two as contest
 from raycaster.rtl import ray_fold as folder
@@ -52,8 +52,8 @@ U, V = (1, 0, 1), (2, 2, 0)
 WALK = ("way_u", "low_u", "high_u", "low_v", "high_v")
 
 
-def config_id(config: Configuration) -> str:
-    return config.name
+def config_id(value) -> str | None:
+    return value.name if isinstance(value, Configuration) else None
 
 
 def beam_config(**options) -> Configuration:
@@ -176,6 +176,7 @@ def flat_tables(random: np.random.Generator, count: int) -> Rectangles:
 
 @by_screen
 def test_rect_setup(config, tmp_path):
+    """Lines at random, the last of which a reset ends."""
     count = config.rectangles
     leaf = Leaf(
         rect_setup,
@@ -215,6 +216,11 @@ def test_rect_setup(config, tmp_path):
             stimulus.append({**held, **sorted_rect(table, index, "rects_rect")})
             loads[start + setup.LATENCY + index] = table, index, camera, slopes[row, column : column + 2]
         stimulus += [held] * (setup.LATENCY + int(random.integers(5)))
+    # Every stage of the last line has something at hand.
+    end = start + setup.LATENCY + min(1, count - 1)
+    stimulus[end] = stimulus[end] | {"reset": 1}
+    stimulus[end + 1] = stimulus[end + 1] | {"reset": 0}
+    loads = {cycle: load for cycle, load in loads.items() if cycle <= end}
     outputs = leaf.run_both(stimulus, settled=2 + setup.LATENCY)
     width = walk_bits(config)
     for cycle, output in enumerate(outputs[2:], 2):
@@ -266,7 +272,7 @@ def test_facet_mem(tmp_path):
 
 @by_screen
 def test_rect_walker(config, tmp_path):
-    """Whole rows, in which the ways and the bounds advance at different times, at the steepest slopes too."""
+    """Whole rows, and many beginnings of rows, in which the ways and the bounds advance at different times."""
     leaf = Leaf(
         rect_walker,
         lambda: {
@@ -284,20 +290,22 @@ def test_rect_walker(config, tmp_path):
     slopes = primary_slopes(config.screen_geometry)
     width, columns = walk_bits(config), slopes.shape[1]
     stimulus, expected = [], {}
-    for row in (0, len(slopes) - 1, int(random.integers(len(slopes)))):
+    for number in range(300):
+        row = (0, len(slopes) - 1, int(random.integers(len(slopes))))[number % 3]
+        first, steps = (0, columns) if number < 3 else (int(random.integers(columns - 8)), 8)
         table = flat_tables(random, 1)
         camera = np.array([any_place(random) for _ in AXES])
-        now, then = (products(table, 0, camera, slope) for slope in slopes[row, :2])
+        now, then = (products(table, 0, camera, slope) for slope in slopes[row, first : first + 2])
         inputs = {f"start_{name}": word(now[name], width) for name in WALK}
         inputs |= {f"growth_{name}": word(then[name] - now[name], DISTANCE_BITS) for name in WALK}
         stimulus.append({**inputs, "load": 1})
         way = bounds = 0
         # One step more than there are columns: the last one's end.
-        while min(way, bounds) < columns:
-            slope = slopes[row, 0] + np.array([0, 1, 0]) * [[way], [bounds]]
+        while min(way, bounds) < steps:
+            slope = slopes[row, first] + np.array([0, 1, 0]) * [[way], [bounds]]
             seen = products(table, 0, camera, slope[0]), products(table, 0, camera, slope[1])
             expected[len(stimulus)] = [word(seen[name != "way_u"][name], width) for name in WALK]
-            step_way, step_bounds = int(way < columns and random.random() < 0.9), int(bounds < columns)
+            step_way, step_bounds = (int(done < steps and random.random() < 0.9) for done in (way, bounds))
             stimulus.append({"load": 0, "step_way": step_way, "step_bounds": step_bounds})
             way, bounds = way + step_way, bounds + step_bounds
     outputs = leaf.run_both(stimulus, settled=1)
@@ -356,10 +364,13 @@ def beam_rays(random: np.random.Generator, config: Configuration, count: int):
     As the engine meets them, and as extreme as its widths allow.
     """
     steepest, view = steepest_slope(config), config.screen_geometry.view_distance
+    powers = 1 << np.arange(steepest.bit_length())
     for _ in range(count):
         table = random_rectangles(random, count=8, closed=True)
         camera = random_camera(random, table).astype(np.int64)
-        sides = random.choice([0, 1, 2, view, steepest, int(random.integers(steepest))], 2) * random.choice([-1, 1], 2)
+        # Of a power of two its one bit counts, and of ways that a small one divides the lowest bits.
+        extremes = [0, view, steepest, random.choice(powers), *random.integers([4, 16, 16, steepest])]
+        sides = random.choice(extremes, 2) * random.choice([-1, 1], 2)
         slope = np.array([view, *sides])
         wanted = int(random.integers(config.reflections + 1))
         mirrors: list[tuple[int, int]] = []
@@ -368,18 +379,40 @@ def beam_rays(random: np.random.Generator, config: Configuration, count: int):
             if len(mirrors) == wanted:
                 break
             axis, plane = int(random.integers(3)), any_place(random)
-            if mirrors and random.random() < 0.5:
+            eye, turned = seen_from(camera, slope, mirrors)
+            if mirrors and random.random() < 0.3:
                 # From corner to corner the image runs as far away as it can.
                 axis, plane = mirrors[-1][0], LAST - mirrors[-1][1]
-            eye, turned = seen_from(camera, slope, mirrors)
+            elif turned[axis] and random.random() < 0.6:
+                plane = coordinate(eye, turned, time_ahead(random, eye, turned, met, axis), axis)
             if turned[axis] and Fraction(int(plane - eye[axis]), int(turned[axis])) > met:
                 met = Fraction(int(plane - eye[axis]), int(turned[axis]))
                 mirrors.append((axis, plane))
         eye, turned = seen_from(camera, slope, mirrors)
         chosen = random.choice(np.flatnonzero(table.visible), 4)
         for index in chosen:
+            axis, corners = int(table.axes[index]), table.corners.copy()
+            if turned[axis] and random.random() < 0.8:
+                corners[index, :, axis] = coordinate(eye, turned, time_ahead(random, eye, turned, met, axis), axis)
+                table = Rectangles(corners, table.colours, table.enabled)
             table = sharpened(random, table, int(index), eye, turned, mirrors[-1] if mirrors else None)
         yield table, set(chosen.tolist()), camera, slope, mirrors
+
+
+def time_ahead(random: np.random.Generator, eye, turned, met: Fraction, axis: int) -> Fraction:
+    """When a ray is on its way from a mirror out of the world; often at a whole coordinate of two axes at once."""
+    exits = ((LAST * (slope > 0) - place, slope) for place, slope in zip(eye.tolist(), turned.tolist(), strict=True))
+    left = min(Fraction(way, slope) for way, slope in exits if slope)
+    t = met + max(left - met, 0) * Fraction(int(random.integers(1, 65)), 64)
+    if random.random() < 0.6:
+        parts = int(np.gcd(turned[axis], turned[random.choice(OTHER_AXES[axis])]))
+        t = Fraction(round(t * parts), parts)
+    return t
+
+
+def coordinate(eye, turned, t: Fraction, axis: int) -> int:
+    """Where a ray is then; the world's last one where it has left."""
+    return int(np.clip(int(eye[axis] + int(turned[axis]) * t), 0, LAST))
 
 
 def seen_from(camera, slope, mirrors) -> tuple[np.ndarray, np.ndarray]:
@@ -436,14 +469,14 @@ def test_fold_tester(config, tmp_path):
     )
     random = np.random.default_rng(seed())
     stimulus, expected, seen = [], {}, set()
-    for table, chosen, camera, slope, mirrors in beam_rays(random, config, 2000):
+    for table, chosen, camera, slope, mirrors in beam_rays(random, config, 3000):
         fold = {f"fold_{name}": value for name, value in folded(config, camera, slope, mirrors).items()}
         eye, turned = seen_from(camera, slope, mirrors)
         for index in chosen:
             now = products(table, index, camera, slope)
             bounds = {f"walk_{name}": word(now[name], walk_bits(config)) for name in WALK if name != "way_u"}
             facet = {
-                "facet_usable": int(table.enabled[index]),
+                "facet_usable": int(random.random() < 0.9),
                 "facet_axis": int(table.axes[index]),
                 "facet_distance": word(now["distance"], DISTANCE_BITS),
                 "facet_way_v": word(now["way_v"], walk_bits(config)),
@@ -457,7 +490,7 @@ def test_fold_tester(config, tmp_path):
             ]
             hit, n, e = verdict(table, index, eye, turned, mirrors[-1] if mirrors else None)
             seen.add((len(mirrors), hit))
-            expected[start + tester.LATENCY] = hit and bool(table.enabled[index]), n, e, (
+            expected[start + tester.LATENCY] = hit and bool(facet["facet_usable"]), n, e, (
                 table.corners[index].tolist(), camera, slope, mirrors, repeat()
             )  # fmt: skip
     outputs = leaf.run_both([*stimulus, {}], settled=tester.LATENCY)
@@ -493,7 +526,9 @@ def test_ray_fold(config, tmp_path):
     rays = [ray[2:] for ray in beam_rays(random, config, 4000) if ray[-1]]
     stimulus = [{} for _ in range(len(rays) + folder.LATENCY + 1)]
     for cycle, (camera, slope, mirrors) in enumerate(rays):
-        met = {"last": mirrors[-1], "earlier": mirrors[0] if len(mirrors) == 2 else (1, any_place(random))}
+        met = {"last": mirrors[-1], "earlier": (int(random.integers(3)), any_place(random))}
+        if len(mirrors) == 2:
+            met["earlier"] = mirrors[0]
         for name, (axis, plane) in met.items():
             distance = word(plane - int(camera[axis]), DISTANCE_BITS)
             stimulus[cycle] |= {f"{name}_axis": axis, f"{name}_distance": distance}
@@ -650,17 +685,73 @@ def test_color_blend(tmp_path):
 # The engine -----------------------------------------------------------------------------------------------------------
 
 
+def opened(random: np.random.Generator, corners: np.ndarray, axis: int, plane: int, eye, turned) -> Fraction:
+    """Make a rectangle one that a ray hits near two of its edges, and say when."""
+    corners[:, axis] = plane
+    t = Fraction(int(plane - eye[axis]), int(turned[axis]))
+    for u in OTHER_AXES[axis]:
+        point = eye[u] + int(turned[u]) * t
+        edge = int(np.clip(int(point) + int(random.choice([-1, 0, 0, 1])), 0, LAST))
+        side = LAST if edge < point or (edge == point and random.random() < 0.5) else 0
+        corners[:, u] = random.permutation([edge, side if random.random() < 0.7 else (any_place(random) + side) // 2])
+    return t
+
+
+def race(random: np.random.Generator, config: Configuration, slopes) -> tuple[np.ndarray, Rectangles, int]:
+    """A camera, a table, and a ray that meets mirrors near their edges, and at its end two rectangles almost at once,
+    or one that stands by the last mirror."""
+    count, before_centre = config.rectangles, config.screen_geometry.centre_column - 1
+    ends = int(random.integers(min(config.reflections + 1, count), size=2).max())
+    by_mirror = ends > 0 and random.random() < 0.25
+    for _ in range(300):
+        camera, table = random.integers(WORLD_SIZE, size=3), flat_tables(random, count)
+        corners, order = table.corners.copy(), random.permutation(count)
+        # The last column whose rays run down along y is the one that tells its sign from the next one's.
+        column = before_centre if random.random() < 0.1 else int(random.integers(len(slopes), size=2).min())
+        # After two mirrors the lowest bits count where a small odd slope reaches an edge exactly.
+        if ends == 2 and random.random() < 0.5:
+            column = before_centre + 1 + int(random.choice([-3, -1, 1, 3]))
+        mirrors: list[tuple[int, int]] = []
+        times = [Fraction(0)]
+        for bounce in range(ends + 1):
+            eye, turned = seen_from(camera, slopes[column], mirrors)
+            axis = int(random.choice(np.flatnonzero(turned)))
+            t = time_ahead(random, eye, turned, times[-1], axis)
+            if bounce == 2 and by_mirror:
+                t = times[-1]
+            elif bounce == 2:
+                # It may meet the first one again, which then is the other of the two.
+                again, first = mirrors[0]
+                t = max(times[-1], Fraction(int(first - eye[again]), int(turned[again])))
+            plane = coordinate(eye, turned, t, axis)
+            if bounce == 2:
+                plane = min(max(plane + int(random.integers(-1, 2)), 0), LAST)
+            times.append(opened(random, corners[order[bounce]], axis, plane, eye, turned))
+            mirrors.append((axis, plane))
+        if ends + 1 < count:
+            axis = int(random.choice(np.flatnonzero(turned)))
+            plane = coordinate(eye, turned, times[-2 if by_mirror else -1], axis) + int(random.integers(-1, 2))
+            opened(random, corners[order[ends + 1]], axis, min(max(plane, 0), LAST), eye, turned)
+        table = Rectangles(corners, table.colours, np.ones(count, dtype=bool))
+        traced = exact.trace(table, camera, (0, 0, 0), slopes[column : column + 1], ends, keep=True)
+        if traced.bounces[-1].hits.sum() >= min(1 if by_mirror else 2, count):
+            break
+    return camera, table, column
+
+
 @pytest.mark.parametrize(
-    "config",
+    ("config", "lines"),
     [
-        beam_config(screen="tiny", rectangles=1, reflections=0, colour_bits=4),
-        beam_config(screen="tiny", rectangles=3, reflections=1, scale=1),
-        beam_config(screen="tiny", rectangles=8, reflections=2),
-        beam_config(rows=180, rectangles=5, reflections=1),
+        (beam_config(screen="tiny", rectangles=1, reflections=0, colour_bits=4), 24),
+        (beam_config(screen="tiny", rectangles=3, reflections=1, scale=1), 24),
+        # Small enough for every rectangle to matter in every pass.
+        (beam_config(screen="tiny", rectangles=3, reflections=2, scale=1), 400),
+        (beam_config(screen="tiny", rectangles=8, reflections=2), 12),
+        (beam_config(rows=180, rectangles=5, reflections=1), 4),
     ],
     ids=config_id,
 )
-def test_beam_caster(config, tmp_path):
+def test_beam_caster(config, lines, tmp_path):
     """Whole rows of scenes in which a ray of the row meets mirrors and edges."""
     leaf = Leaf(
         beam_caster,
@@ -681,12 +772,20 @@ def test_beam_caster(config, tmp_path):
     )
     random = np.random.default_rng(seed())
     slopes = primary_slopes(config.screen_geometry)
-    stimulus, expected, fates = [{"reset": 1}] * 2, {}, set()
-    for _ in range(24 if config.screen == "tiny" else 4):
-        row = int(random.choice([0, len(slopes) - 1, random.integers(len(slopes))]))
-        line = random.permutation(slopes[row])
-        camera, table, background, reflections, _ = traced_scene(random, config, line)
-        traced = exact.trace(table, camera, background, slopes[row], reflections)
+    # Until no column is on its way, whatever the registers started from.
+    stimulus, expected, fates = [{"reset": 1}] * beam_latency(config), {}, set()
+    horizon = config.screen_geometry.horizon_row
+    for number in range(lines):
+        flat = [horizon + slope for slope in (-3, -1, 1, 3)]
+        row = int(random.choice([0, len(slopes) - 1, *flat, *random.integers(len(slopes), size=4)]))
+        if number % 8:
+            camera, table, column = race(random, config, slopes[row])
+            background, reflections = random.integers(256, size=3), config.reflections
+            line = slopes[row, : column + 1 + int(random.integers(4))]
+        else:
+            camera, table, background, reflections, _ = traced_scene(random, config, random.permutation(slopes[row]))
+            line = slopes[row]
+        traced = exact.trace(table, camera, background, line, reflections)
         fates |= {tuple(int(winner[column] >= 0) for winner in traced.winners) for column in range(len(line))}
         held = {f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)}
         held |= {"reset": 0, "start_line": 0, "next_column": 0, "reflections": reflections}
@@ -699,7 +798,7 @@ def test_beam_caster(config, tmp_path):
             stimulus.append({**held, **rect})
         stimulus += [held] * (setup.LATENCY - 3 + int(random.integers(4)))
         for colour in traced.colours:
-            stimulus += [held] * int(random.integers(2) if config.scale == 1 else 0)
+            stimulus += [held] * int(random.random() < 0.5 * (config.scale == 1 and number % 8 == 0))
             expected[len(stimulus) + beam_latency(config)] = (
                 pixel_word(config, colour),
                 (camera, table.corners, repeat()),

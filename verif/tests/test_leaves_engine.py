@@ -633,10 +633,14 @@ def scene_in_view(random: np.random.Generator, config: Configuration, axis: int)
     ids=config_id,
 )
 def test_ray_caster_renderer_scenes(config, tmp_path):
-    """A scene a frame, of one rectangle, wherever it may stand; of either renderer."""
+    """A scene a frame, of one rectangle, wherever it may stand, and once disabled; of either renderer."""
     screen = config.screen_geometry
     random = np.random.default_rng(seed())
-    scenes = [scene_in_view(random, config, number % 3) for number in range(30)]
+    scenes = [scene_in_view(random, config, number % 3) for number in range(50 if config.engine == "beam" else 30)]
+    camera, table, background, reflections, words = next(scene for scene in scenes if len(np.unique(scene[-1])) > 1)
+    disabled = Rectangles(table.corners, table.colours, np.zeros(1, dtype=bool))
+    empty = golden_words(config, np.broadcast_to(background, (words.size, 3)))
+    scenes.insert(0, (camera, disabled, background, reflections, empty))
     stimulus = [{"reset": 1, "run": 1}] * 2
     start = start_screen_cycle(screen)
     for number, (camera, table, background, reflections, _) in enumerate(scenes):
@@ -652,6 +656,7 @@ def test_ray_caster_renderer_scenes(config, tmp_path):
         # From the cycle after each StartScreen on, the next scene.
         stimulus += [scene] * (screen.frame_cycles if number else start + 1 + screen.frame_cycles)
     stimulus += [{"run": 0}] * screen.frame_cycles
+    stimulus += [{"reset": 1}] * 2
     outputs = renderer_leaf(config, tmp_path).run_both(stimulus, settled=2 + start + 6)[2:]
     frames = monitored(outputs, config)
     assert len(frames) >= len(scenes)
