@@ -774,9 +774,8 @@ def test_beam_caster(config, lines, tmp_path):
     slopes = primary_slopes(config.screen_geometry)
     # Until no column is on its way, whatever the registers started from.
     stimulus, expected, fates = [{"reset": 1}] * beam_latency(config), {}, set()
-    horizon = config.screen_geometry.horizon_row
+    flat = [config.screen_geometry.horizon_row + slope for slope in (-3, -1, 1, 3)]
     for number in range(lines):
-        flat = [horizon + slope for slope in (-3, -1, 1, 3)]
         row = int(random.choice([0, len(slopes) - 1, *flat, *random.integers(len(slopes), size=4)]))
         if number % 8:
             camera, table, column = race(random, config, slopes[row])
