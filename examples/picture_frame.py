@@ -11,13 +11,15 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from myhdl import Constant, Signal, always_comb, always_seq, block, intbv
+from myhdl import Signal, always_comb, always_seq, block, intbv
 
 from raycaster.configuration import Configuration, configure
+from raycaster.convert.elaboration import elaboration
+from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.program import scene_words
 from raycaster.registers import address_bits
-from raycaster.rtl.hierarchy import constant, convert_hierarchy, elaboration, unconnected
-from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
+from raycaster.rtl.common.ties import tied, unconnected
+from raycaster.rtl.system.ray_caster_module import ModulePorts, ray_caster_module
 from raycaster.scene import Scene, load_scene
 
 
@@ -81,7 +83,7 @@ def picture_frame(
     address = Signal(intbv(0)[address_bits(config.table) :])
     write, waitrequest = Signal(bool(0)), Signal(bool(0))
     writedata = Signal(intbv(0)[32:])
-    whole_word, never = constant(0b1111, 4), Constant(False)
+    whole_word, never = tied(0b1111, 4), tied(0, 1)
 
     writer = scene_writer(clk, reset, address, write, writedata, waitrequest, words)
     tracer = ray_caster_module(

@@ -27,7 +27,7 @@ SCOPES = {
     "all": "camera, background and reflections are constants too",
 }
 FIT = "fit"
-"""The scope, and all else, that `raycaster.fit.search` chose."""
+"""The scope, and all else, that `raycaster.fpga.fit` chose."""
 
 BOUNDS = {"u_low": 0, "v_low": 0, "u_high": WORLD_SIZE - 1, "v_high": WORLD_SIZE - 1}
 """The world's edge, by the bound that may be there."""
@@ -61,7 +61,7 @@ def add_fix_option(parser: argparse.ArgumentParser) -> None:
     scopes = "; ".join(f"{name}: {meaning}" for name, meaning in SCOPES.items())
     parser.add_argument("--fix", metavar="SCOPE", help=f"build the scene into the hardware; {scopes}")
     parser.add_argument(
-        "--fit", dest="fix", action="store_const", const=FIT, help="build what raycaster.fit.search chose for the scene"
+        "--fit", dest="fix", action="store_const", const=FIT, help="build what raycaster.fpga.fit chose for the scene"
     )
 
 

@@ -23,11 +23,11 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from raycaster.configuration import Configuration
+from raycaster.convert.take_home import TOP
+from raycaster.convert.write import write_verilog
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.options import add_configuration_options, given_options, run_command
-from raycaster.rtl.convert import write_verilog
-from raycaster.rtl.take_home import TOP
 from raycaster.tools import TIMEOUT, find_program, prepare_wasm, run_program, run_yosys
 
 HARD_MULTIPLIER = Path(__file__).with_name("hard_multiplier.v")

@@ -21,13 +21,13 @@ from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from raycaster.configuration import CHANNEL_BITS, Configuration, configure
+from raycaster.convert.write import write_dvi_encoder, write_processor_system, write_system
 from raycaster.design import Design, ProcessorDesign
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.output import replaced
-from raycaster.rtl.convert import write_dvi_encoder, write_processor_system, write_system
 from raycaster.sw.firmware import build_firmware
 from raycaster.tools import find_program, prepare_wasm, run_program, run_yosys
 

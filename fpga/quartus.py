@@ -19,13 +19,13 @@ from pathlib import Path
 from rich.console import Console
 
 from raycaster.configuration import Configuration
+from raycaster.convert.take_home import clock_period
+from raycaster.convert.write import write_system
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.board import BOARDS, TOP, Board, check_project, find_board, top_ports
 from raycaster.options import add_configuration_options, given_options, run_command
 from raycaster.output import replaced
-from raycaster.rtl.convert import write_system
-from raycaster.rtl.take_home import clock_period
 from raycaster.scene import Scene
 from raycaster.tools import find_program, run_program
 

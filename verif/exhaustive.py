@@ -41,17 +41,18 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 import raycaster.configuration
-import raycaster.rtl.divider
-import raycaster.rtl.intersection_helper
-import raycaster.rtl.widths
+import raycaster.rtl.common.widths
+import raycaster.rtl.seed.divider
+import raycaster.rtl.seed.intersection_helper
 from raycaster.configuration import COORDINATE_BITS, Configuration, configure
+from raycaster.convert.elaboration import elaboration
+from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.errors import UserError
 from raycaster.options import run_command
-from raycaster.rtl.divider import divider
-from raycaster.rtl.hierarchy import convert_hierarchy, elaboration
-from raycaster.rtl.interfaces import Steps
-from raycaster.rtl.intersection_helper import intersection_helper
-from raycaster.rtl.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
+from raycaster.rtl.common.interfaces import Steps
+from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
+from raycaster.rtl.seed.divider import divider
+from raycaster.rtl.seed.intersection_helper import intersection_helper
 from raycaster.verif.seeds import seed
 from raycaster.verif.simulator import find_tool
 
@@ -159,10 +160,10 @@ def _widths(bench: Bench) -> Iterator[None]:
     """The design's constants as the bench wants them, in each module that has a name of its own for them."""
     patches = [
         (raycaster.configuration, "COORDINATE_BITS", bench.coordinate_bits),
-        (raycaster.rtl.widths, "COORDINATE_BITS", bench.coordinate_bits),
-        (raycaster.rtl.widths, "SLOPE_BITS", bench.slope_bits),
-        (raycaster.rtl.divider, "SLOPE_BITS", bench.slope_bits),
-        (raycaster.rtl.intersection_helper, "SLOPE_BITS", bench.slope_bits),
+        (raycaster.rtl.common.widths, "COORDINATE_BITS", bench.coordinate_bits),
+        (raycaster.rtl.common.widths, "SLOPE_BITS", bench.slope_bits),
+        (raycaster.rtl.seed.divider, "SLOPE_BITS", bench.slope_bits),
+        (raycaster.rtl.seed.intersection_helper, "SLOPE_BITS", bench.slope_bits),
     ]
     with ExitStack() as stack:
         for module, name, value in patches:

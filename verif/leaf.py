@@ -8,7 +8,7 @@ import os
 import re
 import shutil
 import subprocess
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate, pairwise
 from pathlib import Path
@@ -17,10 +17,13 @@ from typing import Any
 from myhdl import ResetSignal, Simulation, StopSimulation, block, delay, instance
 
 from raycaster.configuration import Configuration
+from raycaster.convert.elaboration import elaboration
+from raycaster.convert.hierarchy import Module, Port, convert_hierarchy
+from raycaster.convert.inside import port_signals
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.hierarchy import Module, Port, convert_hierarchy, elaboration, port_signals
-from raycaster.rtl.interfaces import RaySteps, Steps
-from raycaster.rtl.ray_sequencer import GIVE_UP_AT, impatient
+from raycaster.rtl.common.interfaces import RaySteps, Steps
+from raycaster.rtl.common.records import Record
+from raycaster.rtl.engine.ray_sequencer import GIVE_UP_AT, impatient
 
 Cycle = Mapping[str, int]
 
@@ -28,8 +31,18 @@ RECORD_VARIABLE = "RAYCASTER_RECORD"
 """Names a directory in which `Leaf.run_both` leaves a recording of each run, under its test's name."""
 
 
+@dataclass(frozen=True)
+class Member:
+    """A port, or a field of a record at a port, as stimuli and expectations name it."""
+
+    port: str
+    width: int
+    low: int = 0
+    """Of the port's bits, the lowest that it has."""
+
+
 class Leaf:
-    """One block with given parameters and fresh signals at its ports.
+    """One block with given parameters and fresh signals at its ports; a record's fields stand for its port.
 
     Args:
         function: the block.
@@ -47,6 +60,9 @@ class Leaf:
         ports = self.modules[-1].ports
         self.inputs = {port.name: port for port in ports if not port.output and port.name != "clk"}
         self.outputs = {port.name: port for port in ports if port.output}
+        layouts = _layouts(arguments())
+        self.given, self.seen = (_members(ports, layouts) for ports in (self.inputs, self.outputs))
+        """By name, what a stimulus gives and what a run returns."""
         self._clocked = any(port.name == "clk" for port in ports)
 
     @elaboration()
@@ -62,15 +78,13 @@ class Leaf:
 
             @instance
             def drive():
-                for cycle in stimulus:
-                    for name, value in cycle.items():
+                for words in self._port_words(stimulus):
+                    for name, value in words.items():
                         port = self.inputs[name]
                         negative = port.signed and value >> (port.width - 1) & 1
                         signals[name].next = value - (1 << port.width) if negative else value
                     yield delay(1)
-                    recorded.append(
-                        {name: int(signals[name].val) % (1 << port.width) for name, port in self.outputs.items()}
-                    )
+                    recorded.append(self._members_of({name: int(signals[name].val) for name in self.outputs}))
                     if self._clocked:
                         signals["clk"].next = True
                         yield delay(1)
@@ -100,8 +114,13 @@ class Leaf:
         self._call("vvp", "-n", "leaf")
         recorded = []
         for line in (self._directory / "outputs.txt").read_text().splitlines():
-            values = dict(zip(self.outputs, line.split(), strict=True))
-            recorded.append({name: int(text, 2) if set(text) <= {"0", "1"} else None for name, text in values.items()})
+            bits = dict(zip(self.outputs, line.split(), strict=True))
+            fields = {}
+            for name, member in self.seen.items():
+                text = bits[member.port]
+                text = text[len(text) - member.low - member.width : len(text) - member.low]
+                fields[name] = int(text, 2) if set(text) <= {"0", "1"} else None
+            recorded.append(fields)
         return recorded
 
     def run_both(self, stimulus: Sequence[Cycle], settled: int = 0) -> list[dict[str, int]]:
@@ -155,7 +174,8 @@ class Leaf:
             "cycles": len(stimulus),
         }
         (directory / "leaf.json").write_text(json.dumps(description, indent=2) + "\n")
-        input_words, output_words = self._input_words(stimulus), [_joined(self.outputs, cycle) for cycle in expected]
+        input_words = self._input_words(stimulus)
+        output_words = [_joined(self.outputs, _words(self.seen, cycle)) for cycle in expected]
         lines = (
             f"{_split(given, sum(inputs.values()))} {_split(wanted, sum(outputs.values()))}\n"
             for given, wanted in zip(input_words, output_words, strict=True)
@@ -164,12 +184,23 @@ class Leaf:
 
     def _input_words(self, stimulus: Sequence[Cycle]) -> list[int]:
         """All inputs of each cycle as one vector, the first port in the highest bits."""
-        held = dict.fromkeys(self.inputs, 0)
-        words = []
+        return [_joined(self.inputs, words) for words in self._port_words(stimulus)]
+
+    def _port_words(self, stimulus: Sequence[Cycle]) -> Iterator[dict[str, int]]:
+        """Every input port's value in each cycle.
+
+        Raises:
+            KeyError: a stimulus names what is no input of the block.
+        """
+        held = dict.fromkeys(self.given, 0)
         for cycle in stimulus:
+            if strangers := set(cycle) - set(held):
+                raise KeyError(f"{self._function.__name__} has no input {', '.join(sorted(strangers))}")
             held |= cycle
-            words.append(_joined(self.inputs, held))
-        return words
+            yield _words(self.given, held)
+
+    def _members_of(self, words: Mapping[str, int]) -> dict[str, int]:
+        return {name: words[one.port] >> one.low & (1 << one.width) - 1 for name, one in self.seen.items()}
 
     def _bench(self, width: int, cycles: int) -> str:
         declarations = [f"reg [{port.width - 1}:0] {name} = 0;" for name, port in self.inputs.items()]
@@ -205,6 +236,39 @@ endmodule
 def recording_name(test: str) -> str:
     """The directory of a test's recording: its name with its parameters, without what a path had better not have."""
     return re.sub(r"[^\w.-]+", "-", test).strip("-")
+
+
+def _layouts(arguments: Mapping[str, Any]) -> dict[str, Record]:
+    """The records among a block's arguments by the name of their port."""
+    found = {}
+    for name, value in arguments.items():
+        if isinstance(value, Record):
+            found[f"{name}_word"] = value
+        elif getattr(value, "is_interface", False):
+            found |= _layouts({f"{name}_{attribute}": one for attribute, one in vars(value).items()})
+    return found
+
+
+def _members(ports: Mapping[str, Port], records: Mapping[str, Record]) -> dict[str, Member]:
+    """Each port, or in place of a record's word its fields."""
+    found = {}
+    for name, port in ports.items():
+        if name not in records:
+            found[name] = Member(name, port.width)
+            continue
+        low = port.width
+        for field, width in records[name].layout.items():
+            low -= width
+            found[f"{name.removesuffix('_word')}_{field}"] = Member(name, int(width), low)
+    return found
+
+
+def _words(members: Mapping[str, Member], values: Cycle) -> dict[str, int]:
+    """Each port's value, put together of its members'."""
+    words = dict.fromkeys((one.port for one in members.values()), 0)
+    for name, one in members.items():
+        words[one.port] |= values[name] % (1 << one.width) << one.low
+    return words
 
 
 def _joined(ports: Mapping[str, Port], values: Mapping[str, int]) -> int:

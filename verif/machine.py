@@ -15,10 +15,10 @@ from pathlib import Path
 import numpy as np
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
+from raycaster.convert.write import write_system
 from raycaster.memory_map import BUTTON_NAMES, PROGRAM_FILE, clocks_per_bit
 from raycaster.registers import address_bits
-from raycaster.rtl import scene_player
-from raycaster.rtl.convert import write_system
+from raycaster.rtl.system import scene_player
 from raycaster.scene import Scene
 from raycaster.verif.register_model import LiveScene, SceneFollower
 from raycaster.verif.simulator import BUILD, SimulationError, convert, find_tool, lock, stamped, write_stamp

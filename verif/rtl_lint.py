@@ -30,7 +30,7 @@ from raycaster.options import run_command
 
 DECORATORS = {"always", "always_comb", "always_seq", "instance"}
 ALLOWED_CALLS = {"intbv", "modbv", "concat", "int", "len", "range", "bool"}
-SIGNAL_MAKERS = {"Signal", "ResetSignal", "ConcatSignal", "unsigned", "signed", "bit", "constant", "unconnected"}
+SIGNAL_MAKERS = {"Signal", "ResetSignal", "ConcatSignal", "unsigned", "signed", "bit", "tied", "unconnected"}
 ARITHMETIC = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.FloorDiv, ast.Mod, ast.Pow, ast.LShift, ast.RShift)
 
 

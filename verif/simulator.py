@@ -24,6 +24,7 @@ from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import get_runner
 
 import raycaster
+import raycaster.convert
 import raycaster.rtl
 from raycaster.configuration import Configuration
 from raycaster.errors import UserError
@@ -209,15 +210,15 @@ def convert(configuration: Configuration, build: Path = BUILD, *, system: bool =
     """
     directory = build / "model" / configuration.name / ("system" if system else "verilog")
     digest = hashlib.sha256(repr(configuration).encode())
-    for package in (raycaster, raycaster.rtl):
-        for source in sorted(Path(package.__path__[0]).iterdir()):
+    for package in (raycaster, raycaster.rtl, raycaster.convert):
+        for source in sorted(Path(package.__path__[0]).rglob("*")):
             if source.suffix in (".py", ".rdl"):
                 digest.update(source.read_bytes())
     with lock(directory):
         stamp = directory / "stamp.json"
         if (files := stamped(stamp, digest.hexdigest())) is not None:
             return [directory / name for name in files]
-        from raycaster.rtl import convert as converter  # noqa: PLC0415 - MyHDL is only loaded where it has work
+        from raycaster.convert import write as converter  # noqa: PLC0415 - MyHDL is only loaded where it has work
 
         write = converter.write_processor_system if system else converter.write_verilog
         files = [path.name for path in write(configuration, directory) if path.suffix == ".v"]

@@ -11,10 +11,10 @@ from pathlib import Path
 
 from rich.console import Console
 
+from raycaster.convert.write import design_states
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
 from raycaster.options import given_options, run_command
-from raycaster.rtl.convert import design_states
 from raycaster.verif.probes.engines import description_of
 from raycaster.verif.probes.ray import Ray
 from raycaster.verif.recorder import add_recording_options, build_and_record, check_rows, pixel_place

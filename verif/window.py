@@ -22,7 +22,7 @@ from raycaster.golden import exact
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.options import add_configuration_options, given_options, run_command
-from raycaster.rtl import scene_player
+from raycaster.rtl.system import scene_player
 from raycaster.sw.firmware import build_firmware
 from raycaster.verif.machine import Frame, Machine, build_machine
 from raycaster.verif.play import FASTEST

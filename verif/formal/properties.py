@@ -8,11 +8,19 @@ from raycaster.fit.fixing import fixed_rectangle
 from raycaster.fixed import FixedScene
 from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
-from raycaster.rtl.avalon_interface import engine_word, size_word
-from raycaster.rtl.interfaces import PipelinedRects, Rect
-from raycaster.rtl.rect_rom import FIELDS, fixed_rects
-from raycaster.rtl.renderers import RECTS
-from raycaster.rtl.widths import bits_for, index_bits, offset_bits, pixel_bits, position_bits, row_bits, unit_bits
+from raycaster.rtl.bus.avalon_interface import engine_word, size_word
+from raycaster.rtl.common.interfaces import PipelinedRects, Rect
+from raycaster.rtl.common.widths import (
+    bits_for,
+    index_bits,
+    offset_bits,
+    pixel_bits,
+    position_bits,
+    row_bits,
+    unit_bits,
+)
+from raycaster.rtl.engine.renderers import RECTS
+from raycaster.rtl.scene.rect_rom import FIELDS, fixed_rects
 from raycaster.scene import Camera, Rectangle, Scene
 from raycaster.verif.formal.prover import FixedTable, FoldWidths, HostWidths, Property, TesterWidths
 

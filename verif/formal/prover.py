@@ -14,13 +14,15 @@ from functools import cache
 from pathlib import Path
 
 from raycaster.configuration import Configuration, Screen, configure
+from raycaster.convert.elaboration import elaboration
+from raycaster.convert.hierarchy import convert_hierarchy
+from raycaster.convert.write import write_verilog
 from raycaster.errors import UserError
 from raycaster.registers import address_bits
-from raycaster.rtl.avalon_host import avalon_host
-from raycaster.rtl.convert import write_verilog
-from raycaster.rtl.fold_tester import fold_tester
-from raycaster.rtl.hierarchy import convert_hierarchy, elaboration
-from raycaster.rtl.interfaces import (
+from raycaster.rtl.beam.fold_tester import fold_tester
+from raycaster.rtl.beam.ray_fold import ray_fold
+from raycaster.rtl.bus.avalon_host import avalon_host
+from raycaster.rtl.common.interfaces import (
     Candidate,
     Eye,
     Facet,
@@ -36,13 +38,12 @@ from raycaster.rtl.interfaces import (
     Slope,
     Walk,
 )
-from raycaster.rtl.ray_fold import ray_fold
-from raycaster.rtl.rect_mem import rect_mem
-from raycaster.rtl.rect_rom import fixed_rects, rect_rom
-from raycaster.rtl.rect_tester import rect_tester
-from raycaster.rtl.renderers import RECTS
-from raycaster.rtl.video_generator import video_generator
-from raycaster.rtl.widths import LANES, WORD_BITS, bit, signed, unsigned
+from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, signed, unsigned
+from raycaster.rtl.engine.renderers import RECTS
+from raycaster.rtl.exact.rect_tester import rect_tester
+from raycaster.rtl.scene.rect_mem import rect_mem
+from raycaster.rtl.scene.rect_rom import fixed_rects, rect_rom
+from raycaster.rtl.video.video_generator import video_generator
 from raycaster.tools import TIMEOUT, find_program, run_program, run_yosys
 from raycaster.verif.leaf import reset_signal
 
@@ -77,17 +78,17 @@ class FoldWidths:
 
     @property
     def walk(self) -> int:
-        """As `raycaster.rtl.widths.walk_bits`."""
+        """As `raycaster.rtl.common.widths.walk_bits`."""
         return self._products((1 << self.coordinate) - 1)
 
     @property
     def fold(self) -> int:
-        """As `raycaster.rtl.widths.fold_bits`."""
+        """As `raycaster.rtl.common.widths.fold_bits`."""
         return self._products((1 << self.coordinate) - 1 + (self.mirrors << self.coordinate + 1))
 
     @property
     def numerator(self) -> int:
-        """As `raycaster.rtl.widths.eye_bits`, without the sign."""
+        """As `raycaster.rtl.common.widths.eye_bits`, without the sign."""
         return (((1 << self.coordinate) - 1) * (self.mirrors + 1)).bit_length()
 
     def _products(self, most: int) -> int:

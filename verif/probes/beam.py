@@ -11,10 +11,10 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.golden.rays import primary_slopes
-from raycaster.rtl import beam_caster as beam
-from raycaster.rtl import fold_tester as tester
-from raycaster.rtl import nearest_of_two as contest
-from raycaster.rtl.widths import exact_slope_bits
+from raycaster.rtl.beam import beam_caster as beam
+from raycaster.rtl.beam import fold_tester as tester
+from raycaster.rtl.beam import nearest_of_two as contest
+from raycaster.rtl.common.widths import exact_slope_bits
 from raycaster.verif.probes.exact import fraction, hit
 from raycaster.verif.probes.ray import AXES, DUT, Event, Place, Probe, Ray, Read, Value, channels_of, fields
 from raycaster.verif.probes.units import (

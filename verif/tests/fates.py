@@ -9,7 +9,7 @@ import numpy as np
 from raycaster.configuration import Configuration
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.group_culler import MARGIN
+from raycaster.rtl.cull.group_culler import MARGIN
 from raycaster.verif.leaf import Leaf, TraceCycle
 
 

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from raycaster.configuration import configure
+from raycaster.convert.write import write_verilog
 from raycaster.fpga.area import CHIPS, FAMILIES, Area, Chip, Model, measure, measure_modules
-from raycaster.rtl.convert import write_verilog
 
 YOSYS = "0.70.0.0.post1259"
 SMALL = configure(screen="tiny", units=2, rectangles=2, divider_bits=1, allow_underrun=True, culling=False)

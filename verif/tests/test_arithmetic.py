@@ -6,11 +6,11 @@ import pytest
 
 from raycaster.configuration import Configuration, configure
 from raycaster.golden import seed_engine
-from raycaster.rtl.divider import divider
-from raycaster.rtl.divider_step import divider_step
-from raycaster.rtl.interfaces import Steps
-from raycaster.rtl.intersection_helper import intersection_helper
-from raycaster.rtl.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
+from raycaster.rtl.common.interfaces import Steps
+from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
+from raycaster.rtl.seed.divider import divider
+from raycaster.rtl.seed.divider_step import divider_step
+from raycaster.rtl.seed.intersection_helper import intersection_helper
 from raycaster.verif.leaf import Leaf
 from raycaster.verif.seeds import repeat, seed
 

@@ -21,7 +21,7 @@ from raycaster.fpga import bitstream
 from raycaster.fpga.bitstream import BOARDS, Outcome, make_bitstream, write_project
 from raycaster.golden import engines
 from raycaster.golden.picture import shown as as_shown
-from raycaster.rtl.camera_axis import STEP
+from raycaster.rtl.system.camera_axis import STEP
 from raycaster.scene import load_scene
 from raycaster.verif.dvi import golden, watch
 from raycaster.verif.monitor import VideoError

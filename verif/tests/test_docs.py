@@ -18,11 +18,12 @@ import pytest
 from conftest import BUILD, ROOT
 
 from raycaster.configuration import configure
+from raycaster.convert.elaboration import elaboration
+from raycaster.convert.inside import find_block, look_inside
 from raycaster.docs import blocks, commands, facts, timing
 from raycaster.docs.commands import commands_of, outside_make
 from raycaster.errors import UserError
-from raycaster.rtl.hierarchy import elaboration, find_block, look_inside
-from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
+from raycaster.rtl.system.ray_caster_module import ModulePorts, ray_caster_module
 from raycaster.verif.simulator import convert
 
 PAGES = sorted((ROOT / "docs").glob("*.md"))

@@ -24,10 +24,10 @@ from host_software import (
 )
 
 from raycaster.configuration import configure
+from raycaster.convert.take_home import TOP
 from raycaster.golden.world import Rectangles
 from raycaster.program import scene_words
 from raycaster.registers import register_map
-from raycaster.rtl.take_home import TOP
 from raycaster.scene import load_scene
 
 ERRORS = enumerators(SOFTWARE / "raycaster.h", "raycaster_error")

@@ -17,22 +17,22 @@ from conftest import ROOT, SMALL_SCENE, Bench
 from rich.console import Console
 
 from raycaster.configuration import Configuration, configure
+from raycaster.convert.write import write_verilog
 from raycaster.design import design_for
 from raycaster.errors import UserError
-from raycaster.fit import search
 from raycaster.fit.choice import keep_choice, kept_choice
 from raycaster.fit.fixing import FIT, SCOPES, configuration_of, design_of, fix, fixed_rectangle
 from raycaster.fit.unneeded import covered, seen, unreachable
 from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
+from raycaster.fpga import fit as search
 from raycaster.fpga.area import FAMILIES, measure
 from raycaster.golden import engines
 from raycaster.golden.world import Rectangles
 from raycaster.registers import address_bits, register_map
-from raycaster.rtl.convert import write_verilog
-from raycaster.rtl.facet_rom import facet_rom
-from raycaster.rtl.interfaces import PipelinedRects, SequentialRects
-from raycaster.rtl.rect_rom import FIELDS, fixed_rects, rect_rom
-from raycaster.rtl.widths import AXIS_BITS, COLOUR_BITS, DISTANCE_BITS, bit, index_bits, signed, unsigned
+from raycaster.rtl.beam.facet_rom import facet_rom
+from raycaster.rtl.common.interfaces import PipelinedRects, SequentialRects
+from raycaster.rtl.common.widths import AXIS_BITS, COLOUR_BITS, DISTANCE_BITS, bit, index_bits, signed, unsigned
+from raycaster.rtl.scene.rect_rom import FIELDS, fixed_rects, rect_rom
 from raycaster.scene import Rectangle, Scene, load_scene
 from raycaster.verif.leaf import Leaf
 from raycaster.verif.seeds import repeat, seed
@@ -426,7 +426,7 @@ def test_a_choice_for_another_scene_is_refused(tmp_path, monkeypatch):
     ],
 )
 def test_what_cannot_be_found_is_one_line(arguments, complaint):
-    command = [sys.executable, "-m", "raycaster.fit.search", "--scene", str(BOXES), *arguments]
+    command = [sys.executable, "-m", "raycaster.fpga.fit", "--scene", str(BOXES), *arguments]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert re.fullmatch(f"error: .*{complaint}.*\n", done.stderr)

@@ -16,21 +16,16 @@ from myhdl import ConcatSignal, Signal, always, always_comb, block, intbv
 from myhdl._simulator import _signals
 
 from raycaster.configuration import configure
-from raycaster.rtl import convert
-from raycaster.rtl.convert import FILE_LIST, write_verilog
-from raycaster.rtl.hierarchy import (
-    HierarchyError,
-    Module,
-    Port,
-    constant,
-    convert_hierarchy,
-    elaboration,
-    given_verilog,
-    load_words,
-    unconnected,
-)
-from raycaster.rtl.interfaces import Interface
-from raycaster.rtl.widths import bit, signed, unsigned
+from raycaster.convert import write
+from raycaster.convert.elaboration import elaboration
+from raycaster.convert.hierarchy import HierarchyError, Module, Port, convert_hierarchy
+from raycaster.convert.take_home import FILE_LIST
+from raycaster.convert.write import write_verilog
+from raycaster.rtl.common.given import given_verilog, load_words
+from raycaster.rtl.common.interfaces import Interface
+from raycaster.rtl.common.records import Record
+from raycaster.rtl.common.ties import Signed, tied, unconnected
+from raycaster.rtl.common.widths import bit, signed, unsigned
 from raycaster.verif.leaf import Leaf
 from raycaster.verif.seeds import repeat, seed
 
@@ -87,8 +82,8 @@ def everything(clk, word, pair, joined, swapped, count):
     halves = [unsigned(4) for _ in range(2)]
     carries = [unconnected(1), unconnected(1)]
     lower, upper = word(4, 0), word(8, 4)
-    amounts = [constant(3, 4), constant(15, 4)]
-    one = constant(1, 4)
+    amounts = [tied(3, 4), tied(15, 4)]
+    one = tied(1, 4)
     both = ConcatSignal(*reversed(halves))
     carry = bit()
     total = unsigned(4)
@@ -210,9 +205,154 @@ def test_one_name_is_one_module(tmp_path):
 
 
 @pytest.mark.parametrize(("gains", "widths"), [((1, 2), (4, 4)), ((1, 1), (4, 5))])
-def test_one_name_with_two_meanings_is_refused(gains, widths, tmp_path):
-    with pytest.raises(HierarchyError, match=r"step stands in the design with different parameters or port widths"):
-        converted(two_steps_of(gains, widths), tmp_path)
+def test_one_block_with_two_meanings_is_two_modules(gains, widths, tmp_path):
+    leaf = Leaf(
+        two_steps,
+        lambda: {
+            "clk": bit(), "value": unsigned(4), "by": unsigned(4), "first": unsigned(widths[0]),
+            "second": unsigned(widths[1]), "gains": gains, "widths": widths,
+        },
+        tmp_path,
+    )  # fmt: skip
+    assert [module.name for module in leaf.modules] == ["step", "step_1", "two_steps"]
+    assert leaf.modules[-1].instances == {"step_0": "step", "step_1": "step_1"}
+    outputs = leaf.run_both([{"value": 9, "by": 7}] * 4, settled=3)
+    assert outputs[-1] == {
+        name: (9 + 7 * gain % (1 << width)) % (1 << width)
+        for name, gain, width in zip(("first", "second"), gains, widths, strict=True)
+    }
+
+
+def another_step():
+    """A block of one's own that happens to be called, and to look, like `step`."""
+
+    @block
+    def step(clk, value, step_by, stepped, wrapped, gain=1):
+        @always(clk.posedge)
+        def keep():
+            stepped.next = value ^ step_by
+            wrapped.next = False
+
+        return (keep,)
+
+    return step
+
+
+@block
+def two_kinds(clk, value, by, first, second, other):
+    """Both of them."""
+    ours = step(clk, value, by, first, unconnected(1))
+    theirs = other(clk, value, by, second, unconnected(1))
+
+    return ours, theirs
+
+
+def test_two_blocks_of_one_name_are_two_modules(tmp_path):
+    other = another_step()
+    leaf = Leaf(
+        two_kinds,
+        lambda: {
+            "clk": bit(), "value": unsigned(4), "by": unsigned(4), "first": unsigned(4), "second": unsigned(4),
+            "other": other,
+        },
+        tmp_path,
+    )  # fmt: skip
+    assert leaf.modules[-1].instances == {"step_0": "step", "step_1": "step_1"}
+    assert leaf.run_both([{"value": 6, "by": 3}] * 4, settled=3)[-1] == {"first": 9, "second": 5}
+
+
+class Mirrored(Pair):
+    """The same nibbles, but for a block that decides by the class."""
+
+
+@block
+def halve(pair, half):
+    """The high nibble, or of a `Mirrored` the low one."""
+    chosen = pair.low if isinstance(pair, Mirrored) else pair.high
+
+    @always_comb
+    def choose():
+        half.next = chosen
+
+    return (choose,)
+
+
+@block
+def halve_both(pair, mirrored, first, second):
+    """One of each class."""
+    one = halve(pair, first)
+    other = halve(mirrored, second)
+
+    return one, other
+
+
+def test_the_class_of_an_interface_tells_modules_apart(tmp_path):
+    leaf = Leaf(
+        halve_both,
+        lambda: {"pair": Pair(), "mirrored": Mirrored(), "first": unsigned(4), "second": unsigned(4)},
+        tmp_path,
+    )
+    assert [module.name for module in leaf.modules] == ["halve", "halve_1", "halve_both"]
+    assert leaf.run_both([{"pair_high": 3, "mirrored_low": 12}])[-1] == {"first": 3, "second": 12}
+
+
+class Packed(Record):
+    """A record of one field of each kind."""
+
+    def __init__(self):
+        super().__init__({"flag": 1, "count": 3, "offset": Signed(5)})
+
+
+@block
+def records(clk, packed, index, kept, sum, negative):
+    """A memory of records, a copy, and fields of both signs read."""
+    memory = [unsigned(len(packed.word)) for _ in range(4)]
+
+    @always(clk.posedge)
+    def store():
+        if packed.flag:
+            memory[index].next = packed.word
+        kept.word.next = memory[index]
+
+    @always_comb
+    def compute():
+        sum.next = kept.offset + packed.offset
+        negative.next = kept.offset < 0
+
+    return store, compute
+
+
+def test_a_record_is_one_word(tmp_path):
+    leaf = Leaf(
+        records,
+        lambda: {
+            "clk": bit(), "packed": Packed(), "index": unsigned(2), "kept": Packed(), "sum": signed(6),
+            "negative": bit(),
+        },
+        tmp_path,
+    )  # fmt: skip
+    text = leaf.verilog[-1].read_text()
+    assert re.search(r"^    input  wire \[8:0\] +packed_word,$", text, re.M)
+    assert "wire signed [4:0] kept_offset = kept_word[4:0];" in text
+    assert "kept_flag" not in text, "only the fields that are read are there"
+    random = np.random.default_rng(seed())
+    stimulus = [{"packed_flag": 1, "packed_count": index, "packed_offset": index, "index": index} for index in range(4)]
+    stimulus += [
+        {name: int(random.integers(1 << bits)) for name, bits in
+         (("packed_flag", 1), ("packed_count", 3), ("packed_offset", 5), ("index", 2))}
+        for _ in range(200)
+    ]  # fmt: skip
+    memory: dict[int, int] = {}
+    kept = None
+    for cycle, (inputs, outputs) in enumerate(zip(stimulus, leaf.run_both(stimulus, settled=5), strict=True)):
+        if kept is not None and cycle >= 5:
+            assert outputs["kept_offset"] == kept, repeat()
+            first, second = (value - 32 * (value > 15) for value in (kept, inputs["packed_offset"]))
+            assert outputs["sum"] == (first + second) % 64, repeat()
+            assert outputs["negative"] == (first < 0), repeat()
+        kept = memory.get(inputs["index"])
+        if inputs["packed_flag"]:
+            memory[inputs["index"]] = inputs["packed_offset"]
 
 
 @block
@@ -468,7 +608,7 @@ def test_the_header_says_what_and_never_when(tmp_path):
 def test_two_processes_write_the_same_bytes(tmp_path):
     # Python's sets, of which MyHDL makes use, come in another order with another hash seed.
     for number in ("1", "2"):
-        command = [sys.executable, "-m", "raycaster.rtl.convert", "--output", str(tmp_path / number)]
+        command = [sys.executable, "-m", "raycaster.convert.write", "--output", str(tmp_path / number)]
         command += ["--screen", "tiny", "--units", "4", "--rectangles", "5", "--allow-underrun"]
         subprocess.run(command, env={**os.environ, "PYTHONHASHSEED": number}, check=True, capture_output=True)
     first, second = (
@@ -497,7 +637,7 @@ def test_a_conversion_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
     def fail(*_):
         raise HierarchyError("broken")
 
-    monkeypatch.setattr(convert, "convert_hierarchy", fail)
+    monkeypatch.setattr(write, "convert_hierarchy", fail)
     with pytest.raises(HierarchyError):
         write_verilog(configure(screen="tiny", units=2, rectangles=2, allow_underrun=True), directory)
     assert [path.name for path in directory.iterdir()] == ["kept.v"]

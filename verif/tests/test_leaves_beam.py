@@ -12,24 +12,21 @@ from raycaster.golden import exact
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl import fold_tester as tester
-from raycaster.rtl import nearest_of_two as contest
-from raycaster.rtl import ray_fold as folder
-from raycaster.rtl import rect_setup as setup
-from raycaster.rtl.beam_caster import beam_caster, beam_latency
-from raycaster.rtl.color_blend import color_blend
-from raycaster.rtl.color_mean import color_mean
-from raycaster.rtl.facet_mem import facet_mem
-from raycaster.rtl.fold_tester import fold_tester
-from raycaster.rtl.interfaces import Candidate, Facet, Fold, PipelinedRects, Point, Reflector, Slope, Walk
-from raycaster.rtl.nearest_of_two import nearest_of_two
-from raycaster.rtl.ray_fold import ray_fold
-from raycaster.rtl.rect_setup import rect_setup
-from raycaster.rtl.rect_walker import rect_walker
-from raycaster.rtl.slope_magnitudes import slope_magnitudes
-from raycaster.rtl.slope_walker import slope_walker
-from raycaster.rtl.unopposed import unopposed
-from raycaster.rtl.widths import (
+from raycaster.rtl.beam import fold_tester as tester
+from raycaster.rtl.beam import nearest_of_two as contest
+from raycaster.rtl.beam import ray_fold as folder
+from raycaster.rtl.beam.beam_caster import beam_caster, beam_latency
+from raycaster.rtl.beam.facet_mem import facet_mem
+from raycaster.rtl.beam.fold_tester import fold_tester
+from raycaster.rtl.beam.nearest_of_two import nearest_of_two
+from raycaster.rtl.beam.ray_fold import ray_fold
+from raycaster.rtl.beam.rect_walker import rect_walker
+from raycaster.rtl.beam.slope_magnitudes import slope_magnitudes
+from raycaster.rtl.beam.slope_walker import slope_walker
+from raycaster.rtl.beam.unopposed import unopposed
+from raycaster.rtl.beam.winner_delay import winner_delay
+from raycaster.rtl.common.interfaces import Candidate, Facet, Fold, PipelinedRects, Point, Reflector, Slope, Walk
+from raycaster.rtl.common.widths import (
     COLOUR_BITS,
     DISTANCE_BITS,
     TURN_BITS,
@@ -41,7 +38,10 @@ from raycaster.rtl.widths import (
     unsigned,
     walk_bits,
 )
-from raycaster.rtl.winner_delay import winner_delay
+from raycaster.rtl.engine import rect_setup as setup
+from raycaster.rtl.engine.color_blend import color_blend
+from raycaster.rtl.engine.color_mean import color_mean
+from raycaster.rtl.engine.rect_setup import rect_setup
 from raycaster.verif.leaf import Leaf, reset_signal, sorted_rect
 from raycaster.verif.seeds import repeat, seed
 

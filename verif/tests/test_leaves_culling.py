@@ -11,12 +11,8 @@ from raycaster.golden import exact, seed_engine
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.group_culler import LATENCY, MARGIN, group_culler
-from raycaster.rtl.group_tester import group_tester
-from raycaster.rtl.interfaces import Facet, PipelinedRects, Point, SequentialRects, Walk, WideRect
-from raycaster.rtl.rect_copy import rect_copy
-from raycaster.rtl.renderers import RECTS
-from raycaster.rtl.widths import (
+from raycaster.rtl.common.interfaces import Facet, PipelinedRects, Point, SequentialRects, Walk, WideRect
+from raycaster.rtl.common.widths import (
     WIDE_BITS,
     bit,
     exact_slope_bits,
@@ -26,6 +22,10 @@ from raycaster.rtl.widths import (
     unsigned,
     wide_walk_bits,
 )
+from raycaster.rtl.cull.group_culler import LATENCY, MARGIN, group_culler
+from raycaster.rtl.cull.group_tester import group_tester
+from raycaster.rtl.cull.rect_copy import rect_copy
+from raycaster.rtl.engine.renderers import RECTS
 from raycaster.verif.leaf import Leaf, sorted_rect
 from raycaster.verif.seeds import repeat, seed
 

@@ -17,18 +17,8 @@ from raycaster.golden import engines, seed_engine
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.registers import register_map
-from raycaster.rtl.camera_axis import STEP
-from raycaster.rtl.engines import ENGINES
-from raycaster.rtl.group_culler import LATENCY
-from raycaster.rtl.interfaces import Outlook, Plane, Point, Prospects, Rect, SequentialRects, Steps
-from raycaster.rtl.ray_caster_module import ModulePorts, ray_caster_module
-from raycaster.rtl.ray_caster_system import SystemPorts, ray_caster_system
-from raycaster.rtl.ray_control import ray_control
-from raycaster.rtl.ray_unit import ray_unit
-from raycaster.rtl.renderers import RECTS, RENDERERS
-from raycaster.rtl.reset_release import HOLD_CYCLES
-from raycaster.rtl.scene_player import BUTTONS
-from raycaster.rtl.widths import (
+from raycaster.rtl.common.interfaces import Outlook, Plane, Point, Prospects, Rect, SequentialRects, Steps
+from raycaster.rtl.common.widths import (
     COLOUR_BITS,
     CYCLE_BITS,
     bit,
@@ -38,6 +28,16 @@ from raycaster.rtl.widths import (
     unit_bits,
     unsigned,
 )
+from raycaster.rtl.cull.group_culler import LATENCY
+from raycaster.rtl.engine.engines import ENGINES
+from raycaster.rtl.engine.renderers import RECTS, RENDERERS
+from raycaster.rtl.seed.ray_control import ray_control
+from raycaster.rtl.seed.ray_unit import ray_unit
+from raycaster.rtl.system.camera_axis import STEP
+from raycaster.rtl.system.ray_caster_module import ModulePorts, ray_caster_module
+from raycaster.rtl.system.ray_caster_system import SystemPorts, ray_caster_system
+from raycaster.rtl.system.reset_release import HOLD_CYCLES
+from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import Camera, Rectangle, Scene
 from raycaster.verif.leaf import Leaf, TraceCycle, reset_signal, sorted_rect, trace_cycles
 from raycaster.verif.seeds import repeat, seed

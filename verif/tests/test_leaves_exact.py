@@ -13,10 +13,7 @@ from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationErro
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
-from raycaster.rtl.exact_control import exact_control
-from raycaster.rtl.exact_unit import exact_unit
-from raycaster.rtl.eye_mem import eye_mem
-from raycaster.rtl.interfaces import (
+from raycaster.rtl.common.interfaces import (
     Eye,
     Mirror,
     Outlook,
@@ -29,11 +26,7 @@ from raycaster.rtl.interfaces import (
     Slope,
     Surface,
 )
-from raycaster.rtl.nearest_hit import nearest_hit
-from raycaster.rtl.ray_sequencer import GIVE_UP_AT, impatient, ray_sequencer
-from raycaster.rtl.rect_sequencer import rect_sequencer
-from raycaster.rtl.rect_tester import rect_tester
-from raycaster.rtl.widths import (
+from raycaster.rtl.common.widths import (
     COLOUR_BITS,
     bit,
     exact_slope_bits,
@@ -45,6 +38,13 @@ from raycaster.rtl.widths import (
     unit_bits,
     unsigned,
 )
+from raycaster.rtl.engine.ray_sequencer import GIVE_UP_AT, impatient, ray_sequencer
+from raycaster.rtl.engine.rect_sequencer import rect_sequencer
+from raycaster.rtl.exact.exact_control import exact_control
+from raycaster.rtl.exact.exact_unit import exact_unit
+from raycaster.rtl.exact.eye_mem import eye_mem
+from raycaster.rtl.exact.nearest_hit import nearest_hit
+from raycaster.rtl.exact.rect_tester import rect_tester
 from raycaster.verif.leaf import Leaf, TraceCycle, sorted_rect, trace_cycles
 from raycaster.verif.seeds import repeat, seed
 

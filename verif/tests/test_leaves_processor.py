@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from raycaster.memory_map import BUTTON_NAMES, BUTTONS, INTERRUPT_BIT, MEMORY_WORDS, RAY_TRACER, UART, clocks_per_bit
-from raycaster.rtl.avalon_host import avalon_host
-from raycaster.rtl.bus_decoder import bus_decoder
-from raycaster.rtl.button_port import button_port
-from raycaster.rtl.interfaces import ProcessorBus
-from raycaster.rtl.uart_transmitter import DATA_BITS, FRAME_BITS, uart_transmitter
-from raycaster.rtl.widths import LANES, WORD_BITS, bit, bits_for, unsigned
-from raycaster.rtl.word_memory import word_memory
+from raycaster.rtl.bus.avalon_host import avalon_host
+from raycaster.rtl.bus.bus_decoder import bus_decoder
+from raycaster.rtl.bus.word_memory import word_memory
+from raycaster.rtl.common.interfaces import ProcessorBus
+from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, bits_for, unsigned
+from raycaster.rtl.system.button_port import button_port
+from raycaster.rtl.system.uart_transmitter import DATA_BITS, FRAME_BITS, uart_transmitter
 from raycaster.verif.leaf import Leaf, reset_signal
 from raycaster.verif.seeds import repeat, seed
 

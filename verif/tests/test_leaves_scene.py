@@ -10,14 +10,14 @@ from raycaster.configuration import WORLD_SIZE, Configuration, configure
 from raycaster.golden.random_world import EXTREMES, random_rectangles
 from raycaster.golden.world import Rectangles
 from raycaster.registers import address_bits, register_map
-from raycaster.rtl.avalon_interface import avalon_interface
-from raycaster.rtl.camera_mem import camera_mem
-from raycaster.rtl.interfaces import ParallelRects, PipelinedRects, Point, Rect, SceneBus, SequentialRects
-from raycaster.rtl.rect_mem import rect_mem
-from raycaster.rtl.rect_slot import rect_slot
-from raycaster.rtl.rect_sorter import rect_sorter
-from raycaster.rtl.scene_word import scene_word
-from raycaster.rtl.widths import COLOUR_BITS, CYCLE_BITS, WORD_BITS, bit, unsigned
+from raycaster.rtl.bus.avalon_interface import avalon_interface
+from raycaster.rtl.common.interfaces import ParallelRects, PipelinedRects, Point, Rect, SceneBus, SequentialRects
+from raycaster.rtl.common.widths import COLOUR_BITS, CYCLE_BITS, WORD_BITS, bit, unsigned
+from raycaster.rtl.scene.camera_mem import camera_mem
+from raycaster.rtl.scene.rect_mem import rect_mem
+from raycaster.rtl.scene.rect_slot import rect_slot
+from raycaster.rtl.scene.rect_sorter import rect_sorter
+from raycaster.rtl.scene.scene_word import scene_word
 from raycaster.verif.leaf import Leaf, reset_signal, sorted_rect
 from raycaster.verif.register_model import AXES, COLOURS, Agent, Table, Word
 from raycaster.verif.seeds import repeat, seed

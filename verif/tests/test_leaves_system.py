@@ -13,10 +13,10 @@ from conftest import SMALL_SCENE
 from raycaster.configuration import COORDINATE_BITS, WORLD_SIZE, configure
 from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
-from raycaster.rtl.camera_axis import STEP, camera_axis
-from raycaster.rtl.reset_release import HOLD_CYCLES, reset_release
-from raycaster.rtl.scene_player import BUTTONS, scene_player
-from raycaster.rtl.widths import WORD_BITS, bit, unsigned
+from raycaster.rtl.common.widths import WORD_BITS, bit, unsigned
+from raycaster.rtl.system.camera_axis import STEP, camera_axis
+from raycaster.rtl.system.reset_release import HOLD_CYCLES, reset_release
+from raycaster.rtl.system.scene_player import BUTTONS, scene_player
 from raycaster.scene import load_scene
 from raycaster.verif.leaf import Leaf, reset_signal
 from raycaster.verif.seeds import repeat, seed

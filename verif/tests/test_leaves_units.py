@@ -11,13 +11,8 @@ from raycaster.golden.colour import blend
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles, random_slopes
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.color_channel import color_channel
-from raycaster.rtl.color_combiner import color_combiner
-from raycaster.rtl.interfaces import Origin, Plane, Rect, Signs, Slope, Steps
-from raycaster.rtl.intersection_finder import intersection_finder
-from raycaster.rtl.ray_generator import ray_generator
-from raycaster.rtl.ray_mem import ray_mem
-from raycaster.rtl.widths import (
+from raycaster.rtl.common.interfaces import Origin, Plane, Rect, Signs, Slope, Steps
+from raycaster.rtl.common.widths import (
     AXIS_BITS,
     COLOUR_BITS,
     bit,
@@ -28,7 +23,12 @@ from raycaster.rtl.widths import (
     unit_bits,
     unsigned,
 )
-from raycaster.rtl.z_buffer import z_buffer
+from raycaster.rtl.engine.color_channel import color_channel
+from raycaster.rtl.engine.color_combiner import color_combiner
+from raycaster.rtl.engine.ray_generator import ray_generator
+from raycaster.rtl.seed.intersection_finder import intersection_finder
+from raycaster.rtl.seed.ray_mem import ray_mem
+from raycaster.rtl.seed.z_buffer import z_buffer
 from raycaster.verif.leaf import Leaf, sorted_rect, trace_cycles
 from raycaster.verif.seeds import repeat, seed
 

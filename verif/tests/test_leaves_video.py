@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from raycaster.configuration import SCREENS, Configuration, Screen, Span, configure
-from raycaster.rtl.line_buffer import line_buffer
-from raycaster.rtl.video_generator import video_generator
-from raycaster.rtl.widths import bit, bits_for, offset_bits, pixel_bits, unsigned
+from raycaster.rtl.common.widths import bit, bits_for, offset_bits, pixel_bits, unsigned
+from raycaster.rtl.video.line_buffer import line_buffer
+from raycaster.rtl.video.video_generator import video_generator
 from raycaster.verif.leaf import Leaf, reset_signal
 from raycaster.verif.seeds import repeat, seed
 

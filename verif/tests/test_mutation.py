@@ -10,12 +10,12 @@ import pytest
 from conftest import SMALL_SCENE
 
 from raycaster.configuration import configure
+from raycaster.convert.write import write_processor_system, write_system
 from raycaster.errors import UserError
-from raycaster.rtl.convert import write_processor_system, write_system
-from raycaster.rtl.divider_step import divider_step
-from raycaster.rtl.interfaces import SceneBus
-from raycaster.rtl.scene_word import scene_word
-from raycaster.rtl.widths import WORD_BITS, bit, unsigned
+from raycaster.rtl.common.interfaces import SceneBus
+from raycaster.rtl.common.widths import WORD_BITS, bit, unsigned
+from raycaster.rtl.scene.scene_word import scene_word
+from raycaster.rtl.seed.divider_step import divider_step
 from raycaster.scene import load_scene
 from raycaster.verif.formal.prover import missing_tools
 from raycaster.verif.leaf import Leaf, reset_signal

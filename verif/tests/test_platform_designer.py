@@ -12,11 +12,11 @@ from pathlib import Path
 import pytest
 
 from raycaster.configuration import Configuration, configure
+from raycaster.convert.hierarchy import Port
+from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM, READS_IN_FLIGHT, component, interfaces
+from raycaster.convert.take_home import FILE_LIST, TOP
+from raycaster.convert.write import write_verilog
 from raycaster.registers import register_map
-from raycaster.rtl.convert import write_verilog
-from raycaster.rtl.hierarchy import Port
-from raycaster.rtl.platform_designer import COMPONENT, NIOS_SYSTEM, READS_IN_FLIGHT, component, interfaces
-from raycaster.rtl.take_home import FILE_LIST, TOP
 from raycaster.tools import run_yosys
 
 CONFIGURATIONS = [

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ast
 import os
 import re
 import subprocess
@@ -11,11 +12,26 @@ import sysconfig
 import tomllib
 from pathlib import Path
 
+import pytest
 from conftest import ROOT
 
 from raycaster.registers import register_map
 
 HOOKS = ROOT / ".pre-commit-config.yaml"
+
+MAY_IMPORT = {
+    "raycaster": (),
+    "golden": ("raycaster",),
+    "rtl": ("raycaster",),
+    "sw": ("raycaster",),
+    "convert": ("raycaster", "rtl"),
+    "fit": ("raycaster", "golden"),
+    "fpga": ("raycaster", "golden", "rtl", "sw", "convert", "fit"),
+    "verif": ("raycaster", "golden", "rtl", "sw", "convert", "fit", "fpga"),
+    "report": ("raycaster", "golden", "rtl", "sw", "convert", "fit", "fpga", "verif"),
+    "docs": ("raycaster", "golden", "rtl", "sw", "convert", "fit", "fpga", "verif", "report"),
+}
+"""By folder, the folders that it may import of beside itself: no two of each other, however many between them."""
 
 
 def pre_commit(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
@@ -37,6 +53,43 @@ def test_version():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     assert project["version"] == f"{numbers}.0"
     assert re.findall(r"^## \[(\d+\.\d+)\]", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[0] == numbers
+
+
+def imported_folders(path: Path) -> set[str]:
+    """The folders of this project that a file imports of."""
+    names = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            names |= {f"{node.module}.{alias.name}" for alias in node.names}
+    parts = [name.split(".") for name in names if name.split(".")[0] == "raycaster"]
+    return {part[1] if len(part) > 1 and part[1] in MAY_IMPORT else "raycaster" for part in parts}
+
+
+@pytest.mark.parametrize("folder", MAY_IMPORT)
+def test_dependencies_point_one_way(folder):
+    # Tests may look at everything.
+    files = [path for path in (ROOT / folder).rglob("*.py") if ROOT / "verif/tests" not in path.parents]
+    assert files
+    for path in files:
+        assert imported_folders(path) <= {folder, *MAY_IMPORT[folder]}, path
+
+
+def test_no_two_folders_may_import_each_other():
+    seen = []
+    for folder, others in MAY_IMPORT.items():
+        assert set(others) <= set(seen), folder
+        seen.append(folder)
+
+
+def test_each_file_is_in_the_package():
+    """What a clone imports by its folder, an installed package has too."""
+    tool = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
+    folders = {path.parent for folder in MAY_IMPORT for path in (ROOT / folder).rglob("*.py")}
+    wanted = {path.relative_to(ROOT).as_posix().replace("/", ".") for path in folders}
+    wanted -= {"verif.tests", "raycaster"}
+    assert set(tool["packages"]) == {"raycaster"} | {f"raycaster.{name}" for name in wanted}
 
 
 def test_hooks_of_config(tmp_path: Path):

@@ -19,12 +19,12 @@ import pytest
 from conftest import SMALL_SCENE
 
 from raycaster.configuration import Configuration, configure
+from raycaster.convert.take_home import WAIVERS
 from raycaster.fpga import quartus
 from raycaster.fpga.board import BOARDS, TOP, Board, BoardError, assignments, check_project, find_board, load_board
 from raycaster.fpga.quartus import OUTPUT_FILES, VERILOG, write_project
 from raycaster.options import run_command
-from raycaster.rtl.scene_player import BUTTONS
-from raycaster.rtl.take_home import WAIVERS
+from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import load_scene
 from raycaster.tools import run_yosys
 from raycaster.verif.simulator import find_tool

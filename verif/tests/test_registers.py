@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 from raycaster.configuration import configure
+from raycaster.convert.write import write_verilog
 from raycaster.register_views import HEADER, SOFTWARE, write_header, write_page
 from raycaster.registers import SOURCE, register_map
-from raycaster.rtl.convert import write_verilog
 
 ROOT = Path(__file__).parents[2]
 RECTANGLES = 12

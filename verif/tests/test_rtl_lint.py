@@ -17,7 +17,7 @@ RTL = Path(raycaster.rtl.__path__[0])
 
 BLOCK = '''
 from myhdl import always, always_comb, always_seq, block, instance, intbv
-from raycaster.rtl.widths import WORD_BITS, bit, unsigned
+from raycaster.rtl.common.widths import WORD_BITS, bit, unsigned
 
 
 @block
@@ -44,7 +44,7 @@ def findings(tmp_path: Path, body: str, decorator: str = "always_comb") -> list[
 
 
 def test_the_hardware_is_clean():
-    files = sorted(RTL.glob("*.py"))
+    files = sorted(RTL.rglob("*.py"))
     assert len(files) > 20
     assert [finding for path in files for finding in check(path)] == []
 
@@ -128,7 +128,7 @@ def test_what_converts_well_is_not_caught(body, tmp_path):
 
 def test_a_hazard_in_the_hardware_is_caught(tmp_path):
     source = tmp_path / "ray_generator.py"
-    text = (RTL / source.name).read_text()
+    text = (RTL / "engine" / source.name).read_text()
     source.write_text(
         text.replace("column.next = group_start + column_base", "column.next = group_start + column_base + 1")
     )

@@ -10,10 +10,10 @@ from PIL import Image
 from small_program import write_program
 
 from raycaster.configuration import configure
+from raycaster.convert.write import write_processor_system
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, MEMORY_WORDS
-from raycaster.rtl import picorv32
-from raycaster.rtl.convert import write_processor_system
+from raycaster.rtl.system import picorv32
 from raycaster.verif import game
 from raycaster.verif.play import check_program, play, read_buttons
 from raycaster.verif.simulator import SYSTEM_BENCH, SimulationError, build_model

@@ -15,9 +15,9 @@ import pytest
 from conftest import SMALL_SCENE
 
 from raycaster.configuration import Configuration, configure
+from raycaster.convert.take_home import FILE_LIST, TOP, WAIVERS
+from raycaster.convert.write import write_verilog
 from raycaster.fit.fixing import fix
-from raycaster.rtl.convert import FILE_LIST, write_verilog
-from raycaster.rtl.take_home import TOP, WAIVERS
 from raycaster.verif.simulator import find_tool
 
 CONFIGURATIONS = [

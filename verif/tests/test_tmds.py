@@ -9,10 +9,10 @@ from collections import deque
 import pytest
 
 from raycaster.golden.tmds import CONTROL_SYMBOLS, Sample, decode, encode, minimise_transitions
-from raycaster.rtl.dvi_encoder import DviPorts, dvi_encoder
-from raycaster.rtl.ones_count import ones_count
-from raycaster.rtl.tmds_encoder import DISPARITY_BITS, SYMBOL_BITS, tmds_encoder
-from raycaster.rtl.widths import bit, unsigned
+from raycaster.rtl.common.widths import bit, unsigned
+from raycaster.rtl.dvi.dvi_encoder import DviPorts, dvi_encoder
+from raycaster.rtl.dvi.ones_count import ones_count
+from raycaster.rtl.dvi.tmds_encoder import DISPARITY_BITS, SYMBOL_BITS, tmds_encoder
 from raycaster.verif.leaf import Leaf
 from raycaster.verif.seeds import repeat, seed
 

@@ -13,7 +13,7 @@ from rich.console import Console
 
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
-from raycaster.rtl.ray_sequencer import RayState
+from raycaster.rtl.engine.ray_sequencer import RayState
 from raycaster.verif.monitor import CLOCK_NS
 from raycaster.verif.probes.ray import Ray
 from raycaster.verif.recorder import build_and_record

@@ -14,8 +14,8 @@ from PIL import Image
 from raycaster.configuration import configure
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES
-from raycaster.rtl import scene_player
-from raycaster.rtl.camera_axis import STEP
+from raycaster.rtl.system import scene_player
+from raycaster.rtl.system.camera_axis import STEP
 from raycaster.scene import load_scene
 from raycaster.verif import window
 from raycaster.verif.machine import Machine, build_machine

@@ -1,0 +1,369 @@
+# SPDX-License-Identifier: MIT
+"""Verilog with its hierarchy kept: one module a file, where MyHDL by itself would flatten the design.
+
+Blocks are converted from the leaves up. Each converts as a top level of its own, and in its parent's conversion it is
+replaced by text that instantiates the module. Equal blocks share one module.
+
+This package, and `raycaster.rtl.common` for records and ties, touch MyHDL's internals, which is why its version is
+pinned; the contract that they rely on is tested.
+"""
+
+from __future__ import annotations
+
+import inspect
+import shutil
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from myhdl import ToVerilogWarning
+from myhdl._block import _Block
+from myhdl._extractHierarchy import _MemInfo, _UserVerilogCode
+from myhdl._instance import _Instantiator
+from myhdl._ShadowSignal import _SliceSignal
+from myhdl._Signal import _Signal
+from myhdl.conversion._toVerilog import _ToVerilogConvertor, toVerilog
+
+from raycaster.convert.elaboration import elaboration
+from raycaster.convert.inside import block_arguments, interface_classes, signals_in
+from raycaster.convert.verilog_style import restyle
+from raycaster.rtl.common.given import GivenVerilog, load_words
+from raycaster.rtl.common.records import Field
+from raycaster.rtl.common.ties import Tied, Unconnected
+
+
+class HierarchyError(Exception):
+    """A block that cannot be made a module of its own; the text says which and why."""
+
+
+@dataclass(frozen=True)
+class Port:
+    """A module's port, as its parent and other generators need to know it."""
+
+    name: str
+    width: int
+    signed: bool
+    output: bool
+
+
+@dataclass(frozen=True)
+class Module:
+    """A module. `instances` are the modules it instantiates directly, by instance name.
+
+    `parameters` are given to its instances in Verilog; a converted one has none, as its values are built in.
+    """
+
+    name: str
+    path: Path
+    ports: tuple[Port, ...]
+    instances: dict[str, str]
+    parameters: tuple[tuple[str, str], ...] = ()
+
+
+class _Instance(_UserVerilogCode):
+    """The text that stands for a block in its parent; names are only known when it is printed."""
+
+    def __init__(self, module: Module, name: str, connections: dict[str, _Signal | str | None]):
+        super().__init__("", {}, module.name, None, None, None)
+        self._module, self._name, self._connections = module, name, connections
+
+    def __str__(self) -> str:
+        pins = ",\n".join(f"    .{port}({_printed(signal)})" for port, signal in self._connections.items())
+        values = ",\n".join(f"    .{name}({value})" for name, value in self._module.parameters)
+        kind = f"{self._module.name} #(\n{values}\n)" if values else self._module.name
+        return f"\n{kind} {self._name} (\n{pins}\n);\n"
+
+
+class _Loading(_UserVerilogCode):
+    """The text that stands for `load_words`; as with instances, the memory's name is known when it is printed."""
+
+    def __init__(self, memory: _MemInfo, file: str):
+        super().__init__("", {}, memory.name, None, None, None)
+        self._memory, self._file = memory, file
+
+    def __str__(self) -> str:
+        return f'\n// What the memory holds from the start.\ninitial $readmemh("{self._file}", {self._memory.name});\n'
+
+
+def _printed(connection: _Signal | str | None) -> str:
+    """A signal by its name in the parent, a number as it is, and nothing for what is not connected."""
+    if connection is None:
+        return ""
+    return connection if isinstance(connection, str) else connection._name
+
+
+class _RecordingConvertor(_ToVerilogConvertor):
+    """MyHDL's convertor, which drops the signals of an interface that a block does not use, and remembers the ports.
+
+    Fields of records that are read become wires, ties that are read localparams.
+    """
+
+    __slots__ = ("constants", "fields", "ports")
+
+    def __init__(self, fields: set[int]):
+        """Convert a block that reads these fields, by identity."""
+        super().__init__()
+        self.fields = fields
+
+    def _convert_filter(self, h, intf, siglist, memlist, genlist):
+        for signal in intf.argdict.values():
+            if isinstance(signal, _SliceSignal):
+                signal._driven = None  # MyHDL would have a slice's reader drive it
+        arguments = inspect.signature(intf.func).parameters
+        intf.argnames = [
+            name
+            for name in intf.argnames
+            if name in arguments
+            or (not isinstance(intf.argdict[name], Field) and (intf.argdict[name]._driven or intf.argdict[name]._read))
+        ]
+        self.ports = tuple(
+            Port(
+                name, len(intf.argdict[name]) or 1, (intf.argdict[name].min or 0) < 0, bool(intf.argdict[name]._driven)
+            )
+            for name in intf.argnames
+        )
+        self._declare_fields(siglist, intf)
+        self.constants = [s for s in siglist if isinstance(s, Tied) and s._used and s._name not in intf.argnames]
+        siglist[:] = [s for s in siglist if not isinstance(s, Tied) or s._name in intf.argnames]
+
+    def _declare_fields(self, siglist: list[_Signal], intf: Any) -> None:
+        """Have MyHDL print a wire for each field, called as its record and it."""
+        ports = {id(intf.argdict[name]): name for name in intf.argnames}
+        taken = {signal._name for signal in siglist}
+        for word in list(siglist):
+            record = ports.get(id(word), word._name).removesuffix("_word")
+            for field in word._slicesigs:
+                if not isinstance(field, Field) or id(field) not in self.fields or id(field) in ports:
+                    continue
+                field._name = f"{record}_{field.field}"
+                if field._name in taken:
+                    raise HierarchyError(f"{intf.name}: {field._name} is a signal and a record's field")
+                field._driven, field._read, field._used = "wire", True, True
+                siglist.append(field)
+
+
+def convert_hierarchy(top: _Block, directory: Path, header: str) -> list[Module]:
+    """Write one Verilog file for each distinct block below and including `top`.
+
+    Args:
+        top: an elaborated block; it cannot be simulated any more afterwards.
+        directory: where the files go; it exists.
+        header: comment lines for the head of each file; `{module}` stands for the module's name.
+
+    Returns:
+        The modules, each after those that it instantiates; `top` is the last.
+
+    Raises:
+        HierarchyError: two blocks of one name differ in parameters or ports, or a signal has no name in its parent.
+    """
+    with elaboration():
+        return _Converter(directory, header).convert(top)
+
+
+class _Converter:
+    def __init__(self, directory: Path, header: str):
+        self._directory, self._header = directory, header
+        self._modules: dict[str, tuple[Any, Module]] = {}
+
+    def convert(self, top: _Block) -> list[Module]:
+        self._top = top.func
+        self._module_of(top)
+        return [module for _, module in self._modules.values()]
+
+    def _module_of(self, block: _Block) -> Module:
+        """The block's module: one for each function, with its parameters and its ports' shapes and classes."""
+        ports, parameters = block_arguments(block)
+        shapes = tuple((port, len(signal) or 1, (signal.min or 0) < 0) for port, signal in ports.items())
+        signature = block.func, parameters, shapes, interface_classes(block)
+        for known, module in self._modules.values():
+            if known == signature:
+                return module
+        name = self._new_name(block)
+        given = getattr(block.func, "given_verilog", None)
+        self._modules[name] = signature, None  # the name is taken while the block's own parts are converted
+        module = self._copy(given, name, ports, parameters) if given else self._convert_block(block, name, ports)
+        del self._modules[name]
+        self._modules[name] = signature, module
+        return module
+
+    def _new_name(self, block: _Block) -> str:
+        """The function's name, with a number where the design has another module of that name."""
+        name, number = block.func.__name__, 0
+        given = getattr(block.func, "given_verilog", None)
+        while name in self._modules:
+            if given:
+                raise HierarchyError(
+                    f"{name} is given Verilog with one name, and another block has it too; rename that"
+                )
+            number += 1
+            name = f"{block.func.__name__}_{number}"
+        return name
+
+    def _copy(self, given: GivenVerilog, name: str, ports: dict[str, _Signal], parameters: Any) -> Module:
+        if strangers := given.outputs - set(ports):
+            raise HierarchyError(f"{name}: {', '.join(sorted(strangers))} is said to be an output, and is no argument")
+        path = self._directory / f"{name}.v"
+        shutil.copyfile(given.source(), path)
+        shapes = tuple(
+            Port(port, len(signal) or 1, (signal.min or 0) < 0, port in given.outputs) for port, signal in ports.items()
+        )
+        return Module(name, path, shapes, {}, parameters)
+
+    def _convert_block(self, block: _Block, name: str, ports: dict[str, _Signal]) -> Module:
+        children = []
+        for sub in block.subs:
+            if isinstance(sub, _Block) and sub.func is load_words.func:
+                _replace_by_loading(sub, block)
+            elif isinstance(sub, _Block):
+                children.append(sub)
+        modules = [self._module_of(child) for child in children]
+        for signal in ports.values():
+            signal._read = False  # another block may have read it, or a slice of it; this one has not been looked at
+        instances = {}
+        for child, module in zip(children, modules, strict=True):
+            kind = child.func.__name__
+            alike = [other for other in children if other.func.__name__ == kind]
+            instance = kind if len(alike) == 1 else f"{kind}_{alike.index(child)}"
+            instances[instance] = module.name
+            _replace_by_instance(child, module, f"{instance}_i", ports)
+        fields = _fields_read(block, children)
+        _name_signals(block, children, ports, fields)
+        written_ports = self._write(block, name, ports, set(fields))
+        return Module(name, self._directory / f"{name}.v", written_ports, instances)
+
+    def _write(self, block: _Block, name: str, ports: dict[str, _Signal], fields: set[int]) -> tuple[Port, ...]:
+        _mark_processes(block)
+        for signal in [*block.sigdict.values(), *ports.values()]:
+            signal._name = None  # a child's conversion may have left its own name for it
+        for port, signal in ports.items():
+            if isinstance(signal, _SliceSignal):
+                signal._name = port  # MyHDL names a slice after the vector that the parent cut it from
+        convertor = _RecordingConvertor(fields)
+        convertor.name = toVerilog.name = name
+        convertor.directory = str(self._directory)
+        # The functions that print the module read these from MyHDL's global convertor, not from the one that runs.
+        toVerilog.no_myhdl_header = toVerilog.no_testbench = True
+        toVerilog.header = self._header.format(module=name).replace("$", "$$")
+        toVerilog.initial_values = False
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error", category=ToVerilogWarning)
+                convertor(block)
+        except ToVerilogWarning as warning:
+            raise HierarchyError(f"{name}: {warning}") from None
+        finally:
+            toVerilog.no_myhdl_header = toVerilog.no_testbench = False
+            toVerilog.header, toVerilog.name = "", None
+        if not {port.name for port in convertor.ports} <= set(ports):
+            raise HierarchyError(f"{name}: MyHDL found other ports than its arguments")
+        path = self._directory / f"{name}.v"
+        declared = "".join(f"localparam {_shape(one)}{one._name} = {_number(one)};\n" for one in convertor.constants)
+        text = path.read_text().replace("endmodule\n", f"{declared}endmodule\n")
+        for constant in convertor.constants:
+            constant._clear()
+        path.write_text(restyle(text, block, [port.name for port in convertor.ports]))
+        return convertor.ports
+
+
+def _fields_read(block: _Block, children: list[_Block]) -> dict[int, Field]:
+    """The fields of records that a block's processes and instances read, by identity."""
+    read = [sub.symdict[name] for sub in block.subs if isinstance(sub, _Instantiator) for name in sub.inputs]
+    read += [signal for child in children for signal in child.verilog_code._connections.values()]
+    return {id(signal): signal for signal in read if isinstance(signal, Field)}
+
+
+def _shape(signal: _Signal) -> str:
+    """A declaration's sign and range."""
+    width = len(signal) or 1
+    return f"{'signed ' if (signal.min or 0) < 0 else ''}{f'[{width - 1}:0] ' if width > 1 else ''}"
+
+
+def _number(signal: _Signal) -> str:
+    """What never changes, as Verilog writes it."""
+    width, value = len(signal) or 1, int(signal.val)
+    if (signal.min or 0) < 0:
+        return f"{'-' if value < 0 else ''}{width}'sd{abs(value)}"
+    return f"{width}'h{value:0{-(-width // 4)}x}" if width > 16 else f"{width}'d{value}"
+
+
+def _replace_by_instance(child: _Block, module: Module, name: str, parent_ports: dict[str, _Signal]) -> None:
+    """Make the parent's conversion print an instance where the child's processes would stand."""
+    signals, _ = block_arguments(child)
+    passed_on = {id(signal) for signal in parent_ports.values()}
+    connections = {port.name: signals[port.name] for port in module.ports}
+    for port, signal in connections.items():
+        if isinstance(signal, Unconnected) and id(signal) not in passed_on:
+            connections[port] = None
+        tied = isinstance(signal._sig if isinstance(signal, Field) else signal, Tied)
+        if tied and not passed_on & {id(signal), id(getattr(signal, "_sig", None))}:
+            connections[port] = _number(signal)
+    child.verilog_code = _Instance(module, name, connections)
+    child.subs, child.sigdict, child.memdict = [], {}, {}
+    directions = {port.name: port.output for port in module.ports}
+    for port, signal in connections.items():
+        if signal is None or isinstance(signal, str):
+            continue
+        signal._markUsed()
+        if directions[port]:
+            signal._driven = "wire"
+        else:
+            signal._markRead()
+
+
+def _replace_by_loading(loading: _Block, parent: _Block) -> None:
+    """Make the parent's conversion print where its memory's words come from."""
+    words, file = loading.args
+    [memory] = [known for known in parent.memdict.values() if known.mem is words]
+    loading.verilog_code = _Loading(memory, file)
+    loading.subs, loading.sigdict, loading.memdict = [], {}, {}
+
+
+def _mark_processes(block: _Block) -> None:
+    """Repeat the marks that elaboration left on signals, and that converting the children wiped off.
+
+    Registers to reset come in the order of a Python set, which changes from run to run; here they get that of names.
+    """
+    for sub in block.subs:
+        if isinstance(sub, _Instantiator):
+            names = {id(sub.symdict[name]): name for name in sub.outputs if name in sub.symdict}
+            getattr(sub, "sigregs", []).sort(key=lambda signal, names=names: names.get(id(signal), ""))
+            for signal in sub.sigdict.values():
+                signal._markUsed()
+            edges = getattr(sub, "senslist", ())
+            reset = getattr(sub, "reset", None)
+            for signal in [getattr(edge, "sig", edge) for edge in edges] + [reset]:
+                if isinstance(signal, _Signal):
+                    signal._markRead()
+
+
+def _name_signals(
+    block: _Block, children: list[_Block], ports: Mapping[str, _Signal], fields: Mapping[int, Field]
+) -> None:
+    """Give MyHDL a name for every signal that only instances use, and for records of which only fields are used."""
+    named = {id(signal) for signal in block.sigdict.values()}
+    arrived = {id(signal) for signal in ports.values()}
+    scope: dict[str, Any] = {}
+    for sub in block.subs:
+        scope |= {name: value for name, value in sub.callinfo.symdict.items() if not name.startswith("_")}
+    candidates = {id(signal): port for port, signal in ports.items()}
+    for name, value in scope.items():
+        for path, signal in signals_in(name, value):
+            candidates.setdefault(id(signal), path)
+
+    def name(connected: _Signal, where: str) -> None:
+        signal = connected._sig if isinstance(connected, _SliceSignal) and id(connected) not in arrived else connected
+        if id(signal) in named:
+            return
+        if id(signal) not in candidates:
+            raise HierarchyError(f"{block.func.__name__}: what {where} has no name")
+        block.sigdict[candidates[id(signal)]] = signal
+        named.add(id(signal))
+
+    for child in children:
+        for port, connected in child.verilog_code._connections.items():
+            if isinstance(connected, _Signal):
+                name(connected, f"{child.func.__name__}.{port} connects to")
+    for field in fields.values():
+        name(field, f"a process reads {field.field} of")

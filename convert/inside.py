@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: MIT
+"""What an elaborated design is made of: its blocks, its processes, and the signals between them."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from myhdl import ConcatSignal
+from myhdl._block import _Block
+from myhdl._enum import EnumItemType
+from myhdl._instance import _Instantiator
+from myhdl._ShadowSignal import _SliceSignal
+from myhdl._Signal import _Signal
+
+from raycaster.rtl.common.records import Record
+
+
+@dataclass(frozen=True)
+class Part:
+    """A block or a process inside a design, with the signals that it drives, and those that it reads of others.
+
+    What only clocks and resets it does not count. A signal stands for itself by its identity; `Inside.names` has what
+    it is called.
+    """
+
+    name: str
+    is_block: bool
+    within: tuple[str, ...]
+    """The blocks that it stands in, below the one that was asked for, outermost first."""
+
+    reads: frozenset[int]
+    drives: frozenset[int]
+
+
+@dataclass(frozen=True)
+class Inside:
+    """What a block is made of. `names` has the variable that gives access to a signal, and the signal's whole name."""
+
+    parts: tuple[Part, ...]
+    names: dict[int, tuple[str, str]]
+    ports: frozenset[int]
+
+
+def find_block(top: _Block, name: str) -> _Block:
+    """The first block of this name in an elaborated design.
+
+    Raises:
+        KeyError: there is none.
+    """
+    waiting = [top]
+    for candidate in waiting:
+        if candidate.func.__name__ == name:
+            return candidate
+        waiting += [sub for sub in candidate.subs if isinstance(sub, _Block)]
+    raise KeyError(name)
+
+
+def look_inside(top: _Block, opened: Collection[str]) -> Inside:
+    """What an elaborated block is made of; blocks whose names are in `opened` give way to their own parts."""
+    ports, _ = block_arguments(top)
+    names: dict[int, tuple[str, str]] = {}
+    parts: list[Part] = []
+
+    def visit(block: _Block, within: tuple[str, ...]) -> None:
+        arguments = inspect.signature(block.func).bind(*block.args, **block.kwargs).arguments
+        scope = dict(arguments)
+        for sub in block.subs:
+            scope |= {name: value for name, value in sub.callinfo.symdict.items() if not name.startswith("_")}
+        for name, value in scope.items():
+            for path, signal in signals_in(name, value):
+                names.setdefault(id(signal), (name, path))
+        for sub in block.subs:
+            if isinstance(sub, _Block) and sub.func.__name__ in opened:
+                visit(sub, (*within, sub.func.__name__))
+            elif isinstance(sub, _Block):
+                around = {id(signal) for signal in block_arguments(sub)[0].values()}
+                reads, drives = (_whole(signals, around) for signals in _traffic(sub))
+                parts.append(Part(sub.func.__name__, True, within, reads - drives, drives))
+            else:
+                reads, drives = (_whole(signals) for signals in _traffic_of_process(sub))
+                parts.append(Part(sub.func.__name__, False, within, reads - drives, drives))
+
+    visit(top, ())
+    return Inside(tuple(parts), names, frozenset(id(signal) for signal in ports.values()))
+
+
+Signals = dict[int, _Signal]
+
+
+def _traffic(block: _Block) -> tuple[Signals, Signals]:
+    """All signals that are read, and driven, in a block and below."""
+    given = getattr(block.func, "given_verilog", None)
+    reads: Signals = {}
+    drives: Signals = {}
+    if given:
+        for name, signal in block_arguments(block)[0].items():
+            (drives if name in given.outputs else reads)[id(signal)] = signal
+    for sub in block.subs:
+        more_reads, more_drives = _traffic(sub) if isinstance(sub, _Block) else _traffic_of_process(sub)
+        reads |= more_reads
+        drives |= more_drives
+    return reads, drives
+
+
+def _traffic_of_process(process: _Instantiator) -> tuple[Signals, Signals]:
+    """The signals that a process reads, and drives; the edges and the reset that it waits for are not among them."""
+
+    def find(names: Collection[str]) -> Signals:
+        return {id(signal): signal for name in names for _, signal in signals_in(name, process.symdict[name])}
+
+    return find(process.inputs), find(process.outputs)
+
+
+def _whole(signals: Signals, around: Collection[int] | None = None) -> frozenset[int]:
+    """The signals themselves where some of these are slices of them, or put together of them."""
+    found: set[int] = set()
+    waiting = [signal for number, signal in signals.items() if around is None or number in around]
+    while waiting:
+        signal = waiting.pop()
+        if isinstance(signal, _SliceSignal):
+            waiting.append(signal._sig)
+        elif isinstance(signal, ConcatSignal):
+            waiting += signal._sigargs
+        else:
+            found.add(id(signal))
+    return frozenset(found)
+
+
+def state_names(top: _Block) -> dict[tuple[str, str], dict[int, str]]:
+    """The enumerated signals of an elaborated design.
+
+    Returns:
+        By module and signal, the name of each value as the Verilog encodes it.
+    """
+    found = {}
+    for name, signal in top.sigdict.items():
+        if isinstance(signal.val, EnumItemType):
+            states = signal.val._type
+            found[top.func.__name__, name] = {int(getattr(states, item)._val, 2): item for item in states._names}
+    for sub in top.subs:
+        if isinstance(sub, _Block):
+            found |= state_names(sub)
+    return found
+
+
+def port_signals(arguments: Mapping[str, Any]) -> dict[str, _Signal]:
+    """The signals among a block's arguments by Verilog port name: `name`, or `interface_attribute`."""
+    return {path: signal for name, value in arguments.items() for path, signal in signals_in(name, value)}
+
+
+def block_arguments(block: _Block) -> tuple[dict[str, _Signal], Any]:
+    """A block's port signals by Verilog name, and its other arguments."""
+    bound = inspect.signature(block.func).bind(*block.args, **block.kwargs)
+    bound.apply_defaults()
+    ports = port_signals(bound.arguments)
+    parameters = ((name, repr(value)) for name, value in bound.arguments.items() if not any(signals_in(name, value)))
+    return ports, tuple(parameters)
+
+
+def signals_in(name: str, value: Any) -> Iterator[tuple[str, _Signal]]:
+    """Signals that a name gives access to: itself, a record's word, an interface's attributes, a list's elements."""
+    if isinstance(value, _Signal):
+        yield name, value
+    elif isinstance(value, Record):
+        yield f"{name}_word", value.word
+    elif isinstance(value, (list, tuple)):
+        for index, element in enumerate(value):
+            yield from signals_in(f"{name}_{index}", element)
+    elif getattr(value, "is_interface", False):
+        for attribute, element in vars(value).items():
+            yield from signals_in(f"{name}_{attribute}", element)
+
+
+def interface_classes(block: _Block) -> tuple[tuple[str, type], ...]:
+    """The classes of a block's interfaces and records by argument, on which a block may decide what it is."""
+    bound = inspect.signature(block.func).bind(*block.args, **block.kwargs)
+    return tuple(
+        (name, type(value)) for name, value in bound.arguments.items() if getattr(value, "is_interface", False)
+    )

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: MIT
+"""The ray tracer as a component for Intel's Platform Designer (Qsys, SOPC Builder's successor)."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from importlib.metadata import version
+from pathlib import Path
+
+from raycaster.configuration import Configuration
+from raycaster.convert.hierarchy import Port
+from raycaster.registers import compile_registers
+
+COMPONENT = "raycaster_hw.tcl"
+"""The file's name; Platform Designer looks for `*_hw.tcl`."""
+
+NIOS_SYSTEM = Path(__file__).with_name("nios_system.tcl")
+"""A script for Platform Designer: a system with a Nios processor around the component."""
+
+QSYS_VERSION = "13.0"
+"""Of the commands that the file uses: the last release for the Cyclone II has them, and later ones still take them."""
+
+READS_IN_FLIGHT = 2
+"""Reads that may be accepted and not yet answered: one a cycle, each answered after two."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Interface:
+    """A group of ports as Platform Designer knows them.
+
+    Attributes:
+        name: of the instance.
+        kind: of interface, and which end of it this is.
+        properties: of the interface, by name.
+        prefix: of the names of its ports; the rest of a name is the port's role.
+        roles: of ports whose names do not say it.
+    """
+
+    name: str
+    kind: str
+    properties: dict[str, str | int]
+    prefix: str = ""
+    roles: dict[str, str] = dataclasses.field(default_factory=dict)
+
+    def role(self, port: str) -> str | None:
+        """What a port is to this interface, or None where it belongs to another."""
+        if port in self.roles:
+            return self.roles[port]
+        return port.removeprefix(self.prefix) if self.prefix and port.startswith(self.prefix) else None
+
+
+_IN_CLOCK = {"associatedClock": "clock", "associatedReset": "reset"}
+
+
+def interfaces(config: Configuration) -> tuple[Interface, ...]:
+    """The component's, in the order in which they refer to each other."""
+    return (
+        Interface("clock", "clock end", {"clockRate": config.screen_geometry.clock_hz}, roles={"clk": "clk"}),
+        Interface(
+            "reset", "reset end", {"associatedClock": "clock", "synchronousEdges": "BOTH"}, roles={"reset": "reset"}
+        ),
+        Interface(
+            "s0",
+            "avalon end",
+            {
+                **_IN_CLOCK,
+                "addressUnits": "WORDS",
+                "bitsPerSymbol": 8,
+                "maximumPendingReadTransactions": READS_IN_FLIGHT,
+                "readLatency": 0,
+                "isMemoryDevice": "false",
+            },
+            prefix="avs_s0_",
+        ),
+        Interface("irq", "interrupt end", {**_IN_CLOCK, "associatedAddressablePoint": "s0"}, roles={"irq": "irq"}),
+        Interface("vga", "conduit end", {**_IN_CLOCK}, prefix="vga_"),
+    )
+
+
+def component(config: Configuration, ports: Sequence[Port], sources: Sequence[str]) -> str:
+    """The component's description, in Tcl.
+
+    The configuration becomes macros in the `system.h` of software for the system.
+
+    Args:
+        config: what was generated.
+        ports: of the top module.
+        sources: the files' names, each after those that it needs; the top is the last.
+
+    Raises:
+        ValueError: a port belongs to no interface, or to more than one.
+    """
+    top = sources[-1].removesuffix(".v")
+    lines = [
+        "# SPDX-License-Identifier: MIT",
+        f"# {top}, {config.name}, for Platform Designer. Not run there so far; see the README for what was.",
+        f"package require -exact qsys {QSYS_VERSION}",
+        "",
+        f"set_module_property NAME {top}",
+        f'set_module_property DISPLAY_NAME "{compile_registers(config.rectangles).get_property("name")}"',
+        'set_module_property DESCRIPTION "A real-time ray tracer with a VGA output"',
+        'set_module_property GROUP "Video"',
+        f"set_module_property VERSION {version('raycaster')}",
+        "set_module_property EDITABLE false",
+        *(
+            f"set_module_assignment embeddedsw.CMacro.{field.name.upper()} {_macro(getattr(config, field.name))}"
+            for field in dataclasses.fields(config)
+        ),
+    ]
+    for fileset in ("QUARTUS_SYNTH", "SIM_VERILOG"):
+        lines += ["", f'add_fileset {fileset.lower()} {fileset} "" ""']
+        lines.append(f"set_fileset_property {fileset.lower()} TOP_LEVEL {top}")
+        lines += [f"add_fileset_file {name} VERILOG PATH {name}" for name in sources]
+    members = interfaces(config)
+    owners = {port.name: [one for one in members if one.role(port.name)] for port in ports}
+    for name, owned in owners.items():
+        if len(owned) != 1:
+            raise ValueError(f"{name} belongs to {len(owned)} interfaces")
+    for interface in members:
+        lines += ["", f"add_interface {interface.name} {interface.kind}"]
+        for name, value in interface.properties.items():
+            lines.append(f"set_interface_property {interface.name} {name} {value}")
+        for port in ports:
+            if role := interface.role(port.name):
+                direction = "Output" if port.output else "Input"
+                lines.append(f"add_interface_port {interface.name} {port.name} {role} {direction} {port.width}")
+    return "\n".join(lines) + "\n"
+
+
+def _macro(value: str | int | bool) -> str | int:
+    """A value as it stands after a macro's name in C."""
+    if isinstance(value, bool):
+        return int(value)
+    return f'{{"{value}"}}' if isinstance(value, str) else value

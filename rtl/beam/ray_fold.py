@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: MIT
+"""How a straight ray through one mirror, or two, folds back into the room."""
+
+from myhdl import always, always_comb, block
+
+from raycaster.rtl.common.widths import AXIS_BITS, bit, signed, unsigned
+
+LATENCY = 3
+"""Cycles from the mirrors to the fold; the slope is read one cycle in."""
+
+
+@block
+def ray_fold(clk, earlier, last, column_slope, row_slope, fold, view_distance: int):
+    """A ray a clock; the fold follows LATENCY cycles later.
+
+    A mirror leaves the ray straight and turns the room behind it (Heckbert and Hanrahan 1984 mirror the eye in the same
+    way): to a point X on the straight ray from the eye E belongs the point x - E = +-(X - E) + T in the room, component
+    by component. A mirror at the distance n on its axis makes that 2 n - (x - E). A plane at the distance n on axis a
+    is then met where X[a] - E[a] = +-(n - T[a]), and there the ray's component u, times D[a], is +-n D[u] + C, with
+    C = T[u] D[a] -+ T[a] D[u]: the same for all rectangles on the axis, so no rectangle needs a multiplier.
+
+    earlier, last: Reflectors; column_slope, row_slope: D[y] and D[z]; view_distance: D[x]. fold.active is not driven
+    here. Widths are the ports'.
+    """
+    part_bits, product_bits = len(fold.u_x), len(fold.border_x)
+    distance_bits, turn_bits = len(last.distance), len(fold.turn_x)
+
+    again = bit()
+    doubled, earlier_doubled, apart_doubled, last_turn = (signed(turn_bits) for _ in range(4))
+    apart = signed(distance_bits + 1)
+    apart_kept = signed(distance_bits)
+
+    turn_x, turn_y, turn_z = (signed(turn_bits) for _ in range(3))
+    back_x, back_y, back_z, column_back, row_back = (bit() for _ in range(5))
+    axis_1 = unsigned(AXIS_BITS)
+    distance_1 = signed(distance_bits)
+
+    x_by_y, x_by_z, y_by_x, y_by_z, z_by_x, z_by_y = (signed(part_bits) for _ in range(6))
+    border_x, border_y, border_z = (signed(product_bits) for _ in range(3))
+    turn_x_2, turn_y_2, turn_z_2 = (signed(turn_bits) for _ in range(3))
+    back_x_2, back_y_2, back_z_2, mirror_back_2 = (bit() for _ in range(4))
+    axis_2 = unsigned(AXIS_BITS)
+    distance_2 = signed(distance_bits)
+
+    xy, yx, xz, zx, yz, zy = (signed(part_bits) for _ in range(6))
+    not_y_by_x, not_z_by_x, not_z_by_y = (signed(part_bits) for _ in range(3))
+    sum_xy_1, sum_xz_1, sum_yz_1 = (signed(part_bits + 1) for _ in range(3))
+
+    # Two mirrors on one axis move the room by twice what lies between them.
+    @always_comb
+    def measure():
+        again.next = earlier.active and (earlier.axis == last.axis)
+        doubled.next = last.distance + last.distance
+        earlier_doubled.next = earlier.distance + earlier.distance
+        apart.next = last.distance - earlier.distance
+
+    # Of two mirrors of one scene this keeps everything; while a scene is loaded it might not, and nobody looks.
+    @always_comb
+    def fit():
+        apart_kept.next = apart[distance_bits:].signed()
+
+    # Twice that.
+    @always_comb
+    def double():
+        apart_doubled.next = apart_kept + apart_kept
+
+    # What is added on the last mirror's axis.
+    @always_comb
+    def choose_turn():
+        last_turn.next = doubled
+        if again:
+            last_turn.next = apart_doubled
+
+    # The first stage: T, and which components run back.
+    @always(clk.posedge)
+    def stage_1():
+        turn_x.next = 0
+        turn_y.next = 0
+        turn_z.next = 0
+        back_x.next = False
+        back_y.next = False
+        back_z.next = False
+        if last.axis == 0:
+            turn_x.next = last_turn
+            back_x.next = not again
+        elif earlier.active and (earlier.axis == 0):
+            turn_x.next = earlier_doubled
+            back_x.next = True
+        if last.axis == 1:
+            turn_y.next = last_turn
+            back_y.next = not again
+        elif earlier.active and (earlier.axis == 1):
+            turn_y.next = earlier_doubled
+            back_y.next = True
+        if last.axis == 2:
+            turn_z.next = last_turn
+            back_z.next = not again
+        elif earlier.active and (earlier.axis == 2):
+            turn_z.next = earlier_doubled
+            back_z.next = True
+        axis_1.next = last.axis
+        distance_1.next = last.distance
+
+    # The second stage: T by D, and the mirror's own border.
+    @always(clk.posedge)
+    def stage_2():
+        x_by_y.next = turn_x * column_slope
+        x_by_z.next = turn_x * row_slope
+        y_by_x.next = turn_y * view_distance
+        y_by_z.next = turn_y * row_slope
+        z_by_x.next = turn_z * view_distance
+        z_by_y.next = turn_z * column_slope
+        border_x.next = distance_1 * view_distance
+        border_y.next = distance_1 * column_slope
+        border_z.next = distance_1 * row_slope
+        turn_x_2.next = turn_x
+        turn_y_2.next = turn_y
+        turn_z_2.next = turn_z
+        back_x_2.next = back_x
+        back_y_2.next = back_y
+        back_z_2.next = back_z
+        axis_2.next = axis_1
+        distance_2.next = distance_1
+
+    # Which way the straight ray runs.
+    @always_comb
+    def look_ahead():
+        column_back.next = column_slope < 0
+        row_back.next = row_slope < 0
+
+    # Which way the folded ray leaves the mirror.
+    @always(clk.posedge)
+    def leave_mirror():
+        if axis_1 == 0:
+            mirror_back_2.next = back_x
+        elif axis_1 == 1:
+            mirror_back_2.next = back_y != column_back
+        else:
+            mirror_back_2.next = back_z != row_back
+
+    # C for planes whose two components run alike, and for those that do not.
+    @always_comb
+    def combine():
+        xy.next = y_by_x - x_by_y
+        yx.next = x_by_y - y_by_x
+        xz.next = z_by_x - x_by_z
+        zx.next = x_by_z - z_by_x
+        yz.next = z_by_y - y_by_z
+        zy.next = y_by_z - z_by_y
+        not_y_by_x.next = ~y_by_x
+        not_z_by_x.next = ~z_by_x
+        not_z_by_y.next = ~z_by_y
+
+    # One more than the sum, as what it is added to is a complement: a + b + 1 = a - ~b. The bit more is for two mirrors
+    # on different axes, whose sum nobody looks at.
+    @always_comb
+    def make_good():
+        sum_xy_1.next = x_by_y - not_y_by_x
+        sum_xz_1.next = x_by_z - not_z_by_x
+        sum_yz_1.next = y_by_z - not_z_by_y
+
+    # The third stage: the fold.
+    @always(clk.posedge)
+    def stage_3():
+        fold.u_x.next = xy
+        fold.u_y.next = yx
+        fold.v_x.next = xz
+        fold.v_z.next = zx
+        fold.v_y.next = yz
+        fold.u_z.next = zy
+        if back_x_2 != back_y_2:
+            fold.u_x.next = sum_xy_1[part_bits:].signed()
+            fold.u_y.next = sum_xy_1[part_bits:].signed()
+        if back_x_2 != back_z_2:
+            fold.v_x.next = sum_xz_1[part_bits:].signed()
+            fold.v_z.next = sum_xz_1[part_bits:].signed()
+        if back_y_2 != back_z_2:
+            fold.v_y.next = sum_yz_1[part_bits:].signed()
+            fold.u_z.next = sum_yz_1[part_bits:].signed()
+        fold.border_x.next = border_x
+        fold.border_y.next = border_y
+        fold.border_z.next = border_z
+        fold.turn_x.next = turn_x_2
+        fold.turn_y.next = turn_y_2
+        fold.turn_z.next = turn_z_2
+        fold.back_x.next = back_x_2
+        fold.back_y.next = back_y_2
+        fold.back_z.next = back_z_2
+        fold.mirror_back.next = mirror_back_2
+        fold.axis.next = axis_2
+        fold.distance.next = distance_2
+
+    return (
+        measure, fit, double, choose_turn, stage_1, stage_2, look_ahead, leave_mirror, combine, make_good, stage_3,
+    )  # fmt: skip

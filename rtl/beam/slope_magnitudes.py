@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: MIT
+"""A slope without its signs."""
+
+from myhdl import always_comb, block
+
+from raycaster.rtl.common.widths import signed
+
+
+@block
+def slope_magnitudes(column_slope, row_slope, slope):
+    """|D[y]| and |D[z]|; D[x] is never negative and never changes. Combinational."""
+    slope_bits = len(slope.dy)
+    opposite_dy, opposite_dz = signed(slope_bits + 1), signed(slope_bits + 1)
+
+    # The other way.
+    @always_comb
+    def negate():
+        opposite_dy.next = -column_slope
+        opposite_dz.next = -row_slope
+
+    # Which of the two is positive.
+    @always_comb
+    def take_magnitudes():
+        slope.dy.next = column_slope[slope_bits:]
+        slope.dz.next = row_slope[slope_bits:]
+        if column_slope < 0:
+            slope.dy.next = opposite_dy[slope_bits:]
+        if row_slope < 0:
+            slope.dz.next = opposite_dz[slope_bits:]
+
+    return negate, take_magnitudes

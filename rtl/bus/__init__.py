@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Avalon-MM, and what answers a processor."""

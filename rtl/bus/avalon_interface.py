@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: MIT
+"""The registers, and the way to the scene memories."""
+
+from myhdl import Signal, always_comb, always_seq, block
+
+from raycaster.configuration import Configuration
+from raycaster.registers import register_map
+from raycaster.rtl.common.ties import tied
+from raycaster.rtl.common.widths import COLOUR_BITS, CYCLE_BITS, WORD_BITS, bit, unsigned
+from raycaster.rtl.scene.scene_word import scene_word
+
+ENGINE_CODES = {"seed": 0, "exact": 1, "beam": 2}
+FIXED_CODES = {"rects": 1, "all": 2}
+
+
+def engine_word(config: Configuration) -> int:
+    """What the engine register of a design reads."""
+    return register_map(config.table)["engine"].pack(
+        engine=ENGINE_CODES[config.engine],
+        fraction_bits=config.fraction_bits,
+        nearest=int(config.rounding == "nearest"),
+        divider_bits=config.divider_bits,
+        reflections=config.reflections,
+        scale=config.scale,
+        colour_bits=config.colour_bits,
+        fixed=FIXED_CODES[config.fixed.scope] if config.fixed else 0,
+        culling=int(config.culling),
+    )
+
+
+def size_word(config: Configuration) -> int:
+    """What the size register of a design reads."""
+    return register_map(config.table)["size"].pack(units=config.units, rectangles=config.table, rows=config.rows)
+
+
+@block
+def avalon_interface(
+    clk,
+    reset,
+    avs_s0_address,
+    avs_s0_read,
+    avs_s0_write,
+    avs_s0_writedata,
+    avs_s0_byteenable,
+    avs_s0_readdata,
+    avs_s0_readdatavalid,
+    avs_s0_waitrequest,
+    irq,
+    bus,
+    camera_word,
+    rect_word,
+    bad_rectangle,
+    run,
+    reflections,
+    background,
+    start_screen,
+    busy,
+    underrun,
+    row_cycles,
+    group_cycles,
+    config: Configuration,
+):
+    """Avalon-MM agent: 32-bit words, a transfer a cycle, two cycles from an accepted read to its readdatavalid.
+
+    waitrequest is high in reset and in the cycle after it, and never else. Every accepted read is answered once, in
+    order. Writes pass through a register: they take effect in the cycle after they were accepted, before any read that
+    is accepted later is answered. Where the camera is fixed, background and reflections
+    are None.
+    """
+    live = not (config.fixed and config.fixed.camera)
+    registers = register_map(config.table)
+    control, status, cycles = registers["control"], registers["status"], registers["cycles"]
+    run_bit, commit_bit = control.fields["run"].lsb, control.fields["commit"].lsb
+    reflections_low = control.fields["reflections"].lsb
+    reflections_high = reflections_low + control.fields["reflections"].width
+    most_reflections = config.reflections
+    busy_bit, underrun_bit, bad_bit = (status.fields[name].lsb for name in ("busy", "underrun", "bad_rectangle"))
+    frame_low = status.fields["frame"].lsb
+    frame_bits = status.fields["frame"].width
+    group_low = cycles.fields["group"].lsb
+    irq_bit = registers["irq_pending"].fields["start_screen"].lsb
+
+    def address_of(name: str):
+        return tied(registers[name].address, len(bus.address))
+
+    id_address, version_address, engine_address, size_address, control_address, status_address = map(
+        address_of, ("id", "version", "engine", "size", "control", "status")
+    )
+    cycles_address, irq_enable_address, irq_pending_address, background_address, camera_address = map(
+        address_of, ("cycles", "irq_enable", "irq_pending", "background", "camera")
+    )
+    id_value = tied(registers["id"].reset, WORD_BITS)
+    version_value = tied(registers["version"].reset, WORD_BITS)
+    engine_value, size_value = tied(engine_word(config), WORD_BITS), tied(size_word(config), WORD_BITS)
+    unkept = control.fields["commit"].mask | (0 if live else control.fields["reflections"].mask)
+    control_bits = tied(control.implemented & ~unkept, WORD_BITS)
+    background_bits = tied(registers["background"].implemented, WORD_BITS)
+    control_word, live_control = unsigned(WORD_BITS), unsigned(WORD_BITS)
+    background_word, live_background = unsigned(WORD_BITS) if live else tied(0, WORD_BITS), unsigned(WORD_BITS)
+    select_control, select_background = bit(), bit()
+    wait_request = Signal(bool(1))
+    reading = bit()
+    commit_pending = bit()
+    written_ones = unsigned(WORD_BITS)
+    read_data = unsigned(WORD_BITS)
+    frame = unsigned(frame_bits)
+    sticky_underrun, sticky_bad = bit(), bit()
+    slowest_row, slowest_group = unsigned(CYCLE_BITS), unsigned(CYCLE_BITS)
+    irq_enable, irq_pending = bit(), bit()
+
+    control_memory = scene_word(clk, reset, bus, select_control, control_bits, control_word, live_control)
+
+    # Not ready until reset is over.
+    @always_seq(clk.posedge, reset=reset)
+    def become_ready():
+        wait_request.next = False
+
+    # The ports cannot be read back.
+    @always_comb
+    def drive_ports():
+        avs_s0_waitrequest.next = wait_request
+        irq.next = irq_pending and irq_enable
+
+    # Accept a transfer; byte lanes become a mask of bits.
+    @always_seq(clk.posedge, reset=reset)
+    def accept():
+        bus.write.next = avs_s0_write and not wait_request
+        reading.next = avs_s0_read and not wait_request
+        if (avs_s0_write or avs_s0_read) and not wait_request:
+            bus.address.next = avs_s0_address
+        if avs_s0_write and not wait_request:
+            bus.data.next = avs_s0_writedata
+            bus.mask.next = 0
+            if avs_s0_byteenable[0]:
+                bus.mask.next[8:0] = 0xFF
+            if avs_s0_byteenable[1]:
+                bus.mask.next[16:8] = 0xFF
+            if avs_s0_byteenable[2]:
+                bus.mask.next[24:16] = 0xFF
+            if avs_s0_byteenable[3]:
+                bus.mask.next[32:24] = 0xFF
+
+    # Whether a write is for the control word.
+    @always_comb
+    def decode():
+        select_control.next = bus.address == control_address
+
+    # What a write-1 register sees.
+    @always_comb
+    def find_ones():
+        written_ones.next = bus.data & bus.mask
+
+    # The shadow is copied in the cycle after the write that asked for it, which is then part of it.
+    @always_seq(clk.posedge, reset=reset)
+    def commit():
+        bus.commit.next = bus.write and select_control and written_ones[commit_bit]
+        if bus.commit:
+            commit_pending.next = True
+        elif start_screen:
+            commit_pending.next = False
+
+    # A scene changes between frames only.
+    @always_comb
+    def go_live():
+        bus.go_live.next = start_screen
+
+    # Whether there is anything to show.
+    @always_comb
+    def drive_run():
+        run.next = live_control[run_bit]
+
+    # Sticky bits and the frame counter: a set in the cycle of a clear wins.
+    @always_seq(clk.posedge, reset=reset)
+    def keep_status():
+        if bus.write and bus.address == status_address:
+            if written_ones[underrun_bit]:
+                sticky_underrun.next = False
+            if written_ones[bad_bit]:
+                sticky_bad.next = False
+        if underrun:
+            sticky_underrun.next = True
+        if bus.commit and bad_rectangle:
+            sticky_bad.next = True
+        if start_screen:
+            frame.next = (frame + 1) % (1 << frame_bits)
+
+    # The interrupt: pending at StartScreen, until a 1 is written to it.
+    @always_seq(clk.posedge, reset=reset)
+    def interrupt():
+        if bus.write and bus.address == irq_enable_address and bus.mask[irq_bit]:
+            irq_enable.next = bus.data[irq_bit]
+        if bus.write and bus.address == irq_pending_address and written_ones[irq_bit]:
+            irq_pending.next = False
+        if start_screen:
+            irq_pending.next = True
+
+    # The most that a row and a group took since the last write here.
+    @always_seq(clk.posedge, reset=reset)
+    def keep_cycles():
+        if bus.write and bus.address == cycles_address and bus.mask != 0:
+            slowest_row.next = 0
+            slowest_group.next = 0
+        elif busy:
+            if row_cycles > slowest_row:
+                slowest_row.next = row_cycles
+            if group_cycles > slowest_group:
+                slowest_group.next = group_cycles
+
+    # The word at the address; what is nowhere reads 0.
+    @always_comb
+    def read():
+        read_data.next = rect_word
+        if bus.address == id_address:
+            read_data.next = id_value
+        elif bus.address == version_address:
+            read_data.next = version_value
+        elif bus.address == engine_address:
+            read_data.next = engine_value
+        elif bus.address == size_address:
+            read_data.next = size_value
+        elif bus.address == control_address:
+            read_data.next = control_word
+            read_data.next[commit_bit] = commit_pending or bus.commit
+        elif bus.address == status_address:
+            read_data.next = 0
+            read_data.next[busy_bit] = busy
+            read_data.next[underrun_bit] = sticky_underrun
+            read_data.next[bad_bit] = sticky_bad
+            read_data.next[frame_low + frame_bits : frame_low] = frame
+        elif bus.address == cycles_address:
+            read_data.next = 0
+            read_data.next[CYCLE_BITS:] = slowest_row
+            read_data.next[group_low + CYCLE_BITS : group_low] = slowest_group
+        elif bus.address == irq_enable_address:
+            read_data.next = 0
+            read_data.next[irq_bit] = irq_enable
+        elif bus.address == irq_pending_address:
+            read_data.next = 0
+            read_data.next[irq_bit] = irq_pending
+        elif bus.address == background_address:
+            read_data.next = background_word
+        elif bus.address == camera_address:
+            read_data.next = camera_word
+
+    # Answer each accepted read.
+    @always_seq(clk.posedge, reset=reset)
+    def answer():
+        avs_s0_readdatavalid.next = reading
+        if reading:
+            avs_s0_readdata.next = read_data
+
+    common = (
+        control_memory, become_ready, drive_ports, accept, decode, find_ones, commit, go_live, drive_run, keep_status,
+        interrupt, keep_cycles, read, answer,
+    )  # fmt: skip
+    if not live:
+        return common
+
+    background_memory = scene_word(
+        clk, reset, bus, select_background, background_bits, background_word, live_background
+    )
+
+    # Whether a write is for the background.
+    @always_comb
+    def decode_background():
+        select_background.next = bus.address == background_address
+
+    # What else the renderer gets to know; more reflections than there are count as all.
+    @always_comb
+    def drive_picture():
+        background.next = live_background[COLOUR_BITS:]
+        if live_control[reflections_high:reflections_low] > most_reflections:
+            reflections.next = most_reflections
+        else:
+            reflections.next = live_control[reflections_high:reflections_low]
+
+    return common, background_memory, decode_background, drive_picture

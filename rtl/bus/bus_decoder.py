@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: MIT
+"""Who answers the processor."""
+
+from myhdl import always_comb, block
+
+from raycaster.memory_map import BUTTONS, MEMORY, MEMORY_WORDS, RAY_TRACER, UART
+from raycaster.rtl.common.ties import tied
+from raycaster.rtl.common.widths import WORD_BITS, bit
+
+
+@block
+def bus_decoder(
+    bus,
+    select_memory,
+    memory_ready,
+    memory_word,
+    select_tracer,
+    tracer_ready,
+    tracer_word,
+    buttons_word,
+    select_uart,
+    uart_ready,
+    uart_word,
+    tracer_address_bits: int,
+):
+    """Select what stands at an access's address, by `memory_map`, and hand its answer back.
+
+    The word of the buttons is there at once; so is an answer where there is nothing, which reads 0 and ignores writes.
+    bus: ProcessorBus; tracer_address_bits: of the ray tracer's addresses, which count words.
+    """
+    memory_end = (4 * MEMORY_WORDS - 1).bit_length()
+    tracer_end = tracer_address_bits + 2
+    memory_place = tied(MEMORY >> memory_end, WORD_BITS - memory_end)
+    tracer_place = tied(RAY_TRACER >> tracer_end, WORD_BITS - tracer_end)
+    buttons_place, uart_place = tied(BUTTONS, WORD_BITS), tied(UART, WORD_BITS)
+    at_memory, at_tracer, at_buttons, at_uart = (bit() for _ in range(4))
+
+    # Whose address it is.
+    @always_comb
+    def decode():
+        at_memory.next = bus.address[:memory_end] == memory_place
+        at_tracer.next = bus.address[:tracer_end] == tracer_place
+        at_buttons.next = bus.address == buttons_place
+        at_uart.next = bus.address == uart_place
+
+    # It, and nobody else, is asked.
+    @always_comb
+    def select():
+        select_memory.next = bus.valid and at_memory
+        select_tracer.next = bus.valid and at_tracer
+        select_uart.next = bus.valid and at_uart
+
+    # Its answer.
+    @always_comb
+    def answer():
+        bus.ready.next = bus.valid
+        bus.word.next = 0
+        if at_memory:
+            bus.ready.next = memory_ready
+            bus.word.next = memory_word
+        elif at_tracer:
+            bus.ready.next = tracer_ready
+            bus.word.next = tracer_word
+        elif at_buttons:
+            bus.word.next = buttons_word
+        elif at_uart:
+            bus.ready.next = uart_ready
+            bus.word.next = uart_word
+
+    return decode, select, answer

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: MIT
+"""The processor's memory: its program, and what that works on."""
+
+from pathlib import Path
+
+from myhdl import Signal, always, always_comb, always_seq, block, intbv
+
+from raycaster.rtl.common.given import load_words
+from raycaster.rtl.common.widths import WORD_BITS, bit
+
+
+def first_words(program: str, count: int) -> list[int]:
+    """What the memory starts with: a file's words in hexadecimal, then zeros, or these alone where it is not there."""
+    path = Path(program)
+    words = [int(word, 16) for word in path.read_text().split()] if path.exists() else []
+    return words + [0] * (count - len(words))
+
+
+@block
+def word_memory(clk, reset, select, strobe, address, data, ready, word, words: int, program: str):
+    """An access takes two cycles: ready is high in its second, with the word that was read.
+
+    select: high from the access's first cycle to its second; address counts words, below `words`; strobe: which bytes
+    of data to write, 0 for a read. program: the file whose words it holds from power-up on; reset does not bring them
+    back.
+    """
+    memory = [Signal(intbv(value)[WORD_BITS:]) for value in first_words(program, words)]
+    writing, reading, done = bit(), bit(), bit()
+
+    loading = load_words(memory, program)
+
+    # What this cycle's end does; an access is done once.
+    @always_comb
+    def start():
+        writing.next = select and (strobe != 0) and not done
+        reading.next = select and (strobe == 0) and not done
+
+    # Byte by byte.
+    @always(clk.posedge)
+    def store():
+        if writing and strobe[0]:
+            memory[address].next[8:0] = data[8:0]
+        if writing and strobe[1]:
+            memory[address].next[16:8] = data[16:8]
+        if writing and strobe[2]:
+            memory[address].next[24:16] = data[24:16]
+        if writing and strobe[3]:
+            memory[address].next[32:24] = data[32:24]
+
+    # Never in the cycle of a write, so that no memory need say what it reads then.
+    @always(clk.posedge)
+    def fetch():
+        if reading:
+            word.next = memory[address]
+
+    # The second cycle.
+    @always_seq(clk.posedge, reset=reset)
+    def finish():
+        done.next = select and not done
+
+    # The port cannot be read back.
+    @always_comb
+    def answer():
+        ready.next = done
+
+    return loading, start, store, fetch, finish, answer

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""What all rooms share: ports, records, widths, constants."""

@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: MIT
+"""Records: fields side by side in one word, so that a copy is one assignment, and a memory of them one of words."""
+
+from collections.abc import Mapping
+
+from myhdl._ShadowSignal import _ShadowSignal, _SliceSignal
+from myhdl._Signal import _Signal
+from myhdl._Waiter import _SignalWaiter
+
+from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, Configuration
+from raycaster.rtl.common.ties import Signed, Tied, initial
+from raycaster.rtl.common.widths import (
+    AXIS_BITS,
+    COLOUR_BITS,
+    DISTANCE_BITS,
+    TURN_BITS,
+    WIDE_BITS,
+    exact_slope_bits,
+    eye_bits,
+    fold_bits,
+    index_bits,
+    position_bits,
+    unsigned,
+    walk_bits,
+)
+
+
+class Field(_SliceSignal):
+    """A record's field: bits of its word, read only. In Verilog it is a wire of the module that reads it."""
+
+    def __init__(self, word: _Signal, name: str, low: int, width: int):
+        """Cut it out of a word; `Signed` width for two's complement."""
+        bits = word.val[low + width : low]
+        value = int(bits.signed()) if isinstance(width, Signed) else int(bits)
+        _ShadowSignal.__init__(self, initial(value, width))
+        self.field = name
+        self._sig, self._left, self._right = word, low + width, low
+        if width == 1:
+            self._left, self._right = low, None
+        word._slicesigs.append(self)
+        self._waiter = _SignalWaiter(self._genfuncIndex() if width == 1 else self._genfuncSlice())
+
+    def _genfuncSlice(self):
+        """MyHDL's, but that a signed field keeps its sign."""
+        set_next = _Signal.next.fset
+        while True:
+            bits = self._sig[self._left : self._right]
+            set_next(self, bits.signed() if self.min < 0 else bits)
+            yield self._sig
+
+
+class Record:
+    """A word, and an attribute for each of its fields, the first in the highest bits.
+
+    As a port `rect`, the word becomes the Verilog port `rect_word`, and a field that is read there the wire
+    `rect_axis`. What drives a record drives `word`, with `concat` of all fields in their order.
+    """
+
+    is_interface = True
+
+    def __init__(self, fields: Mapping[str, int], word: _Signal | None = None):
+        """Lay out fields.
+
+        Args:
+            fields: widths in bits by name, `Signed` for two's complement.
+            word: of all fields together, where it is there already.
+        """
+        width = sum(fields.values())
+        self.word = unsigned(width) if word is None else word
+        self.layout = dict(fields)
+        for name, bits in fields.items():
+            width -= bits
+            setattr(self, name, Field(self.word, name, width, bits))
+
+    def pack(self, values: Mapping[str, int]) -> int:
+        """The word in which fields have these values, those that are not named 0; each is cut to its width."""
+        word = 0
+        for name, bits in self.layout.items():
+            word = word << bits | int(values.get(name, 0)) % (1 << bits)
+        return word
+
+    def unpack(self, word: int) -> dict[str, int]:
+        """Each field's bits in a word, as an unsigned number."""
+        values = {}
+        for name, bits in reversed(self.layout.items()):
+            values[name] = word % (1 << bits)
+            word >>= bits
+        return values
+
+    def slice(self, name: str) -> tuple[int, int]:
+        """The highest and the lowest bit of a field."""
+        names = list(self.layout)
+        low = sum(self.layout[after] for after in names[names.index(name) + 1 :])
+        return low + self.layout[name] - 1, low
+
+    def tie(self, values: Mapping[str, int]) -> None:
+        """Make it one that never changes, of these values."""
+        Record.__init__(self, self.layout, Tied(initial(self.pack(values), self.word)))
+
+
+class Point(Record):
+    """A camera position, in whole world units."""
+
+    def __init__(self):
+        super().__init__(dict.fromkeys("xyz", COORDINATE_BITS))
+
+
+class Origin(Record):
+    """Where a ray starts, or hits, with the configuration's fraction bits."""
+
+    def __init__(self, config: Configuration):
+        super().__init__(dict.fromkeys("xyz", position_bits(config)))
+
+
+class Signs(Record):
+    """Which components of a ray's slope are negative. A reflection changes one of them, and nothing else."""
+
+    def __init__(self):
+        super().__init__(dict.fromkeys(("dx", "dy", "dz"), 1))
+
+
+class Colour(Record):
+    """A colour's channels at the full width; the word is a colour as registers and rectangles have it."""
+
+    def __init__(self):
+        super().__init__(dict.fromkeys(("red", "green", "blue"), CHANNEL_BITS))
+
+
+class Surface(Record):
+    """What a ray that hits a rectangle must know of it: the plane's axis (0, 1, 2 for x, y, z) and coordinate."""
+
+    def __init__(self):
+        super().__init__(surface_fields(COORDINATE_BITS))
+
+
+def surface_fields(coordinate_bits: int) -> dict[str, int]:
+    """The widths of a `Surface`, with which a `Rect` begins too."""
+    return {"axis": AXIS_BITS, "position": coordinate_bits, "colour": COLOUR_BITS}
+
+
+class Rect(Record):
+    """A rectangle: its surface, and inclusive bounds on the two other axes, u before v in the order x, y, z."""
+
+    def __init__(self, coordinate_bits: int = COORDINATE_BITS):
+        bounds = dict.fromkeys(("u_low", "u_high", "v_low", "v_high"), coordinate_bits)
+        super().__init__(surface_fields(coordinate_bits) | bounds)
+        below = sum(bounds.values())
+        self.surface = Field(self.word, "surface", below, len(self.word) - below)
+
+
+class WideRect(Record):
+    """A rectangle whose bounds may be a unit further out; it has no colour."""
+
+    def __init__(self):
+        bounds = dict.fromkeys(("u_low", "u_high", "v_low", "v_high"), Signed(WIDE_BITS))
+        super().__init__({"axis": AXIS_BITS, "position": COORDINATE_BITS} | bounds)
+
+
+class Mirror(Record):
+    """What a reflected ray left last, if `active`: the axis and the coordinate of the mirror's plane."""
+
+    def __init__(self, coordinate_bits: int = COORDINATE_BITS):
+        super().__init__({"active": 1, "axis": AXIS_BITS, "position": coordinate_bits})
+
+
+class Facet(Record):
+    """A rectangle as one row's rays from the camera see it, of which q is an axis beside the plane's: see `Walk`.
+
+    distance: n = k - E[a] from the camera to its plane; way_q: n D[q], the same for all columns. usable: it may be hit.
+    """
+
+    def __init__(self, way_bits: int, distance_bits: int = DISTANCE_BITS):
+        super().__init__(
+            {
+                "usable": 1,
+                "axis": AXIS_BITS,
+                "distance": Signed(distance_bits),
+                "way_q": Signed(way_bits),
+                "colour": COLOUR_BITS,
+            }
+        )
+
+
+class Walk(Record):
+    """What cross-multiplication compares, and the column changes: n D[p], and (bound - E) D[a] for the four bounds.
+
+    Of the two axes beside the plane's, p is y, which the column changes, unless the plane is on y; then it is x. q is
+    the other.
+    """
+
+    def __init__(self, bits: int):
+        super().__init__(dict.fromkeys(("way_p", "low_p", "high_p", "low_q", "high_q"), Signed(bits)))
+
+
+class Reflector(Record):
+    """A mirror that a ray left, if `active`: its axis, and the distance from the camera to its plane."""
+
+    def __init__(self, distance_bits: int = DISTANCE_BITS):
+        super().__init__({"active": 1, "axis": AXIS_BITS, "distance": Signed(distance_bits)})
+
+
+class Fold(Record):
+    """How a straight ray through all mirrors so far folds back into the room; see `ray_fold`.
+
+    active: there was a mirror; back_x, back_y, back_z: the folded ray runs the other way there; turn_x ...: T, what is
+    added to it there; p_x ..., q_x ...: for a rectangle on the axis, what is added to its way along p, and q (see
+    `Walk`), one more where that is complemented; border_x ...: n D of the last mirror's n; axis, distance: of the last
+    mirror; mirror_back: the folded ray runs down from it.
+    """
+
+    def __init__(self, product_bits: int, walk_width: int, turn_bits: int = TURN_BITS, distance: int = DISTANCE_BITS):
+        super().__init__(
+            dict.fromkeys(("active", "back_x", "back_y", "back_z", "mirror_back"), 1)
+            | dict.fromkeys(("turn_x", "turn_y", "turn_z"), Signed(turn_bits))
+            | dict.fromkeys(("p_x", "p_y", "p_z", "q_x", "q_y", "q_z"), Signed(product_bits))
+            | dict.fromkeys(("border_x", "border_y", "border_z"), Signed(walk_width))
+            | {"axis": AXIS_BITS, "distance": Signed(distance)}
+        )
+
+
+def fold_of(config: Configuration) -> Fold:
+    """One of a design's widths."""
+    return Fold(fold_bits(config), walk_bits(config))
+
+
+class Candidate(Record):
+    """A hit, if `valid`, at t = numerator / denominator, on the rectangle `index`."""
+
+    def __init__(self, numerator_bits: int, denominator_bits: int, index_width: int):
+        super().__init__(
+            {"valid": 1, "numerator": numerator_bits, "denominator": denominator_bits, "index": index_width}
+        )
+
+
+def candidate_of(config: Configuration) -> Candidate:
+    """One of a design's widths."""
+    return Candidate(eye_bits(config) - 1, exact_slope_bits(config), index_bits(config))

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Which rectangles a group's primary rays may hit."""

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""What engines share: sequencing, primary rays, products, colour."""

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""The exact engine: cross-multiplies, never divides, never rounds."""

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""The seed engine: divides once a rectangle and rounds."""

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+"""One bit of a restoring division."""
+
+from myhdl import Signal, always_comb, block, concat, intbv
+
+from raycaster.rtl.common.widths import unsigned
+
+
+@block
+def divider_step(remainder, digits, divisor, next_remainder, next_digits):
+    """Shift remainder and digits left as one, and subtract the divisor from the remainder where it fits. Combinational.
+
+    remainder, divisor, next_remainder: unsigned, of one width, remainder < divisor; digits, next_digits: unsigned, of
+    another: the dividend's digits leave on the left, and the quotient's bit, 1 where the divisor fitted, enters on the
+    right.
+    """
+    width, count = len(divisor), len(digits)
+    dividend = unsigned(width + 1)
+    difference = Signal(intbv(0, min=-(1 << width), max=1 << (width + 1)))
+
+    # The next digit joins the remainder on the right.
+    @always_comb
+    def bring_down():
+        dividend.next = concat(remainder, digits[count - 1])
+
+    # Try the subtraction; a negative difference says that the divisor did not fit.
+    @always_comb
+    def subtract():
+        difference.next = dividend - divisor
+
+    # Keep the difference where the divisor fitted, the undiminished dividend where it did not.
+    @always_comb
+    def restore():
+        if difference < 0:
+            next_remainder.next = dividend[width:]
+            next_digits.next = concat(digits[count - 1 :], False)
+        else:
+            next_remainder.next = difference[width:]
+            next_digits.next = concat(digits[count - 1 :], True)
+
+    return bring_down, subtract, restore

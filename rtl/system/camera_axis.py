@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+"""One coordinate of a camera that buttons move."""
+
+from myhdl import always, always_comb, block
+
+from raycaster.configuration import WORLD_SIZE
+from raycaster.rtl.common.widths import bit
+
+STEP = 3
+"""World units that a held button moves the camera in a frame: across the world in about three seconds."""
+
+
+@block
+def camera_axis(clk, reset, move, more, less, start, position):
+    """A coordinate that a strobe moves by `STEP` towards where a button points, and never out of the world.
+
+    move: strobe, once a frame; more, less: buttons, active high, of which both at once count as none; start: where the
+    coordinate is after reset; position: the coordinate, 9 bits, a cycle after the strobe.
+    """
+    most = WORLD_SIZE - 1 - STEP
+    can_rise, can_fall = bit(), bit()
+
+    # Whether a step stays in the world.
+    @always_comb
+    def look_ahead():
+        can_rise.next = more and not less and position <= most
+        can_fall.next = less and not more and position >= STEP
+
+    # The step.
+    @always(clk.posedge)
+    def step():
+        if reset:
+            position.next = start
+        elif move and can_rise:
+            position.next = position + STEP
+        elif move and can_fall:
+            position.next = position - STEP
+
+    return look_ahead, step

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: MIT
+"""PicoRV32, a RISC-V processor by Claire Xenia Wolf, whose Verilog is given (ISC licence, which stands in its file)."""
+
+import importlib.util
+from pathlib import Path
+
+from myhdl import block
+
+from raycaster.errors import UserError
+from raycaster.rtl.common.given import given_verilog
+
+PACKAGE = "pythondata_cpu_picorv32"
+
+
+def picorv32_source() -> Path:
+    """The file, in the package that carries it.
+
+    Raises:
+        UserError: the package is not installed.
+    """
+    package = importlib.util.find_spec(PACKAGE)
+    if package is None or package.origin is None:
+        raise UserError("PicoRV32 is missing; pip install 'raycaster[play]'")
+    return Path(package.origin).parent / "verilog" / "picorv32.v"
+
+
+@given_verilog(picorv32_source, outputs=("mem_valid", "mem_addr", "mem_wdata", "mem_wstrb"))
+@block
+def picorv32(
+    clk,
+    resetn,
+    mem_valid,
+    mem_ready,
+    mem_addr,
+    mem_wdata,
+    mem_wstrb,
+    mem_rdata,
+    pcpi_wr,
+    pcpi_rd,
+    pcpi_wait,
+    pcpi_ready,
+    irq,
+    ENABLE_COUNTERS64: int,
+    BARREL_SHIFTER: int,
+    ENABLE_FAST_MUL: int,
+    ENABLE_DIV: int,
+):
+    """RV32I with what the parameters add; all others keep their defaults.
+
+    Reset starts the program at address 0, and leaves the stack pointer to it. An illegal instruction, or an access that
+    is not aligned, halts the processor until reset. mem_*: as `interfaces.ProcessorBus`; pcpi_*: no coprocessor; irq:
+    not enabled.
+    """
+    return ()

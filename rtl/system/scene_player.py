@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: MIT
+"""What stands for the processor where there is none: loads one scene, and moves its camera with buttons."""
+
+from myhdl import always_comb, always_seq, block
+
+from raycaster.configuration import Configuration
+from raycaster.program import scene_words
+from raycaster.registers import register_map
+from raycaster.rtl.common.interfaces import Point
+from raycaster.rtl.common.ties import tied
+from raycaster.rtl.common.widths import WORD_BITS, bit, bits_for, unsigned
+from raycaster.rtl.system.camera_axis import camera_axis
+from raycaster.scene import Scene
+
+BUTTONS = ("forward", "back", "left", "right", "up", "down")
+"""What each bit of `buttons` does, from bit 0 on: x rises and falls, y falls and rises, z rises and falls."""
+
+
+def player_program(scene: Scene, config: Configuration) -> tuple[list[tuple[int, int]], int]:
+    """Word addresses and words in the order in which they are written, and where the part for each frame starts.
+
+    That part clears the interrupt, moves the camera (its word here is only a place for it) and commits.
+    """
+    registers = register_map(config.table)
+    enable, pending = registers["irq_enable"], registers["irq_pending"]
+    load = scene_words(scene, config.table)
+    frame = [(pending.address, pending.pack(start_screen=1)), (registers["camera"].address, 0), load[-1]]
+    return [*load, (enable.address, enable.pack(start_screen=1)), *frame], len(load) + 1
+
+
+@block
+def scene_player(
+    clk,
+    reset,
+    buttons,
+    irq,
+    avm_m0_address,
+    avm_m0_write,
+    avm_m0_writedata,
+    avm_m0_byteenable,
+    avm_m0_waitrequest,
+    config: Configuration,
+    scene: Scene,
+):
+    """Avalon-MM host that only writes: a scene after reset, then a camera at each StartScreen interrupt.
+
+    buttons: as `BUTTONS`, active high; they may change at any time, and count where they are held at StartScreen.
+    A camera written at one StartScreen is shown from the next on.
+    """
+    program, first_of_frame = player_program(scene, config)
+    addresses, words = (tuple(column) for column in zip(*program, strict=True))
+    last = len(program) - 1
+    camera = register_map(config.table)["camera"]
+    camera_entry = first_of_frame + 1
+    x_low, y_low, z_low = (camera.fields[axis].lsb for axis in "xyz")
+    x_high, y_high, z_high = (camera.fields[axis].lsb + camera.fields[axis].width for axis in "xyz")
+
+    entry = unsigned(bits_for(len(program)))
+    waiting, move = bit(), bit()
+    arriving, held = unsigned(len(BUTTONS)), unsigned(len(BUTTONS))
+    forward, back, left, right, up, down = (bit() for _ in BUTTONS)
+    position = Point()
+    word = unsigned(WORD_BITS)
+    start_x, start_y, start_z = (tied(value, 9) for value in scene.camera.position)
+
+    axis_x = camera_axis(clk, reset, move, forward, back, start_x, position.x)
+    axis_y = camera_axis(clk, reset, move, right, left, start_y, position.y)
+    axis_z = camera_axis(clk, reset, move, up, down, start_z, position.z)
+
+    # Two registers, as buttons know no clock.
+    @always_seq(clk.posedge, reset=reset)
+    def synchronise():
+        arriving.next = buttons
+        held.next = arriving
+
+    # The buttons by name.
+    @always_comb
+    def name_buttons():
+        forward.next = held[0]
+        back.next = held[1]
+        left.next = held[2]
+        right.next = held[3]
+        up.next = held[4]
+        down.next = held[5]
+
+    # The camera moves as its turn in the program comes.
+    @always_comb
+    def start_frame():
+        move.next = waiting and irq
+
+    # Write after write, each until it is taken; then wait for the next StartScreen.
+    @always_seq(clk.posedge, reset=reset)
+    def sequence():
+        if waiting:
+            if irq:
+                waiting.next = False
+                entry.next = first_of_frame
+        elif not avm_m0_waitrequest:
+            if entry == last:
+                waiting.next = True
+            else:
+                entry.next = entry + 1
+
+    # Where this write goes.
+    @always_comb
+    def look_up_address():
+        avm_m0_address.next = addresses[int(entry)]
+
+    # What it says, but for the camera.
+    @always_comb
+    def look_up_word():
+        word.next = words[int(entry)]
+
+    # The write; the camera's word is the one that is not known beforehand.
+    @always_comb
+    def present():
+        avm_m0_write.next = not waiting
+        avm_m0_byteenable.next = 0b1111
+        avm_m0_writedata.next = word
+        if entry == camera_entry:
+            avm_m0_writedata.next = 0
+            avm_m0_writedata.next[x_high:x_low] = position.x
+            avm_m0_writedata.next[y_high:y_low] = position.y
+            avm_m0_writedata.next[z_high:z_low] = position.z
+
+    return (
+        axis_x, axis_y, axis_z, synchronise, name_buttons, start_frame, sequence, look_up_address, look_up_word,
+        present,
+    )  # fmt: skip

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""The monitor's timing, and the double line buffer with what fills it."""

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+"""One section of the double line buffer: the pixels of one ray unit."""
+
+from myhdl import Signal, always, always_comb, block, intbv
+
+from raycaster.configuration import Configuration
+from raycaster.rtl.common.widths import bits_for, pixel_bits, unsigned
+
+
+@block
+def line_buffer(clk, write, line_buf_sel, write_offset, pixel_in, read_offset, pixel_out, config: Configuration):
+    """A row is written to one half while the row before it is read from the other.
+
+    line_buf_sel: the half to write; write: strobe; write_offset, read_offset: which of the unit's pixels, below
+    config.groups; pixel_out: a cycle after read_offset. As the halves differ, no address is read while it is written.
+    """
+    groups = config.groups
+    address_width = bits_for(2 * groups)
+    memory = [Signal(intbv(0)[pixel_bits(config) :]) for _ in range(2 * groups)]
+    write_address, read_address = unsigned(address_width), unsigned(address_width)
+
+    # The second half starts after the first one's last pixel.
+    @always_comb
+    def address():
+        write_address.next = write_offset
+        read_address.next = read_offset
+        if line_buf_sel:
+            write_address.next = (write_offset + groups) % (1 << address_width)
+        else:
+            read_address.next = (read_offset + groups) % (1 << address_width)
+
+    # Take the unit's finished pixel.
+    @always(clk.posedge)
+    def store():
+        if write:
+            memory[write_address].next = pixel_in
+
+    # Fetch for the monitor.
+    @always(clk.posedge)
+    def fetch():
+        pixel_out.next = memory[read_address]
+
+    return address, store, fetch
