@@ -8,12 +8,13 @@ from collections.abc import Iterable, Sequence
 from pydantic.fields import FieldInfo
 from systemrdl.node import FieldNode, Node, RegNode
 
-from raycaster.configuration import GROUP_OVERHEAD, OPTION_NAMES, RESULT_LATENCY, Configuration, configure
+from raycaster.configuration import GROUP_OVERHEAD, OPTION_NAMES, Configuration, configure
 from raycaster.docs.timing import CONFIGURATION, DIAGRAMS, kept, measured
+from raycaster.engines import ENGINES
 from raycaster.registers import compile_registers
 from raycaster.rtl.beam import fold_tester, nearest_of_two, ray_fold
 from raycaster.rtl.beam.beam_caster import beam_latency, pass_latency, rounds
-from raycaster.rtl.engine import color_blend, rect_setup
+from raycaster.rtl.engine import colour_blend, rect_setup
 from raycaster.rtl.exact.exact_control import WRITE_AT
 
 ACCESS = {"r": "read", "rw": "read, write", "woclr": "read, write 1 to clear", "woset": "read, write 1 to set"}
@@ -89,7 +90,7 @@ def beam_latencies() -> str:
         ["`nearest_of_two`", f"a round; {config.rectangles} rectangles take {rounds(config)}", nearest_of_two.LATENCY],
         ["`ray_fold`", "how the ray folds at its mirror", ray_fold.LATENCY],
         ["", "all of it, from a ray to its reflection", pass_latency(config)],
-        ["`color_blend`", "the pixel's colour", color_blend.LATENCY],
+        ["`colour_blend`", "the pixel's colour", colour_blend.LATENCY],
     ]
     return table(["block", "what it does", "cycles"], rows)
 
@@ -145,10 +146,10 @@ def facts() -> dict[str, str]:
         "units": str(default.units),
         "rectangles": str(default.rectangles),
         "slot": str(default.slot_cycles),
-        "seed_latency": str(RESULT_LATENCY["seed"]),
+        "seed_latency": str(ENGINES["seed"].result_latency),
         "overhead": str(GROUP_OVERHEAD),
         "verdict": str(WRITE_AT + 1),
-        "exact_latency": str(RESULT_LATENCY["exact"]),
+        "exact_latency": str(ENGINES["exact"].result_latency),
         "group": str(default.group_cycles),
         "budget": str(default.group_budget),
         "row": f"{default.screen_geometry.row_cycles:,}",

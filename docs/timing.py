@@ -203,8 +203,8 @@ DIAGRAMS = (
             "memory": [*_bits(CASTER, "rects_fetch"), _number(CASTER, "rects_index")],
             "ray_control": [
                 *_bits(RENDERER, "reset_ray_caster"),
-                *_bits(STEPS, "screen_to_ray", "initial_ray", "reset_color", "reset_z_buf", "find_intersection"),
-                *_bits(STEPS, "load_divider", "store_quotient", "write_z_buf", "add_color", "store_ray"),
+                *_bits(STEPS, "screen_to_ray", "initial_ray", "reset_colour", "reset_z_buf", "find_intersection"),
+                *_bits(STEPS, "load_divider", "store_quotient", "write_z_buf", "add_colour", "store_ray"),
                 *_bits(RENDERER, "done"),
             ],
         },
@@ -212,7 +212,7 @@ DIAGRAMS = (
         [
             Arrow("find_intersection", 0, "load_divider", 0), Arrow("load_divider", 0, "store_quotient", 0),
             Arrow("store_quotient", 0, "write_z_buf", 0), Arrow("find_intersection", 0, "find_intersection", 1),
-            Arrow("screen_to_ray", 0, "add_color", 0), Arrow("add_color", 0, "add_color", 1),
+            Arrow("screen_to_ray", 0, "add_colour", 0), Arrow("add_colour", 0, "add_colour", 1),
         ],
     ),
     Diagram(
@@ -223,10 +223,10 @@ DIAGRAMS = (
                 *_bits(STEPS, "find_intersection"), *_bits(UNIT, "hit"), _number(UNIT, "depth"),
             ],
             "z_buffer": [
-                *_bits(STEPS, "reset_z_buf", "write_z_buf"), *_bits(UNIT, "found"), _colour(UNIT, "found_color"),
+                *_bits(STEPS, "reset_z_buf", "write_z_buf"), *_bits(UNIT, "found"), _colour(UNIT, "found_colour"),
                 _point(UNIT, "found_point"),
             ],
-            "output": [*_bits(STEPS, "add_color"), _colour(UNIT, "pixel"), *_bits(RENDERER, "done")],
+            "output": [*_bits(STEPS, "add_colour"), _colour(UNIT, "pixel"), *_bits(RENDERER, "done")],
         },
         _followed,
     ),

@@ -18,11 +18,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from raycaster.configuration import Screen
 from raycaster.golden.colour import blend
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.scene import Scene
+from raycaster.screens import Screen
 
 
 @dataclass(frozen=True)

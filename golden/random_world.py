@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from raycaster.configuration import VIEW_DISTANCE, WORLD_SIZE
+from raycaster.configuration import WORLD_SIZE
 from raycaster.golden.world import Rectangles
+from raycaster.screens import VIEW_DISTANCE
 
 EXTREMES = (0, 1, 255, 256, 510, 511)
 """Coordinates next to a bound or a carry."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from raycaster.configuration import Screen
+from raycaster.screens import Screen
 
 
 def primary_slopes(screen: Screen) -> np.ndarray:

@@ -18,11 +18,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from raycaster.configuration import COORDINATE_BITS, Screen
+from raycaster.configuration import COORDINATE_BITS
 from raycaster.golden.colour import blend
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.scene import Scene
+from raycaster.screens import Screen
 
 Rounding = Literal["truncate", "nearest"]
 

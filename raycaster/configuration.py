@@ -3,16 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields
 from functools import cached_property
 from typing import Any, Literal
 
 from pydantic import ConfigDict, Field, ValidationError, model_validator
 from pydantic.dataclasses import dataclass as validated_dataclass
 
+from raycaster.engines import ENGINES, Engine
 from raycaster.errors import UserError
 from raycaster.fixed import FixedScene
+from raycaster.screens import Screen
 
 COORDINATE_BITS = 9
 """World coordinates are unsigned: 0..511."""
@@ -21,16 +22,8 @@ WORLD_SIZE = 1 << COORDINATE_BITS
 MOST_RECTANGLES = 32
 """Entries that the largest rectangle table has."""
 
-VIEW_DISTANCE = 100
-"""Slope along x of every primary ray: the distance of the viewing rectangle, in world units."""
-
 CHANNEL_BITS = 8
 """Bits a colour channel has until it leaves for the monitor."""
-
-RESULT_LATENCY = {"seed": 6, "exact": 4}
-"""By engine, cycles from the end of a pass's last slot to the first cycle of the next pass. Seed: slope and plane
-latched, product, divider loaded, hit point, depth compared, ray stored (see `rtl/ray_control.py`). Exact: two more
-stages of the test after the first, which the slot is, depth compared, ray stored (see `rtl/rect_tester.py`)."""
 
 UNIT_CELLS = {1: 559, 2: 607, 3: 647}
 """LUT4 of an ECP5 that a unit of the seed engine takes, by quotient bits a cycle; from `make area DIVIDER_BITS=`."""
@@ -41,122 +34,6 @@ GROUP_OVERHEAD = 4
 
 class ConfigurationError(UserError):
     """A configuration that cannot be built, with one line that says what, where and what to do."""
-
-
-@dataclass(frozen=True)
-class Span:
-    """One direction of a video timing, in pixels or lines, in the order in which a monitor sees it."""
-
-    visible: int
-    front: int
-    sync: int
-    back: int
-    active_high: bool
-
-    @property
-    def blank(self) -> int:
-        """Front porch, sync and back porch together."""
-        return self.front + self.sync + self.back
-
-    @property
-    def total(self) -> int:
-        """The whole period."""
-        return self.visible + self.blank
-
-
-@dataclass(frozen=True)
-class Screen:
-    """What is looked through (columns x rows of rays) and how it is shown (each `doubling` x `doubling` pixels)."""
-
-    columns: int
-    rows: int
-    horizon_row: int
-    """The row whose rays have no z slope."""
-    doubling: int
-    horizontal: Span
-    vertical: Span
-    clocks_per_pixel: int = 2
-    """System clocks a pixel of the monitor; two give the line-buffered engines twice the time."""
-    pixel_hz: int = 25_000_000
-    scale: int = 1
-    """Samples a unit of slope: the resolution scale."""
-
-    @property
-    def centre_column(self) -> int:
-        """The column whose rays have no y slope."""
-        return self.columns // 2
-
-    @property
-    def view_distance(self) -> int:
-        """Slope along x of every primary ray."""
-        return VIEW_DISTANCE * self.scale
-
-    @property
-    def clock_hz(self) -> int:
-        """Of the system clock."""
-        return self.pixel_hz * self.clocks_per_pixel
-
-    @property
-    def row_cycles(self) -> int:
-        """System cycles in which one row of rays is shown, and the next must be ready."""
-        return self.doubling * self.horizontal.total * self.clocks_per_pixel
-
-    @property
-    def frame_cycles(self) -> int:
-        """System cycles of a frame, blanking included."""
-        return self.horizontal.total * self.vertical.total * self.clocks_per_pixel
-
-    def scaled(self, scale: int) -> Screen:
-        """The same view on the same monitor, sampled `scale` times finer in both directions."""
-        if scale == 1:
-            return self
-        return replace(
-            self,
-            columns=self.columns * scale,
-            rows=self.rows * scale,
-            horizon_row=self.horizon_row * scale,
-            doubling=self.doubling // scale,
-            scale=scale,
-        )
-
-
-_VGA_LINE = Span(visible=640, front=16, sync=96, back=48, active_high=False)
-_VGA_240 = Screen(320, 240, 190, 2, _VGA_LINE, Span(480, 10, 2, 33, active_high=False))
-_VGA_200 = Screen(320, 200, 150, 2, _VGA_LINE, Span(400, 12, 2, 35, active_high=True))
-_HD_180 = Screen(
-    320, 180, 130, 4, Span(1280, 110, 40, 220, active_high=True), Span(720, 5, 5, 20, active_high=True),
-    pixel_hz=74_250_000,
-)  # fmt: skip
-_TINY_LINES = Span(96, 2, 2, 4, active_high=False)
-# The line is just long enough for 32 units to have the same 320 cycles a group as on the full screen.
-_TINY_48 = Screen(64, 48, 38, 2, Span(128, 8, 16, 8, active_high=False), _TINY_LINES)
-# And this one for the beam engine to take up to 32 rectangles in its blanking.
-_TINY_BEAM_48 = replace(_TINY_48, horizontal=Span(128, 16, 32, 64, active_high=False))
-
-# A pixel a ray and the shortest blanking in which the beam engine takes 32 rectangles and two reflections, for programs
-# that are simulated; 60 frames a second.
-_PLAY_240 = Screen(
-    320, 240, 190, 1, Span(320, 2, 40, 50, active_high=False), Span(240, 1, 1, 1, active_high=False), pixel_hz=6_000_000
-)
-
-SCREENS: Mapping[tuple[str, int], Screen] = {
-    ("vga", 240): _VGA_240,
-    ("vga", 200): _VGA_200,
-    ("tiny", 48): _TINY_48,
-}
-"""By screen name and rows, at scale 1, for the engines with a line buffer."""
-
-BEAM_SCREENS: Mapping[tuple[str, int], Screen] = {
-    place: replace(screen, clocks_per_pixel=1)
-    for place, screen in {
-        ("vga", 240): _VGA_240,
-        ("vga", 200): _VGA_200,
-        ("vga", 180): _HD_180,
-        ("tiny", 48): _TINY_BEAM_48,
-        ("play", 240): _PLAY_240,
-    }.items()
-}
-"""By screen name and rows, at scale 1, for the beam engine, which takes a clock a pixel."""
 
 
 @validated_dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid"))
@@ -206,12 +83,12 @@ class Configuration:
                 raise ValueError(f"fixed: is for {len(self.fixed.passes) - 1} reflections, not {self.reflections}")
         self._choose_rows()
         self._choose_scale()
-        if self.engine != "seed":
+        if not self.facts.divides:
             self._refuse_quotients()
         self._choose_culling()
         if self.units is None:
             self._choose_units()
-        elif self.engine == "beam" and self.units != 1:
+        elif not self.facts.line_buffered and self.units != 1:
             raise ValueError(f"units: the beam engine is one unit that draws a pixel a clock, not {self.units}")
         if self.screen_geometry.columns % self.units:
             columns = self.screen_geometry.columns
@@ -222,11 +99,12 @@ class Configuration:
         return self
 
     @property
-    def _screens(self) -> Mapping[tuple[str, int], Screen]:
-        return BEAM_SCREENS if self.engine == "beam" else SCREENS
+    def facts(self) -> Engine:
+        """What its engine is."""
+        return ENGINES[self.engine]
 
     def _choose_rows(self) -> None:
-        allowed = [rows for screen, rows in self._screens if screen == self.screen]
+        allowed = [rows for screen, rows in self.facts.screens if screen == self.screen]
         if not allowed:
             raise ValueError(f"screen: {self.screen} needs the beam engine, ENGINE=beam, not {self.engine}")
         if self.rows is None:
@@ -238,7 +116,7 @@ class Configuration:
 
     def _choose_scale(self) -> None:
         """The finest that the monitor shows, where the engine is one that has scales."""
-        finest = self._screens[self.screen, self.rows].doubling if self.engine == "beam" else 1
+        finest = self.facts.screens[self.screen, self.rows].doubling if not self.facts.line_buffered else 1
         if self.scale is None:
             object.__setattr__(self, "scale", finest)
         elif self.scale < 1 or finest % self.scale:
@@ -259,17 +137,17 @@ class Configuration:
     def _choose_culling(self) -> None:
         """The seed engine's slots are long enough to be worth it; what a fixed scene does not need is left out."""
         if self.culling is None:
-            object.__setattr__(self, "culling", self.engine == "seed" and self.fixed is None)
-        elif self.culling and self.engine == "beam":
+            object.__setattr__(self, "culling", self.facts.divides and self.fixed is None)
+        elif self.culling and not self.facts.line_buffered:
             raise ValueError("culling: the beam engine takes all rectangles at once; leave it out")
         elif self.culling and self.fixed is not None:
             raise ValueError("culling: is for scenes that change; leave it out, or what is fixed")
 
     def _choose_units(self) -> None:
         """The seed's 32; one beam; otherwise as few as meet the row budget."""
-        if self.engine == "beam":
+        if not self.facts.line_buffered:
             object.__setattr__(self, "units", 1)
-        elif self.engine == "exact":
+        elif not self.facts.divides:
             object.__setattr__(self, "units", self._fewest_units(0))
         elif self.fixed is None:
             object.__setattr__(self, "units", 32)
@@ -292,7 +170,7 @@ class Configuration:
         return next(fitting, columns)
 
     def _choose_divider_bits(self) -> None:
-        if self.engine != "seed":
+        if not self.facts.divides:
             return
         if self.divider_bits == "auto":
             costs = {bits: self._group_cycles(bits) for bits in (1, 2, 3)}
@@ -329,7 +207,7 @@ class Configuration:
     @cached_property
     def screen_geometry(self) -> Screen:
         """The screen of this name, these rows and this scale."""
-        return self._screens[self.screen, self.rows].scaled(self.scale)
+        return self.facts.screens[self.screen, self.rows].scaled(self.scale)
 
     @property
     def groups(self) -> int:
@@ -352,20 +230,13 @@ class Configuration:
         return self._slot_cycles(self.divider_bits)
 
     def _slot_cycles(self, divider_bits: int) -> int:
-        if self.engine == "beam":
-            return 0
-        return -(-self.quotient_bits // divider_bits) if self.engine == "seed" else 1
-
-    @property
-    def result_latency(self) -> int:
-        """As `RESULT_LATENCY`, of the engines that are there."""
-        return RESULT_LATENCY[self.engine]
+        return -(-self.quotient_bits // divider_bits) if self.facts.divides else self.facts.slot_cycles
 
     def _group_cycles(self, divider_bits: int) -> int:
-        if self.engine == "beam":
+        if not self.facts.line_buffered:
             return 1
         slots = sum(mask.bit_count() for mask in self.passes) * self._slot_cycles(divider_bits)
-        return slots + len(self.passes) * self.result_latency + GROUP_OVERHEAD
+        return slots + len(self.passes) * self.facts.result_latency + GROUP_OVERHEAD
 
     @property
     def group_cycles(self) -> int:
@@ -384,11 +255,11 @@ class Configuration:
     def name(self) -> str:
         """A short file name that differs wherever the generated hardware does."""
         rounding = "n" if self.rounding == "nearest" else "t"
-        quotients = f"-f{self.fraction_bits}{rounding}-d{self.divider_bits}" if self.engine == "seed" else ""
-        scale = f"-s{self.scale}" if self.engine == "beam" else ""
+        quotients = f"-f{self.fraction_bits}{rounding}-d{self.divider_bits}" if self.facts.divides else ""
+        scale = f"-s{self.scale}" if not self.facts.line_buffered else ""
         fixed = f"-{self.fixed.name}" if self.fixed else ""
         # Only what is not the default is told.
-        culling = "" if self.fixed or self.culling == (self.engine == "seed") else f"-k{int(self.culling)}"
+        culling = "" if self.fixed or self.culling == self.facts.divides else f"-k{int(self.culling)}"
         return (
             f"{self.engine}-{self.screen}{self.rows}{scale}-u{self.units}-r{self.rectangles}-m{self.reflections}"
             f"{quotients}-c{self.colour_bits}{culling}{fixed}"

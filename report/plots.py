@@ -10,12 +10,12 @@ import numpy as np
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from raycaster.configuration import SCREENS
 from raycaster.golden import exact, seed_engine
 from raycaster.golden.errors import DepthErrors
 from raycaster.golden.picture import count_wrong, diff_picture
 from raycaster.report.hardware import Candidate
 from raycaster.report.points import PicturePoint, View
+from raycaster.screens import SCREENS
 
 DPI = 110
 COLOURS = {"truncate": "#c0392b", "nearest": "#2471a3"}

@@ -16,7 +16,7 @@ from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
-from raycaster.configuration import SCREENS, Configuration, Screen, configure
+from raycaster.configuration import Configuration, configure
 from raycaster.convert.take_home import TOP
 from raycaster.errors import UserError
 from raycaster.fpga.area import FAMILIES, measure
@@ -28,6 +28,7 @@ from raycaster.golden.seed_engine import Rounding
 from raycaster.golden.world import Rectangles
 from raycaster.options import add_configuration_options, as_options, given_options, run_command
 from raycaster.scene import Scene, dump_scene, load_scene
+from raycaster.screens import SCREENS, Screen
 from raycaster.verif.hit_points import build_probed_model, hit_points
 from raycaster.verif.job import Job
 from raycaster.verif.simulator import build_model, run_bench

@@ -20,7 +20,6 @@ import numpy as np
 from PIL import Image
 from rich.console import Console
 
-from raycaster.configuration import Screen
 from raycaster.design import Design
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.bitstream import BOARDS, DEFAULT_SCENE, find_board, write_project
@@ -28,6 +27,7 @@ from raycaster.golden import engines
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.golden.tmds import CONTROL_SYMBOLS, decode
 from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.screens import Screen
 from raycaster.verif.monitor import Line, VideoError, decode_frame
 from raycaster.verif.simulator import SimulationError, add_simulator_option, find_tool
 

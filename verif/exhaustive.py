@@ -49,7 +49,7 @@ from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.errors import UserError
 from raycaster.options import run_command
-from raycaster.rtl.common.interfaces import Steps
+from raycaster.rtl.common.legacy import Steps
 from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
 from raycaster.rtl.seed.divider import divider
 from raycaster.rtl.seed.intersection_helper import intersection_helper

@@ -10,7 +10,7 @@ module hit_probe #(
 ) (
     input wire clk,
     input wire initial_ray,         // the ray comes from the camera
-    input wire add_color,           // a ray ends: what it found stands now
+    input wire add_colour,           // a ray ends: what it found stands now
     input wire found,
     input wire [15:0] row,
     input wire [15:0] unit,
@@ -25,7 +25,7 @@ module hit_probe #(
 
     // Both decide within the edge, so nothing is lost between them.
     always @(posedge clk)
-        if (add_color) begin
+        if (add_colour) begin
             depth = initial_ray ? 0 : depth + 1;
             if (file == 0) begin
                 $sformat(name, "hits.%0d", unit);
@@ -42,7 +42,7 @@ bind ray_unit hit_probe #(
 ) hit_probe_i (
     .clk(clk),
     .initial_ray(steps_initial_ray),
-    .add_color(steps_add_color),
+    .add_colour(steps_add_colour),
     .found(found),
     .row(16'(row)),
     .unit(16'(column_base)),

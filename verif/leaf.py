@@ -21,7 +21,7 @@ from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import Module, Port, convert_hierarchy
 from raycaster.convert.inside import port_signals
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.common.interfaces import RaySteps, Steps
+from raycaster.rtl.common.legacy import RaySteps, Steps
 from raycaster.rtl.common.records import Record
 from raycaster.rtl.engine.ray_sequencer import GIVE_UP_AT, impatient
 
@@ -356,7 +356,7 @@ def trace_cycles(
     def strobe(cycle: int, *names: str) -> None:
         cycles[cycle].steps |= {f"steps_{name}": 1 for name in names}
 
-    strobe(0, "screen_to_ray", "reset_color", "reset_z_buf")
+    strobe(0, "screen_to_ray", "reset_colour", "reset_z_buf")
     for bounce in range(reflections + 1):
         visited = [index for index in usable if bounce or possible is None or index in possible]
         given_up = [impatient(config) and (bounce, index) in hopeless for index in visited]
@@ -367,7 +367,7 @@ def trace_cycles(
         length = 2 + max([starts[-1], *offered]) if traced else 1
         first = len(cycles)
         cycles += [TraceCycle(idle | {"steps_initial_ray": int(bounce == 0)}, bounce) for _ in range(length)]
-        strobe(-1, "add_color", "reset_z_buf", *(["store_ray"] if bounce < reflections else []))
+        strobe(-1, "add_colour", "reset_z_buf", *(["store_ray"] if bounce < reflections else []))
         cycles[-1].alive = int(lost is None or bounce < lost)
         for index, dropped, place in zip(visited if traced else [], given_up, starts, strict=False):
             start = first + place

@@ -13,7 +13,8 @@ from cocotb.queue import Queue
 from cocotb.simtime import get_sim_time
 from cocotb.triggers import SimTimeoutError, with_timeout
 
-from raycaster.configuration import Configuration, Screen, Span
+from raycaster.configuration import Configuration
+from raycaster.screens import Screen, Span
 
 CLOCK_NS = 20
 """Period of the bench's clock, whatever the design's is; only cycles count here."""

@@ -10,7 +10,7 @@ from raycaster.configuration import Configuration
 from raycaster.rtl.beam import fold_tester as tester
 from raycaster.rtl.beam import nearest_of_two as contest
 from raycaster.rtl.beam import ray_fold as folder
-from raycaster.rtl.beam.facet_mem import facet_mem
+from raycaster.rtl.beam.facet_register import facet_register
 from raycaster.rtl.beam.facet_rom import facet_rom
 from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.nearest_of_two import nearest_of_two
@@ -20,12 +20,12 @@ from raycaster.rtl.beam.slope_magnitudes import slope_magnitudes
 from raycaster.rtl.beam.slope_walker import slope_walker
 from raycaster.rtl.beam.unopposed import unopposed
 from raycaster.rtl.beam.winner_delay import winner_delay
-from raycaster.rtl.common.interfaces import Candidate, Facet, Fold, Reflector, Slope, Walk
+from raycaster.rtl.common.legacy import Candidate, Facet, Fold, Reflector, Slope, Walk
 from raycaster.rtl.common.ties import Signed, Tied, tied, unconnected
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
-    COLOUR_BITS,
     DISTANCE_BITS,
+    RGB_BITS,
     TURN_BITS,
     bit,
     exact_slope_bits,
@@ -35,8 +35,8 @@ from raycaster.rtl.common.widths import (
     unsigned,
     walk_bits,
 )
-from raycaster.rtl.engine import color_blend as blend
-from raycaster.rtl.engine.color_blend import color_blend
+from raycaster.rtl.engine import colour_blend as blend
+from raycaster.rtl.engine.colour_blend import colour_blend
 from raycaster.rtl.engine.rect_setup import rect_setup
 
 ENTRY_LATENCY = 1
@@ -210,7 +210,7 @@ def beam_caster(
         clk, reset, start_line, rects, camera, first_slope, row_slope, load, new_facet, new_growth, new_start, config
     )
     memories = [
-        facet_mem(clk, load(i + 1, i), new_facet, new_growth, driven(facets[i]), driven(growths[i]))
+        facet_register(clk, load(i + 1, i), new_facet, new_growth, driven(facets[i]), driven(growths[i]))
         for i in range(count)
     ]  # fmt: skip
 
@@ -286,9 +286,9 @@ def beam_caster(
     index_0, index_1, index_2 = ([stages[-1].index for stages in seen] + [none, none])[:3]
     valid_0, valid_1, valid_2 = ([stages[-1].valid for stages in seen] + [nothing, nothing])[:3]
 
-    axes, distances, colors = ([getattr(facet, name) for facet in facets] for name in ("axis", "distance", "colour"))
+    axes, distances, colours = ([getattr(facet, name) for facet in facets] for name in ("axis", "distance", "colour"))
     found_0, found_1, found_2 = (bit() for _ in range(3))
-    color_0, color_1, color_2 = (unsigned(COLOUR_BITS) for _ in range(3))
+    colour_0, colour_1, colour_2 = (unsigned(RGB_BITS) for _ in range(3))
 
     # Which rays met anything.
     @always(clk.posedge)
@@ -299,23 +299,23 @@ def beam_caster(
 
     # What they met.
     @always(clk.posedge)
-    def look_up_colors():
-        color_0.next = colors[index_0]
-        color_1.next = colors[index_1]
-        color_2.next = colors[index_2]
+    def look_up_colours():
+        colour_0.next = colours[index_0]
+        colour_1.next = colours[index_1]
+        colour_2.next = colours[index_2]
 
-    color_look_ups = look_up_colors
+    colour_look_ups = look_up_colours
     if config.fixed:
-        color_look_ups = [
-            facet_rom(clk, index, unconnected(AXIS_BITS), table_distance(unread_mirror(), config), color, config)
-            for index, color in ((index_0, color_0), (index_1, color_1), (index_2, color_2))
+        colour_look_ups = [
+            facet_rom(clk, index, unconnected(AXIS_BITS), table_distance(unread_mirror(), config), colour, config)
+            for index, colour in ((index_0, colour_0), (index_1, colour_1), (index_2, colour_2))
         ]
 
-    blender = color_blend(
-        clk, found_0, found_1, found_2, color_0, color_1, color_2, background, reflections, red, green, blue, config
+    blender = colour_blend(
+        clk, found_0, found_1, found_2, colour_0, colour_1, colour_2, background, reflections, red, green, blue, config
     )
     common = (
-        setup, memories, follow_columns, walkers, rays, testers, contests, delays, look_up_hits, color_look_ups,
+        setup, memories, follow_columns, walkers, rays, testers, contests, delays, look_up_hits, colour_look_ups,
         blender,
     )  # fmt: skip
     if passes == 1:
@@ -343,7 +343,7 @@ def beam_caster(
 
     first_look_up = look_up_mirror
     if config.fixed:
-        tables = [facet_rom(clk, only_index, only.axis, table_distance(only, config), unconnected(COLOUR_BITS), config)]
+        tables = [facet_rom(clk, only_index, only.axis, table_distance(only, config), unconnected(RGB_BITS), config)]
         first_look_up = tables if config.fixed.camera else (tables, look_up_distance)
     first_folder = ray_fold(clk, nowhere, only, mirror_slopes[0], row_slope, folds[1], view_distance)
     if passes == 2:
@@ -369,7 +369,7 @@ def beam_caster(
     second_look_up = look_up_mirrors
     if config.fixed:
         tables = [
-            facet_rom(clk, index, left.axis, table_distance(left, config), unconnected(COLOUR_BITS), config)
+            facet_rom(clk, index, left.axis, table_distance(left, config), unconnected(RGB_BITS), config)
             for index, left in ((earlier_index, earlier), (last_index, last))
         ]
         second_look_up = tables if config.fixed.camera else (tables, look_up_distances)

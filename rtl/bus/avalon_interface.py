@@ -6,7 +6,7 @@ from myhdl import Signal, always_comb, always_seq, block
 from raycaster.configuration import Configuration
 from raycaster.registers import register_map
 from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import COLOUR_BITS, CYCLE_BITS, WORD_BITS, bit, unsigned
+from raycaster.rtl.common.widths import CYCLE_BITS, RGB_BITS, WORD_BITS, bit, unsigned
 from raycaster.rtl.scene.scene_word import scene_word
 
 ENGINE_CODES = {"seed": 0, "exact": 1, "beam": 2}
@@ -268,7 +268,7 @@ def avalon_interface(
     # What else the renderer gets to know; more reflections than there are count as all.
     @always_comb
     def drive_picture():
-        background.next = live_background[COLOUR_BITS:]
+        background.next = live_background[RGB_BITS:]
         if live_control[reflections_high:reflections_low] > most_reflections:
             reflections.next = most_reflections
         else:

@@ -1,25 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""Groups of signals that travel together. As a port `ray`, the attribute `x` becomes the Verilog port `ray_x`."""
+"""Ports that belong together. As a port `vga`, the attribute `hs` becomes the Verilog port `vga_hs`."""
 
-from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, Configuration
+from raycaster.configuration import Configuration
+from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import (
-    AXIS_BITS,
-    COLOUR_BITS,
-    DISTANCE_BITS,
+    CYCLE_BITS,
     LANES,
+    RGB_BITS,
     SLOPE_BITS,
-    TURN_BITS,
-    WIDE_BITS,
     WORD_BITS,
     bit,
-    exact_slope_bits,
-    eye_bits,
-    fold_bits,
     index_bits,
-    position_bits,
+    offset_bits,
+    row_bits,
     signed,
     unsigned,
-    walk_bits,
 )
 
 
@@ -29,25 +24,69 @@ class Interface:
     is_interface = True
 
 
-class Point(Interface):
-    """A camera position, in whole world units."""
+class Vga(Interface):
+    """To a monitor or its converter: colours, syncs, blanking (low), composite sync (unused, low), the pixel clock.
+
+    Data changes at the falling edge of clk.
+    """
+
+    def __init__(self, colour_bits: int):
+        self.r, self.g, self.b = (unsigned(colour_bits) for _ in range(3))
+        self.hs, self.vs, self.blank_n, self.sync_n, self.clk = (bit() for _ in range(5))
+
+
+class AvalonPort(Interface):
+    """Avalon-MM with word addresses, 32-bit data and pipelined reads, as a host or an agent has it."""
+
+    def __init__(self, address_bits: int):
+        self.address = unsigned(address_bits)
+        self.read, self.write = bit(), bit()
+        self.writedata, self.byteenable = unsigned(WORD_BITS), unsigned(LANES)
+        self.readdata = unsigned(WORD_BITS)
+        self.readdatavalid, self.waitrequest = bit(), bit()
+
+
+class Picture(Interface):
+    """What is shown beside rectangles and camera; live, so it changes in the cycle after start_screen only.
+
+    run: 0 renders nothing and shows black; reflections: those of the scene; background: 24 bits.
+    """
 
     def __init__(self):
-        self.x, self.y, self.z = (unsigned(COORDINATE_BITS) for _ in range(3))
+        self.run = bit()
+        self.reflections = unsigned(2)
+        self.background = unsigned(RGB_BITS)
 
 
-class Origin(Interface):
-    """Where a ray starts, or hits, with the configuration's fraction bits."""
+class Progress(Interface):
+    """How far a renderer is.
+
+    start_screen: strobe, before the first visible line; busy: a row is being rendered; underrun: strobe, a row was not
+    complete in time; row_cycles, group_cycles: cycles since the row's, and the group's, start, with the present one,
+    don't care unless busy.
+    """
+
+    def __init__(self):
+        self.start_screen, self.busy, self.underrun = bit(), bit(), bit()
+        self.row_cycles, self.group_cycles = unsigned(CYCLE_BITS), unsigned(CYCLE_BITS)
+
+
+class Scan(Interface):
+    """Where the monitor is; see `video_generator`.
+
+    start_screen, start_row, next_column: strobes; visible_line: high in the visible part of a line.
+    """
+
+    def __init__(self):
+        self.start_screen, self.start_row, self.visible_line, self.next_column = (bit() for _ in range(4))
+
+
+class Place(Interface):
+    """A group of columns on the screen: column = column_offset * units + unit."""
 
     def __init__(self, config: Configuration):
-        self.x, self.y, self.z = (unsigned(position_bits(config)) for _ in range(3))
-
-
-class Signs(Interface):
-    """Which components of a ray's slope are negative. A reflection changes one of them, and nothing else."""
-
-    def __init__(self):
-        self.dx, self.dy, self.dz = (bit() for _ in range(3))
+        self.row = unsigned(row_bits(config))
+        self.column_offset = unsigned(offset_bits(config))
 
 
 class Slope(Interface):
@@ -57,50 +96,19 @@ class Slope(Interface):
         self.dx, self.dy, self.dz = (unsigned(bits) for _ in range(3))
 
 
-class Plane(Interface):
-    """What starts an intersection: the axis (0, 1, 2 for x, y, z) and the coordinate of the rectangle's plane."""
-
-    def __init__(self):
-        self.axis = unsigned(AXIS_BITS)
-        self.position = unsigned(COORDINATE_BITS)
-
-
-class Rect(Interface):
-    """What ends an intersection: the plane again, the bounds on the two other axes in the order x, y, z, the colour."""
-
-    def __init__(self):
-        self.axis = unsigned(AXIS_BITS)
-        self.position, self.u_low, self.u_high, self.v_low, self.v_high = (unsigned(COORDINATE_BITS) for _ in range(5))
-        self.colour = unsigned(COLOUR_BITS)
-
-
-class WideRect(Interface):
-    """A rectangle whose bounds may be a unit further out, two's complement; it has no colour."""
-
-    def __init__(self):
-        self.axis = unsigned(AXIS_BITS)
-        self.position = unsigned(COORDINATE_BITS)
-        self.u_low, self.u_high, self.v_low, self.v_high = (signed(WIDE_BITS) for _ in range(4))
-
-
-class Colour(Interface):
-    """A colour's channels at the full width."""
-
-    def __init__(self):
-        self.red, self.green, self.blue = (unsigned(CHANNEL_BITS) for _ in range(3))
-
-
 class RaySteps(Interface):
     """The control signals that operate all ray units in step.
 
     screen_to_ray: load the primary ray; initial_ray: trace it, and not a reflected one; find_intersection: start on the
-    rectangle at hand; reset_z_buf, write_z_buf: forget, and offer, a hit; reset_color, add_color: forget, and add, what
-    the ray saw; store_ray: keep the reflected ray. All but initial_ray are strobes of a cycle.
+    rectangle at hand; reset_z_buf, write_z_buf: forget, and offer, a hit; reset_colour, add_colour: forget, and add,
+    what the ray saw; store_ray: keep the reflected ray. All but initial_ray are strobes of a cycle.
     """
 
     def __init__(self):
         self.screen_to_ray, self.initial_ray, self.find_intersection = (bit() for _ in range(3))
-        self.reset_z_buf, self.write_z_buf, self.reset_color, self.add_color, self.store_ray = (bit() for _ in range(5))
+        self.reset_z_buf, self.write_z_buf, self.reset_colour, self.add_colour, self.store_ray = (
+            bit() for _ in range(5)
+        )
 
 
 class Steps(RaySteps):
@@ -111,22 +119,23 @@ class Steps(RaySteps):
         self.load_divider, self.store_quotient = (bit() for _ in range(2))
 
 
-class Outlook(Interface):
+class RayFate(Interface):
     """What a unit's ray may still meet. alive: it has hit something since reset_z_buf, and at every bounce before.
-    ahead, of an impatient design: it has at every bounce before, and runs towards the plane that find_intersection
-    started on in the cycle before.
+
+    towards, where a control ends rectangles early: it has at every bounce before, and runs towards the plane that
+    find_intersection started on in the cycle before.
     """
 
     def __init__(self):
-        self.ahead, self.alive = bit(), bit()
+        self.towards, self.alive = bit(), bit()
 
 
-class Prospects(Outlook):
-    """The same of any unit's ray; possible: a bit for each rectangle, 1 where a primary ray of the group may hit it."""
+class GroupFate(Interface):
+    """The same of any ray of a group; may_hit: a bit for each rectangle, 1 where a primary ray may hit it."""
 
     def __init__(self, config: Configuration):
-        super().__init__()
-        self.possible = unsigned(config.rectangles)
+        self.any_towards, self.any_alive = bit(), bit()
+        self.may_hit = unsigned(config.rectangles)
 
 
 class Eye(Interface):
@@ -134,82 +143,6 @@ class Eye(Interface):
 
     def __init__(self, bits: int):
         self.x, self.y, self.z = (signed(bits) for _ in range(3))
-
-
-class Mirror(Interface):
-    """What a reflected ray left last, if `active`: the axis and the coordinate of the mirror's plane."""
-
-    def __init__(self):
-        self.active = bit()
-        self.axis = unsigned(AXIS_BITS)
-        self.position = unsigned(COORDINATE_BITS)
-
-
-class Surface(Interface):
-    """What a ray that hits a rectangle must know of it."""
-
-    def __init__(self):
-        self.axis = unsigned(AXIS_BITS)
-        self.position = unsigned(COORDINATE_BITS)
-        self.colour = unsigned(COLOUR_BITS)
-
-
-class Facet(Interface):
-    """A rectangle as one row's rays from the camera see it, u being y unless the plane is on y, then x, and v the rest.
-
-    distance: n = k - E[a] from the camera to its plane; way_v: n D[v], the same for all columns. usable: it may be hit.
-    """
-
-    def __init__(self, config: Configuration):
-        self.usable = bit()
-        self.axis = unsigned(AXIS_BITS)
-        self.distance = signed(DISTANCE_BITS)
-        self.way_v = signed(walk_bits(config))
-        self.colour = unsigned(COLOUR_BITS)
-
-
-class Walk(Interface):
-    """What cross-multiplication compares, and the column changes: n D[u], and (bound - E) D[a] for the four bounds."""
-
-    def __init__(self, bits: int):
-        self.way_u, self.low_u, self.high_u, self.low_v, self.high_v = (signed(bits) for _ in range(5))
-
-
-class Reflector(Interface):
-    """A mirror that a ray left, if `active`: its axis, and the distance from the camera to its plane."""
-
-    def __init__(self):
-        self.active = bit()
-        self.axis = unsigned(AXIS_BITS)
-        self.distance = signed(DISTANCE_BITS)
-
-
-class Fold(Interface):
-    """How a straight ray through all mirrors so far folds back into the room; see `ray_fold`.
-
-    back_x, back_y, back_z: the folded ray runs the other way there; turn_x ...: T, what is added to it there; u_x ...,
-    v_x ...: for a rectangle on the axis, what is added to its way along u, and v, one more where that is complemented;
-    border_x ...: n D of the last mirror's n. mirror: the last one; mirror_back: the folded ray runs down from it.
-    """
-
-    def __init__(self, config: Configuration):
-        self.back_x, self.back_y, self.back_z, self.mirror_back = (bit() for _ in range(4))
-        self.turn_x, self.turn_y, self.turn_z = (signed(TURN_BITS) for _ in range(3))
-        self.u_x, self.u_y, self.u_z, self.v_x, self.v_y, self.v_z = (signed(fold_bits(config)) for _ in range(6))
-        self.border_x, self.border_y, self.border_z = (signed(walk_bits(config)) for _ in range(3))
-        self.active = bit()
-        self.axis = unsigned(AXIS_BITS)
-        self.distance = signed(DISTANCE_BITS)
-
-
-class Candidate(Interface):
-    """A hit, if `valid`, at t = numerator / denominator, on the rectangle `index`."""
-
-    def __init__(self, config: Configuration):
-        self.valid = bit()
-        self.numerator = unsigned(eye_bits(config) - 1)
-        self.denominator = unsigned(exact_slope_bits(config))
-        self.index = unsigned(index_bits(config))
 
 
 class SceneBus(Interface):
@@ -225,10 +158,10 @@ class SceneBus(Interface):
         self.data, self.mask = unsigned(WORD_BITS), unsigned(WORD_BITS)
 
 
-class SequentialRects(Interface):
-    """One live rectangle at a time: sorted, a cycle after `fetch` with its `index`, held until the next fetch.
+class Rects(Interface):
+    """One live rectangle at a time: sorted, the engine's `rect_latency` cycles after `fetch` with its `index`.
 
-    usable: a bit for each rectangle, 1 where it is enabled and has a plane.
+    It is held until the next fetch. usable: a bit for each rectangle, 1 where it is enabled and has a plane.
     """
 
     def __init__(self, config: Configuration):
@@ -236,18 +169,6 @@ class SequentialRects(Interface):
         self.index = unsigned(index_bits(config))
         self.fetch = bit()
         self.rect = Rect()
-
-
-class PipelinedRects(SequentialRects):
-    """The same, but the rectangle comes two cycles after fetch with its index; a new one may be fetched each cycle."""
-
-
-class ParallelRects(Interface):
-    """All live rectangles at once, as they were written; word i of each vector belongs to rectangle i."""
-
-    def __init__(self, config: Configuration):
-        self.usable = unsigned(config.rectangles)
-        self.corner_0, self.corner_1, self.surface = (unsigned(WORD_BITS * config.rectangles) for _ in range(3))
 
 
 class ProcessorBus(Interface):

@@ -11,8 +11,8 @@ from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, Configuration
 from raycaster.rtl.common.ties import Signed, Tied, initial
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
-    COLOUR_BITS,
     DISTANCE_BITS,
+    RGB_BITS,
     TURN_BITS,
     WIDE_BITS,
     exact_slope_bits,
@@ -126,6 +126,13 @@ class Colour(Record):
         super().__init__(dict.fromkeys(("red", "green", "blue"), CHANNEL_BITS))
 
 
+class Pixel(Record):
+    """A pixel as it is stored for the monitor: the top colour_bits of each channel."""
+
+    def __init__(self, colour_bits: int):
+        super().__init__(dict.fromkeys(("red", "green", "blue"), colour_bits))
+
+
 class Surface(Record):
     """What a ray that hits a rectangle must know of it: the plane's axis (0, 1, 2 for x, y, z) and coordinate."""
 
@@ -135,7 +142,7 @@ class Surface(Record):
 
 def surface_fields(coordinate_bits: int) -> dict[str, int]:
     """The widths of a `Surface`, with which a `Rect` begins too."""
-    return {"axis": AXIS_BITS, "position": coordinate_bits, "colour": COLOUR_BITS}
+    return {"axis": AXIS_BITS, "position": coordinate_bits, "colour": RGB_BITS}
 
 
 class Rect(Record):
@@ -176,7 +183,7 @@ class Facet(Record):
                 "axis": AXIS_BITS,
                 "distance": Signed(distance_bits),
                 "way_q": Signed(way_bits),
-                "colour": COLOUR_BITS,
+                "colour": RGB_BITS,
             }
         )
 

@@ -18,7 +18,9 @@ TURN_BITS = COORDINATE_BITS + 2
 """Twice a distance, or the difference of two mirrors doubled, with the sign: at most 2 * 511."""
 
 AXIS_BITS = 2
-COLOUR_BITS = 3 * CHANNEL_BITS
+RGB_BITS = 3 * CHANNEL_BITS
+"""A whole colour; `colour_bits` of a configuration is a channel of the VGA output."""
+
 WORD_BITS = 32
 LANES = 4
 """Bytes of a word, each of which has an enable of its own."""

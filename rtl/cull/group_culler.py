@@ -4,10 +4,10 @@
 from myhdl import always, always_comb, block
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.interfaces import Facet, PipelinedRects, Prospects, Walk, WideRect
+from raycaster.rtl.common.legacy import Facet, PipelinedRects, Prospects, Walk, WideRect
 from raycaster.rtl.common.ties import tied, unconnected
 from raycaster.rtl.common.widths import (
-    COLOUR_BITS,
+    RGB_BITS,
     WIDE_BITS,
     bit,
     exact_slope_bits,
@@ -68,7 +68,7 @@ def group_culler(
     copy = PipelinedRects(config)
     copy.usable = rects.usable
     copy.rect = WideRect()
-    copy.rect.colour = tied(0, unsigned(COLOUR_BITS))
+    copy.rect.colour = tied(0, unsigned(RGB_BITS))
     load, found = unsigned(rectangles), unsigned(rectangles)
     facet, growth, start = Facet(config), Walk(WIDE_BITS), Walk(wide_walk_bits(config))
     facet.usable, facet.colour = unconnected(facet.usable), unconnected(facet.colour)

@@ -4,7 +4,7 @@
 from myhdl import always, always_comb, block, concat
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
-from raycaster.rtl.common.interfaces import PipelinedRects
+from raycaster.rtl.common.legacy import PipelinedRects
 from raycaster.rtl.common.widths import AXIS_BITS, bit, index_bits, signed, unsigned
 
 

@@ -63,7 +63,7 @@ def ray_sequencer(
     # A new ray follows two of the states.
     @always_comb
     def see_start():
-        start_ray.next = steps.screen_to_ray or steps.add_color
+        start_ray.next = steps.screen_to_ray or steps.add_colour
 
     # Where a ray is in its life.
     @always(clk.posedge)
@@ -91,9 +91,9 @@ def ray_sequencer(
     @always_comb
     def operate():
         steps.screen_to_ray.next = state == RayState.GENERATE
-        steps.reset_color.next = state == RayState.GENERATE
+        steps.reset_colour.next = state == RayState.GENERATE
         steps.reset_z_buf.next = start_ray
-        steps.add_color.next = state == RayState.BLEND
+        steps.add_colour.next = state == RayState.BLEND
         # A ray that nothing follows would be one mirror too many for an engine that mirrors the eye.
         steps.store_ray.next = (state == RayState.BLEND) and (bounce != reflections)
         steps.initial_ray.next = bounce == 0

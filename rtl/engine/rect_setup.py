@@ -6,8 +6,8 @@ from myhdl import always, always_comb, block
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
-    COLOUR_BITS,
     DISTANCE_BITS,
+    RGB_BITS,
     bit,
     exact_slope_bits,
     index_bits,
@@ -60,7 +60,7 @@ def rect_setup(
     number_0, number_1, number_2 = (unsigned(index_bits(config)) for _ in range(3))
     at_hand_2, usable_2 = bit(), bit()
     axis_2 = unsigned(AXIS_BITS)
-    colour_2 = unsigned(COLOUR_BITS)
+    colour_2 = unsigned(RGB_BITS)
     distance_2 = signed(DISTANCE_BITS)
     to_low_u_2, to_high_u_2, to_low_v_2, to_high_v_2 = (signed(bound_bits) for _ in range(4))
     slope_a_2, slope_u_2, slope_v_2 = (signed(slope_bits) for _ in range(3))

@@ -4,7 +4,7 @@
 from myhdl import always_comb, block
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.interfaces import Outlook, RaySteps, Surface
+from raycaster.rtl.common.legacy import Outlook, RaySteps, Surface
 from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import pixel_bits, side_by_side, unit_bits, unsigned
 from raycaster.rtl.cull.group_culler import group_culler, prospects_of
@@ -24,7 +24,7 @@ def exact_caster(
     reflections,
     rects,
     done,
-    colors,
+    colours,
     config: Configuration,
 ):
     """Compute the colours of config.units neighbouring pixels at once; the ports are ray_caster's."""
@@ -49,7 +49,7 @@ def exact_caster(
     # All pixels leave side by side.
     @always_comb
     def join():
-        colors.next = together
+        colours.next = together
 
     common = control, units, join
     if not config.culling:

@@ -4,12 +4,12 @@
 from myhdl import always_comb, block
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.interfaces import Eye, Mirror, Signs, Slope, Surface
+from raycaster.rtl.common.legacy import Eye, Mirror, Signs, Slope, Surface
 from raycaster.rtl.common.ties import unconnected
 from raycaster.rtl.common.widths import bit, exact_slope_bits, eye_bits, unsigned
-from raycaster.rtl.engine.color_combiner import color_combiner
+from raycaster.rtl.engine.colour_combiner import colour_combiner
 from raycaster.rtl.engine.ray_generator import ray_generator
-from raycaster.rtl.exact.eye_mem import eye_mem
+from raycaster.rtl.exact.eye_register import eye_register
 from raycaster.rtl.exact.nearest_hit import nearest_hit
 from raycaster.rtl.exact.rect_tester import rect_tester
 
@@ -46,10 +46,10 @@ def exact_unit(
     denominator = unsigned(exact_slope_bits(config))
 
     generator = ray_generator(clk, steps, row, column_base, column_offset, initial_signs, slope, config)
-    memory = eye_mem(clk, steps, camera, initial_signs, found_surface, eye, signs, mirror)
+    memory = eye_register(clk, steps, camera, initial_signs, found_surface, eye, signs, mirror)
     tester = rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, numerator, denominator)
     nearest = nearest_hit(clk, steps, offered, hit, numerator, denominator, found, found_surface)
-    combiner = color_combiner(clk, steps, found, found_surface.colour, background, reflections, missed, pixel, config)
+    combiner = colour_combiner(clk, steps, found, found_surface.colour, background, reflections, missed, pixel, config)
 
     common = generator, memory, tester, nearest, combiner
     if not config.culling:

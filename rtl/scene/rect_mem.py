@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block
 
 from raycaster.configuration import Configuration
 from raycaster.registers import register_map
-from raycaster.rtl.common.interfaces import ParallelRects, PipelinedRects, Rect
+from raycaster.rtl.common.legacy import ParallelRects, PipelinedRects, Rect
 from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import WORD_BITS, bit, index_bits, side_by_side, signed, unsigned
 from raycaster.rtl.scene.rect_slot import rect_slot

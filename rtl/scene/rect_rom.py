@@ -4,7 +4,7 @@
 from myhdl import always, block
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.interfaces import Rect, SequentialRects
+from raycaster.rtl.common.legacy import Rect, SequentialRects
 from raycaster.rtl.common.ties import tied, unconnected
 from raycaster.rtl.common.widths import index_bits, unsigned
 

@@ -5,7 +5,7 @@ from myhdl import always_comb, block
 
 from raycaster.configuration import COORDINATE_BITS
 from raycaster.registers import register_map
-from raycaster.rtl.common.widths import COLOUR_BITS, unsigned
+from raycaster.rtl.common.widths import RGB_BITS, unsigned
 
 POINT = register_map(1)["rectangle[0].corner_0"]
 X, Y, Z = (POINT.fields[axis] for axis in "xyz")
@@ -70,6 +70,6 @@ def rect_sorter(corner_0, corner_1, surface, rect):
     # The colour as it is.
     @always_comb
     def pass_colour():
-        rect.colour.next = surface[COLOUR_BITS:]
+        rect.colour.next = surface[RGB_BITS:]
 
     return find_axis, sort_u, sort_v, pass_colour

@@ -4,7 +4,7 @@
 from myhdl import always_comb, block
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.interfaces import Outlook, Plane, Rect, Steps
+from raycaster.rtl.common.legacy import Outlook, Plane, Rect, Steps
 from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import pixel_bits, side_by_side, unit_bits, unsigned
 from raycaster.rtl.cull.group_culler import group_culler, prospects_of
@@ -25,13 +25,13 @@ def ray_caster(
     reflections,
     rects,
     done,
-    colors,
+    colours,
     config: Configuration,
 ):
     """Compute the colours of config.units neighbouring pixels at once.
 
     Starts where enable is high and reset_ray_caster low; row, column_offset and the scene then hold still until done,
-    which stays high, as colors does, until reset_ray_caster. colors: unit 0's pixel in the lowest bits.
+    which stays high, as colours does, until reset_ray_caster. colours: unit 0's pixel in the lowest bits.
     """
     steps = Steps()
     finishing_rect = Rect()
@@ -70,7 +70,7 @@ def ray_caster(
     # All pixels leave side by side.
     @always_comb
     def join():
-        colors.next = together
+        colours.next = together
 
     common = control, units, join
     if not config.culling:

@@ -4,7 +4,7 @@
 from myhdl import always, always_comb, block
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.interfaces import Rect
+from raycaster.rtl.common.legacy import Rect
 from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import bit, unsigned
 from raycaster.rtl.engine.ray_sequencer import impatient, ray_sequencer

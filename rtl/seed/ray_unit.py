@@ -4,10 +4,10 @@
 from myhdl import always_comb, block
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.interfaces import Origin, Signs, Slope
+from raycaster.rtl.common.legacy import Origin, Signs, Slope
 from raycaster.rtl.common.ties import unconnected
-from raycaster.rtl.common.widths import AXIS_BITS, COLOUR_BITS, bit, position_bits, unsigned
-from raycaster.rtl.engine.color_combiner import color_combiner
+from raycaster.rtl.common.widths import AXIS_BITS, RGB_BITS, bit, position_bits, unsigned
+from raycaster.rtl.engine.colour_combiner import colour_combiner
 from raycaster.rtl.engine.ray_generator import ray_generator
 from raycaster.rtl.engine.ray_sequencer import impatient
 from raycaster.rtl.seed.intersection_finder import intersection_finder
@@ -47,15 +47,17 @@ def ray_unit(
     missed = bit() if config.culling else unconnected(1)
     depth = unsigned(position_width)
     found_axis = unsigned(AXIS_BITS)
-    found_color = unsigned(COLOUR_BITS)
+    found_colour = unsigned(RGB_BITS)
 
     generator = ray_generator(clk, steps, row, column_base, column_offset, initial_signs, slope, config)
     finder = intersection_finder(
         clk, steps, current_plane, finishing_rect, origin, signs, slope, hit, depth, point, ahead, config
     )
-    z_buf = z_buffer(clk, steps, finishing_rect, hit, depth, point, found, found_axis, found_color, found_point, config)
+    z_buf = z_buffer(
+        clk, steps, finishing_rect, hit, depth, point, found, found_axis, found_colour, found_point, config
+    )
     memory = ray_mem(clk, steps, found_axis, found_point, signs, reflected_origin, reflected_signs)
-    combiner = color_combiner(clk, steps, found, found_color, background, reflections, missed, pixel, config)
+    combiner = colour_combiner(clk, steps, found, found_colour, background, reflections, missed, pixel, config)
 
     # The camera's ray first, then what the mirrors make of it.
     @always_comb

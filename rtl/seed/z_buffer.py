@@ -9,7 +9,7 @@ from raycaster.rtl.common.widths import bit, position_bits, unsigned
 
 @block
 def z_buffer(
-    clk, steps, finishing_rect, hit, depth, point, found, found_axis, found_color, found_point, config: Configuration
+    clk, steps, finishing_rect, hit, depth, point, found, found_axis, found_colour, found_point, config: Configuration
 ):
     """Keep what is offered at steps.write_z_buf if it is a hit, and nearer than what is kept.
 
@@ -33,7 +33,7 @@ def z_buffer(
             found.next = True
             nearest.next = depth
             found_axis.next = finishing_rect.axis
-            found_color.next = finishing_rect.colour
+            found_colour.next = finishing_rect.colour
             found_point.x.next = point.x
             found_point.y.next = point.y
             found_point.z.next = point.z

@@ -8,7 +8,7 @@ from raycaster.memory_map import MEMORY_WORDS, clocks_per_bit
 from raycaster.rtl.bus.avalon_host import avalon_host
 from raycaster.rtl.bus.bus_decoder import bus_decoder
 from raycaster.rtl.bus.word_memory import word_memory
-from raycaster.rtl.common.interfaces import ProcessorBus
+from raycaster.rtl.common.legacy import ProcessorBus
 from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import WORD_BITS, bit, bits_for, unsigned
 from raycaster.rtl.system.button_port import button_port

@@ -6,9 +6,9 @@ from myhdl import ResetSignal, Signal, block
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.registers import address_bits
 from raycaster.rtl.bus.avalon_interface import avalon_interface
-from raycaster.rtl.common.interfaces import PipelinedRects, Point, SceneBus
+from raycaster.rtl.common.legacy import PipelinedRects, Point, SceneBus
 from raycaster.rtl.common.ties import tied, unconnected
-from raycaster.rtl.common.widths import COLOUR_BITS, CYCLE_BITS, WORD_BITS, bit, unsigned
+from raycaster.rtl.common.widths import CYCLE_BITS, RGB_BITS, WORD_BITS, bit, unsigned
 from raycaster.rtl.engine.renderers import RECTS, RENDERERS
 from raycaster.rtl.scene.camera_mem import camera_mem
 from raycaster.rtl.scene.rect_mem import rect_mem
@@ -73,7 +73,7 @@ def ray_caster_module(
     bad_rectangle = bit()
     run, start_screen, busy, underrun = bit(), bit(), bit(), bit()
     reflections = unsigned(2)
-    background = unsigned(COLOUR_BITS)
+    background = unsigned(RGB_BITS)
     row_cycles, group_cycles = unsigned(CYCLE_BITS), unsigned(CYCLE_BITS)
 
     if fixed:

@@ -6,7 +6,7 @@ from myhdl import always_comb, always_seq, block
 from raycaster.configuration import Configuration
 from raycaster.program import scene_words
 from raycaster.registers import register_map
-from raycaster.rtl.common.interfaces import Point
+from raycaster.rtl.common.legacy import Point
 from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import WORD_BITS, bit, bits_for, unsigned
 from raycaster.rtl.system.camera_axis import camera_axis

@@ -66,20 +66,20 @@ def ray_caster_renderer(
     rendering = bit()
     handed_over = bit()
     start_row, visible_line, next_column = bit(), bit(), bit()
-    colors = unsigned(units * width)
+    colours = unsigned(units * width)
     read_offset = unsigned(bits_for(groups))
     read_unit = unsigned(unit_bits(config))
     sections = [unsigned(width) for _ in range(units)]
     shown = unsigned(width)
     red, green, blue = (unsigned(channel) for _ in range(3))
-    pixels = [colors((unit + 1) * width, unit * width) for unit in range(units)]
+    pixels = [colours((unit + 1) * width, unit * width) for unit in range(units)]
 
     video = video_generator(
         clk, reset, start_screen, start_row, visible_line, next_column, red, green, blue,
         vga_r, vga_g, vga_b, vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_clk, config.screen_geometry,
     )  # fmt: skip
     caster = ENGINES[config.engine](
-        clk, reset_ray_caster, enable, row, column_offset, camera, background, reflections, rects, done, colors, config
+        clk, reset_ray_caster, enable, row, column_offset, camera, background, reflections, rects, done, colours, config
     )
     buffers = [
         line_buffer(clk, done, line_buf_sel, column_offset, pixels[unit], read_offset, sections[unit], config)

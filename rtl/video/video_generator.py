@@ -3,8 +3,8 @@
 
 from myhdl import Signal, always_comb, always_seq, block, intbv
 
-from raycaster.configuration import Screen
 from raycaster.rtl.common.widths import bit, bits_for, unsigned
+from raycaster.screens import Screen
 
 
 @block
@@ -189,7 +189,7 @@ def video_generator(
 
     # Its colour: black where the monitor measures its black level.
     @always_seq(clk.posedge, reset=reset)
-    def color():
+    def colour():
         if pixel_end:
             if (x >= 0) and (y >= 0):
                 vga_r.next = red
@@ -200,4 +200,4 @@ def video_generator(
                 vga_g.next = 0
                 vga_b.next = 0
 
-    return divide_clock, drive_clock, find_line_ends, scan, follow, synchronise, drive_sync, color
+    return divide_clock, drive_clock, find_line_ends, scan, follow, synchronise, drive_sync, colour

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from raycaster.configuration import MOST_RECTANGLES, Configuration, Screen, Span, configure
+from raycaster.configuration import MOST_RECTANGLES, Configuration, configure
 from raycaster.fit.fixing import fixed_rectangle
 from raycaster.fixed import FixedScene
 from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.bus.avalon_interface import engine_word, size_word
-from raycaster.rtl.common.interfaces import PipelinedRects, Rect
+from raycaster.rtl.common.legacy import PipelinedRects, Rect
 from raycaster.rtl.common.widths import (
     bits_for,
     index_bits,
@@ -22,6 +22,7 @@ from raycaster.rtl.common.widths import (
 from raycaster.rtl.engine.renderers import RECTS
 from raycaster.rtl.scene.rect_rom import FIELDS, fixed_rects
 from raycaster.scene import Camera, Rectangle, Scene
+from raycaster.screens import Screen, Span
 from raycaster.verif.formal.prover import FixedTable, FoldWidths, HostWidths, Property, TesterWidths
 
 TOY_SCREEN = Screen(3, 2, 1, 3, Span(9, 1, 2, 1, active_high=True), Span(6, 1, 1, 3, active_high=True))
@@ -105,14 +106,14 @@ def _order(config: Configuration, small: bool) -> Property:
         "budget's cycles",
         config,
         _label(config),
-        ("ray_control" if config.engine == "seed" else "exact_control", "ray_sequencer", "rect_sequencer"),
+        (config.facts.control.rpartition(".")[2], "ray_sequencer", "rect_sequencer"),
         {
             "RECTANGLES": config.rectangles,
             "INDEX_BITS": index_bits(config),
             "STEPS": config.slot_cycles,
             "SLOT_BITS": bits_for(config.slot_cycles),
             "REFLECTIONS": config.reflections,
-            "RESULT_LATENCY": config.result_latency,
+            "RESULT_LATENCY": config.facts.result_latency,
             "RUN_BOUND": bound,
             "CULLING": int(config.culling),
         },

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-from raycaster.configuration import Configuration, Screen, configure
+from raycaster.configuration import Configuration, configure
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.convert.write import write_verilog
@@ -22,7 +22,7 @@ from raycaster.registers import address_bits
 from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.bus.avalon_host import avalon_host
-from raycaster.rtl.common.interfaces import (
+from raycaster.rtl.common.legacy import (
     Candidate,
     Eye,
     Facet,
@@ -44,6 +44,7 @@ from raycaster.rtl.exact.rect_tester import rect_tester
 from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.rtl.scene.rect_rom import fixed_rects, rect_rom
 from raycaster.rtl.video.video_generator import video_generator
+from raycaster.screens import Screen
 from raycaster.tools import TIMEOUT, find_program, run_program, run_yosys
 from raycaster.verif.leaf import reset_signal
 

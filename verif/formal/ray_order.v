@@ -26,7 +26,7 @@ localparam GIVE_UP = 3;  // from the start of a rectangle that is given up to th
 localparam GIVES_UP = CULLING && STEPS > GIVE_UP;
 localparam TIME_BITS = $clog2(RUN_BOUND) + 1;
 
-wire done, fetch, screen_to_ray, initial_ray, find_intersection, reset_z_buf, write_z_buf, reset_color, add_color,
+wire done, fetch, screen_to_ray, initial_ray, find_intersection, reset_z_buf, write_z_buf, reset_colour, add_colour,
     store_ray;
 wire [INDEX_BITS-1:0] index;
 reg [8:0] tag;
@@ -44,7 +44,7 @@ generate
             .prospects_alive(alive), .steps_screen_to_ray(screen_to_ray), .steps_initial_ray(initial_ray),
             .steps_find_intersection(find_intersection), .steps_load_divider(load_divider),
             .steps_store_quotient(store_quotient), .steps_reset_z_buf(reset_z_buf), .steps_write_z_buf(write_z_buf),
-            .steps_reset_color(reset_color), .steps_add_color(add_color), .steps_store_ray(store_ray),
+            .steps_reset_colour(reset_colour), .steps_add_colour(add_colour), .steps_store_ray(store_ray),
             .finishing_rect_axis(), .finishing_rect_position(offered_tag), .finishing_rect_u_low(),
             .finishing_rect_u_high(), .finishing_rect_v_low(), .finishing_rect_v_high(), .finishing_rect_colour()
         );
@@ -62,7 +62,7 @@ generate
             .rects_rect_position(tag), .rects_rect_colour(24'd0), .prospects_possible(possible),
             .prospects_alive(alive), .steps_screen_to_ray(screen_to_ray), .steps_initial_ray(initial_ray),
             .steps_find_intersection(find_intersection), .steps_reset_z_buf(reset_z_buf),
-            .steps_write_z_buf(write_z_buf), .steps_reset_color(reset_color), .steps_add_color(add_color),
+            .steps_write_z_buf(write_z_buf), .steps_reset_colour(reset_colour), .steps_add_colour(add_colour),
             .steps_store_ray(store_ray),
             .offered_axis(), .offered_position(offered_tag), .offered_colour()
         );
@@ -102,7 +102,7 @@ always @* begin
     end
 end
 
-// A ray: from the cycle after reset_z_buf to add_color, which for one that is lost, as nobody was alive, is the same.
+// A ray: from the cycle after reset_z_buf to add_colour, which for one that is lost, as nobody was alive, is the same.
 // Visits are starts on the tagged plane; place counts cycles.
 reg [RECTANGLES-1:0] visited;
 reg tracing, lost;
@@ -110,13 +110,13 @@ reg [1:0] rays;
 reg [TIME_BITS-1:0] place;
 wire [RECTANGLES-1:0] tagged = {{RECTANGLES-1{1'b0}}, 1'b1} << tag;
 wire [RECTANGLES-1:0] wanted = rays == 0 ? usable & possible : usable;
-wire reflected = add_color && rays != reflections;
+wire reflected = add_colour && rays != reflections;
 always @(posedge clk) begin
     if (reset) tracing <= 0;
-    else if (reset_z_buf) tracing <= !add_color || reflected && alive;
+    else if (reset_z_buf) tracing <= !add_colour || reflected && alive;
     lost <= !reset && reflected && !alive;
     visited <= reset_z_buf ? 0 : find_intersection ? visited | tagged : visited;
-    rays <= screen_to_ray ? 0 : rays + add_color;
+    rays <= screen_to_ray ? 0 : rays + add_colour;
     place <= reset_z_buf ? 0 : place + 1;
 end
 always @* if (known && lost) assume (!alive);
@@ -126,16 +126,16 @@ always @* if (known && started) begin
         assert ((wanted & tagged) != 0);
         assert (visited < tagged);  // each once, and in ascending order
     end
-    if (add_color) assert ((lost || tracing && visited == wanted) && rays <= reflections);
-    if (lost) assert (add_color && !tracing);
+    if (add_colour) assert ((lost || tracing && visited == wanted) && rays <= reflections);
+    if (lost) assert (add_colour && !tracing);
     assert (store_ray == reflected);
-    assert (reset_color == screen_to_ray);
-    assert (reset_z_buf == (screen_to_ray || add_color));
+    assert (reset_colour == screen_to_ray);
+    assert (reset_z_buf == (screen_to_ray || add_colour));
     assert (screen_to_ray == (cycles == 1));
     if (tracing || lost) assert (initial_ray == (rays == 0));
     if (done) assert (!tracing && !lost && rays == reflections + 1);
 end
-always @* if (known && !started) assert (!done && !find_intersection && !write_z_buf && !add_color);
+always @* if (known && !started) assert (!done && !find_intersection && !write_z_buf && !add_colour);
 
 // Each start on its way. One whose plane was not ahead in the cycle after it is given up two cycles after it, and goes no
 // further.
@@ -155,7 +155,7 @@ always @* if (known) begin
     assert (write_z_buf == starts[TRAVEL-1]);
     if (write_z_buf) assert (offered_tag == tags[TRAVEL-1]);
     // No result is still under way when the ray is blended.
-    if (add_color) assert (starts == 0);
+    if (add_colour) assert (starts == 0);
 end
 
 // A division: loaded 2 cycles after the start, stored STEPS later, offered 2 later.
@@ -191,7 +191,7 @@ always @(posedge clk) begin
 end
 always @* if (known && started && tracing) begin
     if (find_intersection) assert (place == slots_end);
-    assert (add_color == (place == blend_at));
+    assert (add_colour == (place == blend_at));
 end
 
 // It ends, in at most a number of cycles that is known: that of the budget's formula for the usable rectangles; and in

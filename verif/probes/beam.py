@@ -35,7 +35,7 @@ from raycaster.verif.waves import Samples, signed
 RENDERER = f"{DUT}.beam_renderer_i"
 CASTER = f"{RENDERER}.beam_caster_i"
 SETUP = f"{CASTER}.rect_setup_i"
-BLEND = f"{CASTER}.color_blend_i"
+BLEND = f"{CASTER}.colour_blend_i"
 VIDEO = f"{RENDERER}.video_generator_i"
 
 EXTENT = ((1, 2), (0, 2), (1, 0))
@@ -226,7 +226,7 @@ class BeamProbes:
         slopes = 3 * passes - 1
         last_round = beam.rounds(config) - 1
         return signal.format(
-            facet=self._numbered("facet_mem", rectangle, count),
+            facet=self._numbered("facet_register", rectangle, count),
             walker=self._numbered("rect_walker", one, passes * count),
             tester=self._numbered("fold_tester", one, passes * count),
             early=self._numbered("slope_walker", 2 * bounce, slopes),
@@ -276,7 +276,7 @@ class BeamProbes:
             "ray": [self.named(name, place, ray) for name in unit],
             "colours": [
                 *(f"{CASTER}.found_{number}" for number in range(3)),
-                *(f"{CASTER}.color_{number}:hex" for number in range(3)),
+                *(f"{CASTER}.colour_{number}:hex" for number in range(3)),
                 *(f"{BLEND}.{name}:hex" for name in COLOURS),
             ],
             "video": [
@@ -406,10 +406,12 @@ class BeamProbes:
                 of_mirrors(passes, surface), late=1, signed=(1,), shown=False)] if passes > 1 else []),
             *(kept if passes > 1 else []),
             Probe("found", (f"{CASTER}.found_{{bounce}}",), "blend", found),
-            Probe("its colour", (f"{CASTER}.color_{{bounce}}",), "blend", found_colour, colour=True),
+            Probe("its colour", (f"{CASTER}.colour_{{bounce}}",), "blend", found_colour, colour=True),
             Probe("colour seen", tuple(f"{BLEND}.{{seen}}_{name}" for name in COLOURS), "blend",
                 lambda ray, place: channels_of(seen_colour(ray, place)[0], CHANNEL_BITS), late=1),
-            Probe("pixel", tuple(f"{BLEND}.color_mean_{number}_i.mean" for number in range(3)), "done", pixel_channels),
+            Probe(
+                "pixel", tuple(f"{BLEND}.colour_mean_{number}_i.mean" for number in range(3)), "done", pixel_channels
+            ),
             Probe("pixel to the monitor", tuple(f"{RENDERER}.shown_{name}" for name in COLOURS), "shown",
                 pixel_channels),
             Probe("pins", tuple(f"{VIDEO}.{name}" for name in PINS), "shown", pixel_channels, late=1),

@@ -119,7 +119,7 @@ class ExactProbes(UnitProbes):
 
     def __init__(self, config: Configuration, unit: int):
         super().__init__(config, unit, "exact_caster_i", "exact_control_i", "exact_unit")
-        self.memory = f"{self.unit}.eye_mem_i"
+        self.memory = f"{self.unit}.eye_register_i"
         self.tester = f"{self.unit}.rect_tester_i"
         self.keeper = f"{self.unit}.nearest_hit_i"
 

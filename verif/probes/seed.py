@@ -176,7 +176,7 @@ class SeedProbes(UnitProbes):
             f"{v}.value:signed",
             *(f"{self.finder}.{name}" for name in ("inside_u", "inside_v", "hit", "depth")),
             *fields(self.finder, "point", AXES),
-            *(f"{self.z_buffer}.{name}" for name in ("nearer", "found", "nearest", "found_axis", "found_color:hex")),
+            *(f"{self.z_buffer}.{name}" for name in ("nearer", "found", "nearest", "found_axis", "found_colour:hex")),
         ]
 
     def controls(self) -> Iterable[str]:
@@ -218,7 +218,7 @@ class SeedProbes(UnitProbes):
         """In the order in which values depend on each other."""
         u, v = self.helpers
         finishing = tuple(f"{self.control}.finishing_rect_{name}" for name in RECT_FIELDS)
-        kept = (f"{self.z_buffer}.found_axis", f"{self.z_buffer}.found_color")
+        kept = (f"{self.z_buffer}.found_axis", f"{self.z_buffer}.found_colour")
         return [
             *self.first_probes(),
             Probe(
@@ -274,5 +274,5 @@ class SeedProbes(UnitProbes):
                 "nearest point", fields(self.z_buffer, "found_point", AXES), "write", nearest_point, late=1, scale=True,
                 shown=False,
             ),
-            *self.last_probes(f"{self.z_buffer}.found_color"),
+            *self.last_probes(f"{self.z_buffer}.found_colour"),
         ]  # fmt: skip

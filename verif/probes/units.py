@@ -126,7 +126,7 @@ class UnitProbes:
         self.sequencer = f"{self.control}.ray_sequencer_i"
         self.unit = f"{self.caster}.{unit_name(unit_module, config, unit)}"
         self.generator = f"{self.unit}.ray_generator_i"
-        self.combiner = f"{self.unit}.color_combiner_i"
+        self.combiner = f"{self.unit}.colour_combiner_i"
         self.buffer = f"{RENDERER}.{unit_name('line_buffer', config, unit)}"
         self.rects = f"{DUT}.rect_mem_i"
         steps = f"{self.sequencer}.steps"
@@ -135,7 +135,7 @@ class UnitProbes:
             "ray": ("the ray is kept", f"{steps}_store_ray"),
             "find": ("the rectangle is tried", f"{self.sequencer}.rect_sequencer_i.starting"),
             "write": ("the hit is offered", f"{self.control}.steps_write_z_buf"),
-            "blend": ("the colour is added", f"{steps}_add_color"),
+            "blend": ("the colour is added", f"{steps}_add_colour"),
             "done": ("the group is done", f"{self.sequencer}.done"),
             "shown": ("the pixel is shown", f"{VIDEO}.y"),
         }
@@ -146,7 +146,7 @@ class UnitProbes:
 
     def groups(self, ray: Ray) -> dict[str, Sequence[str]]:
         """For viewers: signals by group."""
-        strobes = ("screen_to_ray", "initial_ray", "find_intersection", "add_color", "store_ray", "reset_z_buf")
+        strobes = ("screen_to_ray", "initial_ray", "find_intersection", "add_colour", "store_ray", "reset_z_buf")
         buffer = ("write", "write_address", "pixel_in:hex", "read_address", "pixel_out:hex")
         return {
             "control": [
@@ -160,7 +160,7 @@ class UnitProbes:
             "ray unit": [
                 *fields(self.generator, "slope", SIGNS),
                 *self.unit_signals,
-                f"{self.combiner}.seen_color:hex",
+                f"{self.combiner}.seen_colour:hex",
                 f"{self.combiner}.pixel:hex",
             ],
             "line buffer": [f"{self.buffer}.{name}" for name in buffer],
@@ -173,7 +173,7 @@ class UnitProbes:
 
     def controls(self) -> Iterable[str]:
         """The signals that `events` reads."""
-        steps = ("screen_to_ray", "find_intersection", "add_color", "store_ray")
+        steps = ("screen_to_ray", "find_intersection", "add_colour", "store_ray")
         return [
             f"{RENDERER}.row",
             f"{RENDERER}.column_offset",
@@ -216,7 +216,7 @@ class UnitProbes:
         bounce, at_hand = 0, None
         tried: list[tuple[int, int]] = []
         for cycle in range(start, len(samples.times_ns)):
-            ends = values[f"{step}_add_color"][cycle] == 1
+            ends = values[f"{step}_add_colour"][cycle] == 1
             if values[f"{step}_find_intersection"][cycle] and at_hand is not None:
                 tried.append((cycle, at_hand))
             if values[f"{self.sequencer}.rects_fetch"][cycle]:
@@ -302,20 +302,20 @@ class UnitProbes:
             )
         return probes
 
-    def last_probes(self, found_color: str) -> list[Probe]:
+    def last_probes(self, found_colour: str) -> list[Probe]:
         """From what a ray has found, of which the module is given, to the pins."""
-        channels = [f"{self.combiner}.color_channel_{number}_i" for number in range(3)]
+        channels = [f"{self.combiner}.colour_channel_{number}_i" for number in range(3)]
         bits = self.config.colour_bits
         unit_pixel = 3 * bits
 
-        def one_of(ray: Ray, place: Place, colors: int) -> Sequence[Value]:
-            return ((colors >> ray.unit * unit_pixel) & ((1 << unit_pixel) - 1),)
+        def one_of(ray: Ray, place: Place, colours: int) -> Sequence[Value]:
+            return ((colours >> ray.unit * unit_pixel) & ((1 << unit_pixel) - 1),)
 
         group = tuple(f"{RENDERER}.{name}" for name in ("read_offset", "read_unit"))
         return [
-            Probe("found", (found_color.rpartition(".")[0] + ".found",), "blend", found),
-            Probe("its colour", (found_color,), "blend", found_colour, colour=True),
-            Probe("colour seen", (f"{self.combiner}.seen_color",), "blend", seen_colour, colour=True),
+            Probe("found", (found_colour.rpartition(".")[0] + ".found",), "blend", found),
+            Probe("its colour", (found_colour,), "blend", found_colour, colour=True),
+            Probe("colour seen", (f"{self.combiner}.seen_colour",), "blend", seen_colour, colour=True),
             Probe(
                 "sums of the channels",
                 tuple(f"{channel}.total" for channel in channels),
@@ -325,7 +325,7 @@ class UnitProbes:
             ),
             Probe("means of the channels", tuple(f"{channel}.blended" for channel in channels), "done", pixel_channels),
             Probe("pixel", (f"{self.combiner}.pixel",), "done", pixel, colour=True),
-            Probe("pixel among all", (f"{self.caster}.colors",), "done", pixel, decode=one_of, colour=True),
+            Probe("pixel among all", (f"{self.caster}.colours",), "done", pixel, decode=one_of, colour=True),
             Probe("pixel to the line buffer", (f"{self.buffer}.pixel_in",), "done", pixel, colour=True),
             Probe("place in the line buffer", group, "shown", lambda ray, place: (ray.offset, ray.unit), shown=False),
             Probe("pixel from the line buffer", (f"{self.buffer}.pixel_out",), "shown", pixel, colour=True),

@@ -6,7 +6,7 @@ import pytest
 
 from raycaster.configuration import Configuration, configure
 from raycaster.golden import seed_engine
-from raycaster.rtl.common.interfaces import Steps
+from raycaster.rtl.common.legacy import Steps
 from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
 from raycaster.rtl.seed.divider import divider
 from raycaster.rtl.seed.divider_step import divider_step

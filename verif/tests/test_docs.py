@@ -152,8 +152,8 @@ def test_timing_says_what_the_configuration_says():
     config = timing.CONFIGURATION
     assert cycles["renderer_and_ray_unit", "done", "done"] == config.group_cycles
     assert cycles["ray_control_and_ray_unit", "find_intersection", "find_intersection"] == config.slot_cycles
-    a_ray = config.rectangles * config.slot_cycles + config.result_latency
-    assert cycles["ray_control_and_ray_unit", "add_color", "add_color"] == a_ray
+    a_ray = config.rectangles * config.slot_cycles + config.facts.result_latency
+    assert cycles["ray_control_and_ray_unit", "add_colour", "add_colour"] == a_ray
     assert cycles["video_and_counters", "start_screen", "start_row"] == config.screen_geometry.row_cycles
 
 
@@ -225,7 +225,7 @@ def test_look_inside(renderer):
     assert called(parts["delay_reset"].reads) == {"restart"}
     assert called(parts["delay_reset"].drives) == {"reset_delay"}
     # Its input is a slice of all colours, and join puts those together of the units' pixels.
-    assert "colors" in called(parts["line_buffer"].reads)
+    assert "colours" in called(parts["line_buffer"].reads)
     assert called(parts["join"].reads) == {"pixels_0", "pixels_1"}
     assert "done" in called(parts["ray_control"].drives) & called(parts["finish_group"].reads)
     # A counter reads itself; that goes nowhere.

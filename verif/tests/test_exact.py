@@ -8,12 +8,12 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from raycaster.configuration import SCREENS
 from raycaster.golden import exact
 from raycaster.golden.random_world import random_camera, random_rectangles, random_slopes
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.scene import Scene
+from raycaster.screens import SCREENS
 from raycaster.verif.seeds import repeat, seed
 
 TABLES = 30

@@ -30,8 +30,8 @@ from raycaster.golden import engines
 from raycaster.golden.world import Rectangles
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.beam.facet_rom import facet_rom
-from raycaster.rtl.common.interfaces import PipelinedRects, SequentialRects
-from raycaster.rtl.common.widths import AXIS_BITS, COLOUR_BITS, DISTANCE_BITS, bit, index_bits, signed, unsigned
+from raycaster.rtl.common.legacy import PipelinedRects, SequentialRects
+from raycaster.rtl.common.widths import AXIS_BITS, DISTANCE_BITS, RGB_BITS, bit, index_bits, signed, unsigned
 from raycaster.rtl.scene.rect_rom import FIELDS, fixed_rects, rect_rom
 from raycaster.scene import Rectangle, Scene, load_scene
 from raycaster.verif.leaf import Leaf
@@ -258,7 +258,7 @@ def test_facet_rom(count, camera, tmp_path):
         facet_rom,
         lambda: {
             "clk": bit(), "index": unsigned(index_bits(config)), "axis": unsigned(AXIS_BITS),
-            "distance": signed(DISTANCE_BITS) if camera else None, "colour": unsigned(COLOUR_BITS), "config": config,
+            "distance": signed(DISTANCE_BITS) if camera else None, "colour": unsigned(RGB_BITS), "config": config,
         },
         tmp_path,
     )  # fmt: skip

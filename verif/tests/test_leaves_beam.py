@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hard_scenes import pixel_word, sharpened, traced_scene, verdict
 
-from raycaster.configuration import BEAM_SCREENS, WORLD_SIZE, Configuration, ConfigurationError, configure
+from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
 from raycaster.golden import exact
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
@@ -16,7 +16,7 @@ from raycaster.rtl.beam import fold_tester as tester
 from raycaster.rtl.beam import nearest_of_two as contest
 from raycaster.rtl.beam import ray_fold as folder
 from raycaster.rtl.beam.beam_caster import beam_caster, beam_latency
-from raycaster.rtl.beam.facet_mem import facet_mem
+from raycaster.rtl.beam.facet_register import facet_register
 from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.nearest_of_two import nearest_of_two
 from raycaster.rtl.beam.ray_fold import ray_fold
@@ -25,10 +25,10 @@ from raycaster.rtl.beam.slope_magnitudes import slope_magnitudes
 from raycaster.rtl.beam.slope_walker import slope_walker
 from raycaster.rtl.beam.unopposed import unopposed
 from raycaster.rtl.beam.winner_delay import winner_delay
-from raycaster.rtl.common.interfaces import Candidate, Facet, Fold, PipelinedRects, Point, Reflector, Slope, Walk
+from raycaster.rtl.common.legacy import Candidate, Facet, Fold, PipelinedRects, Point, Reflector, Slope, Walk
 from raycaster.rtl.common.widths import (
-    COLOUR_BITS,
     DISTANCE_BITS,
+    RGB_BITS,
     TURN_BITS,
     bit,
     exact_slope_bits,
@@ -39,9 +39,10 @@ from raycaster.rtl.common.widths import (
     walk_bits,
 )
 from raycaster.rtl.engine import rect_setup as setup
-from raycaster.rtl.engine.color_blend import color_blend
-from raycaster.rtl.engine.color_mean import color_mean
+from raycaster.rtl.engine.colour_blend import colour_blend
+from raycaster.rtl.engine.colour_mean import colour_mean
 from raycaster.rtl.engine.rect_setup import rect_setup
+from raycaster.screens import BEAM_SCREENS
 from raycaster.verif.leaf import Leaf, reset_signal, sorted_rect
 from raycaster.verif.seeds import repeat, seed
 
@@ -242,10 +243,10 @@ def test_rect_setup(config, tmp_path):
 # The walkers ----------------------------------------------------------------------------------------------------------
 
 
-def test_facet_mem(tmp_path):
+def test_facet_register(tmp_path):
     config = beam_config()
     leaf = Leaf(
-        facet_mem,
+        facet_register,
         lambda: {
             "clk": bit(),
             "load": bit(),
@@ -616,11 +617,11 @@ def test_winner_delay(cycles, tmp_path):
 
 
 @pytest.mark.parametrize("colour_bits", [1, 5, 8])
-def test_color_mean(colour_bits, tmp_path):
+def test_colour_mean(colour_bits, tmp_path):
     config = beam_config(colour_bits=colour_bits)
     names = ("first", "second", "third")
     leaf = Leaf(
-        color_mean,
+        colour_mean,
         lambda: {
             "clk": bit(),
             **{name: unsigned(8) for name in names},
@@ -643,16 +644,16 @@ def test_color_mean(colour_bits, tmp_path):
         assert output["mean"] == mean >> (8 - colour_bits), (inputs, repeat())
 
 
-def test_color_blend(tmp_path):
+def test_colour_blend(tmp_path):
     """What comes after a ray that found nothing is background."""
     config = beam_config(colour_bits=6)
     leaf = Leaf(
-        color_blend,
+        colour_blend,
         lambda: {
             "clk": bit(),
             **{f"found_{number}": bit() for number in range(3)},
-            **{f"color_{number}": unsigned(COLOUR_BITS) for number in range(3)},
-            "background": unsigned(COLOUR_BITS),
+            **{f"colour_{number}": unsigned(RGB_BITS) for number in range(3)},
+            "background": unsigned(RGB_BITS),
             "reflections": unsigned(2),
             **{channel: unsigned(6) for channel in ("red", "green", "blue")},
             "config": config,
@@ -664,13 +665,13 @@ def test_color_blend(tmp_path):
     background, reflections = 0x123456, 0
     for number in range(900):
         if number % 100 == 0:
-            background, reflections = int(random.integers(1 << COLOUR_BITS)), number // 100 % 3
+            background, reflections = int(random.integers(1 << RGB_BITS)), number // 100 % 3
         found = (random.random(3) < 0.7).astype(int).tolist()
-        colours = [int(random.integers(1 << COLOUR_BITS)) for _ in found]
+        colours = [int(random.integers(1 << RGB_BITS)) for _ in found]
         stimulus.append({
             "background": background, "reflections": reflections,
             **{f"found_{i}": one for i, one in enumerate(found)},
-            **{f"color_{i}": one for i, one in enumerate(colours)},
+            **{f"colour_{i}": one for i, one in enumerate(colours)},
         })  # fmt: skip
         seen = [colour if all(found[: i + 1]) else background for i, colour in enumerate(colours)]
         weights, shift = (((1, 0, 0), 0), ((1, 1, 0), 1), ((2, 1, 1), 2))[reflections]
@@ -762,7 +763,7 @@ def test_beam_caster(config, lines, tmp_path):
             "next_column": bit(),
             "row_slope": signed(exact_slope_bits(config) + 1),
             "camera": Point(),
-            "background": unsigned(COLOUR_BITS),
+            "background": unsigned(RGB_BITS),
             "reflections": unsigned(2),
             "rects": PipelinedRects(config),
             **{channel: unsigned(config.colour_bits) for channel in ("red", "green", "blue")},

@@ -11,7 +11,7 @@ from raycaster.golden import exact, seed_engine
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.common.interfaces import Facet, PipelinedRects, Point, SequentialRects, Walk, WideRect
+from raycaster.rtl.common.legacy import Facet, PipelinedRects, Point, SequentialRects, Walk, WideRect
 from raycaster.rtl.common.widths import (
     WIDE_BITS,
     bit,

@@ -12,15 +12,15 @@ import pytest
 from fates import mask_of, possible_mask, prospects_in, random_fate
 from hard_scenes import edged, pixel_word, rectangles_in_view, traced_scene, tracer
 
-from raycaster.configuration import BEAM_SCREENS, SCREENS, WORLD_SIZE, Configuration, Screen, Span, configure
+from raycaster.configuration import WORLD_SIZE, Configuration, configure
 from raycaster.golden import engines, seed_engine
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.registers import register_map
-from raycaster.rtl.common.interfaces import Outlook, Plane, Point, Prospects, Rect, SequentialRects, Steps
+from raycaster.rtl.common.legacy import Outlook, Plane, Point, Prospects, Rect, SequentialRects, Steps
 from raycaster.rtl.common.widths import (
-    COLOUR_BITS,
     CYCLE_BITS,
+    RGB_BITS,
     bit,
     offset_bits,
     pixel_bits,
@@ -39,6 +39,7 @@ from raycaster.rtl.system.ray_caster_system import SystemPorts, ray_caster_syste
 from raycaster.rtl.system.reset_release import HOLD_CYCLES
 from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import Camera, Rectangle, Scene
+from raycaster.screens import BEAM_SCREENS, SCREENS, Screen, Span
 from raycaster.verif.leaf import Leaf, TraceCycle, reset_signal, sorted_rect, trace_cycles
 from raycaster.verif.seeds import repeat, seed
 
@@ -235,7 +236,7 @@ def ray_unit_leaf(config: Configuration, directory) -> Leaf:
             "camera": Point(),
             "current_plane": Plane(),
             "finishing_rect": Rect(),
-            "background": unsigned(COLOUR_BITS),
+            "background": unsigned(RGB_BITS),
             "reflections": unsigned(2),
             "pixel": unsigned(pixel_bits(config)),
             "outlook": Outlook(),
@@ -345,7 +346,7 @@ def remembered(config: Configuration, cycles: list[TraceCycle], usable: list[int
             held = queue[blends - 1]
         elif before is not None and (before.current is not None or before.steps["steps_screen_to_ray"]):
             held = 0
-        blends = blends + 1 if cycle.steps["steps_add_color"] else 0
+        blends = blends + 1 if cycle.steps["steps_add_colour"] else 0
         indices.append(held)
     # A slot of one cycle is over in that of done.
     return [*indices, queue[blends - 1], queue[blends - (config.slot_cycles > 1)]]
@@ -379,11 +380,11 @@ def test_ray_caster(config, tmp_path):
             "row": unsigned(row_bits(config)),
             "column_offset": unsigned(offset_bits(config)),
             "camera": Point(),
-            "background": unsigned(COLOUR_BITS),
+            "background": unsigned(RGB_BITS),
             "reflections": unsigned(2),
             "rects": SequentialRects(config),
             "done": bit(),
-            "colors": unsigned(config.units * pixel_bits(config)),
+            "colours": unsigned(config.units * pixel_bits(config)),
             "config": config,
         },
         tmp_path,
@@ -441,7 +442,7 @@ def test_ray_caster(config, tmp_path):
     for cycle, colours, case in results:
         assert outputs[cycle]["done"], case
         assert outputs[cycle - 1]["done"] == (cycle - 1 in done), case
-        units = [outputs[cycle]["colors"] >> width * unit & (1 << width) - 1 for unit in range(config.units)]
+        units = [outputs[cycle]["colours"] >> width * unit & (1 << width) - 1 for unit in range(config.units)]
         assert units == colours, case
     for cycle, index in shown.items():
         before = next(past for past in range(cycle - 1, -1, -1) if outputs[past]["rects_fetch"])
@@ -493,7 +494,7 @@ def renderer_leaf(config: Configuration, directory) -> Leaf:
             "reset": reset_signal(),
             "run": bit(),
             "reflections": unsigned(2),
-            "background": unsigned(COLOUR_BITS),
+            "background": unsigned(RGB_BITS),
             "camera": Point(),
             "rects": RECTS[config.engine](config),
             "start_screen": bit(),

@@ -13,7 +13,7 @@ from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationErro
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
-from raycaster.rtl.common.interfaces import (
+from raycaster.rtl.common.legacy import (
     Eye,
     Mirror,
     Outlook,
@@ -27,7 +27,7 @@ from raycaster.rtl.common.interfaces import (
     Surface,
 )
 from raycaster.rtl.common.widths import (
-    COLOUR_BITS,
+    RGB_BITS,
     bit,
     exact_slope_bits,
     eye_bits,
@@ -42,7 +42,7 @@ from raycaster.rtl.engine.ray_sequencer import GIVE_UP_AT, impatient, ray_sequen
 from raycaster.rtl.engine.rect_sequencer import rect_sequencer
 from raycaster.rtl.exact.exact_control import exact_control
 from raycaster.rtl.exact.exact_unit import exact_unit
-from raycaster.rtl.exact.eye_mem import eye_mem
+from raycaster.rtl.exact.eye_register import eye_register
 from raycaster.rtl.exact.nearest_hit import nearest_hit
 from raycaster.rtl.exact.rect_tester import rect_tester
 from raycaster.verif.leaf import Leaf, TraceCycle, sorted_rect, trace_cycles
@@ -293,14 +293,14 @@ def test_nearest_hit(reflections, tmp_path):
                 assert {name: outputs[cycle][f"found_surface_{name}"] for name in wanted[1]} == wanted[1], repeat()
 
 
-# eye_mem --------------------------------------------------------------------------------------------------------------
+# eye_register ---------------------------------------------------------------------------------------------------------
 
 
 @by_reflections
-def test_eye_mem(reflections, tmp_path):
+def test_eye_register(reflections, tmp_path):
     config = exact_config(reflections=reflections)
     leaf = Leaf(
-        eye_mem,
+        eye_register,
         lambda: {
             "clk": bit(),
             "steps": RaySteps(),
@@ -569,7 +569,7 @@ def test_exact_unit(config, tmp_path):
             "camera": Point(),
             "rect": Rect(),
             "offered": Surface(),
-            "background": unsigned(COLOUR_BITS),
+            "background": unsigned(RGB_BITS),
             "reflections": unsigned(2),
             "pixel": unsigned(pixel_bits(config)),
             "outlook": Outlook(),

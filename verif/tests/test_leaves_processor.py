@@ -12,7 +12,7 @@ from raycaster.memory_map import BUTTON_NAMES, BUTTONS, INTERRUPT_BIT, MEMORY_WO
 from raycaster.rtl.bus.avalon_host import avalon_host
 from raycaster.rtl.bus.bus_decoder import bus_decoder
 from raycaster.rtl.bus.word_memory import word_memory
-from raycaster.rtl.common.interfaces import ProcessorBus
+from raycaster.rtl.common.legacy import ProcessorBus
 from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, bits_for, unsigned
 from raycaster.rtl.system.button_port import button_port
 from raycaster.rtl.system.uart_transmitter import DATA_BITS, FRAME_BITS, uart_transmitter

@@ -11,8 +11,8 @@ from raycaster.golden.random_world import EXTREMES, random_rectangles
 from raycaster.golden.world import Rectangles
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.bus.avalon_interface import avalon_interface
-from raycaster.rtl.common.interfaces import ParallelRects, PipelinedRects, Point, Rect, SceneBus, SequentialRects
-from raycaster.rtl.common.widths import COLOUR_BITS, CYCLE_BITS, WORD_BITS, bit, unsigned
+from raycaster.rtl.common.legacy import ParallelRects, PipelinedRects, Point, Rect, SceneBus, SequentialRects
+from raycaster.rtl.common.widths import CYCLE_BITS, RGB_BITS, WORD_BITS, bit, unsigned
 from raycaster.rtl.scene.camera_mem import camera_mem
 from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.rtl.scene.rect_slot import rect_slot
@@ -328,7 +328,7 @@ def test_avalon_interface(config, tmp_path):
             "bad_rectangle": bit(),
             "run": bit(),
             "reflections": unsigned(2),
-            "background": unsigned(COLOUR_BITS),
+            "background": unsigned(RGB_BITS),
             "start_screen": bit(),
             "busy": bit(),
             "underrun": bit(),

@@ -5,16 +5,16 @@ vectors."""
 import numpy as np
 import pytest
 
-from raycaster.configuration import CHANNEL_BITS, VIEW_DISTANCE, WORLD_SIZE, Configuration, configure
+from raycaster.configuration import CHANNEL_BITS, WORLD_SIZE, Configuration, configure
 from raycaster.golden import seed_engine
 from raycaster.golden.colour import blend
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles, random_slopes
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.common.interfaces import Origin, Plane, Rect, Signs, Slope, Steps
+from raycaster.rtl.common.legacy import Origin, Plane, Rect, Signs, Slope, Steps
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
-    COLOUR_BITS,
+    RGB_BITS,
     bit,
     offset_bits,
     pixel_bits,
@@ -23,12 +23,13 @@ from raycaster.rtl.common.widths import (
     unit_bits,
     unsigned,
 )
-from raycaster.rtl.engine.color_channel import color_channel
-from raycaster.rtl.engine.color_combiner import color_combiner
+from raycaster.rtl.engine.colour_channel import colour_channel
+from raycaster.rtl.engine.colour_combiner import colour_combiner
 from raycaster.rtl.engine.ray_generator import ray_generator
 from raycaster.rtl.seed.intersection_finder import intersection_finder
 from raycaster.rtl.seed.ray_mem import ray_mem
 from raycaster.rtl.seed.z_buffer import z_buffer
+from raycaster.screens import VIEW_DISTANCE
 from raycaster.verif.leaf import Leaf, sorted_rect, trace_cycles
 from raycaster.verif.seeds import repeat, seed
 
@@ -200,7 +201,7 @@ def test_z_buffer(config, tmp_path):
             "point": Origin(config),
             "found": bit(),
             "found_axis": unsigned(AXIS_BITS),
-            "found_color": unsigned(COLOUR_BITS),
+            "found_colour": unsigned(RGB_BITS),
             "found_point": Origin(config),
             "config": config,
         },
@@ -220,7 +221,7 @@ def test_z_buffer(config, tmp_path):
                 "hit": int(number == 0 or random.random() < 0.7),
                 "depth": int(depth),
                 "finishing_rect_axis": int(random.integers(3)),
-                "finishing_rect_colour": int(random.integers(1 << COLOUR_BITS)),
+                "finishing_rect_colour": int(random.integers(1 << RGB_BITS)),
                 **{f"point_{axis}": int(random.integers(limit + 1)) for axis in AXES},
             }
         )
@@ -230,7 +231,7 @@ def test_z_buffer(config, tmp_path):
         assert output["found"] == (kept is not None), (cycle, repeat())
         if kept is not None:
             assert output["found_axis"] == kept["finishing_rect_axis"], (cycle, repeat())
-            assert output["found_color"] == kept["finishing_rect_colour"], (cycle, repeat())
+            assert output["found_colour"] == kept["finishing_rect_colour"], (cycle, repeat())
             for axis in AXES:
                 assert output[f"found_point_{axis}"] == kept[f"point_{axis}"], (cycle, repeat())
         if inputs["steps_reset_z_buf"]:
@@ -333,10 +334,10 @@ def test_ray_generator(config, tmp_path):
 
 
 @pytest.mark.parametrize("colour_bits", range(1, CHANNEL_BITS + 1))
-def test_color_channel(colour_bits, tmp_path):
+def test_colour_channel(colour_bits, tmp_path):
     config = any_config(colour_bits=colour_bits, reflections=2)
     leaf = Leaf(
-        color_channel,
+        colour_channel,
         lambda: {
             "clk": bit(),
             "steps": Steps(),
@@ -348,17 +349,17 @@ def test_color_channel(colour_bits, tmp_path):
         tmp_path,
     )
     random = np.random.default_rng(seed())
-    idle = {"steps_reset_color": 0, "steps_add_color": 0, "steps_initial_ray": 0}
+    idle = {"steps_reset_colour": 0, "steps_add_colour": 0, "steps_initial_ray": 0}
     stimulus, results = [], []
     corners = [0, 1, 2, 127, 128, 254, 255]
     for _ in range(250):
         reflections = int(random.integers(3))
         seen = [int(random.choice([*corners, random.integers(256)])) for _ in range(reflections + 1)]
-        stimulus.append({**idle, "steps_reset_color": 1, "reflections": reflections})
+        stimulus.append({**idle, "steps_reset_colour": 1, "reflections": reflections})
         for number, value in enumerate(seen):
             initial = {"steps_initial_ray": int(number == 0)}
             stimulus += [{**idle, **initial, "seen": int(random.integers(256))}] * int(random.integers(2))
-            stimulus.append({**idle, **initial, "seen": value, "steps_add_color": 1})
+            stimulus.append({**idle, **initial, "seen": value, "steps_add_colour": 1})
         results.append((len(stimulus), seen))
         stimulus.append({**idle, "seen": int(random.integers(256))})
     outputs = leaf.run_both(stimulus, settled=1)
@@ -370,16 +371,16 @@ def test_color_channel(colour_bits, tmp_path):
 
 @pytest.mark.parametrize("reflections", [0, 1, 2])
 @pytest.mark.parametrize("colour_bits", [1, 3, 4, 8])
-def test_color_combiner(colour_bits, reflections, tmp_path):
+def test_colour_combiner(colour_bits, reflections, tmp_path):
     config = any_config(colour_bits=colour_bits, reflections=reflections)
     leaf = Leaf(
-        color_combiner,
+        colour_combiner,
         lambda: {
             "clk": bit(),
             "steps": Steps(),
             "found": bit(),
-            "found_color": unsigned(COLOUR_BITS),
-            "background": unsigned(COLOUR_BITS),
+            "found_colour": unsigned(RGB_BITS),
+            "background": unsigned(RGB_BITS),
             "reflections": unsigned(2),
             "missed": bit(),
             "pixel": unsigned(pixel_bits(config)),
@@ -393,18 +394,18 @@ def test_color_combiner(colour_bits, reflections, tmp_path):
         run_time = int(random.integers(reflections + 1))
         palette = random.choice([0, 1, 255, 128, *random.integers(256, size=4)], (run_time + 2, 3)).astype(np.uint8)
         words = [int.from_bytes(bytes(colour)) for colour in palette]
-        held = {"background": words[-1], "reflections": run_time, "steps_reset_color": 0, "steps_add_color": 0}
-        stimulus.append({**held, "steps_reset_color": 1})
+        held = {"background": words[-1], "reflections": run_time, "steps_reset_colour": 0, "steps_add_colour": 0}
+        stimulus.append({**held, "steps_reset_colour": 1})
         winners, missed = [], False
         for number in range(run_time + 1):
             # After a miss the units go on and may find something, which must not count.
             found = bool(random.random() < 0.6)
             missed = missed or not found
             winners.append(np.array([-1 if missed else number]))
-            ray = {**held, "found": int(found), "found_color": words[number], "steps_initial_ray": int(number == 0)}
+            ray = {**held, "found": int(found), "found_colour": words[number], "steps_initial_ray": int(number == 0)}
             # Only what is found in the cycle of the addition counts.
             stimulus += [{**ray, "found": int(random.integers(2))}] * int(random.integers(2))
-            stimulus.append({**ray, "steps_add_color": 1})
+            stimulus.append({**ray, "steps_add_colour": 1})
         results.append((len(stimulus), palette, winners, missed))
         stimulus.append({**held, "found": int(random.integers(2))})
     outputs = leaf.run_both(stimulus, settled=1)

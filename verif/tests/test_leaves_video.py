@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from raycaster.configuration import SCREENS, Configuration, Screen, Span, configure
+from raycaster.configuration import Configuration, configure
 from raycaster.rtl.common.widths import bit, bits_for, offset_bits, pixel_bits, unsigned
 from raycaster.rtl.video.line_buffer import line_buffer
 from raycaster.rtl.video.video_generator import video_generator
+from raycaster.screens import SCREENS, Screen, Span
 from raycaster.verif.leaf import Leaf, reset_signal
 from raycaster.verif.seeds import repeat, seed
 

@@ -12,7 +12,7 @@ from conftest import SMALL_SCENE
 from raycaster.configuration import configure
 from raycaster.convert.write import write_processor_system, write_system
 from raycaster.errors import UserError
-from raycaster.rtl.common.interfaces import SceneBus
+from raycaster.rtl.common.legacy import SceneBus
 from raycaster.rtl.common.widths import WORD_BITS, bit, unsigned
 from raycaster.rtl.scene.scene_word import scene_word
 from raycaster.rtl.seed.divider_step import divider_step

@@ -71,8 +71,8 @@ def test_ray_unit(unit):
     ("cell", "name", "sound", "broken"),
     [
         ("LUT4", "divider_i.remainder", "INIT(16'h", "INIT(~16'h"),
-        ("CCU2C", "color_channel_0_i.total", 'INJECT1_0("NO")', 'INJECT1_0("YES")'),
-        ("TRELLIS_FF", "z_buffer_i.found_color", 'CEMUX("CE")', 'CEMUX("1")'),
+        ("CCU2C", "colour_channel_0_i.total", 'INJECT1_0("NO")', 'INJECT1_0("YES")'),
+        ("TRELLIS_FF", "z_buffer_i.found_colour", 'CEMUX("CE")', 'CEMUX("1")'),
     ],
 )
 def test_broken_cell_is_noticed(unit, tmp_path, cell, name, sound, broken):

@@ -27,7 +27,7 @@ import pytest
 from distributed import Client
 from rich.console import Console
 
-from raycaster.configuration import SCREENS, configure
+from raycaster.configuration import configure
 from raycaster.errors import UserError
 from raycaster.fpga.area import Area
 from raycaster.golden import errors as golden_errors
@@ -43,6 +43,7 @@ from raycaster.report import conclusions, hardware
 from raycaster.report.page import Section, write_html, write_markdown
 from raycaster.report.points import CASE, UNITS, CellsPoint, HitsPoint, PicturePoint, View, command
 from raycaster.report.sweep import Store, executor, run
+from raycaster.screens import SCREENS
 from raycaster.verif.seeds import repeat, seed
 
 ROOT = Path(__file__).parents[2]

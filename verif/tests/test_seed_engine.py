@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from raycaster.configuration import SCREENS
 from raycaster.golden import exact, seed_engine
 from raycaster.golden.picture import count_wrong
 from raycaster.golden.random_world import random_camera, random_rectangles, random_slopes
 from raycaster.scene import load_scene
+from raycaster.screens import SCREENS
 from raycaster.verif.seeds import repeat, seed
 
 SCENES = Path(__file__).parents[2] / "scenes"

@@ -83,7 +83,7 @@ def test_a_wrong_pixel_fails(build, scenes):
     """Exit code 1 and a line that says where to look, when the hardware is not what golden is."""
     assert _sim(*SMALL_OPTIONS, build=build).returncode == 0
     (verilog,) = (build / "model").glob("*/verilog")
-    (combiner,) = verilog.glob("color_combiner*.v")
+    (combiner,) = verilog.glob("colour_combiner*.v")
     broken = re.sub(r"assign pixel = (.+);", r"assign pixel = ~(\1);", combiner.read_text())
     assert broken != combiner.read_text()
     combiner.write_text(broken)

@@ -94,8 +94,8 @@ FAULTS = {
         ("ray_mem", "reflected_signs_dy <= !signs_dy", "reflected_signs_dy <= signs_dy"),
         ("rect_sequencer", "offered <= candidates != 0", "offered <= 0"),
         ("ray_sequencer", "bounce == reflections", "bounce == 0"),
-        ("color_channel", "total + weighted", "total - weighted"),
-        ("color_combiner", "seen_color = found_color", "seen_color = ~found_color"),
+        ("colour_channel", "total + weighted", "total - weighted"),
+        ("colour_combiner", "seen_colour = found_colour", "seen_colour = ~found_colour"),
         ("line_buffer", "read_address = read_offset", "read_address = 1 + read_offset"),
         ("video_generator", "vga_g <= green", "vga_g <= red"),
     ],
@@ -103,7 +103,7 @@ FAULTS = {
         ("exact_control", "steps_write_z_buf = in_flight[2]", "steps_write_z_buf = 0"),
         ("rect_tester", "way_u = n_u_1 * slope_u_1", "way_u = n_u_1 + slope_u_1"),
         ("nearest_hit", "offered_product < nearest_product", "offered_product > nearest_product"),
-        ("eye_mem", "difference = twice_signed - mirrored", "difference = twice_signed + mirrored"),
+        ("eye_register", "difference = twice_signed - mirrored", "difference = twice_signed + mirrored"),
     ],
     "beam": [
         ("rect_setup", "way_u = distance_2 * slope_u_2", "way_u = distance_2 + slope_u_2"),
@@ -111,7 +111,7 @@ FAULTS = {
         ("fold_tester", "hit_valid <= ", "hit_valid <= 0 && "),
         ("nearest_of_two", "second_product < first_product", "second_product > first_product"),
         ("ray_fold", "doubled = last_distance + last_distance", "doubled = last_distance"),
-        ("color_mean", "mean <= ", "mean <= ~"),
+        ("colour_mean", "mean <= ", "mean <= ~"),
     ],
 }
 

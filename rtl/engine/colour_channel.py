@@ -8,10 +8,10 @@ from raycaster.rtl.common.widths import unsigned
 
 
 @block
-def color_channel(clk, steps, seen, reflections, blended, config: Configuration):
+def colour_channel(clk, steps, seen, reflections, blended, config: Configuration):
     """blended = c0, (c0 + c1) >> 1 or (2 * c0 + c1 + c2) >> 2 for 0, 1 or 2 reflections.
 
-    seen: what the ray saw, unsigned, 8 bits, added at steps.add_color; reflections: at most config.reflections;
+    seen: what the ray saw, unsigned, 8 bits, added at steps.add_colour; reflections: at most config.reflections;
     blended: the top colour_bits of the mean, from the cycle after the last addition.
     """
     sum_bits = CHANNEL_BITS + 2  # the weights add up to at most four
@@ -38,9 +38,9 @@ def color_channel(clk, steps, seen, reflections, blended, config: Configuration)
     # Gather what the ray and its reflections see.
     @always(clk.posedge)
     def add():
-        if steps.reset_color:
+        if steps.reset_colour:
             total.next = 0
-        elif steps.add_color:
+        elif steps.add_colour:
             total.next = next_total
 
     # The mean, without the bits that the monitor does not get.

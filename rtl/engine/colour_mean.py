@@ -10,7 +10,7 @@ LATENCY = 1
 
 
 @block
-def color_mean(clk, first, second, third, reflections, mean, config: Configuration):
+def colour_mean(clk, first, second, third, reflections, mean, config: Configuration):
     """c0, (c0 + c1) >> 1 or (2 * c0 + c1 + c2) >> 2 for 0, 1 or 2 reflections, LATENCY cycles later.
 
     first, second, third: what the ray and its reflections saw, 8 bits; mean: the top colour_bits.

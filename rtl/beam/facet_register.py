@@ -5,7 +5,7 @@ from myhdl import always, block
 
 
 @block
-def facet_mem(clk, load, new_facet, new_growth, facet, growth):
+def facet_register(clk, load, new_facet, new_growth, facet, growth):
     """Keep a rectangle's facet and growth from load to load."""
 
     # Loaded once a line.

@@ -4,12 +4,12 @@
 from myhdl import always, always_comb, block
 
 from raycaster.configuration import COORDINATE_BITS
-from raycaster.rtl.common.interfaces import Signs
+from raycaster.rtl.common.legacy import Signs
 from raycaster.rtl.common.widths import signed, unsigned
 
 
 @block
-def eye_mem(clk, steps, camera, initial_signs, found_surface, eye, signs, mirror):
+def eye_register(clk, steps, camera, initial_signs, found_surface, eye, signs, mirror):
     """Where a ray seems to come from: the camera at steps.screen_to_ray, and its image in the mirror at store_ray.
 
     A ray reflected at plane k on axis a is the ray from E'[a] = 2k - E[a] with D'[a] = -D[a] and the same parameter

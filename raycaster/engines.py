@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: MIT
+"""The one home of what distinguishes the engines. The blocks are named here and found by `raycaster.rtl.engine`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from raycaster.screens import BEAM_SCREENS, SCREENS, Screen
+
+
+@dataclass(frozen=True)
+class Engine:
+    """What computes the rays.
+
+    Attributes:
+        name: as users choose it.
+        code: what the register `engine` reads.
+        screens: those that it can fill, by name and rows.
+        slot_cycles: from one rectangle to the next; 0: all at once; None: as long as a division takes.
+        result_latency: cycles from the end of a pass's last slot to the first cycle of the next pass.
+        rect_latency: cycles from `fetch` to the rectangle.
+        margin: how far outside a rectangle's bounds a primary ray may pass that hits it, in world units: a rounded
+            coordinate is off by less than one.
+        renderer: the block that fills the screen, as room and name in `raycaster.rtl`.
+        control, unit: of the engines behind a line buffer, the block that operates all units, and one of these.
+    """
+
+    name: str
+    code: int
+    screens: Mapping[tuple[str, int], Screen]
+    slot_cycles: int | None
+    result_latency: int
+    rect_latency: int
+    margin: int
+    renderer: str
+    control: str | None = None
+    unit: str | None = None
+
+    @property
+    def divides(self) -> bool:
+        """Whether it forms quotients, which have a fraction and are rounded."""
+        return self.slot_cycles is None
+
+    @property
+    def line_buffered(self) -> bool:
+        """Whether units fill a line buffer ahead of the monitor, group after group."""
+        return self.unit is not None
+
+
+ENGINES: Mapping[str, Engine] = {
+    engine.name: engine
+    for engine in (
+        # Slope and plane latched, product, divider loaded, hit point, depth compared, ray stored.
+        Engine(
+            "seed", 0, SCREENS, slot_cycles=None, result_latency=6, rect_latency=1, margin=1,
+            renderer="video.ray_caster_renderer", control="seed.ray_control", unit="seed.ray_unit",
+        ),
+        # Two more stages of the test after the first, which the slot is, depth compared, ray stored.
+        Engine(
+            "exact", 1, SCREENS, slot_cycles=1, result_latency=4, rect_latency=1, margin=0,
+            renderer="video.ray_caster_renderer", control="exact.exact_control", unit="exact.exact_unit",
+        ),
+        Engine(
+            "beam", 2, BEAM_SCREENS, slot_cycles=0, result_latency=0, rect_latency=2, margin=0,
+            renderer="beam.beam_renderer",
+        ),
+    )
+}  # fmt: skip
+"""By name."""

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: MIT
+"""What is looked through, and how a monitor shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+VIEW_DISTANCE = 100
+"""Slope along x of every primary ray: the distance of the viewing rectangle, in world units."""
+
+
+@dataclass(frozen=True)
+class Span:
+    """One direction of a video timing, in pixels or lines, in the order in which a monitor sees it."""
+
+    visible: int
+    front: int
+    sync: int
+    back: int
+    active_high: bool
+
+    @property
+    def blank(self) -> int:
+        """Front porch, sync and back porch together."""
+        return self.front + self.sync + self.back
+
+    @property
+    def total(self) -> int:
+        """The whole period."""
+        return self.visible + self.blank
+
+
+@dataclass(frozen=True)
+class Screen:
+    """What is looked through (columns x rows of rays) and how it is shown (each `doubling` x `doubling` pixels)."""
+
+    columns: int
+    rows: int
+    horizon_row: int
+    """The row whose rays have no z slope."""
+    doubling: int
+    horizontal: Span
+    vertical: Span
+    clocks_per_pixel: int = 2
+    """System clocks a pixel of the monitor; two give the line-buffered engines twice the time."""
+    pixel_hz: int = 25_000_000
+    scale: int = 1
+    """Samples a unit of slope: the resolution scale."""
+
+    @property
+    def centre_column(self) -> int:
+        """The column whose rays have no y slope."""
+        return self.columns // 2
+
+    @property
+    def view_distance(self) -> int:
+        """Slope along x of every primary ray."""
+        return VIEW_DISTANCE * self.scale
+
+    @property
+    def clock_hz(self) -> int:
+        """Of the system clock."""
+        return self.pixel_hz * self.clocks_per_pixel
+
+    @property
+    def row_cycles(self) -> int:
+        """System cycles in which one row of rays is shown, and the next must be ready."""
+        return self.doubling * self.horizontal.total * self.clocks_per_pixel
+
+    @property
+    def frame_cycles(self) -> int:
+        """System cycles of a frame, blanking included."""
+        return self.horizontal.total * self.vertical.total * self.clocks_per_pixel
+
+    def scaled(self, scale: int) -> Screen:
+        """The same view on the same monitor, sampled `scale` times finer in both directions."""
+        if scale == 1:
+            return self
+        return replace(
+            self,
+            columns=self.columns * scale,
+            rows=self.rows * scale,
+            horizon_row=self.horizon_row * scale,
+            doubling=self.doubling // scale,
+            scale=scale,
+        )
+
+
+_VGA_LINE = Span(visible=640, front=16, sync=96, back=48, active_high=False)
+_VGA_240 = Screen(320, 240, 190, 2, _VGA_LINE, Span(480, 10, 2, 33, active_high=False))
+_VGA_200 = Screen(320, 200, 150, 2, _VGA_LINE, Span(400, 12, 2, 35, active_high=True))
+_HD_180 = Screen(
+    320, 180, 130, 4, Span(1280, 110, 40, 220, active_high=True), Span(720, 5, 5, 20, active_high=True),
+    pixel_hz=74_250_000,
+)  # fmt: skip
+_TINY_LINES = Span(96, 2, 2, 4, active_high=False)
+# The line is just long enough for 32 units to have the same 320 cycles a group as on the full screen.
+_TINY_48 = Screen(64, 48, 38, 2, Span(128, 8, 16, 8, active_high=False), _TINY_LINES)
+# And this one for the beam engine to take up to 32 rectangles in its blanking.
+_TINY_BEAM_48 = replace(_TINY_48, horizontal=Span(128, 16, 32, 64, active_high=False))
+
+# A pixel a ray and the shortest blanking in which the beam engine takes 32 rectangles and two reflections, for programs
+# that are simulated; 60 frames a second.
+_PLAY_240 = Screen(
+    320, 240, 190, 1, Span(320, 2, 40, 50, active_high=False), Span(240, 1, 1, 1, active_high=False), pixel_hz=6_000_000
+)
+
+SCREENS: Mapping[tuple[str, int], Screen] = {
+    ("vga", 240): _VGA_240,
+    ("vga", 200): _VGA_200,
+    ("tiny", 48): _TINY_48,
+}
+"""By screen name and rows, at scale 1, for the engines with a line buffer."""
+
+BEAM_SCREENS: Mapping[tuple[str, int], Screen] = {
+    place: replace(screen, clocks_per_pixel=1)
+    for place, screen in {
+        ("vga", 240): _VGA_240,
+        ("vga", 200): _VGA_200,
+        ("vga", 180): _HD_180,
+        ("tiny", 48): _TINY_BEAM_48,
+        ("play", 240): _PLAY_240,
+    }.items()
+}
+"""By screen name and rows, at scale 1, for the beam engine, which takes a clock a pixel."""
