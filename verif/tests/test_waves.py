@@ -4,11 +4,15 @@
 from __future__ import annotations
 
 import io
+import os
 import re
+import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
-from conftest import BUILD
+from conftest import BUILD, SMALL_SCENE
 from rich.console import Console
 
 from raycaster.design import Design, design_for
@@ -17,6 +21,7 @@ from raycaster.rtl.engine.ray_sequencer import RayState
 from raycaster.verif.monitor import CLOCK_NS
 from raycaster.verif.probes.ray import Ray
 from raycaster.verif.recorder import build_and_record
+from raycaster.verif.simulator import FST_HEADERS, has_headers
 from raycaster.verif.wave import main, viewer, write_view
 from raycaster.verif.wave_files import View, write_files
 from raycaster.verif.waves import Waves, signed
@@ -239,3 +244,30 @@ def test_the_viewer_that_is_there_is_opened(tmp_path, monkeypatch):
         assert viewer(waves, files)[0] == name
     monkeypatch.delenv("DISPLAY")
     assert viewer(waves, files) is None
+
+
+@pytest.fixture
+def no_fst_headers(tmp_path, monkeypatch):
+    """A machine whose compiler finds neither of the headers that Verilator's writer of FST wants."""
+    for header in FST_HEADERS:
+        (tmp_path / header).write_text("#error no such header here\n")
+    compiler = tmp_path / "g++"
+    compiler.write_text(f'#!/bin/sh\nexec {shutil.which("g++")} -I "{tmp_path}" "$@"\n')
+    compiler.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
+
+
+def test_headers_that_are_not_there_are_not_found(no_fst_headers):
+    assert not has_headers(FST_HEADERS)
+    assert not has_headers(["no_such_header.h"])
+    assert has_headers(["stdio.h"])
+
+
+def test_a_machine_without_headers_gets_vcd(no_fst_headers, tmp_path):
+    """A model for windows, and a trace of its recording: what `make trace` does there."""
+    command = [sys.executable, "-m", "raycaster.verif.trace", "--build", tmp_path / "build", "--scene", SMALL_SCENE]
+    command += ["--pixel", "48,10", "--screen", "tiny", "--units", "8", "--rectangles", "3"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "The hardware does what golden does." in done.stdout
+    assert [path.suffix for path in (tmp_path / "build" / "trace").rglob("waves.*")] == [".vcd"]
