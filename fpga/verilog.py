@@ -16,7 +16,7 @@ from raycaster.options import add_configuration_options, given_options, run_comm
 
 def main() -> None:
     """The command."""
-    parser = argparse.ArgumentParser(prog="python -m raycaster.convert.write", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m raycaster.fpga.verilog", description=__doc__)
     parser.add_argument("--output", type=Path, default=Path("build/verilog"), help="(default: %(default)s)")
     parser.add_argument("--scene", type=Path, help="what to build in; with --fix")
     add_fix_option(parser)
