@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.docs`: the documentation for a browser, its pictures drawn from the design."""
+"""`raycaster docs`: the documentation for a browser, its pictures drawn from the design."""
 
 from __future__ import annotations
 
-import argparse
 import shutil
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 from sphinx.cmd.build import build_main
@@ -13,9 +13,10 @@ from sphinx.cmd.build import build_main
 from raycaster.configuration import Configuration
 from raycaster.docs import blocks, timing
 from raycaster.errors import UserError
-from raycaster.options import run_command
+from raycaster.options import CommandParser
 from raycaster.output import replaced
 from raycaster.register_views import write_page
+from raycaster.verif import ensure_icarus
 from raycaster.verif.simulator import BUILD, SimulationError
 
 HERE = Path(__file__).parent
@@ -65,19 +66,16 @@ def write_site(output: Path) -> Path:
     return output / "index.html"
 
 
-def main() -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
-    parser = argparse.ArgumentParser(prog="python -m raycaster.docs", description=__doc__)
+    parser = CommandParser("docs", __doc__, "")
     parser.add_argument("--output", type=Path, default=BUILD / "docs", help="(default: %(default)s)")
     parser.add_argument(
         "--keep-timing", action="store_true", help="take the timing diagrams as they are, without a simulation"
     )
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(argv)
     if not arguments.keep_timing:
+        ensure_icarus.main()
         BUILD.mkdir(exist_ok=True)
         draw_timing(BUILD)
     print(f"documentation: {write_site(arguments.output)}")
-
-
-if __name__ == "__main__":
-    run_command(main)

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.docs.commands`: run every command of the documentation, as it stands there."""
+"""`raycaster commands`: run every command of the documentation, as it stands there."""
 
 from __future__ import annotations
 
-import argparse
 import os
 import re
 import subprocess
@@ -15,7 +14,7 @@ from rich.console import Console
 from rich.table import Table
 
 from raycaster.errors import UserError
-from raycaster.options import run_command
+from raycaster.options import CommandParser
 from raycaster.tools import find_program
 
 ROOT = Path(__file__).parents[1]
@@ -84,7 +83,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     Args:
         argv: its arguments, those of the process by default.
     """
-    parser = argparse.ArgumentParser(prog="python -m raycaster.docs.commands", description=__doc__)
+    parser = CommandParser("commands", __doc__, "--only boxes")
     parser.add_argument("--only", default="", metavar="TEXT", help="those that have this in them")
     parser.add_argument("--output", type=Path, default=Path("build/commands"), help="of logs (default: %(default)s)")
     arguments = parser.parse_args(argv)
@@ -105,7 +104,3 @@ def main(argv: Sequence[str] | None = None) -> int:
         table.add_row(command, f"{seconds:.0f}", str(code), str(log), style="red" if code else None)
     console.print(table)
     return int(failed > 0)
-
-
-if __name__ == "__main__":
-    run_command(main)

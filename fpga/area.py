@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.fpga.area`: what a design takes of three families of chips, as Yosys counts it.
+"""`raycaster area`: what a design takes of three families of chips, as Yosys counts it.
 
 Totals are of the flattened design; those by module keep the hierarchy, which costs some of what modules could share.
 """
 
 from __future__ import annotations
 
-import argparse
 import json
 import math
 import operator
@@ -27,7 +26,7 @@ from raycaster.convert.take_home import TOP
 from raycaster.convert.write import write_verilog
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, configuration_of
-from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.tools import TIMEOUT, find_program, prepare_wasm, run_program, run_yosys
 
 HARD_MULTIPLIER = Path(__file__).with_name("hard_multiplier.v")
@@ -351,16 +350,16 @@ def _table(title: str, first: str, *others: str) -> Table:
     return table
 
 
-def main() -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
-    parser = argparse.ArgumentParser(prog="python -m raycaster.fpga.area", description=__doc__.splitlines()[0])
+    parser = CommandParser("area", __doc__, "--engine exact --family ecp5")
     parser.add_argument("--family", help=f"one of {', '.join(FAMILIES)} (default: all)")
     parser.add_argument("--route", action="store_true", help="place and route for the ECP5 too, which takes minutes")
     parser.add_argument("--output", type=Path, default=Path("build/area"), help="(default: %(default)s)")
-    parser.add_argument("--scene", type=Path, help="what to build in; with --fix")
+    add_scene_argument(parser, "what to build in, with --fix")
     add_fix_option(parser)
     add_configuration_options(parser)
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(argv)
     if arguments.family and arguments.family not in FAMILIES:
         raise UserError(f"family: {arguments.family} is not known here; choose one of {', '.join(FAMILIES)}")
     console = Console()
@@ -413,7 +412,3 @@ def _run(
 
         order = sorted(tasks, key=lambda key: -key[1])
         return dict(zip(order, pool.map(work, order), strict=True))
-
-
-if __name__ == "__main__":
-    run_command(main)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.fpga.bitstream`: a bitstream for a board, with nothing but what pip installs.
+"""`raycaster bitstream`: a bitstream for a board, with nothing but what pip installs.
 
 On its DVI connector: one scene, whose camera the board's buttons move, or the game, played with them. Not run on a
 board: what the connector sends is decoded in simulation instead, and compared with golden in every pixel.
@@ -7,12 +7,11 @@ board: what the connector sends is decoded in simulation instead, and compared w
 
 from __future__ import annotations
 
-import argparse
 import json
 import re
 import shutil
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,13 +25,13 @@ from raycaster.design import Design, ProcessorDesign
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.memory_map import PROGRAM_FILE
-from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.output import replaced
+from raycaster.scene import find_scene
 from raycaster.sw.firmware import build_firmware
 from raycaster.tools import find_program, prepare_wasm, run_program, run_yosys
 
 HERE = Path(__file__).parent
-DEFAULT_SCENE = Path("scenes/mirror_room.toml")
 GAME_ENGINE = "exact"
 """What draws the game where no engine is given: no pixel is wrong, and it is placed and routed soonest."""
 
@@ -323,17 +322,17 @@ def show(board: Board, outcome: Outcome, console: Console) -> None:
     console.print(table)
 
 
-def main() -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
-    parser = argparse.ArgumentParser(prog="python -m raycaster.fpga.bitstream", description=__doc__.splitlines()[0])
+    parser = CommandParser("bitstream", __doc__, "boxes --board ulx3s")
     parser.add_argument("--board", default="ulx3s", help=f"one of {', '.join(BOARDS)} (default: %(default)s)")
-    parser.add_argument("--scene", type=Path, help=f"(default: {DEFAULT_SCENE})")
+    add_scene_argument(parser, "what to show (mirror_room)")
     parser.add_argument("--game", action="store_true", help="the game on a processor, instead of a scene")
     parser.add_argument("--output", type=Path, default=Path("build/bitstream"), help="(default: %(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="of the placement (default: %(default)s)")
     add_fix_option(parser)
     add_configuration_options(parser)
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(argv)
     board = find_board(arguments.board)
     console = Console()
     options = given_options(arguments)
@@ -343,7 +342,7 @@ def main() -> None:
         configuration = configure(**{"engine": GAME_ENGINE} | options)
         design = ProcessorDesign(build_firmware(arguments.output.absolute() / "firmware").words, configuration)
     else:
-        design = design_of(arguments.scene or DEFAULT_SCENE, options, arguments.fix, console)
+        design = design_of(arguments.scene or find_scene("mirror_room"), options, arguments.fix, console)
     output = arguments.output / board.name
     outcome = make_bitstream(board, design, output, seed=arguments.seed, console=console)
     show(board, outcome, console)
@@ -351,7 +350,3 @@ def main() -> None:
         raise UserError(f"too slow: {', '.join(outcome.missed)}; the reports are in {output}; another SEED may do")
     size = (output / f"{board.name}.bit").stat().st_size
     console.print(f"{output / board.name}.bit, {size:,} bytes, of {design.configuration.name} and {design.path}")
-
-
-if __name__ == "__main__":
-    run_command(main)

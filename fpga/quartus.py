@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.fpga.quartus`: a Quartus project that shows a scene on a board, compiled where Quartus is found.
+"""`raycaster quartus`: a Quartus project that shows a scene on a board, compiled where Quartus is found.
 
 No Quartus and no board were at hand: the projects are checked as text, and with Yosys, simulators and Tcl.
 What the original design had beside the ray tracer: its SRAM has no successor, as nothing needs one, with no processor
@@ -9,11 +9,10 @@ avs_s0 reads every register of ray_caster_module.
 
 from __future__ import annotations
 
-import argparse
 import re
 import shutil
 import subprocess
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -24,12 +23,11 @@ from raycaster.convert.write import write_system
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.board import BOARDS, TOP, Board, check_project, find_board, top_ports
-from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.output import replaced
-from raycaster.scene import Scene
+from raycaster.scene import Scene, find_scene
 from raycaster.tools import find_program, run_program
 
-SCENE = Path("scenes/mirror_room.toml")
 VERILOG = "verilog"
 """Folder of the generated modules, within the project's."""
 
@@ -185,11 +183,11 @@ def _patterns(bits: Iterable[str]) -> str:
     return " ".join(dict.fromkeys(re.sub(r"\[\d+\]$", "[*]", bit) for bit in bits))
 
 
-def main() -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
-    parser = argparse.ArgumentParser(prog="python -m raycaster.fpga.quartus", description=__doc__.partition("\n")[0])
+    parser = CommandParser("quartus", __doc__, "boxes --board de1_soc")
     parser.add_argument("--board", required=True, help=", ".join(BOARDS))
-    parser.add_argument("--scene", type=Path, default=SCENE, metavar="PATH", help="(default: %(default)s)")
+    add_scene_argument(parser, "what to show (mirror_room)", default=find_scene("mirror_room"))
     parser.add_argument(
         "--output",
         type=Path,
@@ -199,13 +197,9 @@ def main() -> None:
     )
     add_fix_option(parser)
     add_configuration_options(parser)
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(argv)
     board = find_board(arguments.board)
     design = design_of(arguments.scene, given_options(arguments), arguments.fix, Console(), **board.configuration)
     directory = arguments.output / arguments.board
     write_project(board, design.configuration, design.shown, directory)
     print(compile_project(board, directory))
-
-
-if __name__ == "__main__":
-    run_command(main)

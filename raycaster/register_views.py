@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.register_views`: the register map for C and for people, and the memory map for C."""
+"""`raycaster registers`: the register map for C and for people, and the memory map for C."""
 
 from __future__ import annotations
 
-import argparse
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 from peakrdl_cheader.c_standards import CStandard
@@ -13,7 +13,7 @@ from peakrdl_html import HTMLExporter
 
 from raycaster.configuration import Configuration, configure
 from raycaster.memory_map import c_header
-from raycaster.options import run_command
+from raycaster.options import CommandParser
 from raycaster.output import replaced
 from raycaster.registers import compile_registers
 
@@ -52,14 +52,14 @@ def write_page(rectangles: int, directory: Path) -> Path:
     return directory / "index.html"
 
 
-def main() -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
-    parser = argparse.ArgumentParser(prog="python -m raycaster.register_views", description=__doc__)
+    parser = CommandParser("registers", __doc__, "")
     parser.add_argument("--output", type=Path, default=Path("build/registers"), help="the page (default: %(default)s)")
     parser.add_argument("--software", type=Path, default=SOFTWARE, help="the C headers (default: %(default)s)")
     default = Configuration().rectangles
     parser.add_argument("--rectangles", default=default, help="entries of the table (default: %(default)s)")
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(argv)
     rectangles = configure(rectangles=arguments.rectangles, allow_underrun=True).rectangles
     page = write_page(rectangles, arguments.output)
     arguments.software.mkdir(parents=True, exist_ok=True)
@@ -69,7 +69,3 @@ def main() -> None:
     memory.parent.mkdir(exist_ok=True)
     memory.write_text(c_header())
     print(f"C headers: {header} and {memory}; page: {page}")
-
-
-if __name__ == "__main__":
-    run_command(main)

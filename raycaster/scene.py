@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import re
 import tomllib
@@ -136,6 +137,28 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
             f"remove some or build it with RECTANGLES={len(scene.rect)}"
         )
     return scene
+
+
+def packaged_scenes() -> dict[str, Path]:
+    """The scenes that come with it, by name."""
+    spec = importlib.util.find_spec("raycaster.scenes")
+    folders = map(Path, spec.submodule_search_locations)
+    return {path.stem: path for folder in folders for path in sorted(folder.glob("*.toml"))}
+
+
+def find_scene(name: str) -> Path:
+    """A scene file, by its path or by the name of a packaged one.
+
+    Raises:
+        SceneError: it is neither.
+    """
+    path = Path(name)
+    if path.suffix or path.exists():
+        return path
+    scenes = packaged_scenes()
+    if name not in scenes:
+        raise SceneError(f"{name}: no such file, and none of the packaged scenes: {', '.join(scenes)}")
+    return scenes[name]
 
 
 def dump_scene(scene: Scene) -> str:

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.report`: error against run time and cells, and what happens in stiff and extreme scenes."""
+"""`raycaster report`: error against run time and cells, and what happens in stiff and extreme scenes."""
 
 from __future__ import annotations
 
-import argparse
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
@@ -16,21 +15,20 @@ from rich.console import Console
 
 from raycaster.configuration import Configuration, configure
 from raycaster.design import design_for
-from raycaster.errors import UserError
 from raycaster.fpga.area import with_units
 from raycaster.golden.catalogue import Case, catalogue
 from raycaster.golden.errors import DepthErrors, compare
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
-from raycaster.options import run_command
+from raycaster.options import CommandParser
 from raycaster.report import conclusions, hardware, plots
 from raycaster.report.page import Section, write_csv, write_html, write_markdown
 from raycaster.report.points import CASE, UNITS, CellsPoint, HitsPoint, PicturePoint, Point, TimePoint, View, command
 from raycaster.report.sweep import Store, executor, run
+from raycaster.scene import find_scene, packaged_scenes
 from raycaster.verif.simulator import SimulationError
 
-SCENES = Path("scenes")
-WORST_SCENE = SCENES / "mirror_room.toml"
+WORST_SCENE = find_scene("mirror_room")
 """With as many rectangles as the hardware has, so that no row takes longer; and the picture of the day."""
 
 CASE_REFLECTIONS = 2
@@ -148,9 +146,7 @@ def write_report(directory: Path, what: Extent, sweep: Sweeper) -> Path:
         UserError: there are no scenes here, or a tool is missing.
         SimulationError: the hardware departs from golden.
     """
-    scenes = [View.of(str(path)) for path in sorted(SCENES.glob("*.toml"))]
-    if not scenes:
-        raise UserError(f"{SCENES}: has no scene files; run this in the project's directory")
+    scenes = [View.of(str(path)) for path in packaged_scenes().values()]
     of_scenes = [
         PicturePoint(scene, f, rounding, reflections)
         for scene in scenes for f in what.fractions for rounding in ROUNDINGS for reflections in what.reflections
@@ -412,16 +408,16 @@ def _growth(name: str) -> tuple[DepthErrors, ...]:
     return errors.depths
 
 
-def main() -> int:
+def main(argv: Sequence[str] | None = None) -> int:
     """The command."""
-    parser = argparse.ArgumentParser(prog="python -m raycaster.report", description=__doc__)
+    parser = CommandParser("report", __doc__, "--quick")
     parser.add_argument("--output", type=Path, default=Path("build/report"), help="(default: %(default)s)")
     parser.add_argument("--quick", action="store_true", help="fewer points, in less than three minutes")
     parser.add_argument(
         "--scheduler", help="address of a Dask scheduler, such as tcp://host:8786 (default: processes here)"
     )
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="at a time, here (default: %(default)s)")
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(argv)
     console = Console()
     arguments.output.mkdir(parents=True, exist_ok=True)
     try:
@@ -433,7 +429,3 @@ def main() -> int:
         return 1
     console.print(f"{page}, with report.md, plots and CSV beside it", highlight=False)
     return 0
-
-
-if __name__ == "__main__":
-    run_command(main)

@@ -7,7 +7,6 @@ ray and rectangle intersections, over all scenes and random ones. Every hole mus
 
 from __future__ import annotations
 
-import argparse
 import json
 import shutil
 import sys
@@ -25,13 +24,13 @@ from rich.table import Table
 
 from raycaster.configuration import Configuration, configure
 from raycaster.errors import UserError
-from raycaster.options import run_command
-from raycaster.scene import load_scene
+from raycaster.options import CommandParser
+from raycaster.scene import find_scene, load_scene, packaged_scenes
 from raycaster.verif.coverage_code import KINDS, Judgement, Point, describe, judge, load_explanations, read_counts
 from raycaster.verif.coverage_functional import POINTS, FunctionalCoverage
 from raycaster.verif.job import Job
 from raycaster.verif.random_scenes import random_scene
-from raycaster.verif.simulate import LOG_COLUMNS, SCENES
+from raycaster.verif.simulate import LOG_COLUMNS
 from raycaster.verif.simulator import (
     BUILD,
     MODULE_BENCH,
@@ -81,8 +80,8 @@ class Run:
 
 BENCHES = (
     # Culled, it meets the row budget even with two reflections.
-    Run("register_bench", SCENES / "floor.toml", 2),
-    Run("motion_bench", SCENES / "floor.toml", 2),
+    Run("register_bench", find_scene("floor"), 2),
+    Run("motion_bench", find_scene("floor"), 2),
     Run("underrun_bench"),
     Run("coverage_bench"),
 )
@@ -216,11 +215,7 @@ def main(argv: list[str] | None = None) -> int:
     Returns:
         Its exit code: 1 for a hole without an explanation, an explanation without a hole, or a failed run.
     """
-    parser = argparse.ArgumentParser(
-        prog="python -m raycaster.verif.coverage",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = CommandParser("verify coverage", __doc__, "--seeds 10")
     parser.add_argument("--seeds", type=int, default=100, metavar="N", help="random scenes (default: %(default)s)")
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="simulations at a time (default: %(default)s)")
     parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes")
@@ -228,9 +223,7 @@ def main(argv: list[str] | None = None) -> int:
     if arguments.seeds < 1 or arguments.jobs < 1:
         raise UserError("--seeds and --jobs must be at least 1")
     explanations = load_explanations()
-    scenes = sorted(SCENES.glob("*.toml"))
-    if not scenes:
-        raise UserError(f"there are no scenes in {SCENES.resolve()}")
+    scenes = list(packaged_scenes().values())
     scenes.append(EXTRA_SCENE)
     # Into a file or a pipe rich would print as if on 80 columns, which the tables do not fit.
     console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
@@ -279,7 +272,3 @@ def _build(
 ) -> Model:
     with console.status(f"building {configuration.name} {variant}"):
         return build_model(configuration, build=build, flags=flags, variant=variant)
-
-
-if __name__ == "__main__":
-    run_command(main)

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.verif.dvi`: a DVI monitor in Python, from what a simulated board sends to pictures.
+"""`raycaster verify dvi`: a DVI monitor in Python, from what a simulated board sends to pictures.
 
 Everything is held against the standard, and every pixel against golden.
 """
 
 from __future__ import annotations
 
-import argparse
 import os
 import re
 import shutil
@@ -22,11 +21,12 @@ from rich.console import Console
 
 from raycaster.design import Design
 from raycaster.fit.fixing import add_fix_option, design_of
-from raycaster.fpga.bitstream import BOARDS, DEFAULT_SCENE, find_board, write_project
+from raycaster.fpga.bitstream import BOARDS, find_board, write_project
 from raycaster.golden import engines
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.golden.tmds import CONTROL_SYMBOLS, decode
-from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
+from raycaster.scene import find_scene
 from raycaster.screens import Screen
 from raycaster.verif.monitor import Line, VideoError, decode_frame
 from raycaster.verif.simulator import SimulationError, add_simulator_option, find_tool
@@ -221,17 +221,17 @@ def _line(bits: np.ndarray) -> Line:
     return Line("".join(map(str, bits[::-1].reshape(-1))), len(bits), 0)
 
 
-def main() -> int:
+def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns its exit code."""
-    parser = argparse.ArgumentParser(prog="python -m raycaster.verif.dvi", description=__doc__.splitlines()[0])
+    parser = CommandParser("verify dvi", __doc__, "boxes")
     parser.add_argument("--board", default="ulx3s", help=f"one of {', '.join(BOARDS)} (default: %(default)s)")
-    parser.add_argument("--scene", type=Path, default=DEFAULT_SCENE, help="(default: %(default)s)")
+    add_scene_argument(parser, "what to show (mirror_room)", default=find_scene("mirror_room"))
     parser.add_argument("--frames", type=int, default=1, help="to look at (default: %(default)s)")
     add_simulator_option(parser)
     parser.add_argument("--output", type=Path, default=Path("build/dvi"), help="(default: %(default)s)")
     add_fix_option(parser)
     add_configuration_options(parser)
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(argv)
     board = find_board(arguments.board)
     console = Console()
     design = design_of(arguments.scene, given_options(arguments), arguments.fix, console)
@@ -256,7 +256,3 @@ def main() -> int:
         soft_wrap=True,
     )
     return int(wrong > 0)
-
-
-if __name__ == "__main__":
-    run_command(main)

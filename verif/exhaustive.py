@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.verif.exhaustive`: the arithmetic at a volume that only compiled benches reach.
+"""`raycaster verify exhaustive`: the arithmetic at a volume that only compiled benches reach.
 
 Each bench converts one block, compiles it with Verilator together with a C++ program that drives it back to back (a
 result each `divider_steps` cycles, operands held for the one cycle in which they may be looked at), and checks every
@@ -20,7 +20,6 @@ bits are the least: a division must take two cycles, and three bits a cycle are 
 
 from __future__ import annotations
 
-import argparse
 import os
 import re
 import shlex
@@ -48,7 +47,7 @@ from raycaster.configuration import COORDINATE_BITS, Configuration, configure
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.errors import UserError
-from raycaster.options import run_command
+from raycaster.options import CommandParser
 from raycaster.rtl.common.legacy import Steps
 from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
 from raycaster.rtl.seed.divider import divider
@@ -336,11 +335,7 @@ def main(argv: list[str] | None = None) -> int:
     Raises:
         UserError: no such bench, or a tool is missing.
     """
-    parser = argparse.ArgumentParser(
-        prog="python -m raycaster.verif.exhaustive",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = CommandParser("verify exhaustive", __doc__, "--only divider")
     parser.add_argument(
         "--only", metavar="PREFIX", default="", help="only benches whose name begins so: divider, intersection-f4, ..."
     )
@@ -364,7 +359,7 @@ def main(argv: list[str] | None = None) -> int:
         raise UserError(f"--only: no bench begins with {arguments.only}; there are {', '.join(b.label for b in every)}")
 
     repeat = (
-        f"python -m raycaster.verif.exhaustive --only {{label}} --count {arguments.count} "
+        f"raycaster verify exhaustive --only {{label}} --count {arguments.count} "
         f"--divisions {arguments.divisions} --reduced-bits {arguments.reduced_bits} --seed {arguments.seed}"
     )
     console = Console()
@@ -390,7 +385,3 @@ def main(argv: list[str] | None = None) -> int:
     show(outcomes, arguments.seed, console)
     print(f"repeat with: {repeat.format(label=shlex.quote(arguments.only))}")
     return 0
-
-
-if __name__ == "__main__":
-    run_command(main)

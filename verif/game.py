@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.verif.game`: a recorded game on the simulated system, every pixel checked, as an animation."""
+"""`raycaster game`: a recorded game on the simulated system, every pixel checked, as an animation."""
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
 from collections.abc import Sequence
@@ -17,12 +16,12 @@ from rich.table import Table
 
 from raycaster.configuration import configure
 from raycaster.errors import UserError
-from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.options import CommandParser, add_build_option, add_configuration_options, given_options
 from raycaster.sw.firmware import build_firmware
 from raycaster.sw.play_script import DEMO, load
 from raycaster.verif.contact_sheet import write_contact_sheet
 from raycaster.verif.play import FASTEST, play
-from raycaster.verif.simulator import BUILD, SYSTEM_BENCH, SimulationError, build_model
+from raycaster.verif.simulator import SYSTEM_BENCH, SimulationError, build_model
 
 FRAMES = 240
 ANIMATION = "game.webp"
@@ -49,12 +48,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     Args:
         argv: its arguments, those of the process by default.
     """
-    parser = argparse.ArgumentParser(prog="python -m raycaster.verif.game", description=__doc__.splitlines()[0])
+    parser = CommandParser("game", __doc__, "--frames 24")
     parser.add_argument("--script", type=Path, default=DEMO, help="the buttons of each frame (default: %(default)s)")
     parser.add_argument("--frames", type=int, default=FRAMES, help="of the script, at most (default: %(default)s)")
-    parser.add_argument(
-        "--build", type=Path, default=BUILD, metavar="DIR", help="where models and firmware go (default: %(default)s)"
-    )
+    add_build_option(parser)
     parser.add_argument("--output", type=Path, help="where frames and animation go (default: game/ in there)")
     add_configuration_options(parser)
     arguments = parser.parse_args(argv)
@@ -93,7 +90,3 @@ def main(argv: Sequence[str] | None = None) -> int:
     console.print(table)
     console.print(f"{output / ANIMATION}, with each frame beside it, and {SHEET}", highlight=False)
     return 0
-
-
-if __name__ == "__main__":
-    run_command(main)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.verif.mutation`: would the leaf tests notice a fault? Mutation testing of every module.
+"""`raycaster verify mutate`: would the leaf tests notice a fault? Mutation testing of every module.
 
 The leaf tests run once and record what they drive and expect. Then, for each recording, Yosys plants up to --mutants
 faults, spread over the cells of the module under test, into its Verilog: an inverted or stuck bit of a cell's port, for
@@ -36,8 +36,9 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from raycaster.errors import UserError
-from raycaster.options import run_command
+from raycaster.options import CommandParser
 from raycaster.tools import run_yosys
+from raycaster.verif import ensure_icarus
 from raycaster.verif.exhaustive import Builder
 from raycaster.verif.formal.prover import missing_tools
 from raycaster.verif.leaf import RECORD_VARIABLE, recording_name
@@ -491,11 +492,7 @@ def main(argv: list[str] | None = None) -> int:
     Raises:
         UserError: no such module, or a tool is missing.
     """
-    parser = argparse.ArgumentParser(
-        prog="python -m raycaster.verif.mutation",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = CommandParser("verify mutate", __doc__, "--module divider")
     parser.add_argument("--module", action="append", metavar="NAME", help="only this one; repeatable")
     parser.add_argument(
         "--mutants", type=_positive, default=MUTANTS, help="of each recording, at most (default: %(default)s)"
@@ -505,6 +502,7 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--build", type=Path, default=Path("build/mutation"), help="(default: %(default)s)")
     arguments = parser.parse_args(argv)
     arguments.build = arguments.build.resolve()  # tools run in the folders below it
+    ensure_icarus.main()
     if missing := missing_tools():
         raise UserError(f"{', '.join(missing)} not found; install the extra `formal` of this package")
     known = expectations()
@@ -525,7 +523,3 @@ def main(argv: list[str] | None = None) -> int:
     for complaint in found:
         console.print(escape(complaint), style="red", soft_wrap=True)
     return 1 if found else 0
-
-
-if __name__ == "__main__":
-    run_command(main)

@@ -13,10 +13,10 @@ from rich.console import Console
 from raycaster.configuration import Configuration
 from raycaster.design import Design
 from raycaster.errors import UserError
-from raycaster.options import add_configuration_options
+from raycaster.options import add_build_option, add_configuration_options, add_scene_argument
+from raycaster.scene import find_scene
 from raycaster.verif.job import Job
 from raycaster.verif.simulator import (
-    BUILD,
     WINDOW_BENCH,
     Model,
     SimulationError,
@@ -25,8 +25,6 @@ from raycaster.verif.simulator import (
     find_tool,
     run_bench,
 )
-
-SCENE = Path("scenes/mirror_room.toml")
 
 MARGIN = 32
 """Clocks after the last row's time, in which its last pixels reach the pins."""
@@ -39,10 +37,10 @@ def add_recording_options(parser: argparse.ArgumentParser, pixel: str) -> None:
         parser: gets them.
         pixel: what `--pixel` is for.
     """
-    parser.add_argument("--scene", type=Path, default=SCENE, metavar="PATH", help="a scene file (default: %(default)s)")
+    add_scene_argument(parser, "what to record (mirror_room)", default=find_scene("mirror_room"))
     parser.add_argument("--pixel", metavar="COLUMN,ROW", help=pixel)
     add_simulator_option(parser)
-    parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes")
+    add_build_option(parser)
     add_configuration_options(parser)
 
 

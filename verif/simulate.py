@@ -11,7 +11,7 @@ import shutil
 import sys
 import tempfile
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,12 +26,19 @@ from raycaster.configuration import Configuration
 from raycaster.design import Design
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
-from raycaster.options import add_configuration_options, as_make_variables, given_options, run_command
+from raycaster.options import (
+    CommandParser,
+    add_build_option,
+    add_configuration_options,
+    add_scene_argument,
+    as_make_variables,
+    given_options,
+)
+from raycaster.scene import packaged_scenes
 from raycaster.verif.contact_sheet import write_contact_sheet
 from raycaster.verif.job import Job
 from raycaster.verif.netlist import COUNTED_CELLS, Netlist, find_yosys, synthesise
 from raycaster.verif.simulator import (
-    BUILD,
     SIMULATORS,
     Model,
     SimulationError,
@@ -42,9 +49,8 @@ from raycaster.verif.simulator import (
     run_bench,
 )
 
-SCENES = Path("scenes")
 GATES_OPTIONS: Mapping[str, Any] = {"screen": "tiny", "units": 16, "reflections": 2}
-"""Of a netlist, where they are not given: the fewest units with which one design shows all of `SCENES` in time."""
+"""Of a netlist, where they are not given: the fewest units with which one design shows all packaged scenes in time."""
 
 SHEET = "scenes.png"
 SHEET_COLUMNS = 5
@@ -274,16 +280,10 @@ def _cells(outcome: Outcome) -> list[str]:
     ]
 
 
-def parse_arguments() -> argparse.Namespace:
+def parse_arguments(argv: Sequence[str] | None) -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(prog="python -m raycaster.verif.simulate", description=__doc__)
-    parser.add_argument(
-        "--scene",
-        action="append",
-        type=Path,
-        metavar="PATH",
-        help="a scene file; may be repeated (default: all of scenes/)",
-    )
+    parser = CommandParser("sim", __doc__, "mirror_room --engine beam")
+    add_scene_argument(parser, "what to show (all that come with it)", many=True)
     add_simulator_option(parser)
     parser.add_argument(
         "--gates",
@@ -291,25 +291,21 @@ def parse_arguments() -> argparse.Namespace:
         help="show them through the netlist that Yosys makes of the design, of ECP5 cells; for a design that is small "
         f"({', '.join(f'{name} {value}' for name, value in GATES_OPTIONS.items())}) where nothing else is given",
     )
-    parser.add_argument("--waves", action="store_true", help="write waveforms (FST) beside the pictures")
-    parser.add_argument(
-        "--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes (default: build)"
-    )
+    parser.add_argument("--waves", action="store_true", help="write waveforms beside the pictures")
+    add_build_option(parser)
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="scenes at a time (default: 2)")
     add_fix_option(parser)
     add_configuration_options(parser)
-    return parser.parse_args()
+    return parser.parse_args(argv)
 
 
-def main() -> int:
+def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns its exit code."""
-    arguments = parse_arguments()
+    arguments = parse_arguments(argv)
     # make hands its variables down in the environment, where cocotb would take them for its own.
     for name in ("WAVES", "GUI"):
         os.environ.pop(name, None)
-    paths = arguments.scene or sorted(SCENES.glob("*.toml"))
-    if not paths:
-        raise UserError(f"there are no scenes in {SCENES.resolve()}; name one with --scene")
+    paths = arguments.scene or list(packaged_scenes().values())
     gates = arguments.gates
     # Into a file or a pipe rich would print as if on 80 columns, which the table does not fit.
     console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
@@ -332,7 +328,3 @@ def main() -> int:
     if not gates:
         show_traces(outcomes, given_options(arguments), arguments.simulator, console)
     return int(any(outcome.failure for outcome in outcomes))
-
-
-if __name__ == "__main__":
-    run_command(main)

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import shutil
 import time
 from collections import defaultdict
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
 from pathlib import Path
 
@@ -18,10 +18,10 @@ from rich.table import Table
 from raycaster.configuration import Configuration, configure
 from raycaster.errors import UserError
 from raycaster.golden.catalogue import catalogue
-from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.options import CommandParser, add_build_option, add_configuration_options, given_options
 from raycaster.verif.job import Job
 from raycaster.verif.random_scenes import style_of
-from raycaster.verif.simulator import BUILD, Model, SimulationError, add_simulator_option, build_model, run_bench
+from raycaster.verif.simulator import Model, SimulationError, add_simulator_option, build_model, run_bench
 
 POLL_SECONDS = 0.2
 
@@ -105,17 +105,17 @@ def show(
     console.print(table)
 
 
-def main() -> int:
+def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns its exit code."""
-    parser = argparse.ArgumentParser(prog="python -m raycaster.verif.soak", description=__doc__)
+    parser = CommandParser("verify soak", __doc__, "--seeds 10")
     parser.add_argument("--seeds", type=int, default=100, metavar="N", help="how many scenes (default: %(default)s)")
     parser.add_argument("--first", type=int, default=0, metavar="SEED", help="the first one's (default: %(default)s)")
     parser.add_argument("--stiff", action="store_true", help="all cases of the stiff catalogue instead")
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="simulations at a time (default: %(default)s)")
     add_simulator_option(parser)
-    parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes")
+    add_build_option(parser)
     add_configuration_options(parser)
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(argv)
     if arguments.seeds < 1 or arguments.jobs < 1 or arguments.first < 0:
         raise UserError("seeds and jobs: must be 1 or more, first: 0 or more")
     configuration = configure(**{"reflections": 2} | given_options(arguments))
@@ -145,7 +145,3 @@ def main() -> int:
     if missing:
         console.print(f"{missing} scenes were not shown", style="red")
     return int(bool(failures) or bool(missing))
-
-
-if __name__ == "__main__":
-    run_command(main)

@@ -16,7 +16,7 @@ from rich.text import Text
 from raycaster.configuration import CHANNEL_BITS
 from raycaster.design import design_for
 from raycaster.errors import UserError
-from raycaster.options import given_options, run_command
+from raycaster.options import CommandParser, given_options
 from raycaster.verif.probes.engines import description_of
 from raycaster.verif.probes.ray import Place, Probe, Ray, Reading, Value, first_difference, read
 from raycaster.verif.recorder import add_recording_options, build_and_record, pixel_place
@@ -195,16 +195,16 @@ def _error_text(ray: Ray, probe: Probe, golden: Sequence[Value], true: Sequence[
     return ", ".join("0" if error.strip("+-0.") == "" and error != "-" else error for error in errors)
 
 
-def parse_arguments() -> argparse.Namespace:
+def parse_arguments(argv: Sequence[str] | None) -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(prog="python -m raycaster.verif.trace", description=__doc__)
+    parser = CommandParser("trace", __doc__, "boxes --pixel 160,120")
     add_recording_options(parser, "of rays, from 0 on")
-    return parser.parse_args()
+    return parser.parse_args(argv)
 
 
-def main() -> int:
+def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns its exit code."""
-    arguments = parse_arguments()
+    arguments = parse_arguments(argv)
     if arguments.pixel is None:
         raise UserError("pixel: say which one, as in PIXEL=160,120")
     column, row = pixel_place(arguments.pixel)
@@ -223,7 +223,3 @@ def main() -> int:
     show(ray, readings, console)
     console.print(f"The waveform of its row is {waves}", highlight=False, soft_wrap=True)
     return int(first_difference(readings) is not None)
-
-
-if __name__ == "__main__":
-    run_command(main)

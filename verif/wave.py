@@ -7,6 +7,7 @@ import argparse
 import os
 import shutil
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -14,7 +15,7 @@ from rich.console import Console
 from raycaster.convert.write import design_states
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
-from raycaster.options import given_options, run_command
+from raycaster.options import CommandParser, given_options
 from raycaster.verif.probes.engines import description_of
 from raycaster.verif.probes.ray import Ray
 from raycaster.verif.recorder import add_recording_options, build_and_record, check_rows, pixel_place
@@ -73,18 +74,18 @@ def commands(waves: Path, files: list[Path]) -> list[list[str]]:
     return [["gtkwave", str(gtkwave.resolve())], ["surfer", "--command-file", surfer.name, waves.name]]
 
 
-def parse_arguments() -> argparse.Namespace:
+def parse_arguments(argv: Sequence[str] | None) -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(prog="python -m raycaster.verif.wave", description=__doc__)
+    parser = CommandParser("wave", __doc__, "boxes --pixel 160,120")
     add_recording_options(parser, "of rays, from 0 on; the cursor is put there (the middle)")
     parser.add_argument("--span", metavar="FIRST,LAST", help="rows to write (default: that of the pixel)")
     parser.add_argument("--no-viewer", action="store_true", help="open nothing")
-    return parser.parse_args()
+    return parser.parse_args(argv)
 
 
-def main() -> int:
+def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns its exit code."""
-    arguments = parse_arguments()
+    arguments = parse_arguments(argv)
     design = design_for(arguments.scene, given_options(arguments))
     screen = design.configuration.screen_geometry
     column, row = pixel_place(arguments.pixel or f"{screen.centre_column},{screen.rows // 2}")
@@ -113,7 +114,3 @@ def main() -> int:
     console.print(f"to open it: gtkwave {waves.parent / files[0].name}", highlight=False)
     console.print(f"        or: cd {waves.parent} && {' '.join(surfer)}", highlight=False)
     return 0
-
-
-if __name__ == "__main__":
-    run_command(main)

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.verif.window`: the simulated hardware in a window: the game, or a scene to walk through."""
+"""`raycaster play`: the simulated hardware in a window: the game, or a scene to walk through."""
 
 from __future__ import annotations
 
-import argparse
 import os
 import sys
 import time
@@ -21,12 +20,18 @@ from raycaster.errors import UserError
 from raycaster.golden import exact
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.memory_map import BUTTON_NAMES
-from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.options import (
+    CommandParser,
+    add_build_option,
+    add_configuration_options,
+    add_scene_argument,
+    given_options,
+)
 from raycaster.rtl.system import scene_player
 from raycaster.sw.firmware import build_firmware
 from raycaster.verif.machine import Frame, Machine, build_machine
 from raycaster.verif.play import FASTEST
-from raycaster.verif.simulator import BUILD, SimulationError
+from raycaster.verif.simulator import SimulationError
 
 GAME_KEYS = {"left": ("left", "a"), "right": ("right", "d"), "up": ("up", "w"), "down": ("down", "s")}
 GAME_KEYS |= {"fire": ("space", "return")}
@@ -186,11 +191,11 @@ def main(argv: Sequence[str] | None = None) -> None:
     Args:
         argv: its arguments, those of the process by default.
     """
-    parser = argparse.ArgumentParser(prog="python -m raycaster.verif.window", description=__doc__.splitlines()[0])
-    parser.add_argument("--scene", type=Path, metavar="PATH", help="walk through this scene instead of the game")
+    parser = CommandParser("play", __doc__, "")
+    add_scene_argument(parser, "walk through this scene instead of the game")
     parser.add_argument("--frames", type=int, help="end after so many (default: when the window is closed)")
     parser.add_argument("--screenshot", type=Path, metavar="PNG", help="write what the window showed last")
-    parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="(default: %(default)s)")
+    add_build_option(parser)
     add_configuration_options(parser)
     arguments = parser.parse_args(argv)
     console = Console()
@@ -230,7 +235,3 @@ def main(argv: Sequence[str] | None = None) -> None:
         highlight=False,
         soft_wrap=True,
     )
-
-
-if __name__ == "__main__":
-    run_command(main)

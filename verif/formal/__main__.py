@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.verif.formal`: prove what can be proved of the generated Verilog."""
+"""`raycaster verify prove`: prove what can be proved of the generated Verilog."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -14,16 +15,16 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from raycaster.errors import UserError
-from raycaster.options import run_command
+from raycaster.options import CommandParser
 from raycaster.tools import TIMEOUT
 from raycaster.verif.formal.properties import PROPERTIES
 from raycaster.verif.formal.prover import Property, Result, prove
 
 
-def main() -> int:
+def main(argv: Sequence[str] | None = None) -> int:
     """The command."""
     names = list(dict.fromkeys(proof.name for proof in PROPERTIES))
-    parser = argparse.ArgumentParser(prog="python -m raycaster.verif.formal", description=__doc__)
+    parser = CommandParser("verify prove", __doc__, "--small")
     parser.add_argument("--property", action="append", metavar="NAME", help=f"one of {', '.join(names)}; repeatable")
     parser.add_argument("--small", action="store_true", help="the quick subset")
     parser.add_argument("--list", action="store_true", help="list the properties and prove nothing")
@@ -31,7 +32,7 @@ def main() -> int:
     parser.add_argument("--timeout", type=_positive, default=TIMEOUT, help="seconds a run (default: %(default)s)")
     parser.add_argument("--jobs", type=_positive, default=2, help="proofs at a time (default: %(default)s)")
     parser.add_argument("--output", type=Path, default=Path("build/formal"), help="(default: %(default)s)")
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(argv)
     for name in arguments.property or []:
         if name not in names:
             raise UserError(f"--property: {name} is none of {', '.join(names)}")
@@ -100,7 +101,3 @@ def _table(results: list[Result]) -> Table:
         outcome = f"[{'green' if result.proved else 'red'}]{result.outcome}[/]"
         table.add_row(proof.name, proof.label, modules, result.method, outcome, f"{result.seconds:.1f}")
     return table
-
-
-if __name__ == "__main__":
-    run_command(main)

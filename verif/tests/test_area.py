@@ -129,5 +129,5 @@ def test_bad_options_get_one_line(tmp_path, options, complaint):
 
 
 def command(directory: Path, *options: str) -> subprocess.CompletedProcess[str]:
-    call = (sys.executable, "-m", "raycaster.fpga.area", *options)
+    call = (sys.executable, "-m", "raycaster.cli", "area", *options)
     return subprocess.run(call, cwd=directory, capture_output=True, text=True, check=False)

@@ -191,7 +191,7 @@ def test_too_slow_gets_one_line(tmp_path, monkeypatch, capsys, clk, shift_clk, c
     clocks = {"clk": (clk, 50.0), "shift_clk": (shift_clk, 125.0)}
     outcome = Outcome({"TRELLIS_FF": (1, 2)}, clocks, {"clk to shift_clk": (crossing, 8.0)}, {})
     monkeypatch.setattr(bitstream, "make_bitstream", lambda *_, **__: outcome)
-    monkeypatch.setattr(sys, "argv", ["bitstream", "--scene", str(SMALL_SCENE), "--output", str(tmp_path)])
+    monkeypatch.setattr(sys, "argv", ["bitstream", str(SMALL_SCENE), "--output", str(tmp_path)])
     with pytest.raises(UserError, match=f"^too slow: {missed}; the reports are in ") as error:
         bitstream.main()
     assert "\n" not in str(error.value)
@@ -202,10 +202,10 @@ def test_too_slow_gets_one_line(tmp_path, monkeypatch, capsys, clk, shift_clk, c
     ("options", "complaint"),
     [
         (("--board", "ice40"), "error: board: ice40 is not known here; choose one of ulx3s"),
-        (("--scene", "nowhere.toml"), "error: nowhere.toml: cannot be read"),
-        (("--scene", str(SMALL_SCENE), "--colour-bits", "4"), "error: colour_bits: a DVI link carries 8 bits"),
+        (("nowhere.toml"), "error: nowhere.toml: cannot be read"),
+        ((str(SMALL_SCENE), "--colour-bits", "4"), "error: colour_bits: a DVI link carries 8 bits"),
         (
-            ("--scene", str(SMALL_SCENE), "--engine", "beam", "--screen", "play"),
+            (str(SMALL_SCENE), "--engine", "beam", "--screen", "play"),
             "error: screen: play is for simulation only; leave it out, or choose vga",
         ),
     ],
@@ -220,7 +220,7 @@ def test_bad_options_get_one_line(tmp_path, module, options, complaint):
     assert not list(tmp_path.rglob("*.bit"))
 
 
-@pytest.mark.parametrize("given", [("--scene", str(SMALL_SCENE)), ("--fix", "all")], ids=["scene", "fix"])
+@pytest.mark.parametrize("given", [(str(SMALL_SCENE)), ("--fix", "all")], ids=["scene", "fix"])
 def test_the_game_takes_no_scene(tmp_path, monkeypatch, given):
     monkeypatch.setattr(sys, "argv", ["bitstream", "--game", *given, "--output", str(tmp_path / "out")])
     with pytest.raises(UserError, match=r"^game: it sets up its own scene; leave SCENE, FIX and FIT out$"):

@@ -83,7 +83,7 @@ def test_the_command_fails_at_a_mismatch(monkeypatch, capsys):
     assert main(["--only", "divider-f0t-d3", "--divisions", str(VECTORS), "--seed", "7"]) == 1
     complaint = capsys.readouterr().err
     assert re.match(r"divider-f0t-d3: mismatch \d+ / \d+: hardware", complaint)
-    assert "repeat with: python -m raycaster.verif.exhaustive --only divider-f0t-d3" in complaint
+    assert "repeat with: raycaster verify exhaustive --only divider-f0t-d3" in complaint
 
 
 @pytest.mark.parametrize("arguments", [["--only", "adder"], ["--count", "0"], ["--divisions", "-1"], ["--seed", "-1"]])

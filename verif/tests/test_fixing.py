@@ -426,7 +426,7 @@ def test_a_choice_for_another_scene_is_refused(tmp_path, monkeypatch):
     ],
 )
 def test_what_cannot_be_found_is_one_line(arguments, complaint):
-    command = [sys.executable, "-m", "raycaster.fpga.fit", "--scene", str(BOXES), *arguments]
+    command = [sys.executable, "-m", "raycaster.cli", "fit", str(BOXES), *arguments]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert re.fullmatch(f"error: .*{complaint}.*\n", done.stderr)

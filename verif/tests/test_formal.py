@@ -152,7 +152,7 @@ def test_every_property_has_a_fault():
 
 def test_unknown_property():
     """The command names what there is."""
-    command = [sys.executable, "-m", "raycaster.verif.formal", "--property", "no-such"]
+    command = [sys.executable, "-m", "raycaster.cli", "verify", "prove", "--property", "no-such"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert "no-such is none of video-timing" in done.stderr

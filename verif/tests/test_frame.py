@@ -65,8 +65,8 @@ def test_tiny_in_icarus(engine):
     build = BUILD / "test" / f"tiny_in_icarus_{engine}"
     scenes = [ROOT / "scenes" / f"{name}.toml" for name in ("matte", "corners", "degenerate", "facing_mirrors")]
     options = ("--engine", engine, "--screen", "tiny", "--simulator", "icarus", "--build", str(build))
-    options += tuple(word for scene in scenes for word in ("--scene", str(scene)))
-    subprocess.run([sys.executable, "-m", "raycaster.verif.simulate", *options], cwd=ROOT, check=True)
+    options += tuple(word for scene in scenes for word in (str(scene)))
+    subprocess.run([sys.executable, "-m", "raycaster.cli", "sim", *options], cwd=ROOT, check=True)
     for scene in scenes:
         result = json.loads((build / "sim" / scene.stem / "result.json").read_text())
         assert result["pixels"] == 128 * 96

@@ -608,7 +608,7 @@ def test_the_header_says_what_and_never_when(tmp_path):
 def test_two_processes_write_the_same_bytes(tmp_path):
     # Python's sets, of which MyHDL makes use, come in another order with another hash seed.
     for number in ("1", "2"):
-        command = [sys.executable, "-m", "raycaster.fpga.verilog", "--output", str(tmp_path / number)]
+        command = [sys.executable, "-m", "raycaster.cli", "verilog", "--output", str(tmp_path / number)]
         command += ["--screen", "tiny", "--units", "4", "--rectangles", "5", "--allow-underrun"]
         subprocess.run(command, env={**os.environ, "PYTHONHASHSEED": number}, check=True, capture_output=True)
     first, second = (

@@ -25,7 +25,7 @@ OPTIONS = {"units": "4", "rectangles": "3", "reflections": "1"}
 
 def gates(*arguments: object, build: Path) -> int:
     """`make sim GATES=1` with these arguments."""
-    command = ["simulate", "--gates", "--build", str(build), "--scene", str(SMALL_SCENE), *map(str, arguments)]
+    command = ["simulate", "--gates", "--build", str(build), str(SMALL_SCENE), *map(str, arguments)]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sys, "argv", command)
         return simulate.main()

@@ -21,6 +21,8 @@ HOOKS = ROOT / ".pre-commit-config.yaml"
 
 MAY_IMPORT = {
     "raycaster": (),
+    "scenes": (),
+    "cli": ("raycaster",),
     "golden": ("raycaster",),
     "rtl": ("raycaster",),
     "sw": ("raycaster",),

@@ -389,7 +389,7 @@ def command(monkeypatch, capsys, tmp_path) -> Command:
     monkeypatch.setattr("raycaster.tools._search_path", lambda: f"{tmp_path / 'bin'}:/usr/bin:/bin")
 
     def run_it(*arguments: str, name: str = "de2") -> tuple[int, list[str], list[str]]:
-        small_design = ["--scene", str(SMALL_SCENE), "--screen=tiny", "--units=2", "--rectangles=3", "--allow-underrun"]
+        small_design = [str(SMALL_SCENE), "--screen=tiny", "--units=2", "--rectangles=3", "--allow-underrun"]
         output = ["--output", str(tmp_path / "quartus")]
         monkeypatch.setattr(sys, "argv", ["quartus", "--board", name, *small_design, *output, *arguments])
         with pytest.raises(SystemExit) as exited:
@@ -453,7 +453,7 @@ def test_quartus_takes_too_long(command, tmp_path, monkeypatch):
 
 def test_mistakes_are_told_in_one_line(command, tmp_path):
     assert command(name="de0") == (2, [], ["error: board: de2, de2_115, de1_soc or de10_lite, not de0"])
-    code, _, err = command("--scene", str(tmp_path / "none.toml"))
+    code, _, err = command(str(tmp_path / "none.toml"))
     assert (code, err) == (2, [f"error: {tmp_path / 'none.toml'}: cannot be read: No such file or directory"])
     code, _, err = command("--colour-bits", "9")
     assert (code, len(err)) == (2, 1)
@@ -470,7 +470,7 @@ def test_the_board_chooses_what_is_not_given(command, tmp_path):
 
 def test_the_module_runs():
     done = subprocess.run(
-        [sys.executable, "-m", "raycaster.fpga.quartus", "--help"], capture_output=True, text=True, check=False
+        [sys.executable, "-m", "raycaster.cli", "quartus", "--help"], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0
     assert "--board" in done.stdout

@@ -92,7 +92,7 @@ def test_the_verilog_decodes_what_the_map_says(tmp_path):
     [(("--rectangles", "33"), "error: rectangles: "), (("--rectangles", "x"), "error: rectangles: ")],
 )
 def test_bad_options_get_one_line(tmp_path, options, complaint):
-    command = (sys.executable, "-m", "raycaster.register_views", *options)
+    command = (sys.executable, "-m", "raycaster.cli", "registers", *options)
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert done.stderr.startswith(complaint)

@@ -26,11 +26,11 @@ RESULT_KEYS = {
 }
 
 # Icarus builds at once.
-SMALL_OPTIONS = ("--scene", SMALL_SCENE, "--screen", "tiny", "--units", 8, "--rectangles", 3, "--simulator", "icarus")
+SMALL_OPTIONS = (SMALL_SCENE, "--screen", "tiny", "--units", 8, "--rectangles", 3, "--simulator", "icarus")
 
 
 def _sim(*arguments: object, build: Path, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "raycaster.verif.simulate", "--build", str(build), *map(str, arguments)]
+    command = [sys.executable, "-m", "raycaster.cli", "sim", "--build", str(build), *map(str, arguments)]
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False)
 
 
@@ -61,7 +61,7 @@ def test_two_scenes(build, tmp_path):
     """One picture has both."""
     other = tmp_path / "other.toml"
     other.write_text(SMALL_SCENE.read_text().replace("#c8c8b4", "#ff0000"))
-    ran = _sim(*SMALL_OPTIONS, "--scene", other, build=build)
+    ran = _sim(*SMALL_OPTIONS, other, build=build)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     sheet = Image.open(build / "sim" / "scenes.png")
     assert sheet.size == (2 * 320 + 8, 240)
@@ -132,7 +132,7 @@ def test_mistakes(build, tmp_path, text, options, complaint):
     scene = tmp_path / "mine.toml"
     if text is not None:
         scene.write_text(text)
-    ran = _sim("--scene", scene, *options, build=build)
+    ran = _sim(scene, *options, build=build)
     assert ran.returncode == 2
     assert complaint in ran.stderr
     assert ran.stderr.startswith("error: ")
@@ -144,16 +144,23 @@ def test_mistakes(build, tmp_path, text, options, complaint):
 def test_two_scenes_of_one_name(build, scenes, tmp_path):
     """They would overwrite each other."""
     shutil.copy(scenes / "floor.toml", tmp_path)
-    ran = _sim("--scene", scenes / "floor.toml", "--scene", tmp_path / "floor.toml", build=build)
+    ran = _sim(scenes / "floor.toml", tmp_path / "floor.toml", build=build)
     assert ran.returncode == 2
     assert "same file name" in ran.stderr
 
 
-def test_no_scenes(build, tmp_path):
-    """Run from a directory without any."""
-    ran = _sim(build=build, cwd=tmp_path)
+def test_a_packaged_scene_from_anywhere(tmp_path):
+    """By its name, from a directory without scenes, into the directory's own build/."""
+    command = [sys.executable, "-m", "raycaster.cli", "sim", "matte", "SCREEN=tiny", "UNITS=16"]
+    ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    assert (tmp_path / "build" / "sim" / "matte" / "frame.png").is_file()
+
+
+def test_no_such_scene(tmp_path):
+    ran = _sim("mirror_rooms", build=tmp_path, cwd=tmp_path)
     assert ran.returncode == 2
-    assert "there are no scenes in" in ran.stderr
+    assert re.fullmatch(r"error: mirror_rooms: no such file, and none of the packaged scenes: boxes, .*\n", ran.stderr)
 
 
 @pytest.mark.parametrize(
@@ -172,7 +179,7 @@ def test_missing_tools(build, scenes, tmp_path, monkeypatch, simulator, present,
     for tool in present:
         (tools / tool).symlink_to(shutil.which(tool))
     monkeypatch.setenv("PATH", str(tools))
-    ran = _sim("--scene", scenes / "floor.toml", "--simulator", simulator, build=build)
+    ran = _sim(scenes / "floor.toml", "--simulator", simulator, build=build)
     assert ran.returncode == 2
     assert complaint in ran.stderr
     assert ran.stderr.count("\n") == 1

@@ -35,7 +35,7 @@ def test_soak():
     """A handful at full size."""
     build = BUILD / "test" / "soak"
     ran = subprocess.run(
-        [sys.executable, "-m", "raycaster.verif.soak", "--seeds", "6", "--build", str(build)],
+        [sys.executable, "-m", "raycaster.cli", "verify", "soak", "--seeds", "6", "--build", str(build)],
         cwd=ROOT, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert ran.returncode == 0, ran.stdout + ran.stderr
@@ -49,7 +49,11 @@ def test_the_exact_engine_draws_the_stiff_catalogue():
     build = BUILD / "test" / "stiff"
     options = ("--stiff", "--engine", "exact", "--screen", "tiny", "--build", str(build))
     ran = subprocess.run(
-        [sys.executable, "-m", "raycaster.verif.soak", *options], cwd=ROOT, capture_output=True, text=True, check=False
+        [sys.executable, "-m", "raycaster.cli", "verify", "soak", *options],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert ran.returncode == 0, ran.stdout + ran.stderr
     results = [json.loads(line) for line in (build / "soak" / "results.jsonl").read_text().splitlines()]

@@ -136,13 +136,13 @@ def test_names_the_module_of_a_fault(tmp_path, engine, edit):
 
 
 def _trace(*arguments: object) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "raycaster.verif.trace", "--simulator", "icarus", *map(str, arguments)]
+    command = [sys.executable, "-m", "raycaster.cli", "trace", "--simulator", "icarus", *map(str, arguments)]
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
 
 
 def test_the_command(tmp_path):
     """Its exit code is 0 without a difference, and 1 with one."""
-    options = ("--scene", SCENE, "--screen", "tiny", "--units", 8, "--rectangles", 3, "--pixel", "48,2")
+    options = (SCENE, "--screen", "tiny", "--units", 8, "--rectangles", 3, "--pixel", "48,2")
     sound = _trace(*options, "--build", tmp_path)
     assert sound.returncode == 0, sound.stdout + sound.stderr
     assert "The hardware does what golden does." in sound.stdout
@@ -162,7 +162,7 @@ def test_the_command(tmp_path):
         (("--pixel", "48"), "pixel: a column and a row of rays, as in 160,120, not 48"),
         (("--pixel", "64,9", "--screen", "tiny"), "pixel: column from 0 to 63 and row from 0 to 47, not 64,9"),
         (("--pixel", "1,1", "--units", "7"), "units: 7 does not divide"),
-        (("--pixel", "1,1", "--scene", "no.toml"), "no.toml"),
+        (("--pixel", "1,1", "no.toml"), "no.toml"),
     ],
 )
 def test_mistakes(refuses, options, complaint):

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Scenes worth looking at; see `raycaster.scene.packaged_scenes`."""
