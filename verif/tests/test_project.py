@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ast
+import importlib.metadata
 import os
 import re
 import subprocess
@@ -53,7 +54,7 @@ def test_version():
     told = version.unpack(version.reset)
     numbers = f"{told['major']}.{told['minor']}"
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    assert project["version"] == f"{numbers}.0"
+    assert importlib.metadata.version("raycaster") == project["version"] == f"{numbers}.0"
     assert re.findall(r"^## \[(\d+\.\d+)\]", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[0] == numbers
 
 
