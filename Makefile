@@ -5,13 +5,13 @@
 PYTHON3 ?= python3
 VENV := .venv
 PYTHON := $(VENV)/bin/python
-COMMANDS := sim scenes play game wave trace verilog fit area quartus bitstream registers report docs commands
+COMMANDS := sim scenes play game wave trace verilog fit area quartus bitstream registers report docs results commands
 CHECKS := soak prove mutate exhaustive coverage
 ARGUMENTS = $(filter-out PYTHON3=% PYTHON=% VENV=%,$(MAKEOVERRIDES))
 
 # Extras of pyproject.toml that a target needs beside the program itself.
 play game: EXTRAS := play
-fit area: EXTRAS := fpga
+fit area results: EXTRAS := fpga
 bitstream: EXTRAS := fpga,play
 report: EXTRAS := fpga,report
 docs: EXTRAS := docs

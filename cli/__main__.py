@@ -42,6 +42,7 @@ COMMANDS: Mapping[str, Command] = {
     "registers": Command("raycaster.register_views", "the register map for C and for people"),
     "report": Command("raycaster.report.__main__", "error against run time and cells"),
     "docs": Command("raycaster.docs.__main__", "the documentation, its diagrams and numbers made anew"),
+    "results": Command("raycaster.docs.results", "measure what the README's table says, and write it there"),
     "commands": Command("raycaster.docs.commands", "run every command of the documentation"),
     "verify soak": Command("raycaster.verif.soak", "random scenes at full size"),
     "verify prove": Command("raycaster.verif.formal.__main__", "proofs of the converted Verilog"),
