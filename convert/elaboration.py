@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Elaborating a MyHDL design: making its blocks, without MyHDL's detours."""
+"""Elaborating a MyHDL design, that is making its blocks: one at a time, and quickly."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _ELABORATING = threading.RLock()
 
 @contextmanager
 def elaboration() -> Iterator[None]:
-    """Elaborate quickly, and have MyHDL forget the signals afterwards; what is to be simulated must be within too.
+    """Elaborate within this; MyHDL forgets the signals afterwards, so what is simulated must be within, too.
 
     MyHDL asks for the stack at each instance and process, of which it only wants a few frames and their functions'
     names. Python's own answer opens files, and goes through all modules for each frame that has no file: 64 units take

@@ -2,10 +2,11 @@
 """Verilog with its hierarchy kept: one module a file, where MyHDL by itself would flatten the design.
 
 Blocks are converted from the leaves up. Each converts as a top level of its own, and in its parent's conversion it is
-replaced by text that instantiates the module. Equal blocks share one module.
+replaced by text that instantiates the module. Blocks of one function share one module where their arguments are alike:
+see `_kind`.
 
-This package, and `raycaster.rtl.common` for records and ties, touch MyHDL's internals, which is why its version is
-pinned; the contract that they rely on is tested.
+This package, `raycaster.rtl.common.records` and `ties`, and `raycaster.docs.blocks` import MyHDL's internals, which is
+why its version is pinned; the contract that they rely on is tested.
 """
 
 from __future__ import annotations
@@ -14,11 +15,11 @@ import inspect
 import shutil
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from myhdl import ToVerilogWarning
+from myhdl import ConcatSignal, ToVerilogWarning
 from myhdl._block import _Block
 from myhdl._extractHierarchy import _MemInfo, _UserVerilogCode
 from myhdl._instance import _Instantiator
@@ -27,7 +28,7 @@ from myhdl._Signal import _Signal
 from myhdl.conversion._toVerilog import _ToVerilogConvertor, toVerilog
 
 from raycaster.convert.elaboration import elaboration
-from raycaster.convert.inside import block_arguments, interface_classes, signals_in
+from raycaster.convert.inside import block_arguments, block_ports, signals_in
 from raycaster.convert.verilog_style import restyle
 from raycaster.rtl.common.given import GivenVerilog, load_words
 from raycaster.rtl.common.records import Field
@@ -50,9 +51,9 @@ class Port:
 
 @dataclass(frozen=True)
 class Module:
-    """A module. `instances` are the modules it instantiates directly, by instance name.
+    """A module. `instances` are the modules that it instantiates directly, by instance name.
 
-    `parameters` are given to its instances in Verilog; a converted one has none, as its values are built in.
+    `parameters` are what an instance gives to it in Verilog; a converted module has none, as its values are built in.
     """
 
     name: str
@@ -67,13 +68,13 @@ class _Instance(_UserVerilogCode):
 
     def __init__(self, module: Module, name: str, connections: dict[str, _Signal | str | None]):
         super().__init__("", {}, module.name, None, None, None)
-        self._module, self._name, self._connections = module, name, connections
+        self._module, self.name, self.connections = module, name, connections
 
     def __str__(self) -> str:
-        pins = ",\n".join(f"    .{port}({_printed(signal)})" for port, signal in self._connections.items())
+        pins = ",\n".join(f"    .{port}({_printed(signal)})" for port, signal in self.connections.items())
         values = ",\n".join(f"    .{name}({value})" for name, value in self._module.parameters)
         kind = f"{self._module.name} #(\n{values}\n)" if values else self._module.name
-        return f"\n{kind} {self._name} (\n{pins}\n);\n"
+        return f"\n{kind} {self.name} (\n{pins}\n);\n"
 
 
 class _Loading(_UserVerilogCode):
@@ -95,9 +96,9 @@ def _printed(connection: _Signal | str | None) -> str:
 
 
 class _RecordingConvertor(_ToVerilogConvertor):
-    """MyHDL's convertor, which drops the signals of an interface that a block does not use, and remembers the ports.
+    """MyHDL's convertor, but that a module has only those of an interface's signals as ports that it uses.
 
-    Fields of records that are read become wires, ties that are read localparams.
+    Fields of records that are read become wires, and ties that are read become localparams.
     """
 
     __slots__ = ("constants", "fields", "ports")
@@ -109,8 +110,8 @@ class _RecordingConvertor(_ToVerilogConvertor):
 
     def _convert_filter(self, h, intf, siglist, memlist, genlist):
         for signal in intf.argdict.values():
-            if isinstance(signal, _SliceSignal):
-                signal._driven = None  # MyHDL would have a slice's reader drive it
+            if isinstance(signal, (_SliceSignal, ConcatSignal)):
+                signal._driven = None  # MyHDL would have its reader drive it
         arguments = inspect.signature(intf.func).parameters
         intf.argnames = [
             name
@@ -125,21 +126,20 @@ class _RecordingConvertor(_ToVerilogConvertor):
             for name in intf.argnames
         )
         self._declare_fields(siglist, intf)
+        _check_names(intf, {id(intf.argdict[name]): name for name in intf.argnames}, memlist)
         self.constants = [s for s in siglist if isinstance(s, Tied) and s._used and s._name not in intf.argnames]
         siglist[:] = [s for s in siglist if not isinstance(s, Tied) or s._name in intf.argnames]
 
     def _declare_fields(self, siglist: list[_Signal], intf: Any) -> None:
-        """Have MyHDL print a wire for each field, called as its record and it."""
+        """Have MyHDL print a wire for each field, named record_field."""
         ports = {id(intf.argdict[name]): name for name in intf.argnames}
-        taken = {signal._name for signal in siglist}
-        for word in list(siglist):
+        cut = [intf.argdict[name] for name in intf.argnames if isinstance(intf.argdict[name], _SliceSignal)]
+        for word in [*siglist, *cut]:
             record = ports.get(id(word), word._name).removesuffix("_word")
             for field in word._slicesigs:
                 if not isinstance(field, Field) or id(field) not in self.fields or id(field) in ports:
                     continue
                 field._name = f"{record}_{field.field}"
-                if field._name in taken:
-                    raise HierarchyError(f"{intf.name}: {field._name} is a signal and a record's field")
                 field._driven, field._read, field._used = "wire", True, True
                 siglist.append(field)
 
@@ -156,7 +156,9 @@ def convert_hierarchy(top: _Block, directory: Path, header: str) -> list[Module]
         The modules, each after those that it instantiates; `top` is the last.
 
     Raises:
-        HierarchyError: two blocks of one name differ in parameters or ports, or a signal has no name in its parent.
+        HierarchyError: a block cannot be a module: a signal has no driver or no reader; two things in it would have one
+            name in Verilog; an instance connects to a signal that no variable holds; given Verilog drives what is no
+            argument of its block, or another block has its name.
     """
     with elaboration():
         return _Converter(directory, header).convert(top)
@@ -165,51 +167,51 @@ def convert_hierarchy(top: _Block, directory: Path, header: str) -> list[Module]
 class _Converter:
     def __init__(self, directory: Path, header: str):
         self._directory, self._header = directory, header
-        self._modules: dict[str, tuple[Any, Module]] = {}
+        self._modules: dict[str, tuple[Any, Module | None]] = {}
 
     def convert(self, top: _Block) -> list[Module]:
-        self._top = top.func
         self._module_of(top)
         return [module for _, module in self._modules.values()]
 
     def _module_of(self, block: _Block) -> Module:
-        """The block's module: one for each function, with its parameters and its ports' shapes and classes."""
-        ports, parameters = block_arguments(block)
-        shapes = tuple((port, len(signal) or 1, (signal.min or 0) < 0) for port, signal in ports.items())
-        signature = block.func, parameters, shapes, interface_classes(block)
+        """The block's module, which is written unless a block of the same kind has one."""
+        if given := getattr(block.func, "given_verilog", None):
+            return self._copy(given, block)
+        kind = _kind(block)
         for known, module in self._modules.values():
-            if known == signature:
+            if known == kind:
                 return module
-        name = self._new_name(block)
-        given = getattr(block.func, "given_verilog", None)
-        self._modules[name] = signature, None  # the name is taken while the block's own parts are converted
-        module = self._copy(given, name, ports, parameters) if given else self._convert_block(block, name, ports)
-        del self._modules[name]
-        self._modules[name] = signature, module
-        return module
-
-    def _new_name(self, block: _Block) -> str:
-        """The function's name, with a number where the design has another module of that name."""
         name, number = block.func.__name__, 0
-        given = getattr(block.func, "given_verilog", None)
         while name in self._modules:
-            if given:
-                raise HierarchyError(
-                    f"{name} is given Verilog with one name, and another block has it too; rename that"
-                )
             number += 1
             name = f"{block.func.__name__}_{number}"
-        return name
+        self._modules[name] = kind, None  # the name is taken while the block's own parts are converted
+        module = self._convert_block(block, name, block_ports(block))
+        del self._modules[name]
+        self._modules[name] = kind, module
+        return module
 
-    def _copy(self, given: GivenVerilog, name: str, ports: dict[str, _Signal], parameters: Any) -> Module:
+    def _copy(self, given: GivenVerilog, block: _Block) -> Module:
+        """The module of given Verilog: one file for all instances, each of which has its own parameters."""
+        name, ports = block.func.__name__, block_ports(block)
         if strangers := given.outputs - set(ports):
             raise HierarchyError(f"{name}: {', '.join(sorted(strangers))} is said to be an output, and is no argument")
-        path = self._directory / f"{name}.v"
-        shutil.copyfile(given.source(), path)
         shapes = tuple(
             Port(port, len(signal) or 1, (signal.min or 0) < 0, port in given.outputs) for port, signal in ports.items()
         )
-        return Module(name, path, shapes, {}, parameters)
+        parameters = tuple(
+            (parameter, repr(value))
+            for parameter, value in block_arguments(block).items()
+            if not any(signals_in(parameter, value))
+        )
+        if name not in self._modules:
+            path = self._directory / f"{name}.v"
+            shutil.copyfile(given.source(), path)
+            self._modules[name] = block.func, Module(name, path, shapes, {}, parameters)
+        known, module = self._modules[name]
+        if known is not block.func:
+            raise HierarchyError(f"{name} is given Verilog, whose name stays, and another block's name; rename that")
+        return replace(module, ports=shapes, parameters=parameters)
 
     def _convert_block(self, block: _Block, name: str, ports: dict[str, _Signal]) -> Module:
         children = []
@@ -226,6 +228,8 @@ class _Converter:
             kind = child.func.__name__
             alike = [other for other in children if other.func.__name__ == kind]
             instance = kind if len(alike) == 1 else f"{kind}_{alike.index(child)}"
+            if instance in instances:
+                raise HierarchyError(f"{name}: two instances would be called {instance}; rename a block")
             instances[instance] = module.name
             _replace_by_instance(child, module, f"{instance}_i", ports)
         fields = _fields_read(block, children)
@@ -234,6 +238,9 @@ class _Converter:
         return Module(name, self._directory / f"{name}.v", written_ports, instances)
 
     def _write(self, block: _Block, name: str, ports: dict[str, _Signal], fields: set[int]) -> tuple[Port, ...]:
+        for signal in block.sigdict.values():
+            if isinstance(signal, Tied):
+                signal._used = False  # a child's conversion has used it; here it needs a name where a process reads it
         _mark_processes(block)
         for signal in [*block.sigdict.values(), *ports.values()]:
             signal._name = None  # a child's conversion may have left its own name for it
@@ -267,10 +274,75 @@ class _Converter:
         return convertor.ports
 
 
+class _Constant:
+    """An argument that is no signal. Equal ones have one type, value and text: True == 1, and -0.0 == 0.0."""
+
+    __hash__ = None
+
+    def __init__(self, value: Any):
+        self._value = value
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, _Constant) or type(self._value) is not type(other._value):
+            return False
+        mine, its = self._value, other._value
+        # An array's == is no truth value, but an array.
+        return mine is its or ((mine == its) is True and repr(mine) == repr(its))
+
+
+def _kind(block: _Block) -> tuple[Any, ...]:
+    """What determines a block's module: its function, its arguments, and which of its ports are the same signal.
+
+    A signal counts by its shape, a record by its layout, an interface by its class and all its attributes, anything
+    else by its value.
+    """
+    numbers: dict[int, int] = {}
+    same = tuple(numbers.setdefault(id(signal), number) for number, signal in enumerate(block_ports(block).values()))
+    return block.func, _description(block_arguments(block)), same
+
+
+def _description(value: Any) -> Any:
+    """What `_kind` compares of an argument."""
+    if isinstance(value, _Signal):
+        return _description_of_signal(value)
+    if isinstance(value, (list, tuple)):
+        return tuple(map(_description, value))
+    if getattr(value, "is_interface", False):
+        places = {name: field._right for name, field in vars(value).items() if isinstance(field, Field)}
+        return type(value), places, _description(vars(value))
+    if isinstance(value, dict):
+        return tuple((name, _description(element)) for name, element in value.items())
+    return _Constant(value)
+
+
+def _description_of_signal(signal: _Signal) -> tuple[int, ...]:
+    """Its width and its range, which a bit does not state."""
+    return len(signal) or 1, signal.min or 0, signal.max or 1 << (len(signal) or 1)
+
+
+def _check_names(block: _Block, ports: Mapping[int, str], memories: list[_MemInfo]) -> None:
+    """Refuse two signals, memories or instances of one name in Verilog: MyHDL would print one for the other."""
+    owners: dict[str, int] = {memory.name: id(memory) for memory in memories if memory._used}
+    owners |= {name: number for number, name in ports.items()}
+    used: list[tuple[str, _Signal]] = []
+    for sub in block.subs:
+        if isinstance(sub, _Instantiator):
+            used += sub.sigdict.items()
+        elif isinstance(sub.verilog_code, _Instance):
+            owners[sub.verilog_code.name] = id(sub)
+            used += [(port, one) for port, one in sub.verilog_code.connections.items() if isinstance(one, _Signal)]
+    for variable, signal in used:
+        if isinstance(signal, _SliceSignal) and not isinstance(signal, Field) and id(signal) not in ports:
+            continue  # it prints as bits of another
+        name = ports.get(id(signal), signal._name)
+        if name is None or owners.setdefault(name, id(signal)) != id(signal):
+            raise HierarchyError(f"{block.name}: two things would be called {name or variable} in Verilog; rename one")
+
+
 def _fields_read(block: _Block, children: list[_Block]) -> dict[int, Field]:
     """The fields of records that a block's processes and instances read, by identity."""
     read = [sub.symdict[name] for sub in block.subs if isinstance(sub, _Instantiator) for name in sub.inputs]
-    read += [signal for child in children for signal in child.verilog_code._connections.values()]
+    read += [signal for child in children for signal in child.verilog_code.connections.values()]
     return {id(signal): signal for signal in read if isinstance(signal, Field)}
 
 
@@ -290,7 +362,7 @@ def _number(signal: _Signal) -> str:
 
 def _replace_by_instance(child: _Block, module: Module, name: str, parent_ports: dict[str, _Signal]) -> None:
     """Make the parent's conversion print an instance where the child's processes would stand."""
-    signals, _ = block_arguments(child)
+    signals = block_ports(child)
     passed_on = {id(signal) for signal in parent_ports.values()}
     connections = {port.name: signals[port.name] for port in module.ports}
     for port, signal in connections.items():
@@ -310,6 +382,8 @@ def _replace_by_instance(child: _Block, module: Module, name: str, parent_ports:
             signal._driven = "wire"
         else:
             signal._markRead()
+            if isinstance(signal, ConcatSignal):
+                signal._driven = "wire"  # by its parts, which the child's conversion has forgotten
 
 
 def _replace_by_loading(loading: _Block, parent: _Block) -> None:
@@ -321,9 +395,9 @@ def _replace_by_loading(loading: _Block, parent: _Block) -> None:
 
 
 def _mark_processes(block: _Block) -> None:
-    """Repeat the marks that elaboration left on signals, and that converting the children wiped off.
+    """Repeat the marks that elaboration left on signals, and that the children's conversion removed.
 
-    Registers to reset come in the order of a Python set, which changes from run to run; here they get that of names.
+    Registers to reset come in the order of a Python set, which changes from run to run; here they are sorted by name.
     """
     for sub in block.subs:
         if isinstance(sub, _Instantiator):
@@ -362,7 +436,7 @@ def _name_signals(
         named.add(id(signal))
 
     for child in children:
-        for port, connected in child.verilog_code._connections.items():
+        for port, connected in child.verilog_code.connections.items():
             if isinstance(connected, _Signal):
                 name(connected, f"{child.func.__name__}.{port} connects to")
     for field in fields.values():

@@ -22,8 +22,7 @@ from raycaster.rtl.common.records import Record
 class Part:
     """A block or a process inside a design, with the signals that it drives, and those that it reads of others.
 
-    What only clocks and resets it does not count. A signal stands for itself by its identity; `Inside.names` has what
-    it is called.
+    Its clock and its reset do not count. Signals are given by their identity; `Inside.names` has their names.
     """
 
     name: str
@@ -59,14 +58,13 @@ def find_block(top: _Block, name: str) -> _Block:
 
 
 def look_inside(top: _Block, opened: Collection[str]) -> Inside:
-    """What an elaborated block is made of; blocks whose names are in `opened` give way to their own parts."""
-    ports, _ = block_arguments(top)
+    """What an elaborated block is made of; blocks whose names are in `opened` are replaced by their own parts."""
+    ports = block_ports(top)
     names: dict[int, tuple[str, str]] = {}
     parts: list[Part] = []
 
     def visit(block: _Block, within: tuple[str, ...]) -> None:
-        arguments = inspect.signature(block.func).bind(*block.args, **block.kwargs).arguments
-        scope = dict(arguments)
+        scope = block_arguments(block)
         for sub in block.subs:
             scope |= {name: value for name, value in sub.callinfo.symdict.items() if not name.startswith("_")}
         for name, value in scope.items():
@@ -76,7 +74,7 @@ def look_inside(top: _Block, opened: Collection[str]) -> Inside:
             if isinstance(sub, _Block) and sub.func.__name__ in opened:
                 visit(sub, (*within, sub.func.__name__))
             elif isinstance(sub, _Block):
-                around = {id(signal) for signal in block_arguments(sub)[0].values()}
+                around = {id(signal) for signal in block_ports(sub).values()}
                 reads, drives = (_whole(signals, around) for signals in _traffic(sub))
                 parts.append(Part(sub.func.__name__, True, within, reads - drives, drives))
             else:
@@ -96,7 +94,7 @@ def _traffic(block: _Block) -> tuple[Signals, Signals]:
     reads: Signals = {}
     drives: Signals = {}
     if given:
-        for name, signal in block_arguments(block)[0].items():
+        for name, signal in block_ports(block).items():
             (drives if name in given.outputs else reads)[id(signal)] = signal
     for sub in block.subs:
         more_reads, more_drives = _traffic(sub) if isinstance(sub, _Block) else _traffic_of_process(sub)
@@ -151,17 +149,22 @@ def port_signals(arguments: Mapping[str, Any]) -> dict[str, _Signal]:
     return {path: signal for name, value in arguments.items() for path, signal in signals_in(name, value)}
 
 
-def block_arguments(block: _Block) -> tuple[dict[str, _Signal], Any]:
-    """A block's port signals by Verilog name, and its other arguments."""
+def block_arguments(block: _Block) -> dict[str, Any]:
+    """A block's arguments by name, those that were left to their defaults too."""
     bound = inspect.signature(block.func).bind(*block.args, **block.kwargs)
     bound.apply_defaults()
-    ports = port_signals(bound.arguments)
-    parameters = ((name, repr(value)) for name, value in bound.arguments.items() if not any(signals_in(name, value)))
-    return ports, tuple(parameters)
+    return dict(bound.arguments)
+
+
+def block_ports(block: _Block) -> dict[str, _Signal]:
+    """A block's port signals by Verilog name."""
+    return port_signals(block_arguments(block))
 
 
 def signals_in(name: str, value: Any) -> Iterator[tuple[str, _Signal]]:
-    """Signals that a name gives access to: itself, a record's word, an interface's attributes, a list's elements."""
+    """The signals that a variable gives access to: itself, a record's word, an interface's attributes, a list's
+    elements.
+    """
     if isinstance(value, _Signal):
         yield name, value
     elif isinstance(value, Record):
@@ -172,11 +175,3 @@ def signals_in(name: str, value: Any) -> Iterator[tuple[str, _Signal]]:
     elif getattr(value, "is_interface", False):
         for attribute, element in vars(value).items():
             yield from signals_in(f"{name}_{attribute}", element)
-
-
-def interface_classes(block: _Block) -> tuple[tuple[str, type], ...]:
-    """The classes of a block's interfaces and records by argument, on which a block may decide what it is."""
-    bound = inspect.signature(block.func).bind(*block.args, **block.kwargs)
-    return tuple(
-        (name, type(value)) for name, value in bound.arguments.items() if getattr(value, "is_interface", False)
-    )

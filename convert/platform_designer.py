@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import OPTION_NAMES, Configuration
 from raycaster.convert.hierarchy import Port
 from raycaster.registers import compile_registers
 
@@ -81,7 +81,8 @@ def interfaces(config: Configuration) -> tuple[Interface, ...]:
 def component(config: Configuration, ports: Sequence[Port], sources: Sequence[str]) -> str:
     """The component's description, in Tcl.
 
-    The configuration becomes macros in the `system.h` of software for the system.
+    The options become macros in the `system.h` of software for the system, and so does `FIXED`, "rects" or "all", in
+    a design with a scene built in; others do not have it.
 
     Args:
         config: what was generated.
@@ -103,10 +104,7 @@ def component(config: Configuration, ports: Sequence[Port], sources: Sequence[st
         'set_module_property GROUP "Video"',
         f"set_module_property VERSION {version('raycaster')}",
         "set_module_property EDITABLE false",
-        *(
-            f"set_module_assignment embeddedsw.CMacro.{field.name.upper()} {_macro(getattr(config, field.name))}"
-            for field in dataclasses.fields(config)
-        ),
+        *(f"set_module_assignment embeddedsw.CMacro.{name} {value}" for name, value in _macros(config).items()),
     ]
     for fileset in ("QUARTUS_SYNTH", "SIM_VERILOG"):
         lines += ["", f'add_fileset {fileset.lower()} {fileset} "" ""']
@@ -128,8 +126,9 @@ def component(config: Configuration, ports: Sequence[Port], sources: Sequence[st
     return "\n".join(lines) + "\n"
 
 
-def _macro(value: str | int | bool) -> str | int:
-    """A value as it stands after a macro's name in C."""
-    if isinstance(value, bool):
-        return int(value)
-    return f'{{"{value}"}}' if isinstance(value, str) else value
+def _macros(config: Configuration) -> dict[str, str | int]:
+    """What software is told of the design: by macro, its C expression, as a word of Tcl."""
+    values = {name: getattr(config, name) for name in OPTION_NAMES}
+    if config.fixed:
+        values["fixed"] = config.fixed.scope
+    return {name.upper(): f'{{"{value}"}}' if isinstance(value, str) else int(value) for name, value in values.items()}

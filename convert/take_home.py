@@ -47,11 +47,11 @@ def write_take_home(config: Configuration, modules: Sequence[Module], directory:
 
 
 def _description(config: Configuration) -> str:
-    """The configuration as comment lines; only the beam engine has a scale, and few designs a fixed scene."""
+    """The configuration as comment lines; without a scale where there is only one, and a fixed scene where none is."""
     values = {name: getattr(config, name) for name in OPTION_NAMES}
     if config.fixed:
         values["fixed"] = config.fixed.name
-    if config.engine != "beam":
+    if config.facts.line_buffered:
         del values["scale"]
     pad = max(map(len, values))
     return "".join(f"//     {name:<{pad}}  {value}\n" for name, value in values.items())
@@ -66,13 +66,14 @@ def _constraints(config: Configuration) -> str:
     screen = config.screen_geometry
     divided = screen.clocks_per_pixel > 1
     made = f"divided by {screen.clocks_per_pixel}" if divided else "inverted"
+    forwarded = "" if divided else "# For a pin, replace the module pixel_clock by the chip's DDR output register.\n"
     relation = f"-divide_by {screen.clocks_per_pixel}" if divided else "-invert"
     return f"""# SPDX-License-Identifier: MIT
 # {TOP}, {config.name}. One clock; the VGA outputs are registers that change at the falling edge of
 # vga_clk, which is clk {made}, and are taken at its rising edge half a pixel later.
 create_clock -name clk -period {clock_period(config)} [get_ports clk]
 create_generated_clock -name vga_clk -source [get_ports clk] {relation} [get_ports vga_clk]
-
+{forwarded}
 # Where the ports are pins, say here what the board takes; inside a system the other side's constraints hold.
 # set_output_delay -clock vga_clk -max 2.0 [get_ports {{vga_r[*] vga_g[*] vga_b[*] vga_hs vga_vs vga_blank_n}}]
 """

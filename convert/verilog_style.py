@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Verilog as a person would write it, from Verilog as MyHDL prints it: the same meaning, easier on the eye."""
+"""Verilog as a person would write it, from Verilog as MyHDL prints it; the meaning stays."""
 
 from __future__ import annotations
 
@@ -28,8 +28,9 @@ _OPERATORS = {
 def restyle(text: str, block: _Block, ports: Sequence[str]) -> str:
     """Restyle one module.
 
-    Purposes of processes become comments, port lists ANSI, states names, constant expressions numbers; parentheses
-    that say nothing go.
+    The comment above a process, where there is one, stands above it here too. Port lists become ANSI, codes of states
+    their names, and constant expressions numbers; needless parentheses go. Processes and instances have a blank line
+    between them.
 
     Args:
         text: what MyHDL printed.
@@ -54,11 +55,12 @@ def restyle(text: str, block: _Block, ports: Sequence[str]) -> str:
     text = _declare_ports(text, ports)
     text = _declare_constants(text)
     lines = (wrapped for line in text.splitlines() for wrapped in _wrap(line.rstrip()))
-    return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).strip("\n") + "\n"
+    text = re.sub(r"\n+endmodule\n*", "\n\nendmodule\n", "\n".join(lines).strip("\n") + "\n")
+    return re.sub(r"\n{3,}", "\n\n", text)
 
 
 def _size_words(text: str) -> str:
-    """Give a long word the width of what it is assigned to; MyHDL gives it that of its value, and one more for luck."""
+    """Give a long word the width of what it is assigned to; MyHDL gives it that of its value, or one bit more."""
     widths = {name: int(high) + 1 for high, name in re.findall(r"\[(\d+):0\] (\w+);", text)}
 
     def size(match: re.Match[str]) -> str:
@@ -69,7 +71,7 @@ def _size_words(text: str) -> str:
 
 
 def _comment(text: str, process: _Instantiator) -> str:
-    """Carry a process's purpose, the comment above it, into the Verilog."""
+    """Put the comment above a process, if it has one, above it in the Verilog."""
     comment = inspect.getcomments(process.funcobj)
     if not comment:
         return text
@@ -97,7 +99,7 @@ def _sensitivity(match: re.Match[str]) -> str:
 
 
 def _name_states(text: str, signal: str, state: EnumItemType) -> str:
-    """States by name instead of code."""
+    """Write states by name instead of code."""
     names: Mapping[str, str] = {code: name for name, code in state._type._codedict.items()}
     width = state._nrbits
     text = re.sub(rf"\b({signal} (?:==|!=|<=|=) ){width}'b([01]+)", lambda match: match[1] + names[match[2]], text)
@@ -106,7 +108,7 @@ def _name_states(text: str, signal: str, state: EnumItemType) -> str:
 
 
 def _drop_modulo(text: str, block: _Block) -> str:
-    """A sum modulo what its target holds: Verilog's assignment wraps around by itself."""
+    """Drop the modulo of a sum that its target's width implies: Verilog's assignment wraps around by itself."""
     widths = {name: len(signal) for name, signal in block.sigdict.items() if signal.val is not None}
 
     def wrap(match: re.Match[str]) -> str:
@@ -117,7 +119,7 @@ def _drop_modulo(text: str, block: _Block) -> str:
 
 
 def _fold_constants(text: str) -> str:
-    """Numbers in place of constant arithmetic, such as the 2 * 8 of a slice's bounds."""
+    """Write numbers in place of constant arithmetic, such as the 2 * 8 of a slice's bounds."""
     constant = r"[\d\s()*-][\d\s+()*-]*(?<=[\d)])"
     text = re.sub(rf"\[({constant})\]", lambda match: f"[{_evaluate(match[1])}]", text)
     text = re.sub(
@@ -142,7 +144,7 @@ def _evaluate(expression: str) -> int:
 
 
 def _drop_parentheses(line: str) -> str:
-    """Parentheses around a whole expression, a negated name or a negative number that is compared or assigned."""
+    """Drop parentheses around a whole expression, a negated name or a negative number that is compared or assigned."""
     if line.lstrip().startswith("//"):
         return line
     line = re.sub(r"(?<!if )\((!\w+)\)", r"\1", line)
@@ -156,7 +158,7 @@ def _drop_parentheses(line: str) -> str:
 
 
 def _wrap(line: str) -> list[str]:
-    """A line that is too long, broken behind its spaces; a comment stays one."""
+    """Break a line that is too long behind its spaces; a comment stays one."""
     if len(line) <= LINE_LENGTH:
         return [line]
     indent = line[: len(line) - len(line.lstrip())]
@@ -175,7 +177,7 @@ def _is_one_group(text: str) -> bool:
 
 
 def _declare_ports(text: str, ports: Sequence[str]) -> str:
-    """Each port is declared once, in the module's head, and the text about the module stands above it."""
+    """Declare each port once, in the module's head, and put the text about the module above that."""
     head = re.search(r"^module (\w+) \(\n[^)]*\);\n((?://[^\n]*\n)*)", text, re.M)
     before, name, purpose, body = text[: head.start()], head[1], head[2], text[head.end() :]
     rows = []
@@ -191,7 +193,7 @@ def _declare_ports(text: str, ports: Sequence[str]) -> str:
 
 
 def _declare_fields(text: str) -> str:
-    """A record's field is declared where it is cut out of its word."""
+    """Declare a record's field where it is cut out of its word."""
     for name, bits in re.findall(r"^assign (\w+) = (\w+_word\[\d+(?::\d+)?\]);$", text, re.M):
         shape = re.search(rf"^wire((?: signed)?(?: \[\d+:0\])?) {name};\n", text, re.M)
         if shape:
@@ -201,7 +203,7 @@ def _declare_fields(text: str) -> str:
 
 
 def _declare_constants(text: str) -> str:
-    """A module's constants stand together above its signals."""
+    """Put a module's constants together above its signals."""
     constants = "".join(re.findall(r"^localparam [^\n]*;\n", text, re.M))
     if not constants:
         return text

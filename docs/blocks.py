@@ -17,8 +17,9 @@ from raycaster.configuration import Configuration, configure
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.inside import Inside, Part, find_block, look_inside
 from raycaster.memory_map import PROGRAM_FILE
-from raycaster.rtl.system.processor_system import ProcessorPorts, processor_system
-from raycaster.rtl.system.ray_caster_module import ModulePorts, ray_caster_module
+from raycaster.rtl.system.ports import module_ports, processor_ports
+from raycaster.rtl.system.processor_system import processor_system
+from raycaster.rtl.system.ray_caster_module import ray_caster_module
 
 FONT = "Helvetica,Arial,sans-serif"
 BLOCK_FILL, PROCESS_FILL, OPENED_FILL = "#d6e6f2", "#ffffff", "#f6f8fa"
@@ -42,11 +43,11 @@ class Drawing:
 
 
 def _module(config: Configuration) -> _Block:
-    return ray_caster_module(**ModulePorts(config).all(), config=config)
+    return ray_caster_module(**module_ports(config), config=config)
 
 
 def _system(config: Configuration) -> _Block:
-    return processor_system(**ProcessorPorts(config).all(), config=config, program=PROGRAM_FILE)
+    return processor_system(**processor_ports(config), config=config, program=PROGRAM_FILE)
 
 
 DRAWINGS = (
@@ -54,7 +55,7 @@ DRAWINGS = (
     Drawing("renderer", _module, "ray_caster_renderer", frozenset({"ray_caster"})),
     Drawing("ray_unit", _module, "ray_unit", frozenset({"intersection_finder"})),
     Drawing("video_generator", _module, "video_generator"),
-    Drawing("exact", _module, "exact_caster", frozenset({"exact_unit"}), "exact"),
+    Drawing("exact", _module, "ray_caster", frozenset({"exact_unit"}), "exact"),
     Drawing("beam", _module, "beam_renderer", frozenset({"beam_caster"}), "beam"),
 )
 

@@ -13,7 +13,8 @@ from raycaster.docs.timing import CONFIGURATION, DIAGRAMS, kept, measured
 from raycaster.engines import ENGINES
 from raycaster.registers import compile_registers
 from raycaster.rtl.beam import fold_tester, nearest_of_two, ray_fold
-from raycaster.rtl.beam.beam_caster import beam_latency, pass_latency, rounds
+from raycaster.rtl.beam.beam_caster import beam_latency, pass_latency
+from raycaster.rtl.beam.beam_pass import rounds
 from raycaster.rtl.engine import colour_blend, rect_setup
 from raycaster.rtl.exact.exact_control import WRITE_AT
 

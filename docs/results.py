@@ -85,10 +85,10 @@ def table(results: Mapping[str, Any]) -> str:
     pixels = ", ".join(f"{count:,}" for count in dict.fromkeys(row["pixels"] for row in results["designs"]))
     lines += [
         "",
-        f"Wrong: unlike exact arithmetic, of {pixels} pixels in {results['scenes']} scenes; unlike the model of the very "
-        f"engine: {sum(row['wrong_vs_golden'] for row in results['designs'])}. Cells: of an ECP5, as Yosys counts them. "
-        f"12 rectangles, a reflection as the scenes want it, all else by default. Measured on {results['date']} by "
-        "`raycaster results`.",
+        f"Wrong: unlike exact arithmetic, of {pixels} pixels in {results['scenes']} scenes; unlike the model "
+        f"of the same engine: {sum(row['wrong_vs_golden'] for row in results['designs'])}. Cells: of an ECP5, as "
+        f"Yosys counts them. 12 rectangles, reflections as the scenes have them, all else by default. "
+        f"Measured on {results['date']} by `raycaster results`.",
     ]
     return "\n".join(lines) + "\n"
 

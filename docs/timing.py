@@ -20,7 +20,9 @@ import wavedrom
 
 from raycaster.configuration import Configuration, configure
 from raycaster.errors import UserError
+from raycaster.rtl.common.records import Origin, Ray, Record
 from raycaster.verif.job import Job
+from raycaster.verif.probes.ray import fields
 from raycaster.verif.simulator import build_model, run_bench
 from raycaster.verif.waves import Waves, signed
 
@@ -82,10 +84,10 @@ class Frame:
     def __init__(self, waves: Waves, configuration: Configuration):
         self._waves = waves
         self._groups = configuration.groups
-        samples = waves.sample([VIDEO + "start_screen", RENDERER + "run"])
-        starts = [i for i, value in enumerate(samples.values[VIDEO + "start_screen"]) if value]
+        samples = waves.sample([VIDEO + "scan_start_screen", RENDERER + "picture_run"])
+        starts = [i for i, value in enumerate(samples.values[VIDEO + "scan_start_screen"]) if value]
         # What was committed goes live at StartScreen, and is seen in the cycle after it.
-        live = [i for i in starts if samples.values[RENDERER + "run"][i + 1]]
+        live = [i for i in starts if samples.values[RENDERER + "picture_run"][i + 1]]
         if not live:
             raise UserError(f"{waves.path}: has no frame with a live scene")
         self._start_ns = samples.times_ns[live[0] - 1]
@@ -121,6 +123,11 @@ def _bits(prefix: str, *names: str) -> list[Lane]:
     return [Lane(name, (prefix + name,)) for name in names]
 
 
+def _strobes(*names: str) -> list[Lane]:
+    """Where the monitor is."""
+    return [Lane(name, (f"{VIDEO}scan_{name}",)) for name in names]
+
+
 def _number(prefix: str, name: str, is_signed: bool = False) -> Lane:
     return Lane(name, (prefix + name,), str, is_signed)
 
@@ -129,18 +136,31 @@ def _colour(prefix: str, name: str) -> Lane:
     return Lane(name, (prefix + name,), "#{:06x}".format)
 
 
-def _point(prefix: str, name: str) -> Lane:
-    return Lane(name, tuple(f"{prefix}{name}_{axis}" for axis in "xyz"), "{} {} {}".format)
+def _word(name: str) -> Lane:
+    """A colour of a unit's that is a record."""
+    return Lane(name, (f"{UNIT}{name}_word",), "#{:06x}".format)
+
+
+def _place(name: str) -> Lane:
+    """Where the group is."""
+    return Lane(name, (f"{RENDERER}place_{name}",), str)
+
+
+def _point(name: str, record: str, layout: Record) -> Lane:
+    """The coordinates in one of a unit's records."""
+    return Lane(name, fields(UNIT.rstrip("."), record, "xyz", layout), "{} {} {}".format)
 
 
 def _slope() -> Lane:
     """Magnitudes and signs of the ray that is traced."""
-    signals = [f"{UNIT}{name}_d{axis}" for name in ("slope", "signs") for axis in "xyz"]
+    components = ("dx", "dy", "dz")
+    unit = UNIT.rstrip(".")
+    signals = (*fields(unit, "slope", components), *fields(unit, "ray", components, Ray(CONFIGURATION)))
 
     def text(x: int, y: int, z: int, *negative: int) -> str:
         return " ".join(f"{'-' if sign else ''}{size}" for size, sign in zip((x, y, z), negative, strict=True))
 
-    return Lane("slope", tuple(signals), text)
+    return Lane("slope", signals, text)
 
 
 def _followed(frame: Frame) -> list[tuple[int, int]]:
@@ -153,17 +173,17 @@ DIAGRAMS = (
     Diagram(
         "video_and_counters",
         {
-            "video": [_number(VIDEO, "y", is_signed=True), *_bits(VIDEO, "start_screen", "start_row")],
+            "video": [_number(VIDEO, "y", is_signed=True), *_strobes("start_screen", "start_row")],
             "counters": [
-                _number(RENDERER, "row"), *_bits(RENDERER, "line_buf_sel"), _number(RENDERER, "column_offset"),
+                _place("row"), *_bits(RENDERER, "line_buf_sel"), _place("column_offset"),
             ],
             "caster": _bits(RENDERER, "enable", "done"),
         },
         lambda frame: [
             (cycle - 1, cycle + 5)
             for cycle in (
-                frame.strobe(VIDEO + "start_screen", 0), frame.done(0, 0), frame.done(0, 1), frame.done(0, -1),
-                frame.strobe(VIDEO + "start_row", 0), frame.done(1, 0),
+                frame.strobe(VIDEO + "scan_start_screen", 0), frame.done(0, 0), frame.done(0, 1), frame.done(0, -1),
+                frame.strobe(VIDEO + "scan_start_row", 0), frame.done(1, 0),
             )
         ],
         [Arrow("start_screen", 0, "start_row", 0)],
@@ -173,7 +193,7 @@ DIAGRAMS = (
         {
             "renderer": [
                 *_bits(RENDERER, "done", "restart", "reset_delay", "reset_ray_caster"),
-                _number(RENDERER, "column_offset"), *_bits(RENDERER, "enable"), *_bits(STEPS, "screen_to_ray"),
+                _place("column_offset"), *_bits(RENDERER, "enable"), *_bits(STEPS, "screen_to_ray"),
             ],
         },
         lambda frame: [(cycle - 2, cycle + 8) for cycle in (frame.done(0, 0), frame.done(0, -1))],
@@ -183,10 +203,9 @@ DIAGRAMS = (
         "renderer_and_ray_unit",
         {
             "renderer": [
-                *_bits(RENDERER, "reset_ray_caster", "enable"), _number(RENDERER, "row"),
-                _number(RENDERER, "column_offset"),
+                *_bits(RENDERER, "reset_ray_caster", "enable"), _place("row"), _place("column_offset"),
             ],
-            "ray_unit": [*_bits(STEPS, "screen_to_ray"), _slope(), _colour(UNIT, "pixel")],
+            "ray_unit": [*_bits(STEPS, "screen_to_ray"), _slope(), _word("pixel")],
             "buffer": [
                 *_bits(RENDERER, "done", "line_buf_sel"), _number(RENDERER + "line_buffer_0_i.", "write_address"),
             ],
@@ -218,15 +237,15 @@ DIAGRAMS = (
     Diagram(
         "ray_unit_and_output",
         {
-            "ray": [_point(UNIT, "origin"), _slope()],
+            "ray": [_point("origin", "ray", Ray(CONFIGURATION)), _slope()],
             "intersection": [
                 *_bits(STEPS, "find_intersection"), *_bits(UNIT, "hit"), _number(UNIT, "depth"),
             ],
             "z_buffer": [
                 *_bits(STEPS, "reset_z_buf", "write_z_buf"), *_bits(UNIT, "found"), _colour(UNIT, "found_colour"),
-                _point(UNIT, "found_point"),
+                _point("found_point", "found_point", Origin(CONFIGURATION)),
             ],
-            "output": [*_bits(STEPS, "add_colour"), _colour(UNIT, "pixel"), *_bits(RENDERER, "done")],
+            "output": [*_bits(STEPS, "add_colour"), _word("pixel"), *_bits(RENDERER, "done")],
         },
         _followed,
     ),

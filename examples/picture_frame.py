@@ -10,22 +10,25 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
-from myhdl import Signal, always_comb, always_seq, block, intbv
+from myhdl import Signal, always_comb, always_seq, block, instances, intbv
 
 from raycaster.configuration import Configuration, configure
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.program import scene_words
 from raycaster.registers import address_bits
+from raycaster.rtl.common.interfaces import AvalonPort
 from raycaster.rtl.common.ties import tied, unconnected
-from raycaster.rtl.system.ray_caster_module import ModulePorts, ray_caster_module
+from raycaster.rtl.system.ports import module_ports
+from raycaster.rtl.system.ray_caster_module import ray_caster_module
 from raycaster.scene import Scene, load_scene
 
 
 @block
-def scene_writer(clk, reset, address, write, writedata, waitrequest, words):
-    """Write each (address, word) of `words` once, in order, waiting where the agent asks for it; then rest."""
+def scene_writer(clk, reset, avm_m0, words):
+    """Avalon-MM host: write each (address, word) of `words` once, in order, waiting where the agent asks for it."""
     count = len(words)
     addresses = tuple(word[0] for word in words)
     contents = tuple(word[1] for word in words)
@@ -39,68 +42,44 @@ def scene_writer(clk, reset, address, write, writedata, waitrequest, words):
         if position < count:
             rom_index.next = position
 
-    # Which register.
     @always_comb
     def read_address():
-        address.next = addresses[int(rom_index)]
+        avm_m0.address.next = addresses[int(rom_index)]
 
-    # What goes into it.
     @always_comb
     def read_word():
-        writedata.next = contents[int(rom_index)]
+        avm_m0.writedata.next = contents[int(rom_index)]
 
-    # Until all is written.
     @always_comb
     def request():
-        write.next = position < count
+        avm_m0.write.next = position < count
 
-    # The next one, when this one was taken.
     @always_seq(clk.posedge, reset=reset)
     def advance():
-        if position < count and not waitrequest:
+        if position < count and not avm_m0.waitrequest:
             position.next = position + 1
 
-    return index, read_address, read_word, request, advance
+    return instances()
 
 
 @block
-def picture_frame(
-    clk,
-    reset,
-    vga_r,
-    vga_g,
-    vga_b,
-    vga_hs,
-    vga_vs,
-    vga_blank_n,
-    vga_sync_n,
-    vga_clk,
-    scene: Scene,
-    config: Configuration,
-):
-    """Show one scene for ever. The vga signals are those of ray_caster_module."""
+def picture_frame(clk, reset, vga, scene: Scene, config: Configuration):
+    """Show one scene for ever. vga is that of ray_caster_module."""
     words = tuple(scene_words(scene, config.table, min(scene.reflections, config.reflections)))
-    address = Signal(intbv(0)[address_bits(config.table) :])
-    write, waitrequest = Signal(bool(0)), Signal(bool(0))
-    writedata = Signal(intbv(0)[32:])
-    whole_word, never = tied(0b1111, 4), tied(0, 1)
+    bus = AvalonPort(address_bits(config.table))
+    bus.read, bus.byteenable = tied(0, bus.read), tied(0b1111, bus.byteenable)
+    bus.readdata, bus.readdatavalid = unconnected(bus.readdata), unconnected(bus.readdatavalid)
 
-    writer = scene_writer(clk, reset, address, write, writedata, waitrequest, words)
-    tracer = ray_caster_module(
-        clk, reset, address, never, write, writedata, whole_word, unconnected(32), unconnected(1), waitrequest,
-        unconnected(1), vga_r, vga_g, vga_b, vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_clk, config,
-    )  # fmt: skip
+    writer = scene_writer(clk, reset, avm_m0=bus, words=words)
+    tracer = ray_caster_module(clk, reset, avs_s0=bus, irq=unconnected(1), vga=vga, config=config)
 
     return writer, tracer
 
 
-def ports(config: Configuration) -> dict[str, Signal]:
+def ports(config: Configuration) -> dict[str, Any]:
     """Signals for the ports of picture_frame: those of ray_caster_module without the bus."""
-    return {
-        name: signal
-        for name, signal in ModulePorts(config).all().items()
-        if name in ("clk", "reset") or name.startswith("vga_")
-    }
+    signals = module_ports(config)
+    return {name: signals[name] for name in ("clk", "reset", "vga")}
 
 
 def convert(scene: Scene, config: Configuration, directory: Path) -> list[Path]:

@@ -17,6 +17,7 @@ from rich.table import Table
 
 from raycaster.configuration import Configuration
 from raycaster.design import Design
+from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.fit.choice import BUILD, keep_choice
 from raycaster.fit.fixing import SCOPES, Fixing, fix, general_design, show
@@ -27,7 +28,6 @@ from raycaster.options import CommandParser, add_configuration_options, add_scen
 from raycaster.scene import packaged_scenes
 from raycaster.tools import find_program
 
-ENGINES = ("seed", "exact", "beam")
 FRACTIONS, ROUNDINGS = range(9), ("truncate", "nearest")
 GENERAL = "general"
 FAMILY = FAMILIES["ecp5"]
@@ -62,7 +62,7 @@ class Candidate:
 def error_of(design: Design) -> float:
     """The share of pixels that are unlike the exact picture, by golden; 0 of engines that do not round."""
     config = design.configuration
-    if config.engine != "seed":
+    if not config.facts.divides:
         return 0.0
     seen = engines.render(config, design.scene, design.reflections)
     perfect = exact.render(design.scene, config.screen_geometry, design.reflections)
@@ -76,9 +76,9 @@ def frames_a_second(config: Configuration) -> int:
 
 
 def cycles_a_frame(config: Configuration) -> int:
-    """System clocks that a frame takes at most, all its rectangles included; the beam engine computes each line."""
+    """System clocks that a frame takes at most with all rectangles; what has no line buffer computes each line."""
     screen = config.screen_geometry
-    lines = screen.vertical.visible if config.engine == "beam" else screen.rows
+    lines = screen.rows if config.facts.line_buffered else screen.vertical.visible
     return lines * config.groups * config.group_cycles
 
 
@@ -112,7 +112,7 @@ def _arithmetic(
 ) -> Iterator[tuple[Mapping[str, Any], float]]:
     """The options of each arithmetic that meets the error, and its own error."""
     chosen = {**options, "engine": engine}
-    if engine != "seed":
+    if not ENGINES[engine].divides:
         yield chosen, 0.0
         return
     roundings = (options["rounding"],) if "rounding" in options else ROUNDINGS
@@ -173,7 +173,7 @@ def show_all(found: Sequence[Candidate], areas: Sequence[Area], best: int, conso
 
 def engine_of(config: Configuration) -> str:
     """The engine, and of the seed's what its arithmetic is."""
-    return f"seed F={config.fraction_bits} {config.rounding}" if config.engine == "seed" else config.engine
+    return f"{config.engine} F={config.fraction_bits} {config.rounding}" if config.facts.divides else config.engine
 
 
 def search(

@@ -64,7 +64,7 @@ def write_project(board: Board, config: Configuration, scene: Scene, directory: 
     if config.screen_geometry.clocks_per_pixel == 1:
         raise UserError(
             f"engine: the boards' projects run at 50 MHz, and the {config.engine} engine at the pixel clock; take "
-            "make verilog, and a PLL"
+            "make verilog, a PLL, and a DDR output register in place of pixel_clock"
         )
     with replaced(directory) as written:
         modules = write_system(config, scene, written / VERILOG)

@@ -62,9 +62,9 @@ module bench #(
     initial busy_cycles = 0;
 `ifndef NETLIST
     always @(posedge clk)
-        if (dut.start_screen)
+        if (dut.progress_start_screen)
             busy_cycles = 0;
-        else if (dut.busy)
+        else if (dut.progress_busy)
             busy_cycles = busy_cycles + 1;
 `endif
 
@@ -72,7 +72,7 @@ module bench #(
 `ifdef WAVE_WINDOW
     wave_window window (
         .clk(clk),
-        .start_screen(dut.start_screen)
+        .start_screen(dut.progress_start_screen)
     );
 `endif
 

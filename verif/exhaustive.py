@@ -48,7 +48,7 @@ from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.errors import UserError
 from raycaster.options import CommandParser
-from raycaster.rtl.common.legacy import Steps
+from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
 from raycaster.rtl.seed.divider import divider
 from raycaster.rtl.seed.intersection_helper import intersection_helper
@@ -189,7 +189,7 @@ def _arguments(bench: Bench) -> tuple[Callable, dict[str, Any]]:
         "steps": Steps(),
         **{name: unsigned(position) for name in ("a", "c", "d")},
         **{name: unsigned(slope) for name in ("b", "e")},
-        **{name: bit() for name in ("b_negative", "e_negative", "valid", "ahead")},
+        **{name: bit() for name in ("b_negative", "e_negative", "valid", "towards")},
         "value": signed(position + 2),
         **{name: unsigned(position) for name in ("quotient", "distance")},
         "config": config,

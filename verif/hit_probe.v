@@ -15,10 +15,11 @@ module hit_probe #(
     input wire [15:0] row,
     input wire [15:0] unit,
     input wire [15:0] offset,
-    input wire [POSITION_BITS-1:0] x,
-    input wire [POSITION_BITS-1:0] y,
-    input wire [POSITION_BITS-1:0] z
+    input wire [3*POSITION_BITS-1:0] point
 );
+    wire [POSITION_BITS-1:0] x, y, z;
+    assign {x, y, z} = point;
+
     integer file = 0;
     integer depth = 0;              // of the ray that ended last
     reg [8*16-1:0] name;
@@ -38,16 +39,14 @@ endmodule
 
 bind ray_unit hit_probe #(
     .UNITS(`PROBED_UNITS),
-    .POSITION_BITS($bits(found_point_x))
+    .POSITION_BITS($bits(found_point_word) / 3)
 ) hit_probe_i (
     .clk(clk),
     .initial_ray(steps_initial_ray),
     .add_colour(steps_add_colour),
     .found(found),
-    .row(16'(row)),
+    .row(16'(place_row)),
     .unit(16'(column_base)),
-    .offset(16'(column_offset)),
-    .x(found_point_x),
-    .y(found_point_y),
-    .z(found_point_z)
+    .offset(16'(place_column_offset)),
+    .point(found_point_word)
 );

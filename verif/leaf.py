@@ -21,9 +21,9 @@ from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import Module, Port, convert_hierarchy
 from raycaster.convert.inside import port_signals
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.common.legacy import RaySteps, Steps
+from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.records import Record
-from raycaster.rtl.engine.ray_sequencer import GIVE_UP_AT, impatient
+from raycaster.rtl.engine.ray_sequencer import EARLY_OUT_AT, ends_early
 
 Cycle = Mapping[str, int]
 
@@ -315,16 +315,21 @@ class TraceCycle:
     """0 in the primary ray's pass, 1 and 2 in its reflections'."""
 
     current: int | None = None
-    """The rectangle that holds still for the dividers to start on, None where nobody looks."""
+    """The rectangle that holds still for the dividers to start on, None where it is don't care."""
 
-    finishing: int | None = None
+    offered: int | None = None
     """The rectangle whose quotients were stored last; of the exact engine the one whose verdict is due."""
 
-    ahead: int | None = None
-    """Whether a ray runs towards the rectangle that was started on, None where nobody looks."""
+    towards: int | None = None
+    """Whether a ray runs towards the rectangle that was started on, None where it is don't care."""
 
     alive: int | None = None
-    """Whether a ray still hits anything, None where nobody looks."""
+    """Whether a ray still hits anything, None where it is don't care."""
+
+
+def step_names(config: Configuration) -> list[str]:
+    """The attributes of `Steps` that a line-buffered engine's control drives."""
+    return [name for name in vars(Steps()) if config.facts.divides or name not in ("load_divider", "store_quotient")]
 
 
 def trace_cycles(
@@ -332,8 +337,8 @@ def trace_cycles(
     usable: Sequence[int],
     reflections: int,
     *,
-    possible: Collection[int] | None = None,
-    hopeless: Collection[tuple[int, int]] = (),
+    may_hit: Collection[int] | None = None,
+    behind: Collection[tuple[int, int]] = (),
     lost: int | None = None,
 ) -> list[TraceCycle]:
     """The cycles from the one that generates a group's rays to the last before `done`, from the timing that the
@@ -343,14 +348,14 @@ def trace_cycles(
         config: for its engine, its divider and its culling.
         usable: indices of the rectangles that are enabled and have a plane, ascending.
         reflections: of this scene.
-        possible: indices of those that a primary ray may hit; all where it is None.
-        hopeless: (bounce, index) of those that no ray runs towards.
+        may_hit: indices of those that a primary ray may hit; all where it is None.
+        behind: (bounce, index) of those that no ray runs towards.
         lost: the bounce after which no ray is alive.
     """
     division = config.slot_cycles
     exact = config.engine == "exact"
     offered_after = 3 if exact else division + 4
-    idle = {f"steps_{name}": 0 for name in vars(RaySteps() if exact else Steps())}
+    idle = {f"steps_{name}": 0 for name in step_names(config)}
     cycles = [TraceCycle(dict(idle), 0)]
 
     def strobe(cycle: int, *names: str) -> None:
@@ -358,10 +363,10 @@ def trace_cycles(
 
     strobe(0, "screen_to_ray", "reset_colour", "reset_z_buf")
     for bounce in range(reflections + 1):
-        visited = [index for index in usable if bounce or possible is None or index in possible]
-        given_up = [impatient(config) and (bounce, index) in hopeless for index in visited]
-        starts = list(accumulate((GIVE_UP_AT + 1 if dropped else division for dropped in given_up), initial=0))
-        offered = [start + offered_after for start, dropped in zip(starts, given_up, strict=False) if not dropped]
+        visited = [index for index in usable if bounce or may_hit is None or index in may_hit]
+        early = [ends_early(config) and (bounce, index) in behind for index in visited]
+        starts = list(accumulate((EARLY_OUT_AT + 1 if ended else division for ended in early), initial=0))
+        offered = [start + offered_after for start, ended in zip(starts, early, strict=False) if not ended]
         # Where there is nothing to trace, a pass only looks for it and adds the background; a lost ray adds at once.
         traced = lost is None or bounce <= lost
         length = 2 + max([starts[-1], *offered]) if traced else 1
@@ -369,24 +374,24 @@ def trace_cycles(
         cycles += [TraceCycle(idle | {"steps_initial_ray": int(bounce == 0)}, bounce) for _ in range(length)]
         strobe(-1, "add_colour", "reset_z_buf", *(["store_ray"] if bounce < reflections else []))
         cycles[-1].alive = int(lost is None or bounce < lost)
-        for index, dropped, place in zip(visited if traced else [], given_up, starts, strict=False):
+        for index, ended, place in zip(visited if traced else [], early, starts, strict=False):
             start = first + place
             strobe(start, "find_intersection")
             if exact:
                 strobe(start + 3, "write_z_buf")
-                cycles[start].current = cycles[start + 3].finishing = index
+                cycles[start].current = cycles[start + 3].offered = index
                 continue
-            cycles[start + 1].ahead = int((bounce, index) not in hopeless)
+            cycles[start + 1].towards = int((bounce, index) not in behind)
             strobe(start + 2, "load_divider")
-            for cycle in cycles[start : start + (GIVE_UP_AT + 1 if dropped else division)]:
+            for cycle in cycles[start : start + (EARLY_OUT_AT + 1 if ended else division)]:
                 cycle.current = index
-            if not dropped:
+            if not ended:
                 strobe(start + 2 + division, "store_quotient")
                 strobe(start + 4 + division, "write_z_buf")
                 for cycle in cycles[start + 3 + division :]:
-                    cycle.finishing = index
+                    cycle.offered = index
     # What the last one finished holds still until another one has.
     for before, cycle in pairwise(cycles):
-        if not exact and cycle.finishing is None:
-            cycle.finishing = before.finishing
+        if not exact and cycle.offered is None:
+            cycle.offered = before.offered
     return cycles

@@ -49,8 +49,8 @@ wire vga_hs, vga_sync_n;
 assign uart_tx = 1'b1;
 `endif
 
-assign busy = system.ray_caster_module_i.busy;
-assign start_screen = system.ray_caster_module_i.start_screen && !system.reset;
+assign busy = system.ray_caster_module_i.progress_busy;
+assign start_screen = system.ray_caster_module_i.progress_start_screen && !system.reset;
 assign written =
     system.ray_caster_module_i.avs_s0_write && !system.ray_caster_module_i.avs_s0_waitrequest && !system.reset;
 assign address = system.ray_caster_module_i.avs_s0_address;

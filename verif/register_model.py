@@ -129,7 +129,7 @@ class Agent:
             return self._constants[name]
         fields = {
             "status": {
-                "busy": inputs["busy"], "underrun": int(self.underrun), "bad_rectangle": int(self.bad),
+                "busy": inputs["progress_busy"], "underrun": int(self.underrun), "bad_rectangle": int(self.bad),
                 "frame": self.frame,
             },
             "cycles": {"row": self.row, "group": self.group},
@@ -141,9 +141,9 @@ class Agent:
         words = {
             "control": self.control.shadow | self.registers["control"].pack(commit=int(self.commit)),
             "background": self.background.shadow,
-            "camera": inputs["camera_word"],
+            "camera": inputs["camera_readback"],
         }
-        return words.get(name, inputs["rect_word"])
+        return words.get(name, inputs["rect_readback"])
 
     def outputs(self, inputs: dict[str, int]) -> dict[str, int]:
         """Every output of the agent in this cycle."""
@@ -151,14 +151,14 @@ class Agent:
         valid, data = self.answer
         return {
             **self.bus,
-            "bus_go_live": inputs["start_screen"],
+            "bus_go_live": inputs["progress_start_screen"],
             "avs_s0_waitrequest": int(self.waiting),
             "avs_s0_readdatavalid": valid,
             "avs_s0_readdata": data,
             "irq": int(self.irq_enable and self.irq_pending),
-            "run": control["run"],
-            "reflections": min(control["reflections"], self.config.reflections),
-            "background": self.background.live,
+            "picture_run": control["run"],
+            "picture_reflections": min(control["reflections"], self.config.reflections),
+            "picture_background": self.background.live,
         }
 
     def clock(self, inputs: dict[str, int]) -> None:
@@ -166,14 +166,14 @@ class Agent:
         if inputs["reset"]:
             self.reset()
             return
-        bus, start_screen = self.bus, inputs["start_screen"]
+        bus, start_screen = self.bus, inputs["progress_start_screen"]
         name = self.addresses.get(bus["bus_address"], "") if bus["bus_write"] else ""
         ones = bus["bus_data"] & bus["bus_mask"]
         self.answer = (int(self.reading), self.read(inputs) if self.reading else self.answer[1])
         for register, word in (("control", self.control), ("background", self.background)):
             word.clock({**bus, "bus_go_live": start_screen}, name == register)
         self.frame = (self.frame + start_screen) % (1 << 16)
-        self.underrun = bool(inputs["underrun"] or (self.underrun and not (name == "status" and ones & 2)))
+        self.underrun = bool(inputs["progress_underrun"] or (self.underrun and not (name == "status" and ones & 2)))
         bad_now = bus["bus_commit"] and inputs["bad_rectangle"]
         self.bad = bool(bad_now or (self.bad and not (name == "status" and ones & 4)))
         if name == "irq_enable" and bus["bus_mask"] & 1:
@@ -181,8 +181,11 @@ class Agent:
         self.irq_pending = bool(start_screen or (self.irq_pending and not (name == "irq_pending" and ones & 1)))
         if name == "cycles" and bus["bus_mask"]:
             self.row = self.group = 0
-        elif inputs["busy"]:
-            self.row, self.group = max(self.row, inputs["row_cycles"]), max(self.group, inputs["group_cycles"])
+        elif inputs["progress_busy"]:
+            self.row, self.group = (
+                max(self.row, inputs["progress_row_cycles"]),
+                max(self.group, inputs["progress_group_cycles"]),
+            )
         committing = name == "control" and bool(ones & 2)
         # A commit counts from the cycle in which the shadow is copied; a StartScreen in that cycle is too early for it.
         self.commit = committing or bool(bus["bus_commit"]) or (self.commit and not start_screen)
@@ -325,12 +328,12 @@ class RegisterFile:
             **bus,
             "reset": int(reset),
             "bus_go_live": start_screen,
-            "start_screen": start_screen,
-            "camera_word": self.camera.shadow,
-            "rect_word": word.shadow if word else 0,
+            "progress_start_screen": start_screen,
+            "camera_readback": self.camera.shadow,
+            "rect_readback": word.shadow if word else 0,
             "bad_rectangle": 0,
-            "busy": 0,
-            "underrun": 0,
+            "progress_busy": 0,
+            "progress_underrun": 0,
             "avs_s0_address": request.address if request else 0,
             "avs_s0_read": int(request is not None and request.word is None),
             "avs_s0_write": int(request is not None and request.word is not None),

@@ -75,7 +75,7 @@ module system_bench #(
 
     // The tap: every write that the ray tracer takes, and every StartScreen, with the clock at whose end it happened.
     wire writes = dut.ray_caster_module_i.avs_s0_write && !dut.ray_caster_module_i.avs_s0_waitrequest && !dut.reset;
-    wire starts = dut.ray_caster_module_i.start_screen && !dut.reset;
+    wire starts = dut.ray_caster_module_i.progress_start_screen && !dut.reset;
     reg [31:0] clocks;
     reg bus_write /*verilator public_flat_rw*/;
     reg bus_start_screen /*verilator public_flat_rw*/;

@@ -13,7 +13,7 @@ from vcd.gtkw import GTKWSave, make_translation_filter
 
 from raycaster.errors import UserError
 from raycaster.verif.probes.ray import module_of
-from raycaster.verif.waves import Waves
+from raycaster.verif.waves import RANGE, Waves
 
 GTKWAVE_FILE = "view.gtkw"
 SURFER_FILE = "view.sucl"
@@ -55,7 +55,7 @@ class View:
 
 def signal_names(view: View) -> list[str]:
     """The whole names of all that is shown."""
-    return [name.partition(":")[0] for names in view.groups.values() for name in names]
+    return [_name_and_kind(name)[0] for names in view.groups.values() for name in names]
 
 
 def write_files(waves: Waves, view: View) -> list[Path]:
@@ -91,9 +91,15 @@ def _write(path: Path, text: str) -> Path:
     return partial.replace(path)
 
 
+def _name_and_kind(name: str) -> tuple[str, str]:
+    """A signal's whole name, which may end with a range of its bits, and what stands behind it."""
+    signal, _, kind = name.rpartition(":")
+    return (signal, kind) if signal and not kind.endswith("]") else (name, "")
+
+
 def _parts(name: str) -> tuple[str, str, tuple[str, str]]:
     """A signal's whole name, its number format, and the module and signal that it is."""
-    signal, _, kind = name.partition(":")
+    signal, kind = _name_and_kind(name)
     if kind not in FORMATS:
         raise UserError(f"{name}: there is no such number format as {kind}")
     return signal, kind, (module_of(signal), signal.rpartition(".")[2])
@@ -117,6 +123,13 @@ def _gtkwave(waves: Waves, view: View, filters: Mapping[tuple[str, str], Path]) 
             for name, label in zip(names, labels, strict=True):
                 signal, kind, place = _parts(name)
                 width = waves.width(signal)
+                if RANGE.fullmatch(signal):
+                    signal, high, low = waves.bits(signal)
+                    count = waves.width(signal)
+                    # GTKWave numbers a signal's bits from the left.
+                    bits = [(count - 1 - bit, f"{signal}[{count - 1}:0]") for bit in range(high, low - 1, -1)]
+                    save.trace_combined(label, bits, datafmt=FORMATS[kind] if width > 1 else "bin")
+                    continue
                 whole = f"{signal}[{width - 1}:0]" if width > 1 else signal
                 if place in filters:
                     save.trace(whole, label, datafmt="bin", translate_filter_file=str(filters[place]))
@@ -132,6 +145,8 @@ def _surfer(waves: Waves, view: View) -> str:
         count += 1
         for name in names:
             signal, kind, place = _parts(name)
+            # Surfer has no names for bits of a signal, so it shows all of them.
+            signal, kind = (waves.bits(signal)[0], "hex") if RANGE.fullmatch(signal) else (signal, kind)
             lines.append(f"variable_add {signal}")
             shown = ".".join(place) if place in view.states else SURFER_FORMATS[kind]
             if waves.width(signal) > 1:

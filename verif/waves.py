@@ -3,7 +3,7 @@
 
 waves = Waves(Path("build/sim/boxes/waves.fst"))
 state = waves.find("bench.dut.*.ray_sequencer_i.state")
-samples = waves.sample([state, "bench.dut.start_screen"], start_ns=1000, end_ns=2000)
+samples = waves.sample([state, "bench.dut.progress_start_screen"], start_ns=1000, end_ns=2000)
 for time, value in zip(samples.times_ns, samples.values[state]):
     ...
 """
@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -26,6 +27,9 @@ CLOCK = "bench.clk"
 """The clock of every bench here."""
 
 SUGGESTIONS = 3
+
+RANGE = re.compile(r"(.+)\[(\d+):(\d+)\]")
+"""Bits of a signal: its name, the highest and the lowest."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +48,8 @@ class Waves:
     """A waveform file: FST or VCD, as this project's benches write it.
 
     A name is the path of instances from the bench down, with dots: `bench.dut.ray_caster_renderer_i.row`. An element of
-    a memory has its number after the memory's name, in brackets.
+    a memory has its number after the memory's name, in brackets. Wherever values or widths are
+    asked for, a name may mean bits of a signal: `bench.dut.rect_mem_i.rects_rect_word[24:23]`, or one, as `[23:23]`.
     """
 
     def __init__(self, path: Path, clock: str = CLOCK):
@@ -110,9 +115,24 @@ class Waves:
         """Bits of a signal.
 
         Raises:
-            UserError: there is no such signal.
+            UserError: there is no such signal, or it has not these bits.
         """
-        return self._variable(name).bitwidth
+        _, high, low = self.bits(name)
+        return high - low + 1
+
+    def bits(self, name: str) -> tuple[str, int, int]:
+        """The signal that a name means, and the highest and the lowest of its bits that it means.
+
+        Raises:
+            UserError: there is no such signal, or it has not these bits.
+        """
+        found = RANGE.fullmatch(name)
+        signal = found[1] if found else name
+        width = self._variable(signal).bitwidth
+        high, low = (int(found[2]), int(found[3])) if found else (width - 1, 0)
+        if not low <= high < width:
+            raise UserError(f"{self.path}: {signal} has {width} bits, not {name.removeprefix(signal)}")
+        return signal, high, low
 
     def span_ns(self) -> tuple[float, float]:
         """When the clock's first and last changes were, in ns.
@@ -181,11 +201,19 @@ class Waves:
     def _history(self, name: str) -> tuple[list[int], list[int | None]]:
         """The ticks at which a signal changed, and its values since."""
         if name not in self._changes:
-            changes = list(self._variable(name).signal)
+            signal, high, low = self.bits(name)
+            changes = list(self._variable(signal).signal)
             times = [time for time, _ in changes]
-            values = [value if isinstance(value, int) else None for _, value in changes]
-            self._changes[name] = times, values
+            self._changes[name] = times, [_bits_of(value, high, low) for _, value in changes]
         return self._changes[name]
+
+
+def _bits_of(value: int | str | float | None, high: int, low: int) -> int | None:
+    """Bits of a value, which is text where any of its bits is unknown; None where one of these is."""
+    if isinstance(value, str):
+        text = value[len(value) - 1 - high : len(value) - low]
+        return int(text, 2) if text and set(text) <= {"0", "1"} else None
+    return value >> low & (1 << high - low + 1) - 1 if isinstance(value, int) else None
 
 
 def _before(edges: Sequence[int], times: Sequence[int], values: Sequence[int | None]) -> list[int | None]:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Whether a folded ray hits a rectangle."""
 
-from myhdl import always, always_comb, block
+from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.rtl.common.widths import bit, signed, unsigned
 
@@ -10,88 +10,87 @@ LATENCY = 3
 
 
 @block
-def fold_tester(clk, facet, walk, column_slope, row_slope, slope, fold, hit, view_distance: int):
-    """A ray a clock, as ray_fold folds it; hit.valid, numerator and denominator follow LATENCY cycles later.
+def fold_tester(clk, facet, walk, column_slope, row_slope, slope, fold, index, hit, view_distance: int):
+    """A ray a clock, as ray_fold folds it; hit, of the rectangle index, follows LATENCY cycles later.
 
-    Along u the folded ray meets the plane at W = +-n D[u] + fold.u, over D[a]: between the two bounds it hits,
+    Along p the folded ray meets the plane at W = +-n D[p] + fold.p, over D[a]: between the two bounds it hits,
     whichever of them D[a] and the mirrors make the lesser. Beyond its last mirror it must be strictly, on the side that
     it runs to: on another axis W is compared with the mirror's border, on the same axis the planes' distances are.
 
-    In the ray's cycle are read walk.way_u, the fold, and column_slope and row_slope, which are D[y] and D[z]; in the
-    next the bounds; and in the one after that slope, their magnitudes. hit.index is not driven here.
-    view_distance: D[x]. Widths are the ports'.
+    In the ray's cycle are read walk.way_p, the fold, and column_slope and row_slope, which are D[y] and D[z]; in the
+    next the bounds; and in the one after that slope, their magnitudes. view_distance: D[x]. Widths are the ports'.
     """
     numerator_bits, slope_bits = len(hit.numerator), len(slope.dy)
-    sum_bits, product_bits, turn_bits = len(fold.u_x), len(walk.way_u), len(fold.turn_x)
+    sum_bits, product_bits, turn_bits = len(fold.p_x), len(walk.way_p), len(fold.turn_x)
 
-    back, turned, flip_u, flip_v = bit(), bit(), bit(), bit()
-    mirror_on_a, mirror_on_u, mirror_on_v = bit(), bit(), bit()
-    offset_u, offset_v = signed(sum_bits), signed(sum_bits)
+    back, turned, flip_p, flip_q = bit(), bit(), bit(), bit()
+    mirror_on_a, mirror_on_p, mirror_on_q = bit(), bit(), bit()
+    offset_p, offset_q = signed(sum_bits), signed(sum_bits)
     border = signed(product_bits)
     turn = signed(turn_bits)
-    way_u, way_v = signed(product_bits), signed(product_bits)
-    folded_u, folded_v = signed(sum_bits), signed(sum_bits)
+    way_p, way_q = signed(product_bits), signed(product_bits)
+    folded_p, folded_q = signed(sum_bits), signed(sum_bits)
     distance = signed(turn_bits + 1)
     opposite_distance = signed(turn_bits + 1)
     beyond_plane = bit()
 
-    folded_u_1, folded_v_1 = signed(sum_bits), signed(sum_bits)
+    folded_p_1, folded_q_1 = signed(sum_bits), signed(sum_bits)
     distance_1 = signed(turn_bits + 1)
     border_1 = signed(product_bits)
-    beyond_plane_1, clip_u_1, clip_v_1, rising_1 = bit(), bit(), bit(), bit()
+    beyond_plane_1, clip_p_1, clip_q_1, rising_1 = bit(), bit(), bit(), bit()
     clipped = signed(sum_bits)
     numerator = unsigned(turn_bits)
 
-    under_low_u, at_low_u, over_high_u, at_high_u = bit(), bit(), bit(), bit()
-    under_low_v, at_low_v, over_high_v, at_high_v = bit(), bit(), bit(), bit()
+    under_low_p, at_low_p, over_high_p, at_high_p = bit(), bit(), bit(), bit()
+    under_low_q, at_low_q, over_high_q, at_high_q = bit(), bit(), bit(), bit()
     beyond = bit()
     numerator_2 = unsigned(numerator_bits)
-    inside_u, inside_v = bit(), bit()
+    inside_p, inside_q, valid = bit(), bit(), bit()
     e = unsigned(slope_bits)
 
-    # The fold as the rectangle's axis sees it: of D[a] and of the folded ray's, which way they point.
+    # back: D[a] is negative; turned: a mirror has turned it around.
     @always_comb
     def choose_fold():
         if facet.axis == 0:
             back.next = False
             turned.next = fold.back_x
-            flip_u.next = fold.back_x != fold.back_y
-            flip_v.next = fold.back_x != fold.back_z
-            offset_u.next = fold.u_x
-            offset_v.next = fold.v_x
+            flip_p.next = fold.back_x != fold.back_y
+            flip_q.next = fold.back_x != fold.back_z
+            offset_p.next = fold.p_x
+            offset_q.next = fold.q_x
             border.next = fold.border_x
             turn.next = fold.turn_x
         elif facet.axis == 1:
             back.next = column_slope < 0
             turned.next = fold.back_y
-            flip_u.next = fold.back_y != fold.back_x
-            flip_v.next = fold.back_y != fold.back_z
-            offset_u.next = fold.u_y
-            offset_v.next = fold.v_y
+            flip_p.next = fold.back_y != fold.back_x
+            flip_q.next = fold.back_y != fold.back_z
+            offset_p.next = fold.p_y
+            offset_q.next = fold.q_y
             border.next = fold.border_y
             turn.next = fold.turn_y
         else:
             back.next = row_slope < 0
             turned.next = fold.back_z
-            flip_u.next = fold.back_z != fold.back_y
-            flip_v.next = fold.back_z != fold.back_x
-            offset_u.next = fold.u_z
-            offset_v.next = fold.v_z
+            flip_p.next = fold.back_z != fold.back_y
+            flip_q.next = fold.back_z != fold.back_x
+            offset_p.next = fold.p_z
+            offset_q.next = fold.q_z
             border.next = fold.border_z
             turn.next = fold.turn_z
 
-    # Where the mirror stands to the rectangle; the eye counts as one on the rectangle's own axis.
+    # Without a mirror, the camera counts as one on the rectangle's own axis.
     @always_comb
     def place_mirror():
         mirror_on_a.next = (not fold.active) or (fold.axis == facet.axis)
         if facet.axis == 1:
-            mirror_on_u.next = fold.active and (fold.axis == 0)
+            mirror_on_p.next = fold.active and (fold.axis == 0)
         else:
-            mirror_on_u.next = fold.active and (fold.axis == 1)
+            mirror_on_p.next = fold.active and (fold.axis == 1)
         if facet.axis == 2:
-            mirror_on_v.next = fold.active and (fold.axis == 0)
+            mirror_on_q.next = fold.active and (fold.axis == 0)
         else:
-            mirror_on_v.next = fold.active and (fold.axis == 2)
+            mirror_on_q.next = fold.active and (fold.axis == 2)
 
     # On the same axis, the plane must lie on the side that the folded ray runs to.
     @always_comb
@@ -101,67 +100,62 @@ def fold_tester(clk, facet, walk, column_slope, row_slope, slope, fold, hit, vie
         else:
             beyond_plane.next = (not mirror_on_a) or (facet.distance > fold.distance)
 
-    # The ways, or one less than their opposites, which the fold makes good.
+    # ~way is one less than -way; the fold's offset is one more in return.
     @always_comb
     def turn_ways():
-        way_u.next = walk.way_u
-        way_v.next = facet.way_v
-        if flip_u:
-            way_u.next = ~walk.way_u
-        if flip_v:
-            way_v.next = ~facet.way_v
+        way_p.next = walk.way_p
+        way_q.next = facet.way_q
+        if flip_p:
+            way_p.next = ~walk.way_p
+        if flip_q:
+            way_q.next = ~facet.way_q
 
-    # The folded ray in the rectangle's plane, and how far the straight one runs to there.
     @always_comb
     def fold_ways():
-        folded_u.next = offset_u + way_u
-        folded_v.next = offset_v + way_v
+        folded_p.next = offset_p + way_p
+        folded_q.next = offset_q + way_q
         distance.next = facet.distance - turn
 
-    # The first stage: everything that is compared.
     @always(clk.posedge)
     def stage_1():
-        folded_u_1.next = folded_u
-        folded_v_1.next = folded_v
+        folded_p_1.next = folded_p
+        folded_q_1.next = folded_q
         distance_1.next = distance
         border_1.next = border
         beyond_plane_1.next = beyond_plane
-        clip_u_1.next = mirror_on_u
-        clip_v_1.next = mirror_on_v
+        clip_p_1.next = mirror_on_p
+        clip_q_1.next = mirror_on_q
         rising_1.next = fold.mirror_back == back
 
-    # The way along the mirror's axis.
     @always_comb
     def choose_clipped():
-        clipped.next = folded_u_1
-        if clip_v_1:
-            clipped.next = folded_v_1
+        clipped.next = folded_p_1
+        if clip_q_1:
+            clipped.next = folded_q_1
 
-    # |n|; while a row is loaded it may be too large to keep, and nobody looks.
+    # |n|. While a row is loaded it may overflow, and is don't care.
     @always_comb
     def negate():
         opposite_distance.next = -distance_1
 
-    # Its magnitude.
     @always_comb
     def take_magnitude():
         numerator.next = distance_1[turn_bits:]
         if distance_1 < 0:
             numerator.next = opposite_distance[turn_bits:]
 
-    # The second stage: how the ways lie to the bounds, and to the mirror.
     @always(clk.posedge)
     def stage_2():
-        under_low_u.next = folded_u_1 < walk.low_u
-        at_low_u.next = folded_u_1 == walk.low_u
-        over_high_u.next = folded_u_1 > walk.high_u
-        at_high_u.next = folded_u_1 == walk.high_u
-        under_low_v.next = folded_v_1 < walk.low_v
-        at_low_v.next = folded_v_1 == walk.low_v
-        over_high_v.next = folded_v_1 > walk.high_v
-        at_high_v.next = folded_v_1 == walk.high_v
+        under_low_p.next = folded_p_1 < walk.low_p
+        at_low_p.next = folded_p_1 == walk.low_p
+        over_high_p.next = folded_p_1 > walk.high_p
+        at_high_p.next = folded_p_1 == walk.high_p
+        under_low_q.next = folded_q_1 < walk.low_q
+        at_low_q.next = folded_q_1 == walk.low_q
+        over_high_q.next = folded_q_1 > walk.high_q
+        at_high_q.next = folded_q_1 == walk.high_q
         beyond.next = beyond_plane_1
-        if clip_u_1 or clip_v_1:
+        if clip_p_1 or clip_q_1:
             if rising_1:
                 beyond.next = clipped > border_1
             else:
@@ -171,14 +165,14 @@ def fold_tester(clk, facet, walk, column_slope, row_slope, slope, fold, hit, vie
     # Where D[a] is negative the bounds have changed places.
     @always_comb
     def judge():
-        inside_u.next = ((not under_low_u) and (not over_high_u)) or (
-            (under_low_u or at_low_u) and (over_high_u or at_high_u)
+        inside_p.next = ((not under_low_p) and (not over_high_p)) or (
+            (under_low_p or at_low_p) and (over_high_p or at_high_p)
         )
-        inside_v.next = ((not under_low_v) and (not over_high_v)) or (
-            (under_low_v or at_low_v) and (over_high_v or at_high_v)
+        inside_q.next = ((not under_low_q) and (not over_high_q)) or (
+            (under_low_q or at_low_q) and (over_high_q or at_high_q)
         )
 
-    # |D[a]|
+    # e is |D[a]|.
     @always_comb
     def choose_slope():
         if facet.axis == 0:
@@ -188,14 +182,12 @@ def fold_tester(clk, facet, walk, column_slope, row_slope, slope, fold, hit, vie
         else:
             e.next = slope.dz
 
-    # The third stage: the verdict.
+    @always_comb
+    def conclude():
+        valid.next = facet.usable and beyond and inside_p and inside_q and (e != 0)
+
     @always(clk.posedge)
     def stage_3():
-        hit.valid.next = facet.usable and beyond and inside_u and inside_v and (e != 0)
-        hit.numerator.next = numerator_2
-        hit.denominator.next = e
+        hit.word.next = concat(valid, numerator_2, e, index)
 
-    return (
-        choose_fold, place_mirror, compare_planes, turn_ways, fold_ways, stage_1, choose_clipped, negate,
-        take_magnitude, stage_2, judge, choose_slope, stage_3,
-    )  # fmt: skip
+    return instances()

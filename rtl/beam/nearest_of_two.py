@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The nearer of two hits."""
 
-from myhdl import always, always_comb, block
+from myhdl import always, always_comb, block, instances
 
+from raycaster.rtl.common.records import Candidate
 from raycaster.rtl.common.widths import bit, unsigned
 
 LATENCY = 2
@@ -15,43 +16,27 @@ def nearest_of_two(clk, first, second, nearest):
     t = numerator / denominator is nearer than another where numerator * other denominator < other numerator *
     denominator.
     """
-    numerator_bits, denominator_bits, index_bits = len(first.numerator), len(first.denominator), len(first.index)
-    first_product, second_product = (unsigned(numerator_bits + denominator_bits) for _ in range(2))
-    first_valid_1, second_valid_1 = bit(), bit()
-    first_numerator_1, second_numerator_1 = unsigned(numerator_bits), unsigned(numerator_bits)
-    first_denominator_1, second_denominator_1 = unsigned(denominator_bits), unsigned(denominator_bits)
-    first_index_1, second_index_1 = unsigned(index_bits), unsigned(index_bits)
+    widths = len(first.numerator), len(first.denominator), len(first.index)
+    first_product, second_product = (unsigned(widths[0] + widths[1]) for _ in range(2))
+    first_1, second_1 = Candidate(*widths), Candidate(*widths)
     take_second = bit()
 
-    # Over the common denominator.
     @always(clk.posedge)
     def multiply():
         first_product.next = first.numerator * second.denominator
         second_product.next = second.numerator * first.denominator
-        first_valid_1.next = first.valid
-        first_numerator_1.next = first.numerator
-        first_denominator_1.next = first.denominator
-        first_index_1.next = first.index
-        second_valid_1.next = second.valid
-        second_numerator_1.next = second.numerator
-        second_denominator_1.next = second.denominator
-        second_index_1.next = second.index
+        first_1.word.next = first.word
+        second_1.word.next = second.word
 
-    # Strictly nearer, or alone.
     @always_comb
     def compare():
-        take_second.next = second_valid_1 and ((not first_valid_1) or (second_product < first_product))
+        take_second.next = second_1.valid and ((not first_1.valid) or (second_product < first_product))
 
-    # The winner.
+    # Where the first is taken and is not valid, neither is.
     @always(clk.posedge)
     def choose():
-        nearest.valid.next = first_valid_1 or second_valid_1
-        nearest.numerator.next = first_numerator_1
-        nearest.denominator.next = first_denominator_1
-        nearest.index.next = first_index_1
+        nearest.word.next = first_1.word
         if take_second:
-            nearest.numerator.next = second_numerator_1
-            nearest.denominator.next = second_denominator_1
-            nearest.index.next = second_index_1
+            nearest.word.next = second_1.word
 
-    return multiply, compare, choose
+    return instances()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """How a straight ray through one mirror, or two, folds back into the room."""
 
-from myhdl import always, always_comb, block
+from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.rtl.common.widths import AXIS_BITS, bit, signed, unsigned
 
@@ -16,13 +16,13 @@ def ray_fold(clk, earlier, last, column_slope, row_slope, fold, view_distance: i
     A mirror leaves the ray straight and turns the room behind it (Heckbert and Hanrahan 1984 mirror the eye in the same
     way): to a point X on the straight ray from the eye E belongs the point x - E = +-(X - E) + T in the room, component
     by component. A mirror at the distance n on its axis makes that 2 n - (x - E). A plane at the distance n on axis a
-    is then met where X[a] - E[a] = +-(n - T[a]), and there the ray's component u, times D[a], is +-n D[u] + C, with
-    C = T[u] D[a] -+ T[a] D[u]: the same for all rectangles on the axis, so no rectangle needs a multiplier.
+    is then met where X[a] - E[a] = +-(n - T[a]), and there the ray's component p, times D[a], is +-n D[p] + C, with
+    C = T[p] D[a] -+ T[a] D[p]: the same for all rectangles on the axis, so no rectangle needs a multiplier.
 
-    earlier, last: Reflectors; column_slope, row_slope: D[y] and D[z]; view_distance: D[x]. fold.active is not driven
-    here. Widths are the ports'.
+    earlier, last: Reflectors, last.active being 1; column_slope, row_slope: D[y] and D[z]; view_distance: D[x]. Widths
+    are the ports'.
     """
-    part_bits, product_bits = len(fold.u_x), len(fold.border_x)
+    part_bits, product_bits = len(fold.p_x), len(fold.border_x)
     distance_bits, turn_bits = len(last.distance), len(fold.turn_x)
 
     again = bit()
@@ -44,6 +44,7 @@ def ray_fold(clk, earlier, last, column_slope, row_slope, fold, view_distance: i
 
     xy, yx, xz, zx, yz, zy = (signed(part_bits) for _ in range(6))
     not_y_by_x, not_z_by_x, not_z_by_y = (signed(part_bits) for _ in range(3))
+    p_x, p_y, p_z, q_x, q_y, q_z = (signed(part_bits) for _ in range(6))
     sum_xy_1, sum_xz_1, sum_yz_1 = (signed(part_bits + 1) for _ in range(3))
 
     # Two mirrors on one axis move the room by twice what lies between them.
@@ -54,24 +55,22 @@ def ray_fold(clk, earlier, last, column_slope, row_slope, fold, view_distance: i
         earlier_doubled.next = earlier.distance + earlier.distance
         apart.next = last.distance - earlier.distance
 
-    # Of two mirrors of one scene this keeps everything; while a scene is loaded it might not, and nobody looks.
+    # Mirrors of one scene are within the world; while a scene is loaded this may overflow, and is don't care.
     @always_comb
     def fit():
         apart_kept.next = apart[distance_bits:].signed()
 
-    # Twice that.
     @always_comb
     def double():
         apart_doubled.next = apart_kept + apart_kept
 
-    # What is added on the last mirror's axis.
     @always_comb
     def choose_turn():
         last_turn.next = doubled
         if again:
             last_turn.next = apart_doubled
 
-    # The first stage: T, and which components run back.
+    # T, and which components of the folded ray run back.
     @always(clk.posedge)
     def stage_1():
         turn_x.next = 0
@@ -101,7 +100,6 @@ def ray_fold(clk, earlier, last, column_slope, row_slope, fold, view_distance: i
         axis_1.next = last.axis
         distance_1.next = last.distance
 
-    # The second stage: T by D, and the mirror's own border.
     @always(clk.posedge)
     def stage_2():
         x_by_y.next = turn_x * column_slope
@@ -122,13 +120,11 @@ def ray_fold(clk, earlier, last, column_slope, row_slope, fold, view_distance: i
         axis_2.next = axis_1
         distance_2.next = distance_1
 
-    # Which way the straight ray runs.
     @always_comb
     def look_ahead():
         column_back.next = column_slope < 0
         row_back.next = row_slope < 0
 
-    # Which way the folded ray leaves the mirror.
     @always(clk.posedge)
     def leave_mirror():
         if axis_1 == 0:
@@ -138,7 +134,7 @@ def ray_fold(clk, earlier, last, column_slope, row_slope, fold, view_distance: i
         else:
             mirror_back_2.next = back_z != row_back
 
-    # C for planes whose two components run alike, and for those that do not.
+    # C for planes whose two components run alike.
     @always_comb
     def combine():
         xy.next = y_by_x - x_by_y
@@ -151,45 +147,38 @@ def ray_fold(clk, earlier, last, column_slope, row_slope, fold, view_distance: i
         not_z_by_x.next = ~z_by_x
         not_z_by_y.next = ~z_by_y
 
-    # One more than the sum, as what it is added to is a complement: a + b + 1 = a - ~b. The bit more is for two mirrors
-    # on different axes, whose sum nobody looks at.
+    # C where they do not, one more than the sum, as it is added to a complement: a + b + 1 = a - ~b. Only two mirrors
+    # on different axes need the additional bit, and then this sum is don't care.
     @always_comb
     def make_good():
         sum_xy_1.next = x_by_y - not_y_by_x
         sum_xz_1.next = x_by_z - not_z_by_x
         sum_yz_1.next = y_by_z - not_z_by_y
 
-    # The third stage: the fold.
+    @always_comb
+    def choose_offsets():
+        p_x.next = xy
+        p_y.next = yx
+        q_x.next = xz
+        q_z.next = zx
+        q_y.next = yz
+        p_z.next = zy
+        if back_x_2 != back_y_2:
+            p_x.next = sum_xy_1[part_bits:].signed()
+            p_y.next = sum_xy_1[part_bits:].signed()
+        if back_x_2 != back_z_2:
+            q_x.next = sum_xz_1[part_bits:].signed()
+            q_z.next = sum_xz_1[part_bits:].signed()
+        if back_y_2 != back_z_2:
+            q_y.next = sum_yz_1[part_bits:].signed()
+            p_z.next = sum_yz_1[part_bits:].signed()
+
+    # A fold is of a ray that has met a mirror.
     @always(clk.posedge)
     def stage_3():
-        fold.u_x.next = xy
-        fold.u_y.next = yx
-        fold.v_x.next = xz
-        fold.v_z.next = zx
-        fold.v_y.next = yz
-        fold.u_z.next = zy
-        if back_x_2 != back_y_2:
-            fold.u_x.next = sum_xy_1[part_bits:].signed()
-            fold.u_y.next = sum_xy_1[part_bits:].signed()
-        if back_x_2 != back_z_2:
-            fold.v_x.next = sum_xz_1[part_bits:].signed()
-            fold.v_z.next = sum_xz_1[part_bits:].signed()
-        if back_y_2 != back_z_2:
-            fold.v_y.next = sum_yz_1[part_bits:].signed()
-            fold.u_z.next = sum_yz_1[part_bits:].signed()
-        fold.border_x.next = border_x
-        fold.border_y.next = border_y
-        fold.border_z.next = border_z
-        fold.turn_x.next = turn_x_2
-        fold.turn_y.next = turn_y_2
-        fold.turn_z.next = turn_z_2
-        fold.back_x.next = back_x_2
-        fold.back_y.next = back_y_2
-        fold.back_z.next = back_z_2
-        fold.mirror_back.next = mirror_back_2
-        fold.axis.next = axis_2
-        fold.distance.next = distance_2
+        fold.word.next = concat(
+            True, back_x_2, back_y_2, back_z_2, mirror_back_2, turn_x_2, turn_y_2, turn_z_2,
+            p_x, p_y, p_z, q_x, q_y, q_z, border_x, border_y, border_z, axis_2, distance_2,
+        )  # fmt: skip
 
-    return (
-        measure, fit, double, choose_turn, stage_1, stage_2, look_ahead, leave_mirror, combine, make_good, stage_3,
-    )  # fmt: skip
+    return instances()

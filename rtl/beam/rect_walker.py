@@ -1,33 +1,41 @@
 # SPDX-License-Identifier: MIT
 """A rectangle's products from column to column, without a multiplier."""
 
-from myhdl import always, block
+from myhdl import always, always_comb, block, concat, instances
+
+from raycaster.rtl.common.widths import signed
 
 
 @block
 def rect_walker(clk, load, step_way, step_bounds, start, growth, walk):
     """walk is start after load, and grows by growth after each step of its own.
 
-    Integers at their full width do not drift, so every column's products are exact (forward differences). The way and
-    the bounds have steps of their own, as those who read them want them in different cycles.
+    Integers at their full width do not drift, so every column's products are exact (forward differences). fold_tester
+    reads the way and the bounds in different cycles, so they have steps of their own. walk, start: of the same widths.
     """
+    product_bits = len(walk.way_p)
+    way_p, low_p, high_p, low_q, high_q = (signed(product_bits) for _ in range(5))
 
-    # Adders in place of multipliers.
+    @always_comb
+    def grow():
+        way_p.next = walk.way_p
+        low_p.next = walk.low_p
+        high_p.next = walk.high_p
+        low_q.next = walk.low_q
+        high_q.next = walk.high_q
+        if step_way:
+            way_p.next = walk.way_p + growth.way_p
+        if step_bounds:
+            low_p.next = walk.low_p + growth.low_p
+            high_p.next = walk.high_p + growth.high_p
+            low_q.next = walk.low_q + growth.low_q
+            high_q.next = walk.high_q + growth.high_q
+
     @always(clk.posedge)
     def advance():
         if load:
-            walk.way_u.next = start.way_u
-            walk.low_u.next = start.low_u
-            walk.high_u.next = start.high_u
-            walk.low_v.next = start.low_v
-            walk.high_v.next = start.high_v
+            walk.word.next = start.word
         else:
-            if step_way:
-                walk.way_u.next = walk.way_u + growth.way_u
-            if step_bounds:
-                walk.low_u.next = walk.low_u + growth.low_u
-                walk.high_u.next = walk.high_u + growth.high_u
-                walk.low_v.next = walk.low_v + growth.low_v
-                walk.high_v.next = walk.high_v + growth.high_v
+            walk.word.next = concat(way_p[product_bits:], low_p, high_p, low_q, high_q)
 
-    return advance
+    return instances()

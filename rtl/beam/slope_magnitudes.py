@@ -1,24 +1,22 @@
 # SPDX-License-Identifier: MIT
 """A slope without its signs."""
 
-from myhdl import always_comb, block
+from myhdl import always_comb, block, instances
 
 from raycaster.rtl.common.widths import signed
 
 
 @block
 def slope_magnitudes(column_slope, row_slope, slope):
-    """|D[y]| and |D[z]|; D[x] is never negative and never changes. Combinational."""
+    """slope: |D[y]| and |D[z]|, a bit narrower than the slopes, which are never the least number. Combinational."""
     slope_bits = len(slope.dy)
     opposite_dy, opposite_dz = signed(slope_bits + 1), signed(slope_bits + 1)
 
-    # The other way.
     @always_comb
     def negate():
         opposite_dy.next = -column_slope
         opposite_dz.next = -row_slope
 
-    # Which of the two is positive.
     @always_comb
     def take_magnitudes():
         slope.dy.next = column_slope[slope_bits:]
@@ -28,4 +26,4 @@ def slope_magnitudes(column_slope, row_slope, slope):
         if row_slope < 0:
             slope.dz.next = opposite_dz[slope_bits:]
 
-    return negate, take_magnitudes
+    return instances()

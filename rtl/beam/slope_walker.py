@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The component of the slope that the column changes."""
 
-from myhdl import always, block
+from myhdl import always, block, instances
 
 from raycaster.configuration import Configuration
 
@@ -11,7 +11,6 @@ def slope_walker(clk, start_line, step, column_slope, config: Configuration):
     """column_slope: D[y] = column - centre, two's complement, of the first column after start_line; step: the next."""
     first_slope = -config.screen_geometry.centre_column
 
-    # One more a column.
     @always(clk.posedge)
     def advance():
         if start_line:
@@ -19,4 +18,4 @@ def slope_walker(clk, start_line, step, column_slope, config: Configuration):
         elif step:
             column_slope.next = column_slope + 1
 
-    return advance
+    return instances()

@@ -1,28 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""Which rectangle a ray saw, until its reflection has seen one too."""
+"""A record as it was some cycles ago: a winner until its reflection has one too, or who is unopposed in a round."""
 
-from myhdl import always, always_comb, block, concat
+from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.rtl.common.widths import unsigned
 
 
 @block
-def winner_delay(clk, valid, index, late_valid, late_index, cycles: int):
-    """The same as many cycles later."""
-    width = len(index) + 1
-    kept_bits = (cycles - 1) * width
-    index_bits = len(index)
-    line = unsigned(cycles * width)
+def winner_delay(clk, word, late_word, cycles: int):
+    """late_word is word as many cycles later, at least two: a shift register."""
+    kept_bits = (cycles - 1) * len(word)
+    line = unsigned(cycles * len(word))
 
-    # A shift register.
     @always(clk.posedge)
     def shift():
-        line.next = concat(line[kept_bits:], index, valid)
+        line.next = concat(line[kept_bits:], word)
 
-    # Its end.
     @always_comb
     def leave():
-        late_valid.next = line[kept_bits]
-        late_index.next = line[kept_bits + 1 + index_bits : kept_bits + 1]
+        late_word.next = line[:kept_bits]
 
-    return shift, leave
+    return instances()

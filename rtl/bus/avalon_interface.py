@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The registers, and the way to the scene memories."""
 
-from myhdl import Signal, always_comb, always_seq, block
+from myhdl import Signal, always_comb, always_seq, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.registers import register_map
@@ -9,14 +9,13 @@ from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import CYCLE_BITS, RGB_BITS, WORD_BITS, bit, unsigned
 from raycaster.rtl.scene.scene_word import scene_word
 
-ENGINE_CODES = {"seed": 0, "exact": 1, "beam": 2}
 FIXED_CODES = {"rects": 1, "all": 2}
 
 
 def engine_word(config: Configuration) -> int:
     """What the engine register of a design reads."""
     return register_map(config.table)["engine"].pack(
-        engine=ENGINE_CODES[config.engine],
+        engine=config.facts.code,
         fraction_bits=config.fraction_bits,
         nearest=int(config.rounding == "nearest"),
         divider_bits=config.divider_bits,
@@ -35,37 +34,15 @@ def size_word(config: Configuration) -> int:
 
 @block
 def avalon_interface(
-    clk,
-    reset,
-    avs_s0_address,
-    avs_s0_read,
-    avs_s0_write,
-    avs_s0_writedata,
-    avs_s0_byteenable,
-    avs_s0_readdata,
-    avs_s0_readdatavalid,
-    avs_s0_waitrequest,
-    irq,
-    bus,
-    camera_word,
-    rect_word,
-    bad_rectangle,
-    run,
-    reflections,
-    background,
-    start_screen,
-    busy,
-    underrun,
-    row_cycles,
-    group_cycles,
+    clk, reset, avs_s0, irq, bus, camera_readback, rect_readback, bad_rectangle, picture, progress,
     config: Configuration,
-):
+):  # fmt: skip
     """Avalon-MM agent: 32-bit words, a transfer a cycle, two cycles from an accepted read to its readdatavalid.
 
     waitrequest is high in reset and in the cycle after it, and never else. Every accepted read is answered once, in
     order. Writes pass through a register: they take effect in the cycle after they were accepted, before any read that
-    is accepted later is answered. Where the camera is fixed, background and reflections
-    are None.
+    is accepted later is answered. camera_readback, rect_readback: the scene memories' words at bus.address, 32 bits, 0
+    where there is none. picture: driven, but only its run where the camera is fixed.
     """
     live = not (config.fixed and config.fixed.camera)
     registers = register_map(config.table)
@@ -80,15 +57,14 @@ def avalon_interface(
     group_low = cycles.fields["group"].lsb
     irq_bit = registers["irq_pending"].fields["start_screen"].lsb
 
-    def address_of(name: str):
-        return tied(registers[name].address, len(bus.address))
-
-    id_address, version_address, engine_address, size_address, control_address, status_address = map(
-        address_of, ("id", "version", "engine", "size", "control", "status")
-    )
-    cycles_address, irq_enable_address, irq_pending_address, background_address, camera_address = map(
-        address_of, ("cycles", "irq_enable", "irq_pending", "background", "camera")
-    )
+    in_order = (
+        "id", "version", "engine", "size", "control", "status", "cycles", "irq_enable", "irq_pending", "background",
+        "camera",
+    )  # fmt: skip
+    (
+        id_address, version_address, engine_address, size_address, control_address, status_address, cycles_address,
+        irq_enable_address, irq_pending_address, background_address, camera_address,
+    ) = (tied(registers[name].address, len(bus.address)) for name in in_order)  # fmt: skip
     id_value = tied(registers["id"].reset, WORD_BITS)
     version_value = tied(registers["version"].reset, WORD_BITS)
     engine_value, size_value = tied(engine_word(config), WORD_BITS), tied(size_word(config), WORD_BITS)
@@ -108,46 +84,43 @@ def avalon_interface(
     slowest_row, slowest_group = unsigned(CYCLE_BITS), unsigned(CYCLE_BITS)
     irq_enable, irq_pending = bit(), bit()
 
-    control_memory = scene_word(clk, reset, bus, select_control, control_bits, control_word, live_control)
+    control_memory = scene_word(
+        clk, reset, bus, select_control, implemented=control_bits, shadow=control_word, live=live_control
+    )
 
-    # Not ready until reset is over.
     @always_seq(clk.posedge, reset=reset)
     def become_ready():
         wait_request.next = False
 
-    # The ports cannot be read back.
     @always_comb
     def drive_ports():
-        avs_s0_waitrequest.next = wait_request
+        avs_s0.waitrequest.next = wait_request
         irq.next = irq_pending and irq_enable
+        bus.go_live.next = progress.start_screen
+        picture.run.next = live_control[run_bit]
 
-    # Accept a transfer; byte lanes become a mask of bits.
+    # Byte lanes become a mask of bits.
     @always_seq(clk.posedge, reset=reset)
     def accept():
-        bus.write.next = avs_s0_write and not wait_request
-        reading.next = avs_s0_read and not wait_request
-        if (avs_s0_write or avs_s0_read) and not wait_request:
-            bus.address.next = avs_s0_address
-        if avs_s0_write and not wait_request:
-            bus.data.next = avs_s0_writedata
+        bus.write.next = avs_s0.write and not wait_request
+        reading.next = avs_s0.read and not wait_request
+        if (avs_s0.write or avs_s0.read) and not wait_request:
+            bus.address.next = avs_s0.address
+        if avs_s0.write and not wait_request:
+            bus.data.next = avs_s0.writedata
             bus.mask.next = 0
-            if avs_s0_byteenable[0]:
+            if avs_s0.byteenable[0]:
                 bus.mask.next[8:0] = 0xFF
-            if avs_s0_byteenable[1]:
+            if avs_s0.byteenable[1]:
                 bus.mask.next[16:8] = 0xFF
-            if avs_s0_byteenable[2]:
+            if avs_s0.byteenable[2]:
                 bus.mask.next[24:16] = 0xFF
-            if avs_s0_byteenable[3]:
+            if avs_s0.byteenable[3]:
                 bus.mask.next[32:24] = 0xFF
 
-    # Whether a write is for the control word.
     @always_comb
     def decode():
         select_control.next = bus.address == control_address
-
-    # What a write-1 register sees.
-    @always_comb
-    def find_ones():
         written_ones.next = bus.data & bus.mask
 
     # The shadow is copied in the cycle after the write that asked for it, which is then part of it.
@@ -156,20 +129,10 @@ def avalon_interface(
         bus.commit.next = bus.write and select_control and written_ones[commit_bit]
         if bus.commit:
             commit_pending.next = True
-        elif start_screen:
+        elif progress.start_screen:
             commit_pending.next = False
 
-    # A scene changes between frames only.
-    @always_comb
-    def go_live():
-        bus.go_live.next = start_screen
-
-    # Whether there is anything to show.
-    @always_comb
-    def drive_run():
-        run.next = live_control[run_bit]
-
-    # Sticky bits and the frame counter: a set in the cycle of a clear wins.
+    # A set in the cycle of a clear wins.
     @always_seq(clk.posedge, reset=reset)
     def keep_status():
         if bus.write and bus.address == status_address:
@@ -177,21 +140,20 @@ def avalon_interface(
                 sticky_underrun.next = False
             if written_ones[bad_bit]:
                 sticky_bad.next = False
-        if underrun:
+        if progress.underrun:
             sticky_underrun.next = True
         if bus.commit and bad_rectangle:
             sticky_bad.next = True
-        if start_screen:
+        if progress.start_screen:
             frame.next = (frame + 1) % (1 << frame_bits)
 
-    # The interrupt: pending at StartScreen, until a 1 is written to it.
     @always_seq(clk.posedge, reset=reset)
     def interrupt():
         if bus.write and bus.address == irq_enable_address and bus.mask[irq_bit]:
             irq_enable.next = bus.data[irq_bit]
         if bus.write and bus.address == irq_pending_address and written_ones[irq_bit]:
             irq_pending.next = False
-        if start_screen:
+        if progress.start_screen:
             irq_pending.next = True
 
     # The most that a row and a group took since the last write here.
@@ -200,16 +162,15 @@ def avalon_interface(
         if bus.write and bus.address == cycles_address and bus.mask != 0:
             slowest_row.next = 0
             slowest_group.next = 0
-        elif busy:
-            if row_cycles > slowest_row:
-                slowest_row.next = row_cycles
-            if group_cycles > slowest_group:
-                slowest_group.next = group_cycles
+        elif progress.busy:
+            if progress.row_cycles > slowest_row:
+                slowest_row.next = progress.row_cycles
+            if progress.group_cycles > slowest_group:
+                slowest_group.next = progress.group_cycles
 
-    # The word at the address; what is nowhere reads 0.
     @always_comb
     def read():
-        read_data.next = rect_word
+        read_data.next = rect_readback
         if bus.address == id_address:
             read_data.next = id_value
         elif bus.address == version_address:
@@ -223,12 +184,11 @@ def avalon_interface(
             read_data.next[commit_bit] = commit_pending or bus.commit
         elif bus.address == status_address:
             read_data.next = 0
-            read_data.next[busy_bit] = busy
+            read_data.next[busy_bit] = progress.busy
             read_data.next[underrun_bit] = sticky_underrun
             read_data.next[bad_bit] = sticky_bad
             read_data.next[frame_low + frame_bits : frame_low] = frame
         elif bus.address == cycles_address:
-            read_data.next = 0
             read_data.next[CYCLE_BITS:] = slowest_row
             read_data.next[group_low + CYCLE_BITS : group_low] = slowest_group
         elif bus.address == irq_enable_address:
@@ -240,38 +200,31 @@ def avalon_interface(
         elif bus.address == background_address:
             read_data.next = background_word
         elif bus.address == camera_address:
-            read_data.next = camera_word
+            read_data.next = camera_readback
 
-    # Answer each accepted read.
     @always_seq(clk.posedge, reset=reset)
     def answer():
-        avs_s0_readdatavalid.next = reading
+        avs_s0.readdatavalid.next = reading
         if reading:
-            avs_s0_readdata.next = read_data
+            avs_s0.readdata.next = read_data
 
-    common = (
-        control_memory, become_ready, drive_ports, accept, decode, find_ones, commit, go_live, drive_run, keep_status,
-        interrupt, keep_cycles, read, answer,
-    )  # fmt: skip
-    if not live:
-        return common
+    if live:
+        background_memory = scene_word(
+            clk, reset, bus, select_background, implemented=background_bits, shadow=background_word,
+            live=live_background,
+        )  # fmt: skip
 
-    background_memory = scene_word(
-        clk, reset, bus, select_background, background_bits, background_word, live_background
-    )
+        @always_comb
+        def decode_background():
+            select_background.next = bus.address == background_address
 
-    # Whether a write is for the background.
-    @always_comb
-    def decode_background():
-        select_background.next = bus.address == background_address
+        # More reflections than there are count as all.
+        @always_comb
+        def drive_picture():
+            picture.background.next = live_background[RGB_BITS:]
+            if live_control[reflections_high:reflections_low] > most_reflections:
+                picture.reflections.next = most_reflections
+            else:
+                picture.reflections.next = live_control[reflections_high:reflections_low]
 
-    # What else the renderer gets to know; more reflections than there are count as all.
-    @always_comb
-    def drive_picture():
-        background.next = live_background[RGB_BITS:]
-        if live_control[reflections_high:reflections_low] > most_reflections:
-            reflections.next = most_reflections
-        else:
-            reflections.next = live_control[reflections_high:reflections_low]
-
-    return common, background_memory, decode_background, drive_picture
+    return instances()

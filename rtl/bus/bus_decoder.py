@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Who answers the processor."""
 
-from myhdl import always_comb, block
+from myhdl import always_comb, block, instances
 
 from raycaster.memory_map import BUTTONS, MEMORY, MEMORY_WORDS, RAY_TRACER, UART
 from raycaster.rtl.common.ties import tied
@@ -9,24 +9,12 @@ from raycaster.rtl.common.widths import WORD_BITS, bit
 
 
 @block
-def bus_decoder(
-    bus,
-    select_memory,
-    memory_ready,
-    memory_word,
-    select_tracer,
-    tracer_ready,
-    tracer_word,
-    buttons_word,
-    select_uart,
-    uart_ready,
-    uart_word,
-    tracer_address_bits: int,
-):
-    """Select what stands at an access's address, by `memory_map`, and hand its answer back.
+def bus_decoder(bus, memory, tracer, uart, buttons_word, tracer_address_bits: int):
+    """Select what is at an access's address, by `memory_map`, and hand its answer back. Combinational.
 
     The word of the buttons is there at once; so is an answer where there is nothing, which reads 0 and ignores writes.
-    bus: ProcessorBus; tracer_address_bits: of the ray tracer's addresses, which count words.
+    bus: ProcessorBus; memory, tracer, uart: Access; tracer_address_bits: of the ray tracer's addresses, which count
+    words.
     """
     memory_end = (4 * MEMORY_WORDS - 1).bit_length()
     tracer_end = tracer_address_bits + 2
@@ -35,7 +23,6 @@ def bus_decoder(
     buttons_place, uart_place = tied(BUTTONS, WORD_BITS), tied(UART, WORD_BITS)
     at_memory, at_tracer, at_buttons, at_uart = (bit() for _ in range(4))
 
-    # Whose address it is.
     @always_comb
     def decode():
         at_memory.next = bus.address[:memory_end] == memory_place
@@ -43,28 +30,26 @@ def bus_decoder(
         at_buttons.next = bus.address == buttons_place
         at_uart.next = bus.address == uart_place
 
-    # It, and nobody else, is asked.
     @always_comb
     def select():
-        select_memory.next = bus.valid and at_memory
-        select_tracer.next = bus.valid and at_tracer
-        select_uart.next = bus.valid and at_uart
+        memory.select.next = bus.valid and at_memory
+        tracer.select.next = bus.valid and at_tracer
+        uart.select.next = bus.valid and at_uart
 
-    # Its answer.
     @always_comb
     def answer():
         bus.ready.next = bus.valid
         bus.word.next = 0
         if at_memory:
-            bus.ready.next = memory_ready
-            bus.word.next = memory_word
+            bus.ready.next = memory.ready
+            bus.word.next = memory.word
         elif at_tracer:
-            bus.ready.next = tracer_ready
-            bus.word.next = tracer_word
+            bus.ready.next = tracer.ready
+            bus.word.next = tracer.word
         elif at_buttons:
             bus.word.next = buttons_word
         elif at_uart:
-            bus.ready.next = uart_ready
-            bus.word.next = uart_word
+            bus.ready.next = uart.ready
+            bus.word.next = uart.word
 
-    return decode, select, answer
+    return instances()

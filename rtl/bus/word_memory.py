@@ -3,7 +3,7 @@
 
 from pathlib import Path
 
-from myhdl import Signal, always, always_comb, always_seq, block, intbv
+from myhdl import Signal, always, always_comb, always_seq, block, instances, intbv
 
 from raycaster.rtl.common.given import load_words
 from raycaster.rtl.common.widths import WORD_BITS, bit
@@ -17,25 +17,22 @@ def first_words(program: str, count: int) -> list[int]:
 
 
 @block
-def word_memory(clk, reset, select, strobe, address, data, ready, word, words: int, program: str):
-    """An access takes two cycles: ready is high in its second, with the word that was read.
+def word_memory(clk, reset, access, strobe, address, data, words: int, program: str):
+    """An access takes two cycles: access.ready is high in its second, with the word that was read.
 
-    select: high from the access's first cycle to its second; address counts words, below `words`; strobe: which bytes
-    of data to write, 0 for a read. program: the file whose words it holds from power-up on; reset does not bring them
-    back.
+    address counts words, below `words`; strobe: which bytes of data to write, 0 for a read. program: the file whose
+    words it holds from power-up on; reset does not bring them back.
     """
     memory = [Signal(intbv(value)[WORD_BITS:]) for value in first_words(program, words)]
     writing, reading, done = bit(), bit(), bit()
 
     loading = load_words(memory, program)
 
-    # What this cycle's end does; an access is done once.
     @always_comb
     def start():
-        writing.next = select and (strobe != 0) and not done
-        reading.next = select and (strobe == 0) and not done
+        writing.next = access.select and (strobe != 0) and not done
+        reading.next = access.select and (strobe == 0) and not done
 
-    # Byte by byte.
     @always(clk.posedge)
     def store():
         if writing and strobe[0]:
@@ -51,16 +48,14 @@ def word_memory(clk, reset, select, strobe, address, data, ready, word, words: i
     @always(clk.posedge)
     def fetch():
         if reading:
-            word.next = memory[address]
+            access.word.next = memory[address]
 
-    # The second cycle.
     @always_seq(clk.posedge, reset=reset)
     def finish():
-        done.next = select and not done
+        done.next = access.select and not done
 
-    # The port cannot be read back.
     @always_comb
     def answer():
-        ready.next = done
+        access.ready.next = done
 
-    return loading, start, store, fetch, finish, answer
+    return instances()

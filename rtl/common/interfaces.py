@@ -96,27 +96,19 @@ class Slope(Interface):
         self.dx, self.dy, self.dz = (unsigned(bits) for _ in range(3))
 
 
-class RaySteps(Interface):
+class Steps(Interface):
     """The control signals that operate all ray units in step.
 
     screen_to_ray: load the primary ray; initial_ray: trace it, and not a reflected one; find_intersection: start on the
-    rectangle at hand; reset_z_buf, write_z_buf: forget, and offer, a hit; reset_colour, add_colour: forget, and add,
-    what the ray saw; store_ray: keep the reflected ray. All but initial_ray are strobes of a cycle.
+    rectangle at hand; load_divider, store_quotient: where there is a divider, move what was started through it;
+    reset_z_buf, write_z_buf: forget, and offer, a hit; reset_colour, add_colour: forget, and add, what the ray saw;
+    store_ray: keep the reflected ray. All but initial_ray are strobes of a cycle.
     """
 
     def __init__(self):
         self.screen_to_ray, self.initial_ray, self.find_intersection = (bit() for _ in range(3))
-        self.reset_z_buf, self.write_z_buf, self.reset_colour, self.add_colour, self.store_ray = (
-            bit() for _ in range(5)
-        )
-
-
-class Steps(RaySteps):
-    """Those of the seed engine: load_divider and store_quotient move what was started through the divider."""
-
-    def __init__(self):
-        super().__init__()
-        self.load_divider, self.store_quotient = (bit() for _ in range(2))
+        self.load_divider, self.store_quotient, self.reset_z_buf, self.write_z_buf = (bit() for _ in range(4))
+        self.reset_colour, self.add_colour, self.store_ray = (bit() for _ in range(3))
 
 
 class RayFate(Interface):
@@ -182,3 +174,14 @@ class ProcessorBus(Interface):
         self.valid, self.ready = bit(), bit()
         self.address, self.data, self.word = (unsigned(WORD_BITS) for _ in range(3))
         self.strobe = unsigned(LANES)
+
+
+class Access(Interface):
+    """A processor's access to what it selects, held still from `select` to `ready`.
+
+    select: high from the access's first cycle to the one in which ready is; word: what was read, 32 bits, while ready.
+    """
+
+    def __init__(self):
+        self.select, self.ready = bit(), bit()
+        self.word = unsigned(WORD_BITS)

@@ -2,6 +2,7 @@
 """Records: fields side by side in one word, so that a copy is one assignment, and a memory of them one of words."""
 
 from collections.abc import Mapping
+from typing import Self
 
 from myhdl._ShadowSignal import _ShadowSignal, _SliceSignal
 from myhdl._Signal import _Signal
@@ -25,7 +26,16 @@ from raycaster.rtl.common.widths import (
 )
 
 
-class Field(_SliceSignal):
+class Part(_SliceSignal):
+    """Bits of a word that may itself be a part, or several words side by side, where it is a port."""
+
+    def _setName(self, hdl):
+        """MyHDL's, but that it does not look for the word's own word, which another module has."""
+        bits = self._left if self._right is None else f"{self._left}-1:{self._right}"
+        self._name = f"{self._sig._name}[{bits}]"
+
+
+class Field(Part):
     """A record's field: bits of its word, read only. In Verilog it is a wire of the module that reads it."""
 
     def __init__(self, word: _Signal, name: str, low: int, width: int):
@@ -93,9 +103,18 @@ class Record:
         low = sum(self.layout[after] for after in names[names.index(name) + 1 :])
         return low + self.layout[name] - 1, low
 
-    def tie(self, values: Mapping[str, int]) -> None:
+    def cut(self, words: _Signal, index: int) -> Self:
+        """Make it one of several of its kind that are side by side, the first in the lowest bits."""
+        width = len(self.word)
+        part = Part(words, (index + 1) * width, index * width)
+        words._slicesigs.append(part)
+        Record.__init__(self, self.layout, part)
+        return self
+
+    def tie(self, values: Mapping[str, int]) -> Self:
         """Make it one that never changes, of these values."""
         Record.__init__(self, self.layout, Tied(initial(self.pack(values), self.word)))
+        return self
 
 
 class Point(Record):
@@ -117,6 +136,13 @@ class Signs(Record):
 
     def __init__(self):
         super().__init__(dict.fromkeys(("dx", "dy", "dz"), 1))
+
+
+class Ray(Record):
+    """A ray as reflections change it: where it starts, an `Origin`, and which components are negative, its `Signs`."""
+
+    def __init__(self, config: Configuration):
+        super().__init__(Origin(config).layout | Signs().layout)
 
 
 class Colour(Record):
@@ -242,3 +268,10 @@ class Candidate(Record):
 def candidate_of(config: Configuration) -> Candidate:
     """One of a design's widths."""
     return Candidate(eye_bits(config) - 1, exact_slope_bits(config), index_bits(config))
+
+
+class Winner(Record):
+    """The rectangle that a ray sees, if `valid`."""
+
+    def __init__(self, index_width: int):
+        super().__init__({"valid": 1, "index": index_width})

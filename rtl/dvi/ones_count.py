@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """How many of eight bits are set."""
 
-from myhdl import always_comb, block
+from myhdl import always_comb, block, instances
 
 from raycaster.rtl.common.widths import unsigned
 
@@ -12,7 +12,6 @@ def ones_count(bits, count):
     pair_0, pair_1, pair_2, pair_3 = (unsigned(2) for _ in range(4))
     half_0, half_1 = unsigned(3), unsigned(3)
 
-    # Two bits each.
     @always_comb
     def add_bits():
         pair_0.next = bits[0] + bits[1]
@@ -20,15 +19,13 @@ def ones_count(bits, count):
         pair_2.next = bits[4] + bits[5]
         pair_3.next = bits[6] + bits[7]
 
-    # Four bits each.
     @always_comb
     def add_pairs():
         half_0.next = pair_0 + pair_1
         half_1.next = pair_2 + pair_3
 
-    # All eight.
     @always_comb
     def add_halves():
         count.next = half_0 + half_1
 
-    return add_bits, add_pairs, add_halves
+    return instances()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """One channel of a DVI link: a byte or two control bits become a symbol of ten bits."""
 
-from myhdl import always_comb, always_seq, block, concat
+from myhdl import always_comb, always_seq, block, concat, instances
 
 from raycaster.rtl.common.widths import bit, signed, unsigned
 from raycaster.rtl.dvi.ones_count import ones_count
@@ -10,7 +10,8 @@ SYMBOL_BITS = 10
 DISPARITY_BITS = 5
 """Of half the ones less the zeros sent so far, which stays within -4..4, and of its sum with a word's."""
 
-_CONTROL_00, _CONTROL_01, _CONTROL_10, _CONTROL_11 = 0b1101010100, 0b0010101011, 0b0101010100, 0b1010101011
+CONTROL_SYMBOLS = (0b1101010100, 0b0010101011, 0b0101010100, 0b1010101011)
+"""By the control bits, c1 above c0."""
 
 
 @block
@@ -20,18 +21,15 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
     enable: strobe, once a pixel, at which the inputs are taken; data: 8 bits, in the picture; control: c1 c0, in
     blanking; visible: which of the two; symbol: 10 bits, bit 0 is sent first, two strobes later. Blanking resets it.
     """
+    controls = CONTROL_SYMBOLS
     ones, word_ones = unsigned(4), unsigned(4)
-    chain_xnor = bit()
-    shifted_1, shifted_2, shifted_4, chained_2, chained_4, chained = (unsigned(8) for _ in range(6))
+    chain_xnor, word_visible, invert = bit(), bit(), bit()
+    chained_2, chained_4, chained = (unsigned(8) for _ in range(3))
     word = unsigned(9)
     low_bits = word(8, 0)
-    word_visible = bit()
     word_control = unsigned(2)
-    excess, sent_excess = signed(4), signed(4)
-    flags = signed(2)
-    more_ones, sent_more_ones, undecided, invert = (bit() for _ in range(4))
-    disparity, sent = signed(DISPARITY_BITS), signed(DISPARITY_BITS)
-    next_disparity = signed(DISPARITY_BITS)
+    excess, sent_excess, flags = signed(4), signed(4), signed(2)
+    disparity, sent, next_disparity = (signed(DISPARITY_BITS) for _ in range(3))
 
     data_count = ones_count(data, ones)
     word_count = ones_count(low_bits, word_ones)
@@ -43,28 +41,16 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
 
     # Each bit becomes the XOR of all up to it, in three steps.
     @always_comb
-    def shift_by_one():
-        shifted_1.next = concat(data[7:], False)
-
-    @always_comb
     def chain_two():
-        chained_2.next = data ^ shifted_1
-
-    @always_comb
-    def shift_by_two():
-        shifted_2.next = concat(chained_2[6:], False, False)
+        chained_2.next = data ^ concat(data[7:], False)
 
     @always_comb
     def chain_four():
-        chained_4.next = chained_2 ^ shifted_2
-
-    @always_comb
-    def shift_by_four():
-        shifted_4.next = concat(chained_4[4:], False, False, False, False)
+        chained_4.next = chained_2 ^ concat(chained_2[6:], False, False)
 
     @always_comb
     def chain_eight():
-        chained.next = chained_4 ^ shifted_4
+        chained.next = chained_4 ^ concat(chained_4[4:], False, False, False, False)
 
     # A chain of XNORs differs from it in every second bit.
     @always_seq(clk.posedge, reset=None)
@@ -77,33 +63,26 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
             word_visible.next = visible
             word_control.next = control
 
-    # How far ones outnumber zeros, halved: in the word, and in what has been sent.
+    # How far ones outnumber zeros in the word, halved.
     @always_comb
     def weigh_word():
         excess.next = word_ones - 4
 
-    # Whether either is balanced, and then nothing is gained or lost.
-    @always_comb
-    def compare():
-        undecided.next = disparity == 0 or excess == 0
-        more_ones.next = excess > 0
-        sent_more_ones.next = disparity > 0
-
-    # Send the complement where that evens things out.
+    # The complement is sent where that evens out what has been sent; where either is balanced nothing is gained.
     @always_comb
     def decide():
-        if undecided:
+        if disparity == 0 or excess == 0:
             invert.next = not word[8]
         else:
-            invert.next = more_ones == sent_more_ones
+            invert.next = (excess > 0) == (disparity > 0)
 
-    # What the eight bits, and the two that tell about them, add.
+    # What the eight bits, and the two flags above them, add.
     @always_comb
     def weigh_symbol():
         sent_excess.next = excess
+        flags.next = 0
         if invert:
             sent_excess.next = -excess
-        flags.next = 0
         if word[8] and invert:
             flags.next = 1
         elif not word[8] and not invert:
@@ -117,7 +96,6 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
     def add_flags():
         next_disparity.next = sent + flags
 
-    # The symbol.
     @always_seq(clk.posedge, reset=None)
     def send():
         if enable:
@@ -130,16 +108,6 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
                 disparity.next = next_disparity
             else:
                 disparity.next = 0
-                if word_control == 0:
-                    symbol.next = _CONTROL_00
-                elif word_control == 1:
-                    symbol.next = _CONTROL_01
-                elif word_control == 2:
-                    symbol.next = _CONTROL_10
-                else:
-                    symbol.next = _CONTROL_11
+                symbol.next = controls[int(word_control)]
 
-    return (
-        data_count, word_count, choose_chain, shift_by_one, chain_two, shift_by_two, chain_four, shift_by_four,
-        chain_eight, keep_word, weigh_word, compare, decide, weigh_symbol, add_bits, add_flags, send,
-    )  # fmt: skip
+    return instances()

@@ -1,45 +1,47 @@
 # SPDX-License-Identifier: MIT
 """One channel of a pixel whose rays have all seen something."""
 
-from myhdl import always, always_comb, block
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.rtl.common.widths import unsigned
+from raycaster.rtl.engine.colour_average import colour_average
 
 LATENCY = 1
 
 
 @block
 def colour_mean(clk, first, second, third, reflections, mean, config: Configuration):
-    """c0, (c0 + c1) >> 1 or (2 * c0 + c1 + c2) >> 2 for 0, 1 or 2 reflections, LATENCY cycles later.
+    """The `colour_average` of what a ray and its reflections saw, LATENCY cycles later.
 
-    first, second, third: what the ray and its reflections saw, 8 bits; mean: the top colour_bits.
+    first, second, third: what they saw, 8 bits each; mean: the top colour_bits.
     """
-    low = CHANNEL_BITS - config.colour_bits
-    doubled = unsigned(CHANNEL_BITS + 1)
-    pair, others = unsigned(CHANNEL_BITS + 1), unsigned(CHANNEL_BITS + 1)
-    total = unsigned(CHANNEL_BITS + 2)
+    doubled, pair, others = (unsigned(CHANNEL_BITS + 1) for _ in range(3))
+    four, total = (unsigned(CHANNEL_BITS + 2) for _ in range(2))
+    averaged = unsigned(config.colour_bits)
+    average = colour_average(total, reflections, averaged, config)
 
-    # Two weigh as much as the third and the fourth part of it.
     @always_comb
     def weigh():
         doubled.next = first + first
         pair.next = first + second
         others.next = second + third
 
-    # Four quarters.
     @always_comb
     def add():
-        total.next = doubled + others
+        four.next = doubled + others
 
-    # The mean, without the bits that the monitor does not get.
-    @always(clk.posedge)
-    def average():
+    @always_comb
+    def choose():
         if reflections == 2:
-            mean.next = total[CHANNEL_BITS + 2 : low + 2]
+            total.next = four
         elif reflections == 1:
-            mean.next = pair[CHANNEL_BITS + 1 : low + 1]
+            total.next = pair
         else:
-            mean.next = first[CHANNEL_BITS:low]
+            total.next = first
 
-    return weigh, add, average
+    @always(clk.posedge)
+    def keep():
+        mean.next = averaged
+
+    return instances()

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The engines, which are exchangeable: blocks with the ports of ray_caster, and renderers with those of its own."""
+"""Blocks that differ from engine to engine, found by the names that `raycaster.engines` has for them."""
 
-from raycaster.rtl.exact.exact_caster import exact_caster
-from raycaster.rtl.seed.ray_caster import ray_caster
+from collections.abc import Callable
+from importlib import import_module
 
-ENGINES = {"seed": ray_caster, "exact": exact_caster}
-"""Those that fill a line buffer, by the configuration's name for them."""
+
+def block_named(name: str) -> Callable:
+    """The block of a room and a name, such as "seed.ray_unit"."""
+    return getattr(import_module(f"raycaster.rtl.{name}"), name.rpartition(".")[2])

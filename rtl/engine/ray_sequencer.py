@@ -1,52 +1,48 @@
 # SPDX-License-Identifier: MIT
 """The life of a group of rays, whatever computes where they hit."""
 
-from myhdl import Signal, always, always_comb, block, enum
+from myhdl import Signal, always, always_comb, block, enum, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.widths import bit, unsigned
 from raycaster.rtl.engine.rect_sequencer import rect_sequencer
 
-GIVE_UP_AT = 2
-"""Cycles from find_intersection to when it may be given up."""
+EARLY_OUT_AT = 2
+"""Cycles from find_intersection to early_out."""
 
 RayState = enum("IDLE", "GENERATE", "TRACE", "BLEND", "DONE")
 
 
-def impatient(config: Configuration) -> bool:
-    """Whether a design gives rectangles up within their slot, which must be longer than it takes to know."""
-    return config.culling and config.slot_cycles > GIVE_UP_AT + 1
+def ends_early(config: Configuration) -> bool:
+    """Whether a design ends rectangles within their slot, which must be longer than early_out takes."""
+    return config.culling and config.slot_cycles > EARLY_OUT_AT + 1
 
 
 @block
 def ray_sequencer(
-    clk,
-    reset_ray_caster,
-    enable,
-    reflections,
-    rects,
-    steps,
-    in_flight,
-    prospects,
-    give_up,
-    done,
-    slot_cycles,
+    clk, reset_ray_caster, enable, picture, rects, steps, in_flight, fate, early_out, done, slot_cycles,
     config: Configuration,
-):
+):  # fmt: skip
     """Cycle through the usable rectangles once a ray, for the primary ray and each reflection, then raise done.
 
     A new rectangle starts every slot_cycles: steps.find_intersection. Bit i of in_flight is set i + 1 cycles later; its
     last bit goes with the last that a rectangle needs. When nothing is in flight after the last rectangle, BLEND
-    follows, and then the next ray. enable is looked at while idle; done stays until reset_ray_caster, which is
-    synchronous. reflections: 0 to config.reflections, still while rendering; rects.usable: from the cycle that looks at
-    enable.
+    follows, and then the next ray. enable is read while idle; done stays until reset_ray_caster, which is synchronous.
+    picture.reflections: 0 to config.reflections, still while rendering; rects.usable: from the cycle that reads enable.
 
-    prospects: a primary ray passes by the rectangles that are not possible; when none is alive, BLEND follows BLEND
-    until done, and none may come alive again. give_up: high in the second cycle after the start of a rectangle that
-    nobody hits; the next one starts in the cycle after it.
+    Culling leaves out what cannot change a pixel, and is correct where its signals are valid in time:
+
+    - fate.may_hit is read in the cycle that reads enable, and the primary ray passes by the rectangles that are 0 in
+      it. Ones are always safe, so a mask that is not known in time is all ones.
+    - fate.any_alive is read in BLEND alone, which is the cycle after the last write_z_buf, the first in which the units
+      know whether it was a hit. So no register fits between: a cycle later, the last rectangle would not count. Where
+      it is low, BLEND follows BLEND until done, so none may be alive again before the next group.
+    - fate.any_towards is valid in the cycle after find_intersection, from the units' registers, and belongs to that
+      rectangle until its early_out, EARLY_OUT_AT cycles after find_intersection. One register fits between, in the
+      control. early_out ends the slot of a rectangle that no ray runs towards, and clears it from in_flight; a cycle
+      later the rectangle would be past the bit that is cleared, and its division would be stored.
     """
-    write_at = len(in_flight) - 1
-    given_up = GIVE_UP_AT
+    write_at, dropped = len(in_flight) - 1, EARLY_OUT_AT
 
     state = Signal(RayState.IDLE)
     bounce = unsigned(2)
@@ -56,16 +52,15 @@ def ray_sequencer(
         first, second, third = (config.passes + 2 * (0,))[:3]
 
     sequencer = rect_sequencer(
-        clk, reset_ray_caster, start_ray, wanted, give_up, rects.index, rects.fetch, fetched, starting, slot_cycles,
-        config,
+        clk=clk, reset_ray_caster=reset_ray_caster, start_ray=start_ray, wanted=wanted, early_out=early_out,
+        index=rects.index, fetch=rects.fetch, fetched=fetched, starting=starting, slot_cycles=slot_cycles,
+        config=config,
     )  # fmt: skip
 
-    # A new ray follows two of the states.
     @always_comb
     def see_start():
         start_ray.next = steps.screen_to_ray or steps.add_colour
 
-    # Where a ray is in its life.
     @always(clk.posedge)
     def advance():
         if reset_ray_caster:
@@ -80,14 +75,13 @@ def ray_sequencer(
             if (not fetched) and (in_flight[write_at:] == 0):
                 state.next = RayState.BLEND
         elif state == RayState.BLEND:
-            if bounce == reflections:
+            if bounce == picture.reflections:
                 state.next = RayState.DONE
             else:
                 bounce.next = bounce + 1
-                if prospects.alive:
+                if fate.any_alive:
                     state.next = RayState.TRACE
 
-    # What each state asserts.
     @always_comb
     def operate():
         steps.screen_to_ray.next = state == RayState.GENERATE
@@ -95,12 +89,11 @@ def ray_sequencer(
         steps.reset_z_buf.next = start_ray
         steps.add_colour.next = state == RayState.BLEND
         # A ray that nothing follows would be one mirror too many for an engine that mirrors the eye.
-        steps.store_ray.next = (state == RayState.BLEND) and (bounce != reflections)
+        steps.store_ray.next = (state == RayState.BLEND) and (bounce != picture.reflections)
         steps.initial_ray.next = bounce == 0
         steps.find_intersection.next = (state == RayState.TRACE) and starting
         done.next = state == RayState.DONE
 
-    # Follow each rectangle on its way to the z buffer.
     @always(clk.posedge)
     def follow():
         if reset_ray_caster:
@@ -108,29 +101,27 @@ def ray_sequencer(
         else:
             in_flight.next[write_at + 1 : 1] = in_flight[write_at:]
             in_flight.next[0] = steps.find_intersection
-            if give_up:
-                in_flight.next[given_up] = False
+            if early_out:
+                in_flight.next[dropped] = False
 
-    common = sequencer, see_start, advance, operate, follow
+    # While a ray is traced, the next one is a reflection, which may hit any rectangle.
+    if config.fixed:
 
-    if not config.fixed:
-        # Those that the next ray may meet.
         @always_comb
-        def choose_possible():
-            wanted.next = rects.usable & prospects.possible
+        def choose_wanted():
+            wanted.next = first
+            if state == RayState.TRACE:
+                if bounce == 0:
+                    wanted.next = second
+                else:
+                    wanted.next = third
+
+    else:
+
+        @always_comb
+        def choose_wanted():
+            wanted.next = rects.usable & fate.may_hit
             if state == RayState.TRACE:
                 wanted.next = rects.usable
 
-        return common, choose_possible
-
-    # Those that the next ray may meet.
-    @always_comb
-    def choose_wanted():
-        wanted.next = first
-        if state == RayState.TRACE:
-            if bounce == 0:
-                wanted.next = second
-            else:
-                wanted.next = third
-
-    return common, choose_wanted
+    return instances()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Which rectangle an engine works on, and for how long."""
 
-from myhdl import always, always_comb, block, downrange
+from myhdl import always, always_comb, block, downrange, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.widths import bit, bits_for, index_bits, unsigned
@@ -9,24 +9,14 @@ from raycaster.rtl.common.widths import bit, bits_for, index_bits, unsigned
 
 @block
 def rect_sequencer(
-    clk,
-    reset_ray_caster,
-    start_ray,
-    wanted,
-    give_up,
-    index,
-    fetch,
-    fetched,
-    starting,
-    slot_cycles,
+    clk, reset_ray_caster, start_ray, wanted, early_out, index, fetch, fetched, starting, slot_cycles,
     config: Configuration,
-):
+):  # fmt: skip
     """Give each wanted rectangle a time slot of slot_cycles, in ascending order, from the cycle after start_ray on.
 
-    wanted: a bit for each, looked at in the cycle before start_ray; give_up: this cycle is the last of the slot.
-    index, fetch: to the memory; fetched: what it holds
-    is a rectangle whose slot it is; starting: in the first cycle of the slot. After a reset_ray_caster nothing is
-    fetched.
+    wanted: a bit for each, read in the cycle before start_ray; early_out: this cycle is the last of the slot. index,
+    fetch: to the memory; fetched: what the memory holds is a rectangle whose slot it is; starting: in the first cycle
+    of the slot. After a reset_ray_caster nothing is fetched.
     """
     rectangles = config.rectangles
     last_slot = slot_cycles - 1
@@ -36,10 +26,9 @@ def rect_sequencer(
     lowest, upcoming = (unsigned(index_bits(config)) for _ in range(2))
     offered, take = bit(), bit()
 
-    # The rectangle at hand has had its time slot.
     @always_comb
     def see_take():
-        take.next = start_ray or (fetched and (give_up or slot == last_slot))
+        take.next = start_ray or (fetched and (early_out or slot == last_slot))
 
     # While nothing is at hand, the next ray's first rectangle is looked for: it wants all of them again.
     @always_comb
@@ -60,7 +49,7 @@ def rect_sequencer(
                 others.next = candidates
                 others.next[i] = 0
 
-    # The choice stands in registers before it is fetched: memory and sorter take most of a cycle by themselves.
+    # The choice is registered before it is fetched: memory and sorter take most of a cycle by themselves.
     @always(clk.posedge)
     def offer():
         if take or not fetched:
@@ -68,27 +57,24 @@ def rect_sequencer(
             waiting.next = others
             offered.next = candidates != 0
 
-    # A rectangle is fetched in the cycle before it may start.
     @always_comb
     def ask():
         index.next = upcoming
         fetch.next = take
 
-    # Whether there is a rectangle at hand, and the place in its time slot.
     @always(clk.posedge)
     def take_slots():
         if reset_ray_caster:
             fetched.next = False
         elif take:
             fetched.next = offered
-        if start_ray or give_up or slot == last_slot:
+        if start_ray or early_out or slot == last_slot:
             slot.next = 0
         else:
             slot.next = slot + 1
 
-    # Work on it starts with its slot.
     @always_comb
     def start():
         starting.next = fetched and slot == 0
 
-    return see_take, choose_candidates, choose_rectangle, offer, ask, take_slots, start
+    return instances()

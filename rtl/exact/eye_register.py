@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The mirrored eye."""
 
-from myhdl import always, always_comb, block
+from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import COORDINATE_BITS
-from raycaster.rtl.common.legacy import Signs
-from raycaster.rtl.common.widths import signed, unsigned
+from raycaster.rtl.common.widths import bit, signed, unsigned
 
 
 @block
@@ -17,13 +16,12 @@ def eye_register(clk, steps, camera, initial_signs, found_surface, eye, signs, m
     steps.screen_to_ray; signs: the ray's at hand, whose slope's magnitudes do not change; mirror: what it left last.
     """
     eye_bits = len(eye.x)
-    flipped = Signs()
+    flipped_x, flipped_y, flipped_z, dx, dy, dz = (bit() for _ in range(6))
     twice = unsigned(COORDINATE_BITS + 1)
     twice_signed = signed(COORDINATE_BITS + 2)
     mirrored, image = signed(eye_bits), signed(eye_bits)
     difference = signed(eye_bits + 1)
 
-    # The coordinate that the mirror changes.
     @always_comb
     def choose_axis():
         if found_surface.axis == 0:
@@ -33,23 +31,20 @@ def eye_register(clk, steps, camera, initial_signs, found_surface, eye, signs, m
         else:
             mirrored.next = eye.z
 
-    # Twice the plane.
     @always_comb
     def double():
         twice.next = 0
         twice.next[COORDINATE_BITS + 1 : 1] = found_surface.position
 
-    # With a sign.
     @always_comb
     def extend():
         twice_signed.next = twice
 
-    # From the eye to its image.
     @always_comb
     def reflect():
         difference.next = twice_signed - mirrored
 
-    # What is kept of it fits; after the last mirror that there may be it might not, and nobody looks.
+    # Of all mirrors but the last the image fits; after the last one it is don't care.
     @always_comb
     def fit():
         image.next = difference[eye_bits:].signed()
@@ -61,29 +56,30 @@ def eye_register(clk, steps, camera, initial_signs, found_surface, eye, signs, m
             eye.x.next = camera.x
             eye.y.next = camera.y
             eye.z.next = camera.z
-            flipped.dx.next = False
-            flipped.dy.next = False
-            flipped.dz.next = False
-            mirror.active.next = False
+            flipped_x.next = False
+            flipped_y.next = False
+            flipped_z.next = False
+            mirror.word.next = 0
         elif steps.store_ray:
-            mirror.active.next = True
-            mirror.axis.next = found_surface.axis
-            mirror.position.next = found_surface.position
+            mirror.word.next = concat(True, found_surface.axis, found_surface.position)
             if found_surface.axis == 0:
                 eye.x.next = image
-                flipped.dx.next = not flipped.dx
+                flipped_x.next = not flipped_x
             elif found_surface.axis == 1:
                 eye.y.next = image
-                flipped.dy.next = not flipped.dy
+                flipped_y.next = not flipped_y
             else:
                 eye.z.next = image
-                flipped.dz.next = not flipped.dz
+                flipped_z.next = not flipped_z
 
-    # The primary ray's signs, turned around.
     @always_comb
     def turn():
-        signs.dx.next = initial_signs.dx != flipped.dx
-        signs.dy.next = initial_signs.dy != flipped.dy
-        signs.dz.next = initial_signs.dz != flipped.dz
+        dx.next = initial_signs.dx != flipped_x
+        dy.next = initial_signs.dy != flipped_y
+        dz.next = initial_signs.dz != flipped_z
 
-    return choose_axis, double, extend, reflect, fit, keep, turn
+    @always_comb
+    def join_signs():
+        signs.word.next = concat(dx, dy, dz)
+
+    return instances()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The nearest hit so far, by exact comparison of fractions."""
 
-from myhdl import always, always_comb, block
+from myhdl import always, always_comb, block, instances
 
 from raycaster.rtl.common.widths import bit, unsigned
 
@@ -11,8 +11,9 @@ def nearest_hit(clk, steps, offered, hit, numerator, denominator, found, found_s
     """Keep what is offered at steps.write_z_buf if it is a hit, and nearer than what is kept.
 
     t = numerator / denominator is nearer than another where numerator * other denominator < other numerator *
-    denominator. Of two hits at one t the first stays, which is the lower rectangle: rectangles come in order. found:
-    anything was hit since steps.reset_z_buf; found_surface then tells what, from the cycle after the write.
+    denominator. Of two hits at one t the first stays, which is the lower rectangle: rectangles come in order. offered,
+    found_surface: `Surface`s; found: anything was hit since steps.reset_z_buf; found_surface: the nearest, from the
+    cycle after its write.
     """
     numerator_bits, denominator_bits = len(numerator), len(denominator)
     nearest_numerator = unsigned(numerator_bits)
@@ -20,18 +21,15 @@ def nearest_hit(clk, steps, offered, hit, numerator, denominator, found, found_s
     offered_product, nearest_product = (unsigned(numerator_bits + denominator_bits) for _ in range(2))
     nearer = bit()
 
-    # Over the common denominator.
     @always_comb
     def multiply():
         offered_product.next = numerator * nearest_denominator
         nearest_product.next = nearest_numerator * denominator
 
-    # Strictly nearer, or the first.
     @always_comb
     def compare():
         nearer.next = hit and ((not found) or (offered_product < nearest_product))
 
-    # Reset marks it empty; a write replaces it.
     @always(clk.posedge)
     def keep():
         if steps.reset_z_buf:
@@ -40,8 +38,6 @@ def nearest_hit(clk, steps, offered, hit, numerator, denominator, found, found_s
             found.next = True
             nearest_numerator.next = numerator
             nearest_denominator.next = denominator
-            found_surface.axis.next = offered.axis
-            found_surface.position.next = offered.position
-            found_surface.colour.next = offered.colour
+            found_surface.word.next = offered.word
 
-    return multiply, compare, keep
+    return instances()

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Whether a ray hits a rectangle, by cross-multiplication: no quotient, no rounding."""
 
-from myhdl import always, always_comb, block
+from myhdl import always, always_comb, block, concat, instances
 
+from raycaster.rtl.common.records import Record
 from raycaster.rtl.common.widths import bit, signed, unsigned
 
 
@@ -16,7 +17,7 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, numerator, den
     strictly beyond its last mirror, on the side that its slope points to: on another axis the mirror's plane takes the
     place of the bound behind it, and equality no longer counts; on the same axis planes are compared.
 
-    rect: sorted; numerator, denominator: n and e, unsigned, which mean something where hit is high. Widths are the
+    rect: a `Rect`; numerator, denominator: n and e, unsigned, don't care unless hit is high. Widths are the
     ports': coordinates' from rect, slopes' from slope, and the eye's, which any distance in the world fits, from eye.
     """
     coordinate_bits, slope_bits, eye_bits = len(rect.position), len(slope.dx), len(eye.x)
@@ -27,27 +28,23 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, numerator, den
     e, slope_u, slope_v = (unsigned(slope_bits) for _ in range(3))
     back, back_u, back_v = (bit() for _ in range(3))
     mirror_on_a, mirror_on_u, mirror_on_v = (bit() for _ in range(3))
-    beyond = bit()
+    beyond, crosses = bit(), bit()
     open_low_u, open_high_u, open_low_v, open_high_v = (bit() for _ in range(4))
 
     distance, opposite_distance, n, n_u, n_v = (signed(eye_bits) for _ in range(5))
     to_low_u, to_high_u, to_low_v, to_high_v = (signed(eye_bits) for _ in range(4))
 
-    # The first stage's registers, then the second's.
-    n_1 = unsigned(eye_bits - 1)
+    # The number at a name's end is that of the stage whose registers have it.
     n_u_1, n_v_1, to_low_u_1, to_high_u_1, to_low_v_1, to_high_v_1 = (signed(eye_bits) for _ in range(6))
     e_1, slope_u_1, slope_v_1 = (signed(slope_bits + 1) for _ in range(3))
-    open_low_u_1, open_high_u_1, open_low_v_1, open_high_v_1, possible_1 = (bit() for _ in range(5))
+    carried = dict.fromkeys(("crosses", "open_low_u", "open_high_u", "open_low_v", "open_high_v"), 1)
+    carried_1, carried_2 = (Record(carried | {"n": eye_bits - 1, "e": slope_bits}) for _ in range(2))
     way_u, way_v, way_to_low_u, way_to_high_u, way_to_low_v, way_to_high_v = (signed(way_bits) for _ in range(6))
     way_u_2, way_v_2, way_to_low_u_2, way_to_high_u_2, way_to_low_v_2, way_to_high_v_2 = (
         signed(way_bits) for _ in range(6)
     )
-    n_2 = unsigned(eye_bits - 1)
-    e_2 = unsigned(slope_bits)
-    open_low_u_2, open_high_u_2, open_low_v_2, open_high_v_2, possible_2 = (bit() for _ in range(5))
     above_low_u, below_high_u, above_low_v, below_high_v = (bit() for _ in range(4))
 
-    # The ray as the rectangle's axis sees it.
     @always_comb
     def choose_axes():
         if rect.axis == 0:
@@ -79,7 +76,6 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, numerator, den
             slope_v.next = slope.dz
             back_v.next = signs.dz
 
-    # Where the mirror stands to the rectangle.
     @always_comb
     def place_mirror():
         mirror_on_a.next = mirror.active and (mirror.axis == rect.axis)
@@ -100,7 +96,7 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, numerator, den
         else:
             beyond.next = (not mirror_on_a) or (rect.position > mirror.position)
 
-    # On u, the mirror may take the place of the bound behind the ray.
+    # The mirror may take the place of the bound behind the ray, on u, and on v.
     @always_comb
     def clip_u():
         low_u.next = rect.u_low
@@ -114,7 +110,6 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, numerator, den
             high_u.next = mirror.position
             open_high_u.next = True
 
-    # And on v.
     @always_comb
     def clip_v():
         low_v.next = rect.v_low
@@ -128,12 +123,10 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, numerator, den
             high_v.next = mirror.position
             open_high_v.next = True
 
-    # The plane with a sign.
     @always_comb
     def extend_plane():
         plane.next = rect.position
 
-    # From the eye to the plane and to each bound.
     @always_comb
     def measure():
         distance.next = plane - eye_a
@@ -142,7 +135,6 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, numerator, den
         to_low_v.next = low_v - eye_v
         to_high_v.next = high_v - eye_v
 
-    # And back.
     @always_comb
     def negate():
         opposite_distance.next = -distance
@@ -160,27 +152,30 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, numerator, den
         if back != back_v:
             n_v.next = opposite_distance
 
-    # The first stage: everything that is multiplied.
+    # Otherwise the plane is nowhere, behind the eye, or not beyond the mirror.
+    @always_comb
+    def judge_plane():
+        crosses.next = beyond and (n > 0) and (e != 0)
+
     @always(clk.posedge)
     def stage_1():
         if steps.find_intersection:
-            n_1.next = n[eye_bits - 1 :]
             n_u_1.next = n_u
             n_v_1.next = n_v
-            e_1.next = e
             slope_u_1.next = slope_u
             slope_v_1.next = slope_v
             to_low_u_1.next = to_low_u
             to_high_u_1.next = to_high_u
             to_low_v_1.next = to_low_v
             to_high_v_1.next = to_high_v
-            open_low_u_1.next = open_low_u
-            open_high_u_1.next = open_high_u
-            open_low_v_1.next = open_low_v
-            open_high_v_1.next = open_high_v
-            possible_1.next = beyond and (n > 0) and (e != 0)
+            carried_1.word.next = concat(
+                crosses, open_low_u, open_high_u, open_low_v, open_high_v, n[eye_bits - 1 :], e
+            )
 
-    # Six products.
+    @always_comb
+    def extend_slope():
+        e_1.next = carried_1.e
+
     @always_comb
     def multiply():
         way_u.next = n_u_1 * slope_u_1
@@ -190,7 +185,6 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, numerator, den
         way_to_low_v.next = to_low_v_1 * e_1
         way_to_high_v.next = to_high_v_1 * e_1
 
-    # The second stage: everything that is compared.
     @always(clk.posedge)
     def stage_2():
         way_u_2.next = way_u
@@ -199,30 +193,24 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, numerator, den
         way_to_high_u_2.next = way_to_high_u
         way_to_low_v_2.next = way_to_low_v
         way_to_high_v_2.next = way_to_high_v
-        open_low_u_2.next = open_low_u_1
-        open_high_u_2.next = open_high_u_1
-        open_low_v_2.next = open_low_v_1
-        open_high_v_2.next = open_high_v_1
-        possible_2.next = possible_1
-        n_2.next = n_1
-        e_2.next = e_1[slope_bits:]
+        carried_2.word.next = carried_1.word
 
     # A bound that the mirror made is open.
     @always_comb
     def compare():
-        above_low_u.next = (way_to_low_u_2 < way_u_2) or ((not open_low_u_2) and (way_to_low_u_2 == way_u_2))
-        below_high_u.next = (way_u_2 < way_to_high_u_2) or ((not open_high_u_2) and (way_u_2 == way_to_high_u_2))
-        above_low_v.next = (way_to_low_v_2 < way_v_2) or ((not open_low_v_2) and (way_to_low_v_2 == way_v_2))
-        below_high_v.next = (way_v_2 < way_to_high_v_2) or ((not open_high_v_2) and (way_v_2 == way_to_high_v_2))
+        above_low_u.next = (way_to_low_u_2 < way_u_2) or ((not carried_2.open_low_u) and (way_to_low_u_2 == way_u_2))
+        below_high_u.next = (way_u_2 < way_to_high_u_2) or (
+            (not carried_2.open_high_u) and (way_u_2 == way_to_high_u_2)
+        )
+        above_low_v.next = (way_to_low_v_2 < way_v_2) or ((not carried_2.open_low_v) and (way_to_low_v_2 == way_v_2))
+        below_high_v.next = (way_v_2 < way_to_high_v_2) or (
+            (not carried_2.open_high_v) and (way_v_2 == way_to_high_v_2)
+        )
 
-    # The third stage: the verdict.
     @always(clk.posedge)
     def stage_3():
-        hit.next = possible_2 and above_low_u and below_high_u and above_low_v and below_high_v
-        numerator.next = n_2
-        denominator.next = e_2
+        hit.next = carried_2.crosses and above_low_u and below_high_u and above_low_v and below_high_v
+        numerator.next = carried_2.n
+        denominator.next = carried_2.e
 
-    return (
-        choose_axes, place_mirror, compare_planes, clip_u, clip_v, extend_plane, measure, negate, choose_signs, stage_1,
-        multiply, stage_2, compare, stage_3,
-    )  # fmt: skip
+    return instances()

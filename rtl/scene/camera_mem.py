@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The camera's position."""
 
-from myhdl import always_comb, block
+from myhdl import always_comb, block, concat, instances
 
 from raycaster.registers import register_map
 from raycaster.rtl.common.ties import tied
@@ -9,32 +9,24 @@ from raycaster.rtl.common.widths import WORD_BITS, bit, unsigned
 from raycaster.rtl.scene.scene_word import scene_word
 
 CAMERA = register_map(1)["camera"]
-X, Y, Z = (CAMERA.fields[axis] for axis in "xyz")
 
 
 @block
-def camera_mem(clk, reset, bus, read_word, camera):
-    """A scene_word, taken apart: camera is the live position, read_word the shadow."""
-    camera_address = tied(CAMERA.address, len(bus.address))
-    x_low, x_high = X.lsb, X.lsb + X.width
-    y_low, y_high = Y.lsb, Y.lsb + Y.width
-    z_low, z_high = Z.lsb, Z.lsb + Z.width
-
-    implemented = tied(CAMERA.implemented, WORD_BITS)
+def camera_mem(clk, reset, bus, readback, camera):
+    """A scene_word, taken apart: camera is the live position, readback the shadow's word, 32 bits."""
+    address, implemented = tied(CAMERA.address, len(bus.address)), tied(CAMERA.implemented, WORD_BITS)
     selected = bit()
     live = unsigned(WORD_BITS)
-    word = scene_word(clk, reset, bus, selected, implemented, read_word, live)
+    x, y, z = (live(field.lsb + field.width, field.lsb) for field in map(CAMERA.fields.get, "xyz"))
 
-    # Whether a write is for the camera.
+    word = scene_word(clk, reset, bus, selected, implemented=implemented, shadow=readback, live=live)
+
     @always_comb
     def decode():
-        selected.next = bus.address == camera_address
+        selected.next = bus.address == address
 
-    # The word's three coordinates.
     @always_comb
     def take_apart():
-        camera.x.next = live[x_high:x_low]
-        camera.y.next = live[y_high:y_low]
-        camera.z.next = live[z_high:z_low]
+        camera.word.next = concat(x, y, z)
 
-    return word, decode, take_apart
+    return instances()

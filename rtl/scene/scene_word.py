@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """One word of the scene: a shadow that software writes, a copy that waits, and the one that is shown."""
 
-from myhdl import always_comb, always_seq, block
+from myhdl import always_comb, always_seq, block, instances
 
 from raycaster.rtl.common.widths import WORD_BITS, unsigned
 
@@ -14,39 +14,25 @@ def scene_word(clk, reset, bus, selected, implemented, shadow, live):
     implemented: constant, the bits that exist; the others read 0. go_live without a commit changes nothing, as live
     already is what was committed last.
     """
-    kept, changed, merged, pending = (unsigned(WORD_BITS) for _ in range(4))
+    merged, pending = (unsigned(WORD_BITS) for _ in range(2))
 
-    # The bits that a write leaves alone.
-    @always_comb
-    def keep():
-        kept.next = shadow & ~bus.mask
-
-    # The bits that it changes.
-    @always_comb
-    def change():
-        changed.next = bus.data & bus.mask
-
-    # Together, as far as they exist.
     @always_comb
     def merge():
-        merged.next = (kept | changed) & implemented
+        merged.next = ((shadow & ~bus.mask) | (bus.data & bus.mask)) & implemented
 
-    # Software's side.
     @always_seq(clk.posedge, reset=reset)
     def write():
         if bus.write and selected:
             shadow.next = merged
 
-    # What was committed, however the shadow goes on.
     @always_seq(clk.posedge, reset=reset)
     def commit():
         if bus.commit:
             pending.next = shadow
 
-    # What the renderer sees.
     @always_seq(clk.posedge, reset=reset)
     def go_live():
         if bus.go_live:
             live.next = pending
 
-    return keep, change, merge, write, commit, go_live
+    return instances()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The iterative divider: one, two or three quotient bits a cycle."""
 
-from myhdl import always, always_comb, block
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, unsigned
@@ -13,9 +13,9 @@ def divider(clk, load_divider, store_quotient, dividend, divisor, quotient, over
     """quotient = dividend / divisor, truncated or rounded to nearest with halves upward, as configured.
 
     dividend: unsigned, product_bits; divisor: unsigned, 9 bits; quotient: unsigned, position_bits; overflow: the
-    quotient needs more bits than that, or the divisor is 0; the quotient then means nothing.
-    load_divider takes the operands. store_quotient comes `config.divider_steps` cycles later, and the quotient
-    stands from the cycle after it until the next store_quotient. The next load_divider may coincide with it.
+    quotient needs more bits than that, or the divisor is 0; the quotient is then don't care.
+    load_divider takes the operands. store_quotient comes `config.divider_steps` cycles later, and the quotient is valid
+    from the cycle after it until the next store_quotient. The next load_divider may coincide with it.
     """
     width = config.divider_bits * config.divider_steps
     bits_a_cycle = config.divider_bits
@@ -30,11 +30,13 @@ def divider(clk, load_divider, store_quotient, dividend, divisor, quotient, over
     divisor_held = unsigned(SLOPE_BITS)
     too_large = bit()
     steps = [
-        divider_step(remainders[i], digits[i], divisor_held, remainders[i + 1], digits[i + 1])
+        divider_step(
+            remainder=remainders[i], digits=digits[i], divisor=divisor_held, next_remainder=remainders[i + 1],
+            next_digits=digits[i + 1],
+        )
         for i in range(bits_a_cycle)
-    ]
+    ]  # fmt: skip
 
-    # Load a dividend, or take the next digits of the one at work.
     @always(clk.posedge)
     def divide():
         if load_divider:
@@ -47,28 +49,26 @@ def divider(clk, load_divider, store_quotient, dividend, divisor, quotient, over
             pending.next = last_pending
 
     if not round_to_nearest:
-        # The last step's result is the quotient.
+
         @always(clk.posedge)
         def store():
             if store_quotient:
                 quotient.next = last_pending[quotient_width:]
                 overflow.next = too_large
 
-        return steps, divide, store
+        return instances()
 
     twice_remainder = unsigned(SLOPE_BITS + 1)
     truncated = unsigned(quotient_width)
-    truncated_overflow = bit()
-    round_up = bit()
+    truncated_overflow, round_up = bit(), bit()
     rounded = unsigned(quotient_width + 1)
 
-    # What is left decides the rounding: half of the divisor or more rounds up.
     @always_comb
     def double_remainder():
         twice_remainder.next = 0
         twice_remainder.next[SLOPE_BITS + 1 : 1] = last_remainder
 
-    # The last step's result is the truncated quotient.
+    # A remainder of half the divisor or more rounds up.
     @always(clk.posedge)
     def store_truncated():
         if store_quotient:
@@ -81,10 +81,9 @@ def divider(clk, load_divider, store_quotient, dividend, divisor, quotient, over
     def round_quotient():
         rounded.next = truncated + round_up
 
-    # A carry out of the quotient is one more way to overflow.
     @always_comb
     def deliver():
         quotient.next = rounded[quotient_width:]
         overflow.next = truncated_overflow or rounded[quotient_width]
 
-    return steps, divide, double_remainder, store_truncated, round_quotient, deliver
+    return instances()

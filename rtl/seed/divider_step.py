@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """One bit of a restoring division."""
 
-from myhdl import Signal, always_comb, block, concat, intbv
+from myhdl import Signal, always_comb, block, concat, instances, intbv
 
 from raycaster.rtl.common.widths import unsigned
 
@@ -18,17 +18,15 @@ def divider_step(remainder, digits, divisor, next_remainder, next_digits):
     dividend = unsigned(width + 1)
     difference = Signal(intbv(0, min=-(1 << width), max=1 << (width + 1)))
 
-    # The next digit joins the remainder on the right.
     @always_comb
     def bring_down():
         dividend.next = concat(remainder, digits[count - 1])
 
-    # Try the subtraction; a negative difference says that the divisor did not fit.
+    # A negative difference says that the divisor did not fit.
     @always_comb
     def subtract():
         difference.next = dividend - divisor
 
-    # Keep the difference where the divisor fitted, the undiminished dividend where it did not.
     @always_comb
     def restore():
         if difference < 0:
@@ -38,4 +36,4 @@ def divider_step(remainder, digits, divisor, next_remainder, next_digits):
             next_remainder.next = difference[width:]
             next_digits.next = concat(digits[count - 1 :], True)
 
-    return bring_down, subtract, restore
+    return instances()

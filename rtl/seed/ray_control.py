@@ -1,50 +1,38 @@
 # SPDX-License-Identifier: MIT
-"""The one control that operates all ray units in step."""
+"""The one control that operates all units of the seed engine in step."""
 
-from myhdl import always, always_comb, block
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.legacy import Rect
+from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import bit, unsigned
-from raycaster.rtl.engine.ray_sequencer import impatient, ray_sequencer
+from raycaster.rtl.engine.ray_sequencer import ends_early, ray_sequencer
 
 
 @block
-def ray_control(
-    clk,
-    reset_ray_caster,
-    enable,
-    reflections,
-    rects,
-    steps,
-    prospects,
-    finishing_rect,
-    done,
-    config: Configuration,
-):
+def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offered, done, config: Configuration):
     """A ray_sequencer around the dividers, with done and the other ports as it has them.
 
     A new rectangle starts every config.divider_steps cycles: with find_intersection in cycle t, load_divider is in
     t + 2, store_quotient in t + 2 + divider_steps (together with the next rectangle's load_divider) and write_z_buf two
-    cycles later. finishing_rect is the rectangle whose quotients were stored. An impatient control gives a rectangle up
-    in t + 2 if no ray runs towards it: prospects.ahead is low in t + 1.
+    cycles later. offered: the `Rect` whose quotients were stored last. early_out is in t + 2, from the fate.any_towards
+    of t + 1.
     """
-    slot_cycles = config.divider_steps
     load_at = 1
-    store_at = load_at + slot_cycles
+    store_at = load_at + config.divider_steps
     write_at = store_at + 2
 
     in_flight = unsigned(write_at + 1)
-    hopeless, give_up = bit(), bit() if impatient(config) else tied(0, bit())
-    dividing_rect = Rect()
+    none_towards = bit()
+    early_out = bit() if ends_early(config) else tied(0, 1)
+    dividing = Rect()
 
     sequencer = ray_sequencer(
-        clk, reset_ray_caster, enable, reflections, rects, steps, in_flight, prospects, give_up, done, slot_cycles,
-        config,
+        clk=clk, reset_ray_caster=reset_ray_caster, enable=enable, picture=picture, rects=rects, steps=steps,
+        in_flight=in_flight, fate=fate, early_out=early_out, done=done, slot_cycles=config.divider_steps, config=config,
     )  # fmt: skip
 
-    # Stages that lie a fixed number of cycles behind the start.
     @always_comb
     def operate_stages():
         steps.load_divider.next = in_flight[load_at]
@@ -55,34 +43,18 @@ def ray_control(
     @always(clk.posedge)
     def carry_rectangle():
         if steps.load_divider:
-            dividing_rect.axis.next = rects.rect.axis
-            dividing_rect.position.next = rects.rect.position
-            dividing_rect.u_low.next = rects.rect.u_low
-            dividing_rect.u_high.next = rects.rect.u_high
-            dividing_rect.v_low.next = rects.rect.v_low
-            dividing_rect.v_high.next = rects.rect.v_high
-            dividing_rect.colour.next = rects.rect.colour
+            dividing.word.next = rects.rect.word
         if steps.store_quotient:
-            finishing_rect.axis.next = dividing_rect.axis
-            finishing_rect.position.next = dividing_rect.position
-            finishing_rect.u_low.next = dividing_rect.u_low
-            finishing_rect.u_high.next = dividing_rect.u_high
-            finishing_rect.v_low.next = dividing_rect.v_low
-            finishing_rect.v_high.next = dividing_rect.v_high
-            finishing_rect.colour.next = dividing_rect.colour
+            offered.word.next = dividing.word
 
-    common = sequencer, operate_stages, carry_rectangle
-    if not impatient(config):
-        return common
+    if ends_early(config):
+        # What all units say together is registered here; see ray_sequencer.
+        @always(clk.posedge)
+        def register_towards():
+            none_towards.next = not fate.any_towards
 
-    # All units together take a cycle to say that the plane lies behind them.
-    @always(clk.posedge)
-    def look_ahead():
-        hopeless.next = not prospects.ahead
+        @always_comb
+        def end_early():
+            early_out.next = in_flight[load_at] and none_towards
 
-    # Its division has just begun.
-    @always_comb
-    def judge():
-        give_up.next = in_flight[load_at] and hopeless
-
-    return common, look_ahead, judge
+    return instances()

@@ -1,31 +1,28 @@
 # SPDX-License-Identifier: MIT
 """The reflected ray."""
 
-from myhdl import always, block
+from myhdl import always, always_comb, block, concat, instances
+
+from raycaster.rtl.common.widths import bit
 
 
 @block
-def ray_mem(clk, steps, found_axis, found_point, signs, reflected_origin, reflected_signs):
+def ray_mem(clk, steps, found_axis, found_point, ray, reflected):
     """At steps.store_ray, keep the ray that leaves the hit point: the slope on the mirror's axis changes its sign.
 
-    signs are those of the ray that hit; the slope's magnitudes do not change, so they are not kept.
+    ray: the `Ray` that hit; reflected: the `Ray` that is kept. The slope's magnitudes do not change.
     """
+    dx, dy, dz = bit(), bit(), bit()
 
-    # The reflected ray starts where the last one ended.
+    @always_comb
+    def turn():
+        dx.next = ray.dx != (found_axis == 0)
+        dy.next = ray.dy != (found_axis == 1)
+        dz.next = ray.dz != (found_axis == 2)
+
     @always(clk.posedge)
     def store():
         if steps.store_ray:
-            reflected_origin.x.next = found_point.x
-            reflected_origin.y.next = found_point.y
-            reflected_origin.z.next = found_point.z
-            reflected_signs.dx.next = signs.dx
-            reflected_signs.dy.next = signs.dy
-            reflected_signs.dz.next = signs.dz
-            if found_axis == 0:
-                reflected_signs.dx.next = not signs.dx
-            elif found_axis == 1:
-                reflected_signs.dy.next = not signs.dy
-            else:
-                reflected_signs.dz.next = not signs.dz
+            reflected.word.next = concat(found_point.word, dx, dy, dz)
 
-    return (store,)
+    return instances()

@@ -1,100 +1,83 @@
 # SPDX-License-Identifier: MIT
-"""One of the parallel units: a ray, its nearest hit, its reflections, and the colour of its pixel."""
+"""One of the seed engine's units: a ray, its nearest hit, its reflections, and the colour of its pixel."""
 
-from myhdl import always_comb, block
+from myhdl import always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.legacy import Origin, Signs, Slope
+from raycaster.rtl.common.interfaces import Slope
+from raycaster.rtl.common.records import Origin, Ray, Signs
 from raycaster.rtl.common.ties import unconnected
 from raycaster.rtl.common.widths import AXIS_BITS, RGB_BITS, bit, position_bits, unsigned
 from raycaster.rtl.engine.colour_combiner import colour_combiner
 from raycaster.rtl.engine.ray_generator import ray_generator
-from raycaster.rtl.engine.ray_sequencer import impatient
+from raycaster.rtl.engine.ray_sequencer import ends_early
 from raycaster.rtl.seed.intersection_finder import intersection_finder
 from raycaster.rtl.seed.ray_mem import ray_mem
 from raycaster.rtl.seed.z_buffer import z_buffer
 
 
 @block
-def ray_unit(
-    clk,
-    steps,
-    row,
-    column_base,
-    column_offset,
-    camera,
-    current_plane,
-    finishing_rect,
-    background,
-    reflections,
-    pixel,
-    outlook,
-    config: Configuration,
-):
-    """Trace the pixel at (row, column_offset * units + column_base) as the steps say; pixel stands after the last.
+def ray_unit(clk, steps, place, column_base, camera, rect, offered, picture, pixel, fate, config: Configuration):
+    """Trace the pixel at (place.row, place.column_offset * units + column_base) as the steps say.
 
-    It holds no control of its own: one ray_control operates all units in step. camera: whole world units. outlook: with
-    config.culling.
+    It holds no control of its own: one ray_control operates all units in step. camera: a `Point`; rect: what
+    find_intersection starts on; offered: the `Rect` whose quotients were stored last; pixel: valid after the last
+    step; fate: with config.culling.
     """
     fraction_bits = config.fraction_bits
-    position_width = position_bits(config)
 
-    initial_signs, reflected_signs, signs = Signs(), Signs(), Signs()
-    slope = Slope()
-    reflected_origin, origin, point, found_point = (Origin(config) for _ in range(4))
+    initial_signs, slope = Signs(), Slope()
+    ray, reflected = Ray(config), Ray(config)
+    point, found_point = Origin(config), Origin(config)
     hit, found = bit(), bit()
-    ahead = bit() if impatient(config) else unconnected(1)
+    towards = bit() if ends_early(config) else unconnected(1)
     missed = bit() if config.culling else unconnected(1)
-    depth = unsigned(position_width)
-    found_axis = unsigned(AXIS_BITS)
-    found_colour = unsigned(RGB_BITS)
+    depth = unsigned(position_bits(config))
+    found_axis, found_colour = unsigned(AXIS_BITS), unsigned(RGB_BITS)
+    start_x, start_y, start_z = (unsigned(position_bits(config)) for _ in range(3))
 
-    generator = ray_generator(clk, steps, row, column_base, column_offset, initial_signs, slope, config)
+    generator = ray_generator(
+        clk=clk, steps=steps, place=place, column_base=column_base, initial_signs=initial_signs, slope=slope,
+        config=config,
+    )  # fmt: skip
     finder = intersection_finder(
-        clk, steps, current_plane, finishing_rect, origin, signs, slope, hit, depth, point, ahead, config
-    )
+        clk=clk, steps=steps, rect=rect, offered=offered, ray=ray, slope=slope, hit=hit, depth=depth, point=point,
+        towards=towards, config=config,
+    )  # fmt: skip
     z_buf = z_buffer(
-        clk, steps, finishing_rect, hit, depth, point, found, found_axis, found_colour, found_point, config
-    )
-    memory = ray_mem(clk, steps, found_axis, found_point, signs, reflected_origin, reflected_signs)
-    combiner = colour_combiner(clk, steps, found, found_colour, background, reflections, missed, pixel, config)
+        clk=clk, steps=steps, offered=offered, hit=hit, depth=depth, point=point, found=found, found_axis=found_axis,
+        found_colour=found_colour, found_point=found_point, config=config,
+    )  # fmt: skip
+    memory = ray_mem(clk=clk, steps=steps, found_axis=found_axis, found_point=found_point, ray=ray, reflected=reflected)
+    combiner = colour_combiner(
+        clk=clk, steps=steps, found=found, found_colour=found_colour, picture=picture, missed=missed, pixel=pixel,
+        config=config,
+    )  # fmt: skip
 
-    # The camera's ray first, then what the mirrors make of it.
+    @always_comb
+    def align_camera():
+        start_x.next = camera.x << fraction_bits
+        start_y.next = camera.y << fraction_bits
+        start_z.next = camera.z << fraction_bits
+
     @always_comb
     def choose_ray():
         if steps.initial_ray:
-            origin.x.next = 0
-            origin.y.next = 0
-            origin.z.next = 0
-            origin.x.next[position_width:fraction_bits] = camera.x
-            origin.y.next[position_width:fraction_bits] = camera.y
-            origin.z.next[position_width:fraction_bits] = camera.z
-            signs.dx.next = initial_signs.dx
-            signs.dy.next = initial_signs.dy
-            signs.dz.next = initial_signs.dz
+            ray.word.next = concat(start_x, start_y, start_z, initial_signs.word)
         else:
-            origin.x.next = reflected_origin.x
-            origin.y.next = reflected_origin.y
-            origin.z.next = reflected_origin.z
-            signs.dx.next = reflected_signs.dx
-            signs.dy.next = reflected_signs.dy
-            signs.dz.next = reflected_signs.dz
+            ray.word.next = reflected.word
 
-    common = generator, finder, z_buf, memory, combiner, choose_ray
-    if not config.culling:
-        return common
+    # After a miss the unit goes on with a ray that is none: it hits nothing, and runs towards nothing.
+    if config.culling:
 
-    # What is lost hits nothing any more.
-    @always_comb
-    def judge():
-        outlook.alive.next = found and not missed
+        @always_comb
+        def judge_alive():
+            fate.alive.next = found and not missed
 
-    if not impatient(config):
-        return common, judge
+    if ends_early(config):
 
-    # Nor does it run towards anything.
-    @always_comb
-    def look_ahead():
-        outlook.ahead.next = ahead and not missed
+        @always_comb
+        def judge_towards():
+            fate.towards.next = towards and not missed
 
-    return common, judge, look_ahead
+    return instances()

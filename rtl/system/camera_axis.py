@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """One coordinate of a camera that buttons move."""
 
-from myhdl import always, always_comb, block
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.rtl.common.widths import bit
@@ -20,13 +20,11 @@ def camera_axis(clk, reset, move, more, less, start, position):
     most = WORLD_SIZE - 1 - STEP
     can_rise, can_fall = bit(), bit()
 
-    # Whether a step stays in the world.
     @always_comb
     def look_ahead():
         can_rise.next = more and not less and position <= most
         can_fall.next = less and not more and position >= STEP
 
-    # The step.
     @always(clk.posedge)
     def step():
         if reset:
@@ -36,4 +34,4 @@ def camera_axis(clk, reset, move, more, less, start, position):
         elif move and can_fall:
             position.next = position - STEP
 
-    return look_ahead, step
+    return instances()

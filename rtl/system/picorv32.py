@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""PicoRV32, a RISC-V processor by Claire Xenia Wolf, whose Verilog is given (ISC licence, which stands in its file)."""
+"""PicoRV32, a RISC-V processor by Claire Xenia Wolf, whose Verilog is given (ISC licence, in its file)."""
 
 import importlib.util
 from pathlib import Path

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The reset of a board: from power-up until the clock has been good for a while."""
 
-from myhdl import always_comb, always_seq, block
+from myhdl import always_comb, always_seq, block, instances
 
+from raycaster.rtl.common.synchroniser import synchroniser
 from raycaster.rtl.common.widths import bit, unsigned
 
 HOLD_CYCLES = 16
@@ -17,16 +18,12 @@ def reset_release(clk, ready, reset):
     `ready` of three cycles. reset: high again three cycles after ready fell.
     """
     last = HOLD_CYCLES - 1
-    arriving, steady = bit(), bit()
+    steady = bit()
     held = unsigned(HOLD_CYCLES)
 
-    # Two registers, as ready is not of this clock.
-    @always_seq(clk.posedge, reset=None)
-    def synchronise():
-        arriving.next = ready
-        steady.next = arriving
+    synchronised = synchroniser(clk, None, value=ready, held=steady)
 
-    # A one moves up for each cycle in which it is ready.
+    # A one moves up each cycle while ready is high, and reset ends when it has arrived.
     @always_seq(clk.posedge, reset=None)
     def shift():
         held.next = 0
@@ -34,9 +31,8 @@ def reset_release(clk, ready, reset):
             held.next[HOLD_CYCLES:1] = held[last:]
             held.next[0] = True
 
-    # Reset ends when the first has arrived.
     @always_comb
     def drive():
         reset.next = not held[last]
 
-    return synchronise, shift, drive
+    return instances()

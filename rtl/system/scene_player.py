@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""What stands for the processor where there is none: loads one scene, and moves its camera with buttons."""
+"""The Avalon-MM host of a system without a processor: loads one scene, and moves its camera with buttons."""
 
-from myhdl import always_comb, always_seq, block
+from myhdl import always_comb, always_seq, block, instances
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.program import scene_words
 from raycaster.registers import register_map
-from raycaster.rtl.common.legacy import Point
+from raycaster.rtl.common.synchroniser import synchroniser
 from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import WORD_BITS, bit, bits_for, unsigned
+from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, bits_for, unsigned
 from raycaster.rtl.system.camera_axis import camera_axis
 from raycaster.scene import Scene
 
@@ -29,19 +29,7 @@ def player_program(scene: Scene, config: Configuration) -> tuple[list[tuple[int,
 
 
 @block
-def scene_player(
-    clk,
-    reset,
-    buttons,
-    irq,
-    avm_m0_address,
-    avm_m0_write,
-    avm_m0_writedata,
-    avm_m0_byteenable,
-    avm_m0_waitrequest,
-    config: Configuration,
-    scene: Scene,
-):
+def scene_player(clk, reset, buttons, irq, avm_m0, config: Configuration, scene: Scene):
     """Avalon-MM host that only writes: a scene after reset, then a camera at each StartScreen interrupt.
 
     buttons: as `BUTTONS`, active high; they may change at any time, and count where they are held at StartScreen.
@@ -50,6 +38,7 @@ def scene_player(
     program, first_of_frame = player_program(scene, config)
     addresses, words = (tuple(column) for column in zip(*program, strict=True))
     last = len(program) - 1
+    every_lane = (1 << LANES) - 1
     camera = register_map(config.table)["camera"]
     camera_entry = first_of_frame + 1
     x_low, y_low, z_low = (camera.fields[axis].lsb for axis in "xyz")
@@ -57,31 +46,16 @@ def scene_player(
 
     entry = unsigned(bits_for(len(program)))
     waiting, move = bit(), bit()
-    arriving, held = unsigned(len(BUTTONS)), unsigned(len(BUTTONS))
-    forward, back, left, right, up, down = (bit() for _ in BUTTONS)
-    position = Point()
+    held = unsigned(len(BUTTONS))
+    forward, back, left, right, up, down = (held(index) for index in range(len(BUTTONS)))
+    x, y, z = (unsigned(COORDINATE_BITS) for _ in "xyz")
     word = unsigned(WORD_BITS)
-    start_x, start_y, start_z = (tied(value, 9) for value in scene.camera.position)
+    start_x, start_y, start_z = (tied(value, COORDINATE_BITS) for value in scene.camera.position)
 
-    axis_x = camera_axis(clk, reset, move, forward, back, start_x, position.x)
-    axis_y = camera_axis(clk, reset, move, right, left, start_y, position.y)
-    axis_z = camera_axis(clk, reset, move, up, down, start_z, position.z)
-
-    # Two registers, as buttons know no clock.
-    @always_seq(clk.posedge, reset=reset)
-    def synchronise():
-        arriving.next = buttons
-        held.next = arriving
-
-    # The buttons by name.
-    @always_comb
-    def name_buttons():
-        forward.next = held[0]
-        back.next = held[1]
-        left.next = held[2]
-        right.next = held[3]
-        up.next = held[4]
-        down.next = held[5]
+    synchronised = synchroniser(clk, reset, value=buttons, held=held)
+    axis_x = camera_axis(clk, reset, move, more=forward, less=back, start=start_x, position=x)
+    axis_y = camera_axis(clk, reset, move, more=right, less=left, start=start_y, position=y)
+    axis_z = camera_axis(clk, reset, move, more=up, less=down, start=start_z, position=z)
 
     # The camera moves as its turn in the program comes.
     @always_comb
@@ -95,35 +69,30 @@ def scene_player(
             if irq:
                 waiting.next = False
                 entry.next = first_of_frame
-        elif not avm_m0_waitrequest:
+        elif not avm_m0.waitrequest:
             if entry == last:
                 waiting.next = True
             else:
                 entry.next = entry + 1
 
-    # Where this write goes.
     @always_comb
     def look_up_address():
-        avm_m0_address.next = addresses[int(entry)]
+        avm_m0.address.next = addresses[int(entry)]
 
-    # What it says, but for the camera.
     @always_comb
     def look_up_word():
         word.next = words[int(entry)]
 
-    # The write; the camera's word is the one that is not known beforehand.
+    # The camera's word is the one that is not known beforehand.
     @always_comb
     def present():
-        avm_m0_write.next = not waiting
-        avm_m0_byteenable.next = 0b1111
-        avm_m0_writedata.next = word
+        avm_m0.write.next = not waiting
+        avm_m0.byteenable.next = every_lane
+        avm_m0.writedata.next = word
         if entry == camera_entry:
-            avm_m0_writedata.next = 0
-            avm_m0_writedata.next[x_high:x_low] = position.x
-            avm_m0_writedata.next[y_high:y_low] = position.y
-            avm_m0_writedata.next[z_high:z_low] = position.z
+            avm_m0.writedata.next = 0
+            avm_m0.writedata.next[x_high:x_low] = x
+            avm_m0.writedata.next[y_high:y_low] = y
+            avm_m0.writedata.next[z_high:z_low] = z
 
-    return (
-        axis_x, axis_y, axis_z, synchronise, name_buttons, start_frame, sequence, look_up_address, look_up_word,
-        present,
-    )  # fmt: skip
+    return instances()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The serial port's sending half."""
 
-from myhdl import Signal, always_comb, always_seq, block
+from myhdl import Signal, always_comb, always_seq, block, instances
 
 from raycaster.rtl.common.widths import bit, bits_for, unsigned
 
@@ -11,12 +11,11 @@ FRAME_BITS = 1 + DATA_BITS + 1
 
 
 @block
-def uart_transmitter(clk, reset, select, strobe, data, ready, word, uart_tx, clocks_per_bit: int):
+def uart_transmitter(clk, reset, access, strobe, data, uart_tx, clocks_per_bit: int):
     """Send each byte that is written; the next one waits until the last one's stop bit is over.
 
-    select: high from an access's first cycle to the one in which it is ready; strobe: of a write that enables its first
-    byte, data is sent, other writes do nothing, and 0 reads. word: bit 0 is 1 while a byte is being sent. uart_tx: high
-    while nothing is sent.
+    strobe: of a write that enables its first byte, data is sent, other writes do nothing, and 0 reads. access.word: bit
+    0 is 1 while a byte is being sent. data: 8 bits; uart_tx: high while nothing is sent.
     """
     last_clock = clocks_per_bit - 1
     line = Signal(bool(1))
@@ -25,22 +24,20 @@ def uart_transmitter(clk, reset, select, strobe, data, ready, word, uart_tx, clo
     clocks = unsigned(bits_for(clocks_per_bit))
     busy, writing, start, bit_end = bit(), bit(), bit(), bit()
 
-    # What this cycle's end does.
     @always_comb
     def decide():
         busy.next = bits_left != 0
-        writing.next = select and strobe[0]
-        start.next = select and strobe[0] and (bits_left == 0)
+        writing.next = access.select and strobe[0]
+        start.next = access.select and strobe[0] and (bits_left == 0)
         bit_end.next = clocks == last_clock
 
     # Only a byte to send has to wait.
     @always_comb
     def answer():
-        ready.next = select and not (writing and busy)
-        word.next = 0
-        word.next[0] = busy
+        access.ready.next = access.select and not (writing and busy)
+        access.word.next = 0
+        access.word.next[0] = busy
 
-    # The bit on the line.
     @always_seq(clk.posedge, reset=reset)
     def time():
         if start or bit_end:
@@ -61,9 +58,8 @@ def uart_transmitter(clk, reset, select, strobe, data, ready, word, uart_tx, clo
             left.next[DATA_BITS - 1] = True
             bits_left.next = bits_left - 1
 
-    # The port cannot be read back.
     @always_comb
     def drive_port():
         uart_tx.next = line
 
-    return decide, answer, time, shift, drive_port
+    return instances()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """One section of the double line buffer: the pixels of one ray unit."""
 
-from myhdl import Signal, always, always_comb, block, intbv
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.widths import bits_for, pixel_bits, unsigned
@@ -16,7 +16,7 @@ def line_buffer(clk, write, line_buf_sel, write_offset, pixel_in, read_offset, p
     """
     groups = config.groups
     address_width = bits_for(2 * groups)
-    memory = [Signal(intbv(0)[pixel_bits(config) :]) for _ in range(2 * groups)]
+    memory = [unsigned(pixel_bits(config)) for _ in range(2 * groups)]
     write_address, read_address = unsigned(address_width), unsigned(address_width)
 
     # The second half starts after the first one's last pixel.
@@ -29,15 +29,13 @@ def line_buffer(clk, write, line_buf_sel, write_offset, pixel_in, read_offset, p
         else:
             read_address.next = (read_offset + groups) % (1 << address_width)
 
-    # Take the unit's finished pixel.
     @always(clk.posedge)
     def store():
         if write:
             memory[write_address].next = pixel_in
 
-    # Fetch for the monitor.
     @always(clk.posedge)
     def fetch():
         pixel_out.next = memory[read_address]
 
-    return address, store, fetch
+    return instances()

@@ -14,7 +14,7 @@ module avalon_agent #(
     input start_screen, input busy, input underrun, input [15:0] row_cycles, input [15:0] group_cycles,
     input rects_index, input rects_fetch
 );
-wire [31:0] readdata, camera_word, rect_word, bus_data, bus_mask;
+wire [31:0] readdata, camera_readback, rect_readback, bus_data, bus_mask;
 wire readdatavalid, waitrequest, irq, bad_rectangle, run, bus_write, bus_commit, bus_go_live;
 wire [1:0] reflections;
 wire [23:0] background;
@@ -24,23 +24,22 @@ wire [8:0] camera_x, camera_y, camera_z;
 avalon_interface registers (
     .clk(clk), .reset(reset), .avs_s0_address(address), .avs_s0_read(read), .avs_s0_write(write),
     .avs_s0_writedata(writedata), .avs_s0_byteenable(byteenable), .avs_s0_readdata(readdata),
-    .avs_s0_readdatavalid(readdatavalid), .avs_s0_waitrequest(waitrequest), .irq(irq), .camera_word(camera_word),
-    .rect_word(rect_word), .bad_rectangle(bad_rectangle), .run(run), .reflections(reflections),
-    .background(background), .start_screen(start_screen), .busy(busy), .underrun(underrun), .row_cycles(row_cycles),
-    .group_cycles(group_cycles), .bus_write(bus_write), .bus_commit(bus_commit), .bus_go_live(bus_go_live),
+    .avs_s0_readdatavalid(readdatavalid), .avs_s0_waitrequest(waitrequest), .irq(irq),
+    .camera_readback(camera_readback), .rect_readback(rect_readback), .bad_rectangle(bad_rectangle), .picture_run(run),
+    .picture_reflections(reflections), .picture_background(background), .progress_start_screen(start_screen),
+    .progress_busy(busy), .progress_underrun(underrun), .progress_row_cycles(row_cycles),
+    .progress_group_cycles(group_cycles), .bus_write(bus_write), .bus_commit(bus_commit), .bus_go_live(bus_go_live),
     .bus_address(bus_address), .bus_data(bus_data), .bus_mask(bus_mask)
 );
 camera_mem camera (
-    .clk(clk), .reset(reset), .read_word(camera_word), .bus_write(bus_write), .bus_commit(bus_commit),
+    .clk(clk), .reset(reset), .readback(camera_readback), .bus_write(bus_write), .bus_commit(bus_commit),
     .bus_go_live(bus_go_live), .bus_address(bus_address), .bus_data(bus_data), .bus_mask(bus_mask),
-    .camera_x(camera_x), .camera_y(camera_y), .camera_z(camera_z)
+    .camera_word({camera_x, camera_y, camera_z})
 );
 rect_mem rects (
-    .clk(clk), .reset(reset), .read_word(rect_word), .bad_rectangle(bad_rectangle), .bus_write(bus_write),
+    .clk(clk), .reset(reset), .readback(rect_readback), .bad_rectangle(bad_rectangle), .bus_write(bus_write),
     .bus_commit(bus_commit), .bus_go_live(bus_go_live), .bus_address(bus_address), .bus_data(bus_data),
-    .bus_mask(bus_mask), .rects_usable(), .rects_index(rects_index), .rects_fetch(rects_fetch), .rects_rect_axis(),
-    .rects_rect_position(), .rects_rect_u_low(), .rects_rect_u_high(), .rects_rect_v_low(), .rects_rect_v_high(),
-    .rects_rect_colour()
+    .bus_mask(bus_mask), .rects_usable(), .rects_index(rects_index), .rects_fetch(rects_fetch), .rects_rect_word()
 );
 
 // The register map once more, by hand.
@@ -226,7 +225,7 @@ reg [31:0] kept, kept_pending;
 always @* case (watched)
     CONTROL: {kept, kept_pending} = {\registers.control_word , \registers.scene_word_0_i.pending };
     BACKGROUND: {kept, kept_pending} = {\registers.background_word , \registers.scene_word_1_i.pending };
-    CAMERA: {kept, kept_pending} = {camera_word, \camera.scene_word_i.pending };
+    CAMERA: {kept, kept_pending} = {camera_readback, \camera.scene_word_i.pending };
     TABLE: {kept, kept_pending} = {\rects.rect_slot_0_i.corner_0 , \rects.rect_slot_0_i.scene_word_0_i.pending };
     TABLE + 1: {kept, kept_pending} = {\rects.rect_slot_0_i.corner_1 , \rects.rect_slot_0_i.scene_word_1_i.pending };
     TABLE + 2: {kept, kept_pending} = {\rects.rect_slot_0_i.surface , \rects.rect_slot_0_i.scene_word_2_i.pending };

@@ -51,71 +51,58 @@ always @* begin
     if (two) assume (met_2);
 end
 
-// What the engine feeds its blocks: distances from the camera, and their products with the slope. Its u is y unless the
-// plane is on y, then x; its v is z unless the plane is on z, then x. The rectangle's bounds are in the order x, y, z.
+// What the engine feeds its blocks: distances from the camera, and their products with the slope. Its p is y unless the
+// plane is on y, then x; its q is z unless the plane is on z, then x. The rectangle's bounds are in the order x, y, z.
 wire signed [WIDE-1:0] low_0 = {1'b0, u_low}, high_0 = {1'b0, u_high}, low_1 = {1'b0, v_low}, high_1 = {1'b0, v_high};
 wire swapped = axis == 2;
-wire [1:0] on_u = axis == 1 ? 0 : 1, on_v = axis == 2 ? 0 : 2;
-wire signed [WIDE-1:0] low_u = swapped ? low_1 : low_0, high_u = swapped ? high_1 : high_0;
-wire signed [WIDE-1:0] low_v = swapped ? low_0 : low_1, high_v = swapped ? high_0 : high_1;
-wire signed [WIDE-1:0] camera_u = of_three(on_u, eye_x, eye_y, eye_z), camera_v = of_three(on_v, eye_x, eye_y, eye_z);
+wire [1:0] on_p = axis == 1 ? 0 : 1, on_q = axis == 2 ? 0 : 2;
+wire signed [WIDE-1:0] low_p = swapped ? low_1 : low_0, high_p = swapped ? high_1 : high_0;
+wire signed [WIDE-1:0] low_q = swapped ? low_0 : low_1, high_q = swapped ? high_0 : high_1;
+wire signed [WIDE-1:0] camera_p = of_three(on_p, eye_x, eye_y, eye_z), camera_q = of_three(on_q, eye_x, eye_y, eye_z);
 wire signed [WIDE-1:0] slope_a = of_three(axis, view, wide_dy, wide_dz), distance = k - of_three(axis, eye_x, eye_y, eye_z);
-wire signed [WIDE-1:0] way_u = distance * of_three(on_u, view, wide_dy, wide_dz);
-wire signed [WIDE-1:0] way_v = distance * of_three(on_v, view, wide_dy, wide_dz);
-wire signed [WIDE-1:0] walk_low_u = (low_u - camera_u) * slope_a, walk_high_u = (high_u - camera_u) * slope_a;
-wire signed [WIDE-1:0] walk_low_v = (low_v - camera_v) * slope_a, walk_high_v = (high_v - camera_v) * slope_a;
+wire signed [WIDE-1:0] way_p = distance * of_three(on_p, view, wide_dy, wide_dz);
+wire signed [WIDE-1:0] way_q = distance * of_three(on_q, view, wide_dy, wide_dz);
+wire signed [WIDE-1:0] walk_low_p = (low_p - camera_p) * slope_a, walk_high_p = (high_p - camera_p) * slope_a;
+wire signed [WIDE-1:0] walk_low_q = (low_q - camera_q) * slope_a, walk_high_q = (high_q - camera_q) * slope_a;
 
 wire [1:0] last_axis = two ? axis_2 : axis_1;
 wire signed [WIDE-1:0] last_plane = two ? k_2 : k_1;
 wire signed [WIDE-1:0] last_distance = last_plane - of_three(last_axis, eye_x, eye_y, eye_z);
-wire back_x, back_y, back_z, mirror_back;
-wire signed [TURN_BITS-1:0] turn_x, turn_y, turn_z;
-wire signed [FOLD_BITS-1:0] fold_u_x, fold_u_y, fold_u_z, fold_v_x, fold_v_y, fold_v_z;
-wire signed [WALK_BITS-1:0] border_x, border_y, border_z;
-wire [1:0] fold_axis;
-wire signed [COORDINATE_BITS:0] fold_distance;
+localparam FOLD_WORD = 5 + 3 * TURN_BITS + 6 * FOLD_BITS + 3 * WALK_BITS + 2 + COORDINATE_BITS + 1;
+wire [FOLD_WORD-1:0] fold;
 
+// Words of records, the first field in the highest bits: see `raycaster.rtl.common.records`.
 ray_fold folder (
-    .clk(clk), .earlier_active(two), .earlier_axis(axis_1), .earlier_distance(n_1[COORDINATE_BITS:0]), .last_axis(last_axis),
-    .last_distance(last_distance[COORDINATE_BITS:0]), .column_slope(dy), .row_slope(dz), .fold_back_x(back_x),
-    .fold_back_y(back_y), .fold_back_z(back_z), .fold_mirror_back(mirror_back), .fold_turn_x(turn_x), .fold_turn_y(turn_y),
-    .fold_turn_z(turn_z), .fold_u_x(fold_u_x), .fold_u_y(fold_u_y), .fold_u_z(fold_u_z), .fold_v_x(fold_v_x),
-    .fold_v_y(fold_v_y), .fold_v_z(fold_v_z), .fold_border_x(border_x), .fold_border_y(border_y), .fold_border_z(border_z),
-    .fold_axis(fold_axis), .fold_distance(fold_distance)
+    .clk(clk), .earlier_word({two, axis_1, n_1[COORDINATE_BITS:0]}),
+    .last_word({1'b1, last_axis, last_distance[COORDINATE_BITS:0]}), .column_slope(dy), .row_slope(dz), .fold_word(fold)
 );
 
-wire hit;
+wire hit, hit_index;
 wire [NUMERATOR_BITS-1:0] numerator;
 wire [SLOPE_BITS-1:0] denominator;
 wire signed [WIDE-1:0] size_y = magnitude(wide_dy), size_z = magnitude(wide_dz);
 
-// Without a mirror all of the fold is 0.
+// Without a mirror all of the fold is 0, and with one it is active. A colour has 24 bits.
 fold_tester tester (
-    .clk(clk), .facet_usable(1'b1), .facet_axis(axis), .facet_distance(distance[COORDINATE_BITS:0]),
-    .facet_way_v(way_v[WALK_BITS-1:0]), .walk_way_u(way_u[WALK_BITS-1:0]), .walk_low_u(walk_low_u[WALK_BITS-1:0]),
-    .walk_high_u(walk_high_u[WALK_BITS-1:0]), .walk_low_v(walk_low_v[WALK_BITS-1:0]),
-    .walk_high_v(walk_high_v[WALK_BITS-1:0]), .column_slope(dy), .row_slope(dz), .slope_dy(size_y[SLOPE_BITS-1:0]),
-    .slope_dz(size_z[SLOPE_BITS-1:0]), .fold_back_x(back_x && one), .fold_back_y(back_y && one),
-    .fold_back_z(back_z && one), .fold_mirror_back(mirror_back && one), .fold_turn_x(one ? turn_x : 0),
-    .fold_turn_y(one ? turn_y : 0), .fold_turn_z(one ? turn_z : 0), .fold_u_x(one ? fold_u_x : 0),
-    .fold_u_y(one ? fold_u_y : 0), .fold_u_z(one ? fold_u_z : 0), .fold_v_x(one ? fold_v_x : 0),
-    .fold_v_y(one ? fold_v_y : 0), .fold_v_z(one ? fold_v_z : 0), .fold_border_x(one ? border_x : 0),
-    .fold_border_y(one ? border_y : 0), .fold_border_z(one ? border_z : 0), .fold_active(one),
-    .fold_axis(one ? fold_axis : 2'd0), .fold_distance(one ? fold_distance : 0), .hit_valid(hit),
-    .hit_numerator(numerator), .hit_denominator(denominator)
+    .clk(clk),
+    .facet_word({1'b1, axis, distance[COORDINATE_BITS:0], way_q[WALK_BITS-1:0], 24'd0}),
+    .walk_word({way_p[WALK_BITS-1:0], walk_low_p[WALK_BITS-1:0], walk_high_p[WALK_BITS-1:0], walk_low_q[WALK_BITS-1:0],
+                walk_high_q[WALK_BITS-1:0]}),
+    .column_slope(dy), .row_slope(dz), .slope_dy(size_y[SLOPE_BITS-1:0]), .slope_dz(size_z[SLOPE_BITS-1:0]),
+    .fold_word(one ? fold : {FOLD_WORD{1'b0}}), .index(1'b1), .hit_word({hit, numerator, denominator, hit_index})
 );
 
-// By the definition: t = n / e, and the whole part and the rest of the way on u and on v from the mirrored eye.
+// By the definition: t = n / e, and the whole part and the rest of the way on p and on q from the mirrored eye.
 wire signed [WIDE-1:0] eye_a = of_three(axis, x_2, y_2, z_2), slope = of_three(axis, dx_2, dy_2, dz_2);
-wire signed [WIDE-1:0] eye_u = of_three(on_u, x_2, y_2, z_2), slope_u = of_three(on_u, dx_2, dy_2, dz_2);
-wire signed [WIDE-1:0] eye_v = of_three(on_v, x_2, y_2, z_2), slope_v = of_three(on_v, dx_2, dy_2, dz_2);
+wire signed [WIDE-1:0] eye_p = of_three(on_p, x_2, y_2, z_2), slope_p = of_three(on_p, dx_2, dy_2, dz_2);
+wire signed [WIDE-1:0] eye_q = of_three(on_q, x_2, y_2, z_2), slope_q = of_three(on_q, dx_2, dy_2, dz_2);
 wire signed [WIDE-1:0] n = slope < 0 ? eye_a - k : k - eye_a;
-wire [WIDE-1:0] e = magnitude(slope), length_u = magnitude(slope_u) * n, length_v = magnitude(slope_v) * n;
+wire [WIDE-1:0] e = magnitude(slope), length_p = magnitude(slope_p) * n, length_q = magnitude(slope_q) * n;
 wire ahead = slope != 0 && n > 0;
-wire signed [WIDE-1:0] whole_u = ahead ? length_u / e : 0, whole_v = ahead ? length_v / e : 0;
-wire more_u = ahead && length_u % e != 0, more_v = ahead && length_v % e != 0;
-wire signed [WIDE-1:0] base_u = slope_u < 0 ? eye_u - whole_u : eye_u + whole_u;
-wire signed [WIDE-1:0] base_v = slope_v < 0 ? eye_v - whole_v : eye_v + whole_v;
+wire signed [WIDE-1:0] whole_p = ahead ? length_p / e : 0, whole_q = ahead ? length_q / e : 0;
+wire more_p = ahead && length_p % e != 0, more_q = ahead && length_q % e != 0;
+wire signed [WIDE-1:0] base_p = slope_p < 0 ? eye_p - whole_p : eye_p + whole_p;
+wire signed [WIDE-1:0] base_q = slope_q < 0 ? eye_q - whole_q : eye_q + whole_q;
 
 // P is base + more, or base - more, with 0 <= more < 1.
 function within(input signed [WIDE-1:0] base, input more, input negative, input signed [WIDE-1:0] low,
@@ -127,16 +114,16 @@ function beyond(input signed [WIDE-1:0] base, input more, input negative, input 
     beyond = negative ? base < place || base == place && more : base > place || base == place && more;
 endfunction
 wire clear = !one || (last_axis == axis ? beyond(k, 1'b0, slope < 0, last_plane)
-    : last_axis == on_u ? beyond(base_u, more_u, slope_u < 0, last_plane) : beyond(base_v, more_v, slope_v < 0, last_plane));
-wire defined = ahead && clear && within(base_u, more_u, slope_u < 0, low_u, high_u)
-    && within(base_v, more_v, slope_v < 0, low_v, high_v);
+    : last_axis == on_p ? beyond(base_p, more_p, slope_p < 0, last_plane) : beyond(base_q, more_q, slope_q < 0, last_plane));
+wire defined = ahead && clear && within(base_p, more_p, slope_p < 0, low_p, high_p)
+    && within(base_q, more_q, slope_q < 0, low_q, high_q);
 
 // Six cycles through both blocks.
 reg [2:0] age = 3'd0;
 always @(posedge clk) if (age != 7) age <= age + 1;
 always @* if (age == 7) begin
     assert (hit == defined);
-    if (hit) assert (numerator == n && denominator == e);
+    if (hit) assert (numerator == n && denominator == e && hit_index);
 end
 
 // Hits with as many mirrors as there are.

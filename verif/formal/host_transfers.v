@@ -18,8 +18,8 @@ wire [ADDRESS_BITS-1:0] bus_address;
 wire [3:0] byteenable;
 
 avalon_host host (
-    .clk(clk), .reset(reset), .select(select), .strobe(strobe), .address(address), .data(data), .ready(ready),
-    .word(word), .avm_m0_address(bus_address), .avm_m0_read(read), .avm_m0_write(write), .avm_m0_writedata(writedata),
+    .clk(clk), .reset(reset), .access_select(select), .access_ready(ready), .access_word(word), .strobe(strobe),
+    .address(address), .data(data), .avm_m0_address(bus_address), .avm_m0_read(read), .avm_m0_write(write), .avm_m0_writedata(writedata),
     .avm_m0_byteenable(byteenable), .avm_m0_readdata(readdata), .avm_m0_readdatavalid(readdatavalid),
     .avm_m0_waitrequest(waitrequest)
 );

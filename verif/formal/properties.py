@@ -9,7 +9,7 @@ from raycaster.fixed import FixedScene
 from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.bus.avalon_interface import engine_word, size_word
-from raycaster.rtl.common.legacy import PipelinedRects, Rect
+from raycaster.rtl.common.records import Rect
 from raycaster.rtl.common.widths import (
     bits_for,
     index_bits,
@@ -19,8 +19,6 @@ from raycaster.rtl.common.widths import (
     row_bits,
     unit_bits,
 )
-from raycaster.rtl.engine.renderers import RECTS
-from raycaster.rtl.scene.rect_rom import FIELDS, fixed_rects
 from raycaster.scene import Camera, Rectangle, Scene
 from raycaster.screens import Screen, Span
 from raycaster.verif.formal.prover import FixedTable, FoldWidths, HostWidths, Property, TesterWidths
@@ -102,7 +100,7 @@ def _order(config: Configuration, small: bool) -> Property:
     bound = config.group_cycles - 2  # done comes two cycles before the next group may start
     return Property(
         "ray-order",
-        "each rectangle a ray may hit once and in order, given up if behind all, reflections + 1 rays, done in the "
+        "each rectangle a ray may hit once and in order, ended early if behind all, reflections + 1 rays, done in the "
         "budget's cycles",
         config,
         _label(config),
@@ -253,7 +251,6 @@ def _fixed(engine: str, alike: bool, small: bool) -> Property:
     fixed = configure(
         engine=engine, fixed=FixedScene(tuple(map(fixed_rectangle, rect)), (every, every)), allow_underrun=True
     )
-    word, _ = fixed_rects(RECTS[engine](fixed), fixed)
     words = dict(scene_words(FIXED_SCENE.model_copy(update={"rect": rect}), len(rect)))
     registers = register_map(len(rect))
     parameters = {
@@ -261,12 +258,6 @@ def _fixed(engine: str, alike: bool, small: bool) -> Property:
         for index in range(len(rect))
         for name in ("corner_0", "corner_1", "surface")
     }
-    low = 0
-    for name in FIELDS:
-        column = fixed.fixed.column(name)
-        varies = len(set(column)) > 1
-        parameters |= {f"{name.upper()}_AT": low if varies else 99, f"{name.upper()}_IS": column[0]}
-        low += varies * len(getattr(Rect(), name))
     return Property(
         "fixed-rects",
         "a fixed scene's table gives every rectangle as the memory does that holds the scene's words",
@@ -276,8 +267,8 @@ def _fixed(engine: str, alike: bool, small: bool) -> Property:
         {
             "INDEX_BITS": index_bits(fixed),
             "ADDRESS_BITS": address_bits(general.table),
-            "WORD_BITS": len(word),
-            "PIPELINED": int(RECTS[engine] is PipelinedRects),
+            "RECT_BITS": len(Rect().word),
+            "LATENCY": fixed.facts.rect_latency,
             **parameters,
         },
         induction=3,

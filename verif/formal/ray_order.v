@@ -7,10 +7,10 @@
 // A slot is as long as a division, or one cycle of the exact engine, whose rectangles are on their way one behind the
 // other.
 //
-// Assumed, as the renderer has it: one cycle of reset at first; the usable rectangles, the possible ones and the
+// Assumed, as the renderer has it: one cycle of reset at first; the usable rectangles, those that may be hit and the
 // reflections hold still from the cycle in which the control starts, until the next reset; reflections are at most what
-// was configured. As the units have it: who was not alive at the end of a ray is not at the end of the next one, which
-// is not traced. Otherwise anybody may be alive, and any plane ahead, in any cycle. Reset may come at any time, and
+// was configured. As the units have it: a ray that was not alive at its end is not at the end of the next one, which
+// is not traced. Otherwise any ray may be alive, and run towards any plane, in any cycle. Reset may come at any time, and
 // registers hold anything before the first one.
 
 module ray_order #(
@@ -18,12 +18,12 @@ module ray_order #(
     parameter REFLECTIONS = 1, parameter RESULT_LATENCY = 6, parameter RUN_BOUND = 50, parameter CULLING = 1
 ) (
     input clk, input reset, input enable, input [RECTANGLES-1:0] usable, input [1:0] reflections,
-    input [RECTANGLES-1:0] possible, input ahead, input alive
+    input [RECTANGLES-1:0] may_hit, input any_towards, input any_alive
 );
 localparam DIVIDES = STEPS > 1;
 localparam TRAVEL = DIVIDES ? STEPS + 4 : 3;  // from a rectangle's start to its offer to the z buffer
-localparam GIVE_UP = 3;  // from the start of a rectangle that is given up to the next one's
-localparam GIVES_UP = CULLING && STEPS > GIVE_UP;
+localparam EARLY = 3;  // from the start of a rectangle that ends early to the next one's
+localparam ENDS_EARLY = CULLING && STEPS > EARLY;
 localparam TIME_BITS = $clog2(RUN_BOUND) + 1;
 
 wire done, fetch, screen_to_ray, initial_ray, find_intersection, reset_z_buf, write_z_buf, reset_colour, add_colour,
@@ -31,47 +31,51 @@ wire done, fetch, screen_to_ray, initial_ray, find_intersection, reset_z_buf, wr
 wire [INDEX_BITS-1:0] index;
 reg [8:0] tag;
 
+// A rectangle: its surface, which is axis, position and colour, then four bounds.
+localparam BOUNDS_BITS = 4 * 9, SURFACE_BITS = 2 + 9 + 24, RECT_BITS = SURFACE_BITS + BOUNDS_BITS;
+localparam POSITION = 24 + BOUNDS_BITS;
+wire [RECT_BITS-1:0] rect = {2'd0, tag, 24'd0, {BOUNDS_BITS{1'b0}}};
+
 // What the control of either engine shows between start and offer, and the tag on its way.
 wire load_divider, store_quotient;
 wire [8:0] first_tag, second_tag, offered_tag;
 generate
     if (DIVIDES) begin: engine
         ray_control dut (
-            .clk(clk), .reset_ray_caster(reset), .enable(enable), .reflections(reflections), .done(done),
-            .rects_usable(usable), .rects_index(index), .rects_fetch(fetch), .rects_rect_axis(2'd0),
-            .rects_rect_position(tag), .rects_rect_u_low(9'd0), .rects_rect_u_high(9'd0), .rects_rect_v_low(9'd0),
-            .rects_rect_v_high(9'd0), .rects_rect_colour(24'd0), .prospects_possible(possible),
-            .prospects_alive(alive), .steps_screen_to_ray(screen_to_ray), .steps_initial_ray(initial_ray),
+            .clk(clk), .reset_ray_caster(reset), .enable(enable), .picture_reflections(reflections), .done(done),
+            .rects_usable(usable), .rects_index(index), .rects_fetch(fetch), .rects_rect_word(rect),
+            .fate_may_hit(may_hit), .fate_any_alive(any_alive), .steps_screen_to_ray(screen_to_ray), .steps_initial_ray(initial_ray),
             .steps_find_intersection(find_intersection), .steps_load_divider(load_divider),
             .steps_store_quotient(store_quotient), .steps_reset_z_buf(reset_z_buf), .steps_write_z_buf(write_z_buf),
             .steps_reset_colour(reset_colour), .steps_add_colour(add_colour), .steps_store_ray(store_ray),
-            .finishing_rect_axis(), .finishing_rect_position(offered_tag), .finishing_rect_u_low(),
-            .finishing_rect_u_high(), .finishing_rect_v_low(), .finishing_rect_v_high(), .finishing_rect_colour()
+            .offered_word(offered)
         );
-        // A port of the control that gives up; beside another it is a wire that leads nowhere.
-        (* hierconn *) wire \dut.prospects_ahead ;
-        assign \dut.prospects_ahead = ahead;
-        (* hierconn *) wire [8:0] \dut.dividing_rect_position ;
+        // A port of the control that ends rectangles early; beside another it is a wire that leads nowhere.
+        (* hierconn *) wire \dut.fate_any_towards ;
+        assign \dut.fate_any_towards = any_towards;
+        (* hierconn *) wire [RECT_BITS-1:0] \dut.dividing_word ;
+        wire [RECT_BITS-1:0] offered;
         assign first_tag = tag;
-        assign second_tag = \dut.dividing_rect_position ;
+        assign second_tag = \dut.dividing_word [POSITION+:9];
+        assign offered_tag = offered[POSITION+:9];
     end
     else begin: engine
         exact_control dut (
-            .clk(clk), .reset_ray_caster(reset), .enable(enable), .reflections(reflections), .done(done),
-            .rects_usable(usable), .rects_index(index), .rects_fetch(fetch), .rects_rect_axis(2'd0),
-            .rects_rect_position(tag), .rects_rect_colour(24'd0), .prospects_possible(possible),
-            .prospects_alive(alive), .steps_screen_to_ray(screen_to_ray), .steps_initial_ray(initial_ray),
+            .clk(clk), .reset_ray_caster(reset), .enable(enable), .picture_reflections(reflections), .done(done),
+            .rects_usable(usable), .rects_index(index), .rects_fetch(fetch), .rects_rect_word(rect),
+            .fate_may_hit(may_hit), .fate_any_alive(any_alive), .steps_screen_to_ray(screen_to_ray), .steps_initial_ray(initial_ray),
             .steps_find_intersection(find_intersection), .steps_reset_z_buf(reset_z_buf),
             .steps_write_z_buf(write_z_buf), .steps_reset_colour(reset_colour), .steps_add_colour(add_colour),
-            .steps_store_ray(store_ray),
-            .offered_axis(), .offered_position(offered_tag), .offered_colour()
+            .steps_store_ray(store_ray), .offered_word(offered)
         );
         assign load_divider = 0;
         assign store_quotient = 0;
-        (* hierconn *) wire [8:0] \dut.first_position ;
-        (* hierconn *) wire [8:0] \dut.second_position ;
-        assign first_tag = \dut.first_position ;
-        assign second_tag = \dut.second_position ;
+        (* hierconn *) wire [SURFACE_BITS-1:0] \dut.first_word ;
+        (* hierconn *) wire [SURFACE_BITS-1:0] \dut.second_word ;
+        wire [SURFACE_BITS-1:0] offered;
+        assign first_tag = \dut.first_word [POSITION-BOUNDS_BITS+:9];
+        assign second_tag = \dut.second_word [POSITION-BOUNDS_BITS+:9];
+        assign offered_tag = offered[POSITION-BOUNDS_BITS+:9];
     end
 endgenerate
 
@@ -81,45 +85,45 @@ always @(posedge clk) if (fetch) tag <= index;
 reg known = 0;
 reg started;
 reg [TIME_BITS-1:0] cycles;
-reg [RECTANGLES-1:0] last_usable, last_possible;
+reg [RECTANGLES-1:0] last_usable, last_may_hit;
 reg [1:0] last_reflections;
-reg last_ahead;
+reg last_any_towards;
 always @(posedge clk) begin
     known <= 1;
     started <= !reset && (started || enable);
     cycles <= reset || !(started || enable) ? 0 : cycles + !done;
     last_usable <= usable;
-    last_possible <= possible;
+    last_may_hit <= may_hit;
     last_reflections <= reflections;
-    last_ahead <= ahead;
+    last_any_towards <= any_towards;
 end
 always @* begin
     if (!known) assume (reset);
     assume (reflections <= REFLECTIONS);
     if (known && started) begin
-        assume (usable == last_usable && possible == last_possible);
+        assume (usable == last_usable && may_hit == last_may_hit);
         assume (reflections == last_reflections);
     end
 end
 
-// A ray: from the cycle after reset_z_buf to add_colour, which for one that is lost, as nobody was alive, is the same.
+// A ray: from the cycle after reset_z_buf to add_colour, which for one that is lost, as none was alive, is the same.
 // Visits are starts on the tagged plane; place counts cycles.
 reg [RECTANGLES-1:0] visited;
 reg tracing, lost;
 reg [1:0] rays;
 reg [TIME_BITS-1:0] place;
 wire [RECTANGLES-1:0] tagged = {{RECTANGLES-1{1'b0}}, 1'b1} << tag;
-wire [RECTANGLES-1:0] wanted = rays == 0 ? usable & possible : usable;
+wire [RECTANGLES-1:0] wanted = rays == 0 ? usable & may_hit : usable;
 wire reflected = add_colour && rays != reflections;
 always @(posedge clk) begin
     if (reset) tracing <= 0;
-    else if (reset_z_buf) tracing <= !add_colour || reflected && alive;
-    lost <= !reset && reflected && !alive;
+    else if (reset_z_buf) tracing <= !add_colour || reflected && any_alive;
+    lost <= !reset && reflected && !any_alive;
     visited <= reset_z_buf ? 0 : find_intersection ? visited | tagged : visited;
     rays <= screen_to_ray ? 0 : rays + add_colour;
     place <= reset_z_buf ? 0 : place + 1;
 end
-always @* if (known && lost) assume (!alive);
+always @* if (known && lost) assume (!any_alive);
 always @* if (known && started) begin
     if (find_intersection) begin
         assert (tracing && tag < RECTANGLES);
@@ -137,17 +141,17 @@ always @* if (known && started) begin
 end
 always @* if (known && !started) assert (!done && !find_intersection && !write_z_buf && !add_colour);
 
-// Each start on its way. One whose plane was not ahead in the cycle after it is given up two cycles after it, and goes no
+// Each start on its way. One that no ray runs towards in the cycle after it ends early two cycles after it, and goes no
 // further.
 reg [TRAVEL-1:0] starts;
 reg [8:0] tags [0:TRAVEL-1];
-wire given_up = GIVES_UP && starts[1] && !last_ahead;
+wire ended = ENDS_EARLY && starts[1] && !last_any_towards;
 always @(posedge clk) begin: follow
     integer i;
     starts[0] <= !reset && find_intersection;
     tags[0] <= tag;
     for (i = 1; i < TRAVEL; i = i + 1) begin
-        starts[i] <= !reset && starts[i-1] && !(i == 2 && given_up);
+        starts[i] <= !reset && starts[i-1] && !(i == 2 && ended);
         tags[i] <= tags[i-1];
     end
 end
@@ -160,7 +164,7 @@ end
 
 // A division: loaded 2 cycles after the start, stored STEPS later, offered 2 later.
 reg [7:0] since_load;
-always @(posedge clk) since_load <= reset || given_up || (since_load >= STEPS && !load_divider) ? STEPS
+always @(posedge clk) since_load <= reset || ended || (since_load >= STEPS && !load_divider) ? STEPS
     : load_divider ? 1 : since_load + 1;
 generate
     if (DIVIDES) begin: divisions
@@ -170,7 +174,7 @@ generate
             // The plane at hand while the divider is loaded, and the one whose quotients stand.
             if (load_divider) assert (tag == tags[1]);
             if (starts[2+STEPS]) assert (offered_tag == tags[2+STEPS]);
-            // The divider is never loaded before it is finished, or its division given up.
+            // The divider is never loaded before it is finished, or its division ended early.
             if (load_divider) assert (since_load >= STEPS);
             if (since_load < STEPS) assert (since_load != 0 && (starts >> since_load) & 2);
         end
@@ -185,9 +189,9 @@ wire [TIME_BITS-1:0] blend_at = kept_result > slots_end + 1 ? kept_result : slot
 always @(posedge clk) begin
     if (reset_z_buf) slots_end <= 0;
     else if (find_intersection) slots_end <= slots_end + STEPS;
-    else if (given_up) slots_end <= slots_end - (STEPS - GIVE_UP);
+    else if (ended) slots_end <= slots_end - (STEPS - EARLY);
     if (reset_z_buf) kept_end <= 0;
-    else if (DIVIDES ? starts[1] && !given_up : find_intersection) kept_end <= DIVIDES ? slots_end : slots_end + STEPS;
+    else if (DIVIDES ? starts[1] && !ended : find_intersection) kept_end <= DIVIDES ? slots_end : slots_end + STEPS;
 end
 always @* if (known && started && tracing) begin
     if (find_intersection) assert (place == slots_end);
@@ -205,12 +209,12 @@ function [5:0] count(input [RECTANGLES-1:0] mask);
 endfunction
 wire [TIME_BITS-1:0] pass = usable == 0 ? 2 : count(usable) * STEPS + RESULT_LATENCY;
 wire [TIME_BITS-1:0] rays_cycles = rays[1] ? (rays[0] ? 3 * pass : 2 * pass) : rays[0] ? pass : 0;
-reg some_given_up, some_lost;
-wire spared = some_given_up || some_lost || (usable & ~possible) != 0;
+reg some_early, some_lost;
+wire spared = some_early || some_lost || (usable & ~may_hit) != 0;
 reg was_done;
 always @(posedge clk) begin
-    some_given_up <= started && (some_given_up || given_up);
-    some_lost <= started && (some_lost || reflected && !alive);
+    some_early <= started && (some_early || ended);
+    some_lost <= started && (some_lost || reflected && !any_alive);
     was_done <= done && !reset;
 end
 always @* if (known && started) begin
@@ -234,7 +238,7 @@ end
 (* hierconn *) wire \engine.dut.ray_sequencer_i.rect_sequencer_i.offered ;
 (* hierconn *) wire [INDEX_BITS-1:0] \engine.dut.ray_sequencer_i.rect_sequencer_i.upcoming ;
 (* hierconn *) wire [RECTANGLES-1:0] \engine.dut.ray_sequencer_i.rect_sequencer_i.waiting ;
-(* hierconn *) wire \engine.dut.ray_sequencer_i.give_up ;
+(* hierconn *) wire \engine.dut.ray_sequencer_i.early_out ;
 (* hierconn *) wire [TRAVEL-1:0] \engine.dut.in_flight ;
 localparam IDLE = 0, GENERATE = 1, TRACE = 2, BLEND = 3, DONE = 4;
 wire [2:0] state = \engine.dut.ray_sequencer_i.state ;
@@ -248,14 +252,14 @@ wire starting = state == TRACE && fetched && slot == 0;
 wire [RECTANGLES-1:0] taken = starting ? visited | tagged : visited;
 wire [TIME_BITS-1:0] whole_slots = count(visited) * STEPS;
 always @* if (known) begin
-    assert (\engine.dut.in_flight == starts && \engine.dut.ray_sequencer_i.give_up == given_up);
+    assert (\engine.dut.in_flight == starts && \engine.dut.ray_sequencer_i.early_out == ended);
     if (!started) assert (cycles == 0 && state == IDLE && starts == 0 && !tracing && !lost);
     else assert (state != IDLE && state <= DONE && (state == GENERATE ? cycles == 1 : cycles > 1));
     assert ((tracing || lost) == (started && (state == TRACE || state == BLEND)));
     if (state != TRACE) assert (starts == 0);
-    if (started && state == GENERATE) assert (!some_given_up && !some_lost);
+    if (started && state == GENERATE) assert (!some_early && !some_lost);
     if (state == IDLE || state == GENERATE) assert (!fetched);
-    if (state == GENERATE) assert (left == (usable & possible));
+    if (state == GENERATE) assert (left == (usable & may_hit));
     if (state == BLEND && tracing) assert (!fetched && left == usable);
     if (state != IDLE) begin
         assert (waiting == 0 || offered < lowest_waiting && offered != 0 && (offered & waiting) == 0);
@@ -269,8 +273,8 @@ always @* if (known) begin
     if (tracing) begin
         assert ((state == BLEND) == (place == blend_at));
         assert (place <= blend_at);
-        assert (slots_end <= whole_slots && (some_given_up || slots_end == whole_slots));
-        assert (kept_end <= slots_end && (some_given_up || kept_end == slots_end || fetched));
+        assert (slots_end <= whole_slots && (some_early || slots_end == whole_slots));
+        assert (kept_end <= slots_end && (some_early || kept_end == slots_end || fetched));
     end
     if (state == TRACE) begin
         if (fetched) begin
@@ -313,8 +317,8 @@ endgenerate
 always @* cover (done && started && !spared && &usable && reflections == REFLECTIONS);
 always @* cover (done && started && some_lost);
 generate
-    if (GIVES_UP) begin: giving_up
-        always @* cover (done && started && some_given_up && !some_lost);
+    if (ENDS_EARLY) begin: ending_early
+        always @* cover (done && started && some_early && !some_lost);
     end
 endgenerate
 endmodule

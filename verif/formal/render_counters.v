@@ -11,26 +11,23 @@ module render_counters #(
     parameter UNITS = 32, parameter ROWS = 240, parameter ROW_BITS = 8, parameter COLUMN_BITS = 4,
     parameter OFFSET_BITS = 4, parameter UNIT_BITS = 5
 ) (
-    input clk, input reset, input run, input [1:0] reflections, input [23:0] background,
-    input [8:0] camera_x, input [8:0] camera_y, input [8:0] camera_z, input [RECTANGLES-1:0] usable,
-    input [1:0] axis, input [8:0] position, input [8:0] u_low, input [8:0] u_high, input [8:0] v_low,
-    input [8:0] v_high, input [23:0] colour
+    input clk, input reset, input run, input [1:0] reflections, input [23:0] background, input [26:0] camera,
+    input [RECTANGLES-1:0] usable, input [70:0] rect
 );
 wire start_screen, busy, underrun;
 wire [15:0] row_cycles, group_cycles;
 
 ray_caster_renderer dut (
-    .clk(clk), .reset(reset), .run(run), .reflections(reflections), .background(background),
-    .start_screen(start_screen), .busy(busy), .underrun(underrun), .row_cycles(row_cycles),
-    .group_cycles(group_cycles), .vga_r(), .vga_g(), .vga_b(), .vga_hs(), .vga_vs(), .vga_blank_n(), .vga_sync_n(),
-    .vga_clk(), .camera_x(camera_x), .camera_y(camera_y), .camera_z(camera_z), .rects_usable(usable),
-    .rects_index(), .rects_fetch(), .rects_rect_axis(axis), .rects_rect_position(position), .rects_rect_u_low(u_low),
-    .rects_rect_u_high(u_high), .rects_rect_v_low(v_low), .rects_rect_v_high(v_high), .rects_rect_colour(colour)
+    .clk(clk), .reset(reset), .picture_run(run), .picture_reflections(reflections), .picture_background(background),
+    .progress_start_screen(start_screen), .progress_busy(busy), .progress_underrun(underrun),
+    .progress_row_cycles(row_cycles), .progress_group_cycles(group_cycles), .vga_r(), .vga_g(), .vga_b(), .vga_hs(),
+    .vga_vs(), .vga_blank_n(), .vga_sync_n(), .vga_clk(), .camera_word(camera), .rects_usable(usable), .rects_index(),
+    .rects_fetch(), .rects_rect_word(rect)
 );
 
-(* hierconn *) wire \dut.done , \dut.enable , \dut.rendering , \dut.start_row , \dut.reset_delay ;
-(* hierconn *) wire [ROW_BITS-1:0] \dut.row ;
-(* hierconn *) wire [COLUMN_BITS-1:0] \dut.column_offset ;
+(* hierconn *) wire \dut.done , \dut.enable , \dut.rendering , \dut.scan_start_row , \dut.reset_delay ;
+(* hierconn *) wire [ROW_BITS-1:0] \dut.place_row ;
+(* hierconn *) wire [COLUMN_BITS-1:0] \dut.place_column_offset ;
 (* hierconn *) wire [OFFSET_BITS-1:0] \dut.read_offset ;
 (* hierconn *) wire [UNIT_BITS-1:0] \dut.read_unit ;
 
@@ -45,9 +42,9 @@ always @(posedge clk) begin
     last_start <= start_screen;
     last_reset <= reset;
     last_done <= \dut.done ;
-    last_restart <= reset || start_screen || \dut.start_row ;
-    last_row <= \dut.row ;
-    last_column <= \dut.column_offset ;
+    last_restart <= reset || start_screen || \dut.scan_start_row ;
+    last_row <= \dut.place_row ;
+    last_column <= \dut.place_column_offset ;
 end
 always @* begin
     if (!known) assume (reset);
@@ -58,19 +55,19 @@ end
 always @* if (known) begin
     assert (\dut.read_offset < GROUPS);
     assert (\dut.read_unit < UNITS);
-    if (\dut.done ) assert (\dut.column_offset < GROUPS);
+    if (\dut.done ) assert (\dut.place_column_offset < GROUPS);
 end
 
 // Counters in range. A group is written where its row still has room, and the half changes at a row's boundary only.
 always @* if (known) begin
-    assert (\dut.column_offset <= GROUPS);
-    assert (\dut.row <= ROWS);
-    if (\dut.rendering ) assert (\dut.row < ROWS);
+    assert (\dut.place_column_offset <= GROUPS);
+    assert (\dut.place_row <= ROWS);
+    if (\dut.rendering ) assert (\dut.place_row < ROWS);
     if (\dut.done ) assert (\dut.rendering && \dut.enable );
-    if (underrun) assert (\dut.start_row && busy);
+    if (underrun) assert (\dut.scan_start_row && busy);
     if (!last_restart) begin
-        assert (\dut.row == last_row);
-        assert (\dut.column_offset == last_column + last_done);
+        assert (\dut.place_row == last_row);
+        assert (\dut.place_column_offset == last_column + last_done);
     end
 end
 
@@ -84,6 +81,6 @@ always @* if (known && \dut.ray_caster_i.ray_control_i.ray_sequencer_i.state != 
 
 // Two groups are written, and a row is handed over.
 reg groups_seen = 0;
-always @(posedge clk) groups_seen <= !reset && (groups_seen || (\dut.done && \dut.column_offset == 1));
-always @* cover (groups_seen && \dut.row == 1);
+always @(posedge clk) groups_seen <= !reset && (groups_seen || (\dut.done && \dut.place_column_offset == 1));
+always @* cover (groups_seen && \dut.place_row == 1);
 endmodule

@@ -21,10 +21,9 @@ wire [EYE_BITS-2:0] numerator;
 wire [SLOPE_BITS-1:0] denominator;
 
 rect_tester dut (
-    .clk(clk), .steps_find_intersection(started), .rect_axis(axis), .rect_position(position), .rect_u_low(u_low),
-    .rect_u_high(u_high), .rect_v_low(v_low), .rect_v_high(v_high), .eye_x(x), .eye_y(y), .eye_z(z),
-    .signs_dx(backward[0]), .signs_dy(backward[1]), .signs_dz(backward[2]), .slope_dx(dx), .slope_dy(dy), .slope_dz(dz),
-    .mirror_active(mirrored), .mirror_axis(mirror_axis), .mirror_position(mirror), .hit(hit), .numerator(numerator),
+    .clk(clk), .steps_find_intersection(started), .rect_word({axis, position, 24'd0, u_low, u_high, v_low, v_high}),
+    .eye_x(x), .eye_y(y), .eye_z(z), .signs_word({backward[0], backward[1], backward[2]}), .slope_dx(dx), .slope_dy(dy),
+    .slope_dz(dz), .mirror_word({mirrored, mirror_axis, mirror}), .hit(hit), .numerator(numerator),
     .denominator(denominator)
 );
 

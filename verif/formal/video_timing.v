@@ -27,9 +27,10 @@ wire [COLOUR_BITS-1:0] vga_r, vga_g, vga_b;
 wire vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_clk;
 
 video_generator dut (
-    .clk(clk), .reset(reset), .start_screen(start_screen), .start_row(start_row), .visible_line(visible_line),
-    .next_column(next_column), .red(red), .green(green), .blue(blue), .vga_r(vga_r), .vga_g(vga_g), .vga_b(vga_b),
-    .vga_hs(vga_hs), .vga_vs(vga_vs), .vga_blank_n(vga_blank_n), .vga_sync_n(vga_sync_n), .vga_clk(vga_clk)
+    .clk(clk), .reset(reset), .scan_start_screen(start_screen), .scan_start_row(start_row),
+    .scan_visible_line(visible_line), .scan_next_column(next_column), .pixel_word({red, green, blue}),
+    .vga_r(vga_r), .vga_g(vga_g), .vga_b(vga_b), .vga_hs(vga_hs), .vga_vs(vga_vs), .vga_blank_n(vga_blank_n),
+    .vga_sync_n(vga_sync_n), .vga_clk(vga_clk)
 );
 
 // The system is reset once before anything is asked of it.

@@ -12,9 +12,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.golden.rays import primary_slopes
 from raycaster.rtl.beam import beam_caster as beam
+from raycaster.rtl.beam import beam_pass
 from raycaster.rtl.beam import fold_tester as tester
 from raycaster.rtl.beam import nearest_of_two as contest
-from raycaster.rtl.common.widths import exact_slope_bits
+from raycaster.rtl.common.records import Facet, Pixel, Point, Rect, Reflector, Walk, Winner, candidate_of, fold_of
+from raycaster.rtl.common.widths import exact_slope_bits, index_bits, walk_bits
 from raycaster.verif.probes.exact import fraction, hit
 from raycaster.verif.probes.ray import AXES, DUT, Event, Place, Probe, Ray, Read, Value, channels_of, fields
 from raycaster.verif.probes.units import (
@@ -39,9 +41,9 @@ BLEND = f"{CASTER}.colour_blend_i"
 VIDEO = f"{RENDERER}.video_generator_i"
 
 EXTENT = ((1, 2), (0, 2), (1, 0))
-"""u and v by the plane's axis: u is y unless that is the axis, so that along a row only it changes."""
+"""p and q by the plane's axis: p is y unless that is the axis, so that along a row only it changes."""
 
-BOUNDS = ("low_u", "high_u", "low_v", "high_v")
+BOUNDS = ("low_p", "high_p", "low_q", "high_q")
 SEEN = ("first", "second", "third")
 
 
@@ -63,30 +65,30 @@ def bounds_on(ray: Ray, rectangle: int, axis: int) -> tuple[int, int]:
 
 
 def products(ray: Ray, rectangle: int, slopes: Sequence[int]) -> tuple[int, int, list[int]]:
-    """For a slope: the way along u, the way along v, and the ways to the four bounds."""
+    """For a slope: the way along p, the way along q, and the ways to the four bounds."""
     axis, _, _ = ray.plane(Place(0, rectangle))
-    u, v = EXTENT[axis]
+    p, q = EXTENT[axis]
     away = distance(ray, rectangle)
-    ends = [bound * slopes[axis] for side in (u, v) for bound in bounds_on(ray, rectangle, side)]
-    return away * slopes[u], away * slopes[v], ends
+    ends = [bound * slopes[axis] for side in (p, q) for bound in bounds_on(ray, rectangle, side)]
+    return away * slopes[p], away * slopes[q], ends
 
 
 def setup_facet(ray: Ray, place: Place) -> Sequence[Value]:
     """What all columns of the row have in common."""
     axis, _, _ = ray.plane(place)
-    _, way_v, _ = products(ray, place.rectangle, straight(ray))
-    return 1, axis, distance(ray, place.rectangle), way_v, ray.colour(place.rectangle)
+    _, way_q, _ = products(ray, place.rectangle, straight(ray))
+    return 1, axis, distance(ray, place.rectangle), way_q, ray.colour(place.rectangle)
 
 
 def setup_start(ray: Ray, place: Place) -> Sequence[Value]:
     """The products of the row's first column."""
     first = primary_slopes(ray.config.screen_geometry)[ray.row, 0].tolist()
-    way_u, _, ends = products(ray, place.rectangle, first)
-    return way_u, *ends
+    way_p, _, ends = products(ray, place.rectangle, first)
+    return way_p, *ends
 
 
 def way(ray: Ray, place: Place) -> Sequence[Value]:
-    """The column's way along u."""
+    """The column's way along p."""
     return (products(ray, place.rectangle, straight(ray))[0],)
 
 
@@ -127,13 +129,13 @@ def surface(ray: Ray, place: Place) -> Sequence[Value]:
 
 
 def folded(ray: Ray, place: Place) -> Sequence[Value]:
-    """Where the folded ray meets the plane on u and v, seen from the camera and times the slope along the axis."""
+    """Where the folded ray meets the plane on p and q, seen from the camera and times the slope along the axis."""
     if not ray.alive(place.bounce) or not ray.of_rectangle(place, "denominators"):
         return (None, None)
     axis, _, _ = ray.plane(place)
     divisor, points = ray.of_rectangle(place, "denominators"), ray.of_rectangle(place, "points")
     sign = 1 if straight(ray)[axis] > 0 else -1
-    return [sign * (points[u] - ray.scene.camera.position[u] * divisor) for u in EXTENT[axis]]
+    return [sign * (points[side] - ray.scene.camera.position[side] * divisor) for side in EXTENT[axis]]
 
 
 def fold_offsets(ray: Ray, place: Place) -> Sequence[Value]:
@@ -142,13 +144,13 @@ def fold_offsets(ray: Ray, place: Place) -> Sequence[Value]:
     if not place.bounce or None in ends:
         return (None, None)
     axis, _, _ = ray.plane(place)
-    way_u, way_v, _ = products(ray, place.rectangle, straight(ray))
+    way_p, way_q, _ = products(ray, place.rectangle, straight(ray))
     flips = turned(ray, place)
     offsets = []
-    for u, end, along in zip(EXTENT[axis], ends, (way_u, way_v), strict=True):
-        if None in (flips[axis], flips[u]):
+    for side, end, along in zip(EXTENT[axis], ends, (way_p, way_q), strict=True):
+        if None in (flips[axis], flips[side]):
             return (None, None)
-        offsets.append(end - (~along if flips[axis] != flips[u] else along))
+        offsets.append(end - (~along if flips[axis] != flips[side] else along))
     return offsets
 
 
@@ -162,6 +164,11 @@ def numerator(ray: Ray, place: Place) -> Sequence[Value]:
 def magnitudes(ray: Ray, place: Place) -> Sequence[Value]:
     """The slopes along y and z without their signs."""
     return [abs(slope) for slope in straight(ray)[1:]]
+
+
+def numbered(module: str, number: int, count: int) -> str:
+    """The name of an instance that is one of several."""
+    return f"{module}_i" if count == 1 else f"{module}_{number}_i"
 
 
 def nearest_of(size: int) -> Read:
@@ -187,7 +194,7 @@ class BeamProbes:
     """The description; see `raycaster.verif.probes.ray.Description`."""
 
     tells: Mapping[str, tuple[str, str]] = {
-        "column": ("the column is announced", f"{RENDERER}.next_column"),
+        "column": ("the column is announced", f"{RENDERER}.scan_next_column"),
         "load": ("the rectangle is set up", f"{SETUP}.load"),
         "shown": ("the pixel is shown", f"{VIDEO}.y"),
     }
@@ -196,75 +203,70 @@ class BeamProbes:
         self.config = config
         passes = config.reflections + 1
         self.starts = [beam.ENTRY_LATENCY + number * beam.pass_latency(config) for number in range(passes)]
-        self.contests = self._contests()
-
-    def _numbered(self, module: str, number: int, count: int) -> str:
-        """An instance in the caster."""
-        return f"{CASTER}.{module}_i" if count == 1 else f"{CASTER}.{module}_{number}_i"
-
-    def _contests(self) -> dict[tuple[int, int, int], str]:
-        """The instances that compare, by pass, round and first rectangle."""
-        placed: list[tuple[tuple[int, int, int], str, int]] = []
-        counts = {"nearest_of_two": 0, "unopposed": 0}
-        for number in range(len(self.starts)):
-            left = self.config.rectangles
-            for turn in range(beam.rounds(self.config)):
-                for first in range(0, left, 2):
-                    module = "nearest_of_two" if first + 1 < left else "unopposed"
-                    placed.append(((number, turn, first << turn), module, counts[module]))
-                    counts[module] += 1
-                left = -(-left // 2)
-        return {key: self._numbered(module, number, counts[module]) for key, module, number in placed}
 
     def named(self, signal: str, place: Place, ray: Ray) -> str:
         """A signal of the instances that a place has."""
         config, bounce, rectangle = self.config, place.bounce, place.rectangle or 0
         passes, count = len(self.starts), config.rectangles
-        one = bounce * count + rectangle
+        one = f"{CASTER}.{numbered('beam_pass', bounce, passes)}"
         delays = [number for number in range(passes) for _ in range(number + 1, passes)]
         late = max((i for i, number in enumerate(delays) if number == bounce), default=0)
-        slopes = 3 * passes - 1
-        last_round = beam.rounds(config) - 1
+        rounds = {f"round_{turn}": self._contest(turn, rectangle) for turn in range(beam_pass.rounds(config))}
         return signal.format(
-            facet=self._numbered("facet_register", rectangle, count),
-            walker=self._numbered("rect_walker", one, passes * count),
-            tester=self._numbered("fold_tester", one, passes * count),
-            early=self._numbered("slope_walker", 2 * bounce, slopes),
-            late=self._numbered("slope_walker", 2 * bounce + 1, slopes),
-            magnitudes=self._numbered("slope_magnitudes", bounce, passes),
-            fold=self._numbered("ray_fold", max(0, bounce - 1), passes - 1),
-            winner=self.contests[bounce, last_round, 0],
-            kept=self._numbered("winner_delay", late, len(delays)),
+            beam=one,
+            walker=f"{one}.{numbered('rect_walker', rectangle, count)}",
+            tester=f"{one}.{numbered('fold_tester', rectangle, count)}",
+            fold=f"{CASTER}.{numbered('ray_fold', max(0, bounce - 1), passes - 1)}",
+            kept=f"{CASTER}.{numbered('winner_delay', late, len(delays))}",
             bounce=bounce,
             seen=SEEN[bounce],
             mirror="only" if bounce == 0 else "last",
-            axis=AXES[int(ray.rectangles.axes[rectangle])],
-            **{f"round_{turn}": self._contest(bounce, turn, rectangle) for turn in range(last_round + 1)},
+            **{f"fold_{name}": bits for name, bits in self._fold_bits(ray, rectangle).items()},
+            **rounds,
         )
 
-    def _contest(self, bounce: int, turn: int, rectangle: int) -> str:
-        """The instance in which a rectangle stands in a round."""
-        return self.contests[bounce, turn, rectangle >> (turn + 1) << (turn + 1)]
+    def _contest(self, turn: int, rectangle: int) -> str:
+        """In a pass, the winner of the contest in which a rectangle, or who has won against it, stands in a round."""
+        left, number = -(-self.config.rectangles >> turn), rectangle >> turn + 1
+        one = (
+            f"{numbered('nearest_of_two', number, left // 2)}.nearest"
+            if 2 * number + 1 < left
+            else "winner_delay_i.late"
+        )
+        return ".".join([*["nearest_of_i"] * (turn + 1), one])
+
+    def _fold_bits(self, ray: Ray, rectangle: int) -> dict[str, str]:
+        """Where in a fold is what a rectangle's ways along p and q get added."""
+        axis, fold = AXES[int(ray.rectangles.axes[rectangle])], fold_of(self.config)
+        return {side: "{}:{}".format(*fold.slice(f"{side}_{axis}")) for side in "pq"}
 
     def controls(self) -> Iterable[str]:
         """The signals that `events` reads."""
-        names = ("start_line", "next_column", "row_slope", "in_picture", "rects_fetch", "rects_index")
+        names = ("start_line", "scan_next_column", "row_slope", "in_picture", "rects_fetch", "rects_index")
         video = (f"{VIDEO}.{name}" for name in ("x", "y", "pixel_end"))
         return [*(f"{RENDERER}.{name}" for name in names), f"{SETUP}.load", *video]
 
     def groups(self, ray: Ray) -> dict[str, Sequence[str]]:
         """For viewers: signals by group; of all rectangles that one which the pixel shows."""
         place = Place(0, max(0, ray.winner(0)))
-        control = ("start_screen", "start_row", "start_line", "next_column", "row", "row_slope:signed", "in_picture")
+        control = (
+            "progress_start_screen",
+            "scan_start_row",
+            "start_line",
+            "scan_next_column",
+            "row",
+            "row_slope:signed",
+            "in_picture",
+        )
         unit = [
-            "{early}.column_slope:signed",
-            "{facet}.facet_axis",
-            "{facet}.facet_distance:signed",
-            "{walker}.walk_way_u:signed",
+            "{beam}.early_slope:signed",
+            "{tester}.facet_axis",
+            "{tester}.facet_distance:signed",
+            "{walker}.walk_way_p:signed",
             *(f"{{walker}}.walk_{name}:signed" for name in BOUNDS),
-            *(f"{{tester}}.folded_{name}_1:signed" for name in "uv"),
-            *(f"{{tester}}.hit_{name}" for name in ("valid", "numerator", "denominator")),
-            *(f"{{winner}}.nearest_{name}" for name in ("valid", "index")),
+            *(f"{{tester}}.folded_{name}_1:signed" for name in "pq"),
+            *fields("{tester}", "hit", ("valid", "numerator", "denominator"), candidate_of(self.config)),
+            *(f"{{beam}}.nearest_{name}" for name in ("valid", "index")),
         ]
         return {
             "control": [
@@ -302,7 +304,7 @@ class BeamProbes:
         for cycle in range(len(samples.times_ns)):
             if values[f"{RENDERER}.start_line"][cycle]:
                 line, passed = cycle, 0
-            if not values[f"{RENDERER}.next_column"][cycle] or not values[f"{RENDERER}.in_picture"][cycle]:
+            if not values[f"{RENDERER}.scan_next_column"][cycle] or not values[f"{RENDERER}.in_picture"][cycle]:
                 continue
             slope = signed(values[f"{RENDERER}.row_slope"][cycle], bits)
             if slope == screen.horizon_row - ray.row and passed == ray.column:
@@ -318,15 +320,15 @@ class BeamProbes:
             if values[f"{RENDERER}.rects_fetch"][cycle] and index in range(count):
                 events.append(Event("fetch", cycle, Place(0, index)))
             events += [Event("load", cycle, Place(0, i)) for i in range(count) if load >> i & 1]
-        end = column + self.starts[-1] + beam.winner_latency(self.config)
+        end = column + self.starts[-1] + beam_pass.winner_latency(self.config)
         for bounce, start in enumerate(self.starts[: ray.reflections + 1]):
             entered = column + start
             events.append(Event("ray", entered, Place(bounce)))
             events += [Event("test", entered, Place(bounce, i)) for i in range(count)]
-            for turn in range(beam.rounds(self.config)):
+            for turn in range(beam_pass.rounds(self.config)):
                 cycle = entered + tester.LATENCY + (turn + 1) * contest.LATENCY
                 events += [Event(f"round {turn}", cycle, Place(bounce, i)) for i in range(0, count, 2 << turn)]
-            events.append(Event("winner", entered + beam.winner_latency(self.config), Place(bounce)))
+            events.append(Event("winner", entered + beam_pass.winner_latency(self.config), Place(bounce)))
             events.append(Event("kept", end, Place(bounce)))
             events.append(Event("blend", end + beam.LOOK_UP_LATENCY, Place(bounce)))
         # A column is announced in its last clock, and its colour is there from the first one's on.
@@ -337,72 +339,75 @@ class BeamProbes:
     @property
     def probes(self) -> list[Probe]:
         """In the order in which values depend on each other."""
-        facet = ("usable", "axis", "distance", "way_v", "colour")
-        start = ("way_u", *BOUNDS)
+        config = self.config
+        facet, walk, winner = Facet(walk_bits(config)), Walk(walk_bits(config)), Winner(index_bits(config))
+        last = beam_pass.rounds(config) - 1
+        candidate, fold, reflector = candidate_of(config), fold_of(config), Reflector()
         rounds = [
-            Probe(
-                "nearest of some", tuple(f"{{round_{turn}}}.nearest_{name}" for name in ("valid", "index")),
-                f"round {turn}", nearest_of(2 << turn), shown=False,
-            )
-            for turn in range(beam.rounds(self.config) - 1)
+            Probe("nearest of some", fields("{beam}", f"{{round_{turn}}}", ("valid", "index"), candidate),
+                f"round {turn}", nearest_of(2 << turn), shown=False)
+            for turn in range(last)
         ]  # fmt: skip
         passes = len(self.starts)
         reflected = [
-            Probe("turned by", fields("{fold}", "fold_turn", AXES), "ray", mirrored, signed=True),
-            Probe("runs back", fields("{fold}", "fold_back", AXES), "ray", turned),
+            Probe("turned by", fields("{fold}", "fold", [f"turn_{axis}" for axis in AXES], fold), "ray", mirrored,
+                signed=True),
+            Probe("runs back", fields("{fold}", "fold", [f"back_{axis}" for axis in AXES], fold), "ray", turned),
             Probe(
-                "last mirror", ("{fold}.fold_axis", "{fold}.fold_distance"), "ray", last_mirror, signed=(1,),
+                "last mirror", fields("{fold}", "fold", ("axis", "distance"), fold), "ray", last_mirror, signed=(1,),
                 shown=False,
             ),
             Probe(
-                "fold", ("{fold}.fold_u_{axis}", "{fold}.fold_v_{axis}"), "test", fold_offsets, signed=True,
+                "fold", ("{fold}.fold_word[{fold_p}]", "{fold}.fold_word[{fold_q}]"), "test", fold_offsets, signed=True,
                 shown=False,
             ),
         ]  # fmt: skip
         kept = [
             Probe(
-                "kept", ("{kept}.late_valid", "{kept}.late_index"), "kept", of_mirrors(passes, nearest_of(0)),
+                "kept", fields("{kept}", "late", ("valid", "index"), winner), "kept", of_mirrors(passes, nearest_of(0)),
                 shown=False,
             )
         ]  # fmt: skip
         return [
-            Probe("camera", fields(f"{DUT}.camera_mem_i", "camera", AXES), "column", camera, shown=False),
+            Probe("camera", fields(f"{DUT}.camera_mem_i", "camera", AXES, Point()), "column", camera, shown=False),
             Probe(
-                "background", (f"{DUT}.avalon_interface_i.background",), "column",
+                "background", (f"{DUT}.avalon_interface_i.picture_background",), "column",
                 lambda ray, place: (ray.colour(-1),), shown=False, colour=True,
             ),
             Probe(
-                "reflections", (f"{DUT}.avalon_interface_i.reflections",), "column",
+                "reflections", (f"{DUT}.avalon_interface_i.picture_reflections",), "column",
                 lambda ray, place: (ray.reflections,), shown=False,
             ),
-            Probe("rectangle", fields(f"{DUT}.rect_mem_i", "rects_rect", RECT_FIELDS), "fetch", sorted_rect, late=2,
+            Probe("rectangle", fields(f"{DUT}.rect_mem_i", "rects_rect", RECT_FIELDS, Rect()), "fetch", sorted_rect,
+                late=2, shown=False),
+            Probe("set up", fields(SETUP, "facet", facet.layout, facet), "load", setup_facet, signed=(2, 3),
                 shown=False),
-            Probe("set up", fields(SETUP, "facet", facet), "load", setup_facet, signed=(2, 3),
-                shown=False),
-            Probe("products of the first column", fields(SETUP, "start", start), "load", setup_start, signed=True,
-                shown=False),
+            Probe("products of the first column", fields(SETUP, "start", walk.layout, walk), "load", setup_start,
+                signed=True, shown=False),
             Probe("in the pipeline", (f"{CASTER}.steps",), "ray", lambda ray, place: (1,), decode=self._step,
                 shown=False),
-            Probe("slope along y", ("{early}.column_slope",), "ray", lambda ray, place: straight(ray)[1:2],
+            Probe("slope along y", ("{beam}.early_slope",), "ray", lambda ray, place: straight(ray)[1:2],
                 signed=True),
             *(reflected if passes > 1 else []),
-            Probe("distance", ("{facet}.facet_distance",), "test",
+            Probe("distance", ("{tester}.facet_distance",), "test",
                 lambda ray, place: (distance(ray, place.rectangle),), signed=True),
-            Probe("way u", ("{walker}.walk_way_u",), "test", way, signed=True),
-            Probe("bounds u, v", tuple(f"{{walker}}.walk_{name}" for name in BOUNDS), "test", ways_to_bounds, late=1,
+            Probe("way p", ("{walker}.walk_way_p",), "test", way, signed=True),
+            Probe("bounds p, q", tuple(f"{{walker}}.walk_{name}" for name in BOUNDS), "test", ways_to_bounds, late=1,
                 signed=True),
-            Probe("folded way u, v", ("{tester}.folded_u_1", "{tester}.folded_v_1"), "test", folded, late=1,
+            Probe("folded way p, q", ("{tester}.folded_p_1", "{tester}.folded_q_1"), "test", folded, late=1,
                 signed=True),
-            Probe("slope along y, late", ("{late}.column_slope",), "ray", lambda ray, place: straight(ray)[1:2], late=2,
+            Probe("slope along y, late", ("{beam}.late_slope",), "ray", lambda ray, place: straight(ray)[1:2], late=2,
                 signed=True, shown=False),
-            Probe("magnitudes", ("{magnitudes}.slope_dy", "{magnitudes}.slope_dz"), "ray",
+            Probe("magnitudes", ("{beam}.slope_dy", "{beam}.slope_dz"), "ray",
                 magnitudes, late=2, shown=False),
             Probe("numerator", ("{tester}.numerator_2",), "test", numerator, late=2),
-            Probe("inside", ("{tester}.hit_valid",), "test", hit, late=tester.LATENCY),
-            Probe("t", ("{tester}.hit_numerator", "{tester}.hit_denominator"), "test", fraction, late=tester.LATENCY),
+            Probe("inside", fields("{tester}", "hit", ("valid",), candidate), "test", hit, late=tester.LATENCY),
+            Probe("t", fields("{tester}", "hit", ("numerator", "denominator"), candidate), "test", fraction,
+                late=tester.LATENCY),
             *rounds,
-            Probe("nearest", ("{winner}.nearest_valid", "{winner}.nearest_index"), "winner", nearest_of(0)),
-            *([Probe("mirror", (f"{CASTER}.{{mirror}}_axis", f"{CASTER}.{{mirror}}_distance"), "winner",
+            Probe("nearest", fields("{beam}", f"{{round_{last}}}", ("valid", "index"), candidate), "winner",
+                nearest_of(0)),
+            *([Probe("mirror", fields(CASTER, "{mirror}", ("axis", "distance"), reflector), "winner",
                 of_mirrors(passes, surface), late=1, signed=(1,), shown=False)] if passes > 1 else []),
             *(kept if passes > 1 else []),
             Probe("found", (f"{CASTER}.found_{{bounce}}",), "blend", found),
@@ -412,7 +417,7 @@ class BeamProbes:
             Probe(
                 "pixel", tuple(f"{BLEND}.colour_mean_{number}_i.mean" for number in range(3)), "done", pixel_channels
             ),
-            Probe("pixel to the monitor", tuple(f"{RENDERER}.shown_{name}" for name in COLOURS), "shown",
+            Probe("pixel to the monitor", fields(RENDERER, "shown", COLOURS, Pixel(config.colour_bits)), "shown",
                 pixel_channels),
             Probe("pins", tuple(f"{VIDEO}.{name}" for name in PINS), "shown", pixel_channels, late=1),
         ]  # fmt: skip

@@ -7,11 +7,13 @@ from collections.abc import Sequence
 
 from raycaster.configuration import Configuration
 from raycaster.golden.world import OTHER_AXES
+from raycaster.rtl.common.records import Mirror, Signs, Surface
 from raycaster.verif.probes.ray import AXES, Event, Place, Probe, Ray, Value, fields
 from raycaster.verif.probes.units import SIGNS, UnitProbes, nearest_found, slope_signs
 from raycaster.verif.waves import Samples
 
 SURFACE = ("axis", "position", "colour")
+MIRROR = ("active", "axis", "position")
 BOUNDS = ("low_u", "high_u", "low_v", "high_v")
 
 
@@ -118,7 +120,7 @@ class ExactProbes(UnitProbes):
     """The description; see `raycaster.verif.probes.ray.Description`."""
 
     def __init__(self, config: Configuration, unit: int):
-        super().__init__(config, unit, "exact_caster_i", "exact_control_i", "exact_unit")
+        super().__init__(config, unit, "exact_control_i", "exact_unit")
         self.memory = f"{self.unit}.eye_register_i"
         self.tester = f"{self.unit}.rect_tester_i"
         self.keeper = f"{self.unit}.nearest_hit_i"
@@ -128,8 +130,8 @@ class ExactProbes(UnitProbes):
         """What of a unit a viewer shows beside its slope and its colours."""
         return [
             *(f"{name}:signed" for name in fields(self.memory, "eye", AXES)),
-            *fields(self.memory, "signs", SIGNS),
-            *fields(self.memory, "mirror", ("active", "axis", "position")),
+            *fields(self.memory, "signs", SIGNS, Signs()),
+            *fields(self.memory, "mirror", MIRROR, Mirror()),
             f"{self.tester}.distance:signed",
             f"{self.tester}.n:signed",
             f"{self.tester}.e",
@@ -137,7 +139,7 @@ class ExactProbes(UnitProbes):
             *(f"{self.tester}.way_to_{name}:signed" for name in BOUNDS),
             *(f"{self.tester}.{name}" for name in ("hit", "numerator", "denominator")),
             *(f"{self.keeper}.{name}" for name in ("nearer", "found", "nearest_numerator", "nearest_denominator")),
-            *fields(self.keeper, "found_surface", ("axis", "position", "colour:hex")),
+            *fields(self.keeper, "found_surface", ("axis", "position", "colour:hex"), Surface()),
         ]
 
     def _tried(self, samples: Samples, tried: list[tuple[int, int]], bounce: int, end: int) -> list[Event]:
@@ -154,15 +156,13 @@ class ExactProbes(UnitProbes):
     @property
     def probes(self) -> list[Probe]:
         """In the order in which values depend on each other."""
-        offered = fields(self.control, "offered", SURFACE)
+        offered = fields(self.control, "offered", SURFACE, Surface())
+        kept_colour = fields(self.keeper, "found_surface", ("colour",), Surface())[0]
         return [
             *self.first_probes(),
             Probe("eye", fields(self.memory, "eye", AXES), "ray", eye, late=1, signed=True),
-            Probe("signs", fields(self.memory, "signs", SIGNS), "ray", slope_signs, late=1),
-            Probe(
-                "mirror", fields(self.memory, "mirror", ("active", "axis", "position")), "ray", mirror, late=1,
-                shown=False,
-            ),
+            Probe("signs", fields(self.memory, "signs", SIGNS, Signs()), "ray", slope_signs, late=1),
+            Probe("mirror", fields(self.memory, "mirror", MIRROR, Mirror()), "ray", mirror, late=1, shown=False),
             Probe("eye distance", (f"{self.tester}.distance",), "find", distance, signed=True),
             Probe("denominator", (f"{self.tester}.e",), "find", denominator),
             Probe("numerator", (f"{self.tester}.n",), "find", numerator, signed=True),
@@ -186,8 +186,8 @@ class ExactProbes(UnitProbes):
                 nearest_fraction, late=1,
             ),
             Probe(
-                "nearest surface", fields(self.keeper, "found_surface", SURFACE), "write", nearest_surface, late=1,
-                shown=False,
+                "nearest surface", fields(self.keeper, "found_surface", SURFACE, Surface()), "write", nearest_surface,
+                late=1, shown=False,
             ),
-            *self.last_probes(f"{self.keeper}.found_surface_colour"),
+            *self.last_probes(kept_colour),
         ]  # fmt: skip

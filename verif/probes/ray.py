@@ -23,6 +23,7 @@ from raycaster.golden import exact, seed_engine
 from raycaster.golden.picture import shown
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.rtl.common.records import Record
 from raycaster.verif.waves import Samples, Waves, signed
 
 DUT = "bench.dut"
@@ -287,9 +288,24 @@ def channels_of(colour: int, bits: int) -> tuple[int, int, int]:
     return colour >> 2 * bits & mask, colour >> bits & mask, colour & mask
 
 
-def fields(scope: str, group: str, names: Iterable[str]) -> tuple[str, ...]:
-    """The signals of an interface by its attributes."""
-    return tuple(f"{scope}.{group}_{name}" for name in names)
+def fields(scope: str, group: str, names: Iterable[str], record: Record | None = None) -> tuple[str, ...]:
+    """The signals of an interface by its attributes.
+
+    Args:
+        scope: the instance.
+        group: the interface or record in it.
+        names: of attributes, with a viewer's number format behind a colon where that matters.
+        record: one of the group's layout, where that is a record: of its word the fields' bits are named, which are
+            there whether the instance reads the field or not.
+    """
+    if record is None:
+        return tuple(f"{scope}.{group}_{name}" for name in names)
+    parts = [name.partition(":") for name in names]
+    ranges = [record.slice(field) for field, _, _ in parts]
+    return tuple(
+        f"{scope}.{group}_word[{high}:{low}]{colon}{kind}"
+        for (high, low), (_, colon, kind) in zip(ranges, parts, strict=True)
+    )
 
 
 def module_of(signal: str) -> str:

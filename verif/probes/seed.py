@@ -7,6 +7,8 @@ from collections.abc import Iterable, Sequence
 
 from raycaster.configuration import Configuration
 from raycaster.golden.world import OTHER_AXES
+from raycaster.rtl.common.records import Origin, Rect
+from raycaster.rtl.common.records import Ray as RayRecord
 from raycaster.verif.probes.ray import AXES, Event, Place, Probe, Ray, Read, Value, fields
 from raycaster.verif.probes.units import RECT_FIELDS, SIGNS, UnitProbes, nearest_found, slope_signs, sorted_rect
 from raycaster.verif.waves import Samples
@@ -63,8 +65,8 @@ def products(ray: Ray, place: Place) -> Sequence[Value]:
     return [abs(slopes[u] * ray.of_rectangle(place, "numerators")) for u in OTHER_AXES[axis]]
 
 
-def ahead(ray: Ray, place: Place) -> Sequence[Value]:
-    """Whether the plane lies in front of the ray."""
+def towards(ray: Ray, place: Place) -> Sequence[Value]:
+    """Whether the ray runs towards the plane."""
     if not ray.alive(place.bounce):
         return (None,)
     return (int(ray.of_rectangle(place, "numerators") * ray.of_rectangle(place, "denominators") > 0),)
@@ -150,7 +152,7 @@ class SeedProbes(UnitProbes):
     """The description; see `raycaster.verif.probes.ray.Description`."""
 
     def __init__(self, config: Configuration, unit: int):
-        super().__init__(config, unit, "ray_caster_i", "ray_control_i", "ray_unit")
+        super().__init__(config, unit, "ray_control_i", "ray_unit")
         self.finder = f"{self.unit}.intersection_finder_i"
         self.helpers = [f"{self.finder}.intersection_helper_{number}_i" for number in range(2)]
         self.z_buffer = f"{self.unit}.z_buffer_i"
@@ -161,8 +163,7 @@ class SeedProbes(UnitProbes):
         """What of a unit a viewer shows beside its slope and its colours."""
         u, v = self.helpers
         return [
-            *fields(self.unit, "origin", AXES),
-            *fields(self.unit, "signs", SIGNS),
+            *fields(self.unit, "ray", (*AXES, *SIGNS), RayRecord(self.config)),
             f"{self.control}.steps_load_divider",
             f"{self.control}.steps_store_quotient",
             f"{u}.difference:signed",
@@ -175,14 +176,14 @@ class SeedProbes(UnitProbes):
             f"{u}.value:signed",
             f"{v}.value:signed",
             *(f"{self.finder}.{name}" for name in ("inside_u", "inside_v", "hit", "depth")),
-            *fields(self.finder, "point", AXES),
+            *fields(self.finder, "point", AXES, Origin(self.config)),
             *(f"{self.z_buffer}.{name}" for name in ("nearer", "found", "nearest", "found_axis", "found_colour:hex")),
         ]
 
     def controls(self) -> Iterable[str]:
         """The signals that `events` reads."""
         steps = [f"{self.control}.steps_{name}" for name in ("load_divider", "store_quotient")]
-        return [*super().controls(), *steps, f"{self.sequencer}.give_up"]
+        return [*super().controls(), *steps, f"{self.sequencer}.early_out"]
 
     def _tried(self, samples: Samples, tried: list[tuple[int, int]], bounce: int, end: int) -> list[Event]:
         """Follow each rectangle through the divider, in which one may wait while another one is loaded."""
@@ -203,8 +204,8 @@ class SeedProbes(UnitProbes):
                 finishing.append(note("store", cycle, dividing.pop(0)))
             if values[f"{self.control}.steps_load_divider"][cycle] and started:
                 dividing.append(note("load", cycle, started.pop(0)))
-            if values[f"{self.sequencer}.give_up"][cycle] and dividing:
-                note("give up", cycle, dividing.pop())
+            if values[f"{self.sequencer}.early_out"][cycle] and dividing:
+                note("early out", cycle, dividing.pop())
         return events
 
     def expected(self, ray: Ray) -> Iterable[tuple[str, Place]]:
@@ -217,22 +218,23 @@ class SeedProbes(UnitProbes):
     def probes(self) -> list[Probe]:
         """In the order in which values depend on each other."""
         u, v = self.helpers
-        finishing = tuple(f"{self.control}.finishing_rect_{name}" for name in RECT_FIELDS)
+        ray, origins = RayRecord(self.config), Origin(self.config)
+        offered = fields(self.control, "offered", RECT_FIELDS, Rect())
         kept = (f"{self.z_buffer}.found_axis", f"{self.z_buffer}.found_colour")
         return [
             *self.first_probes(),
             Probe(
-                "reflected origin", fields(self.memory, "reflected_origin", AXES), "ray", reflected, late=1, scale=True,
+                "reflected origin", fields(self.memory, "reflected", AXES, ray), "ray", reflected, late=1, scale=True,
                 shown=False,
             ),
             Probe(
-                "reflected signs", fields(self.memory, "reflected_signs", SIGNS), "ray", reflected_signs, late=1,
+                "reflected signs", fields(self.memory, "reflected", SIGNS, ray), "ray", reflected_signs, late=1,
                 shown=False,
             ),
             Probe(
-                "origin", fields(self.unit, "origin", AXES), "ray", origin, late=1, true=true_origin, scale=True
+                "origin", fields(self.unit, "ray", AXES, ray), "ray", origin, late=1, true=true_origin, scale=True
             ),
-            Probe("signs", fields(self.unit, "signs", SIGNS), "ray", slope_signs, late=1),
+            Probe("signs", fields(self.unit, "ray", SIGNS, ray), "ray", slope_signs, late=1),
             Probe("start", (f"{self.finder}.start_a",), "find", start_on_axis, scale=True, shown=False),
             Probe(
                 "denominator",
@@ -246,10 +248,10 @@ class SeedProbes(UnitProbes):
                 "numerator", (f"{u}.difference",), "find", one(of_rectangle("numerators")), signed=True,
                 true=true_numerator, scale=True,
             ),
-            Probe("ahead", (f"{u}.ahead",), "find", ahead, late=1, shown=False),
-            Probe("ahead, v", (f"{v}.ahead",), "find", ahead, late=1, shown=False),
+            Probe("towards the plane", (f"{u}.towards",), "find", towards, late=1, shown=False),
+            Probe("towards the plane, v", (f"{v}.towards",), "find", towards, late=1, shown=False),
             Probe("product", (f"{u}.product", f"{v}.product"), "load", products, shown=False),
-            Probe("rectangle at the end", finishing, "store", sorted_rect, late=1, shown=False),
+            Probe("rectangle at the end", offered, "store", sorted_rect, late=1, shown=False),
             Probe(
                 "quotient u, v", (f"{u}.divider_i.quotient", f"{v}.divider_i.quotient"), "store",
                 of_rectangle("quotients", "valid"), late=1, true=true_quotients, scale=True,
@@ -265,14 +267,14 @@ class SeedProbes(UnitProbes):
                 scale=True,
             ),
             Probe(
-                "point", fields(self.finder, "point", AXES), "write", hit_point, scale=True, shown=False
+                "point", fields(self.finder, "point", AXES, origins), "write", hit_point, scale=True, shown=False
             ),
             Probe("any yet", (f"{self.z_buffer}.found",), "write", nearest_found, late=1, shown=False),
             Probe("nearest", (f"{self.z_buffer}.nearest",), "write", nearest_depth, late=1, scale=True),
             Probe("nearest surface", kept, "write", nearest_surface, late=1, shown=False),
             Probe(
-                "nearest point", fields(self.z_buffer, "found_point", AXES), "write", nearest_point, late=1, scale=True,
-                shown=False,
+                "nearest point", fields(self.z_buffer, "found_point", AXES, origins), "write", nearest_point, late=1,
+                scale=True, shown=False,
             ),
             *self.last_probes(f"{self.z_buffer}.found_colour"),
         ]  # fmt: skip

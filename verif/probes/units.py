@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from raycaster.configuration import Configuration
+from raycaster.rtl.common.records import Pixel, Point, Rect, Signs
 from raycaster.verif.probes.ray import (
     AXES,
     DUT,
@@ -85,7 +86,7 @@ def pixel_channels(ray: Ray, place: Place) -> Sequence[Value]:
 def video_signals(video: str) -> list[str]:
     """What a viewer shows of a video generator."""
     pins = (*(f"{name}:hex" for name in PINS), "vga_hs", "vga_vs", "vga_blank_n", "vga_clk")
-    return [f"{video}.{name}" for name in ("x:signed", "y:signed", "next_column", *pins)]
+    return [f"{video}.{name}" for name in ("x:signed", "y:signed", "scan_next_column", *pins)]
 
 
 def bus_signals() -> list[str]:
@@ -110,18 +111,17 @@ def shown_events(samples: Samples, ray: Ray, video: str, after: int) -> list[Eve
 class UnitProbes:
     """The part of a description that does not depend on how a unit computes."""
 
-    def __init__(self, config: Configuration, unit: int, caster: str, control: str, unit_module: str):
+    def __init__(self, config: Configuration, unit: int, control: str, unit_module: str):
         """Name everything.
 
         Args:
             config: the design.
             unit: which one has the pixel.
-            caster: the engine's instance.
-            control: the control's, in it.
+            control: the control's instance.
             unit_module: the name of the unit's module.
         """
         self.config = config
-        self.caster = f"{RENDERER}.{caster}"
+        self.caster = f"{RENDERER}.ray_caster_i"
         self.control = f"{self.caster}.{control}"
         self.sequencer = f"{self.control}.ray_sequencer_i"
         self.unit = f"{self.caster}.{unit_name(unit_module, config, unit)}"
@@ -151,7 +151,8 @@ class UnitProbes:
         return {
             "control": [
                 "bench.clk",
-                *(f"{RENDERER}.{name}" for name in ("start_screen", "start_row", "row", "column_offset")),
+                *(f"{RENDERER}.scan_{name}" for name in ("start_screen", "start_row")),
+                *(f"{RENDERER}.place_{name}" for name in ("row", "column_offset")),
                 *(f"{RENDERER}.{name}" for name in ("reset_ray_caster", "enable", "done")),
                 *(f"{self.sequencer}.{name}" for name in ("state", "bounce", "rects_index")),
                 *(f"{self.sequencer}.steps_{name}" for name in strobes),
@@ -160,8 +161,8 @@ class UnitProbes:
             "ray unit": [
                 *fields(self.generator, "slope", SIGNS),
                 *self.unit_signals,
-                f"{self.combiner}.seen_colour:hex",
-                f"{self.combiner}.pixel:hex",
+                f"{self.combiner}.seen_word:hex",
+                f"{self.combiner}.pixel_word:hex",
             ],
             "line buffer": [f"{self.buffer}.{name}" for name in buffer],
             "video": video_signals(VIDEO),
@@ -175,8 +176,8 @@ class UnitProbes:
         """The signals that `events` reads."""
         steps = ("screen_to_ray", "find_intersection", "add_colour", "store_ray")
         return [
-            f"{RENDERER}.row",
-            f"{RENDERER}.column_offset",
+            f"{RENDERER}.place_row",
+            f"{RENDERER}.place_column_offset",
             f"{self.sequencer}.done",
             *(f"{self.sequencer}.steps_{name}" for name in steps),
             f"{self.control}.steps_write_z_buf",
@@ -205,9 +206,8 @@ class UnitProbes:
     def events(self, samples: Samples, ray: Ray) -> list[Event]:
         """What the hardware did for the pixel."""
         values, step = samples.values, f"{self.sequencer}.steps"
-        begun = zip(
-            values[f"{step}_screen_to_ray"], values[f"{RENDERER}.row"], values[f"{RENDERER}.column_offset"], strict=True
-        )
+        places = (values[f"{RENDERER}.place_{name}"] for name in ("row", "column_offset"))
+        begun = zip(values[f"{step}_screen_to_ray"], *places, strict=True)
         start = next((cycle for cycle, now in enumerate(begun) if now == (1, ray.row, ray.offset)), None)
         shown = shown_events(samples, ray, VIDEO, start or 0)
         if start is None:
@@ -247,12 +247,14 @@ class UnitProbes:
 
     def first_probes(self) -> list[Probe]:
         """From the scene's memories to the primary ray."""
-        sorter = tuple(f"{self.rects}.rect_sorter_i.rect_{name}" for name in RECT_FIELDS)
+        sorter = fields(f"{self.rects}.rect_sorter_i", "rect", RECT_FIELDS, Rect())
+        rect = fields(self.rects, "rects_rect", RECT_FIELDS, Rect())
+        signs = fields(self.generator, "initial_signs", SIGNS, Signs())
         probes = [
-            Probe("camera", fields(f"{DUT}.camera_mem_i", "camera", AXES), "start", camera, shown=False),
+            Probe("camera", fields(f"{DUT}.camera_mem_i", "camera", AXES, Point()), "start", camera, shown=False),
             Probe(
                 "background",
-                (f"{DUT}.avalon_interface_i.background",),
+                (f"{DUT}.avalon_interface_i.picture_background",),
                 "start",
                 lambda ray, place: (ray.colour(-1),),
                 shown=False,
@@ -260,7 +262,7 @@ class UnitProbes:
             ),
             Probe(
                 "reflections",
-                (f"{DUT}.avalon_interface_i.reflections",),
+                (f"{DUT}.avalon_interface_i.picture_reflections",),
                 "start",
                 lambda ray, place: (ray.reflections,),
                 shown=False,
@@ -273,7 +275,7 @@ class UnitProbes:
                 shown=False,
             ),
             Probe("slope, magnitudes", fields(self.generator, "slope", SIGNS), "start", slope_magnitudes, late=1),
-            Probe("slope, signs", fields(self.generator, "initial_signs", SIGNS), "start", slope_signs, late=1),
+            Probe("slope, signs", signs, "start", slope_signs, late=1),
             Probe(
                 "comes from the camera",
                 (f"{self.sequencer}.steps_initial_ray",),
@@ -283,15 +285,13 @@ class UnitProbes:
                 shown=False,
             ),
             Probe("rectangle, sorted", sorter, "fetch", sorted_rect, shown=False),
-            Probe(
-                "rectangle", fields(self.rects, "rects_rect", RECT_FIELDS), "fetch", sorted_rect, late=1, shown=False
-            ),
+            Probe("rectangle", rect, "fetch", sorted_rect, late=1, shown=False),
         ]
         if self.config.culling:
             probes.append(
-                # Of those that the scene has not got, the culler says nothing.
+                # For those that the scene has not got, the mask is don't care.
                 Probe(
-                    "possible rectangles",
+                    "rectangles that may be hit",
                     (f"{self.sequencer}.wanted",),
                     "start",
                     _hit_mask,
@@ -302,20 +302,20 @@ class UnitProbes:
             )
         return probes
 
-    def last_probes(self, kept: str) -> list[Probe]:
-        """From what a ray has found, of which the module is given, to the pins."""
+    def last_probes(self, kept_colour: str) -> list[Probe]:
+        """From what a ray has found, of which the colour's signal is given, to the pins."""
         channels = [f"{self.combiner}.colour_channel_{number}_i" for number in range(3)]
         bits = self.config.colour_bits
         unit_pixel = 3 * bits
 
-        def one_of(ray: Ray, place: Place, colours: int) -> Sequence[Value]:
-            return ((colours >> ray.unit * unit_pixel) & ((1 << unit_pixel) - 1),)
+        def one_of(ray: Ray, place: Place, pixels: int) -> Sequence[Value]:
+            return ((pixels >> ray.unit * unit_pixel) & ((1 << unit_pixel) - 1),)
 
         group = tuple(f"{RENDERER}.{name}" for name in ("read_offset", "read_unit"))
         return [
-            Probe("found", (kept.rpartition(".")[0] + ".found",), "blend", found),
-            Probe("its colour", (kept,), "blend", found_colour, colour=True),
-            Probe("colour seen", (f"{self.combiner}.seen_colour",), "blend", seen_colour, colour=True),
+            Probe("found", (kept_colour.rpartition(".")[0] + ".found",), "blend", found),
+            Probe("its colour", (kept_colour,), "blend", found_colour, colour=True),
+            Probe("colour seen", (f"{self.combiner}.seen_word",), "blend", seen_colour, colour=True),
             Probe(
                 "sums of the channels",
                 tuple(f"{channel}.total" for channel in channels),
@@ -324,12 +324,12 @@ class UnitProbes:
                 late=1,
             ),
             Probe("means of the channels", tuple(f"{channel}.blended" for channel in channels), "done", pixel_channels),
-            Probe("pixel", (f"{self.combiner}.pixel",), "done", pixel, colour=True),
-            Probe("pixel among all", (f"{self.caster}.colours",), "done", pixel, decode=one_of, colour=True),
+            Probe("pixel", (f"{self.combiner}.pixel_word",), "done", pixel, colour=True),
+            Probe("pixel among all", (f"{self.caster}.pixels",), "done", pixel, decode=one_of, colour=True),
             Probe("pixel to the line buffer", (f"{self.buffer}.pixel_in",), "done", pixel, colour=True),
             Probe("place in the line buffer", group, "shown", lambda ray, place: (ray.offset, ray.unit), shown=False),
             Probe("pixel from the line buffer", (f"{self.buffer}.pixel_out",), "shown", pixel, colour=True),
-            Probe("pixel to the monitor", tuple(f"{RENDERER}.{name}" for name in COLOURS), "shown", pixel_channels),
+            Probe("pixel to the monitor", fields(RENDERER, "pixel", COLOURS, Pixel(bits)), "shown", pixel_channels),
             Probe("pins", tuple(f"{VIDEO}.{name}" for name in PINS), "shown", pixel_channels, late=1),
         ]
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What may become of a group's rays, for tests of those who control them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,18 +10,46 @@ import numpy as np
 from raycaster.configuration import Configuration
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.cull.group_culler import MARGIN
+from raycaster.rtl.common.interfaces import GroupFate, Picture, Rects, Steps
+from raycaster.rtl.common.records import Rect, Surface
+from raycaster.rtl.common.widths import bit, unsigned
+from raycaster.rtl.engine.ray_sequencer import ray_sequencer
 from raycaster.verif.leaf import Leaf, TraceCycle
+
+
+def control_leaf(function: Callable, config: Configuration, directory: Path) -> Leaf:
+    """Of ray_control, exact_control, or the ray_sequencer in either."""
+    write_at = config.divider_steps + 3 if config.facts.divides else 2
+    arguments = {"offered": Rect if config.facts.divides else Surface}
+    if function is ray_sequencer:
+        arguments = {"in_flight": lambda: unsigned(write_at + 1), "early_out": bit}
+    return Leaf(
+        function,
+        lambda: {
+            "clk": bit(),
+            "reset_ray_caster": bit(),
+            "enable": bit(),
+            "picture": Picture(),
+            "rects": Rects(config),
+            "steps": Steps(),
+            "fate": GroupFate(config),
+            **{name: make() for name, make in arguments.items()},
+            "done": bit(),
+            **({"slot_cycles": config.slot_cycles} if function is ray_sequencer else {}),
+            "config": config,
+        },
+        directory,
+    )
 
 
 def random_fate(random: np.random.Generator, usable: Sequence[int], reflections: int, number: int) -> dict[str, Any]:
     """The keyword arguments of `trace_cycles`; number 0 is the worst case, in which nothing is culled."""
     if number == 0:
-        return {"possible": usable, "hopeless": (), "lost": None}
+        return {"may_hit": usable, "behind": (), "lost": None}
     share = random.choice([0, 0.3, 0.7, 1])
     return {
-        "possible": [index for index in usable if random.random() < share],
-        "hopeless": [
+        "may_hit": [index for index in usable if random.random() < share],
+        "behind": [
             (bounce, index)
             for bounce in range(reflections + 1)
             for index in usable
@@ -30,9 +59,9 @@ def random_fate(random: np.random.Generator, usable: Sequence[int], reflections:
     }
 
 
-def prospects_in(random: np.random.Generator, cycle: TraceCycle, leaf: Leaf) -> dict[str, int]:
-    """What the units say in a cycle, and anything where nobody listens."""
-    said = {"prospects_ahead": cycle.ahead, "prospects_alive": cycle.alive}
+def group_fate_in(random: np.random.Generator, cycle: TraceCycle, leaf: Leaf) -> dict[str, int]:
+    """What the units say in a cycle, and anything where it is don't care."""
+    said = {"fate_any_towards": cycle.towards, "fate_any_alive": cycle.alive}
     return {
         name: int(random.integers(2)) if value is None else value for name, value in said.items() if name in leaf.inputs
     }
@@ -43,11 +72,11 @@ def mask_of(indices: Sequence[int]) -> int:
     return sum(1 << index for index in indices)
 
 
-def possible_mask(config: Configuration, table: Rectangles, camera, row: int, offset: int) -> int:
+def may_hit_mask(config: Configuration, table: Rectangles, camera, row: int, offset: int) -> int:
     """The culler's rule, for the rays at a group's ends: a bit for each rectangle that is enabled and has a plane."""
     first = [int(d) for d in primary_slopes(config.screen_geometry)[row, offset * config.units]]
     ends = [first, [first[0], first[1] + config.units, first[2]]]
-    margin = MARGIN[config.engine]
+    margin = config.facts.margin
     mask = 0
     for index in map(int, np.flatnonzero(table.visible)):
         axis = int(table.axes[index])

@@ -89,6 +89,13 @@ def pixel_word(config: Configuration, colour) -> int:
     return word
 
 
+def pixel_of(config: Configuration, output: dict[str, int]) -> int:
+    """The same of what a leaf put out at a `Pixel` that is called pixel."""
+    return sum(
+        output[f"pixel_{name}"] << place * config.colour_bits for place, name in enumerate(("blue", "green", "red"))
+    )
+
+
 def verdict(table: Rectangles, index: int, eye, slope, mirror) -> tuple[bool, int, int]:
     """The definition, in fractions: hit, n and e.
 

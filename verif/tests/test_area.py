@@ -37,8 +37,10 @@ INSTANCES = {
     "ray_caster_module": 1, "avalon_interface": 1, "camera_mem": 1, "rect_mem": 1, "rect_sorter": 1, "rect_slot": 2,
     "scene_word": 9, "ray_caster_renderer": 1, "video_generator": 1, "line_buffer": 2, "ray_caster": 1,
     "ray_control": 1, "ray_sequencer": 1, "rect_sequencer": 1, "ray_unit": 2, "ray_generator": 2,
+    "magnitude": 8,
     "intersection_finder": 2, "intersection_helper": 4,
     "divider": 4, "divider_step": 4, "z_buffer": 2, "ray_mem": 2, "colour_combiner": 2, "colour_channel": 6,
+    "colour_average": 6,
 }  # fmt: skip
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from raycaster.configuration import Configuration, configure
 from raycaster.golden import seed_engine
-from raycaster.rtl.common.legacy import Steps
+from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
 from raycaster.rtl.seed.divider import divider
 from raycaster.rtl.seed.divider_step import divider_step
@@ -131,7 +131,7 @@ def test_intersection_helper(config, tmp_path):
             "quotient": unsigned(width),
             "distance": unsigned(width),
             "valid": bit(),
-            "ahead": bit(),
+            "towards": bit(),
             "config": config,
         },
         tmp_path,
@@ -175,7 +175,7 @@ def test_intersection_helper(config, tmp_path):
         added = outputs[number * steps + steps + 4]
         vector = {"a": a, "b": b, "c": c, "d": d, "e": e}
         assert bool(stored["valid"]) == bool(valid), (vector, repeat())
-        assert bool(outputs[number * steps + 1]["ahead"]) == ((c - d) * e > 0), (vector, repeat())
+        assert bool(outputs[number * steps + 1]["towards"]) == ((c - d) * e > 0), (vector, repeat())
         if valid:
             valid_seen += 1
             assert added["value"] == int(value) % (1 << (width + 2)), (vector, repeat())

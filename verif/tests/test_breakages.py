@@ -28,11 +28,14 @@ module ray_caster_module (
     wire [7:0] r, g, b;
     wire hs, vs, blank_n, pixel_clk;
     sound_module inner (
-        clk, reset, avs_s0_address, avs_s0_read, avs_s0_write, avs_s0_writedata, avs_s0_byteenable, avs_s0_readdata,
-        avs_s0_readdatavalid, avs_s0_waitrequest, irq, r, g, b, hs, vs, blank_n, vga_sync_n, pixel_clk
+        .clk(clk), .reset(reset), .avs_s0_address(avs_s0_address), .avs_s0_read(avs_s0_read),
+        .avs_s0_write(avs_s0_write), .avs_s0_writedata(avs_s0_writedata), .avs_s0_byteenable(avs_s0_byteenable),
+        .avs_s0_readdata(avs_s0_readdata), .avs_s0_readdatavalid(avs_s0_readdatavalid),
+        .avs_s0_waitrequest(avs_s0_waitrequest), .irq(irq), .vga_r(r), .vga_g(g), .vga_b(b), .vga_hs(hs), .vga_vs(vs),
+        .vga_blank_n(blank_n), .vga_sync_n(vga_sync_n), .vga_clk(pixel_clk)
     );
     // What the bench counts cycles by.
-    wire start_screen = inner.start_screen, busy = inner.busy;
+    wire progress_start_screen = inner.progress_start_screen, progress_busy = inner.progress_busy;
     // The pixel's position in the picture, from 1, for faults in one place only.
     integer x, y;
     always @(negedge pixel_clk) #1 begin

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import re
 import shlex
@@ -23,7 +24,9 @@ from raycaster.convert.inside import find_block, look_inside
 from raycaster.docs import blocks, commands, facts, timing
 from raycaster.docs.commands import commands_of, outside_make
 from raycaster.errors import UserError
-from raycaster.rtl.system.ray_caster_module import ModulePorts, ray_caster_module
+from raycaster.rtl.system.ports import module_ports
+from raycaster.rtl.system.ray_caster_module import ray_caster_module
+from raycaster.verif import rtl_lint
 from raycaster.verif.simulator import convert
 
 PAGES = sorted((ROOT / "docs").glob("*.md"))
@@ -106,6 +109,35 @@ def test_commands_are_run(tmp_path: Path, monkeypatch, capsys):
     assert commands.main(["--output", str(logs), "--only", "echo"]) == 0
     with pytest.raises(UserError, match="only: no command of the documentation has 'sing' in it"):
         commands.main(["--output", str(logs), "--only", "sing"])
+
+
+def test_every_module_is_in_the_readme():
+    """Its list of modules has each file of the hardware with a block of its name, and nothing else."""
+    listed = re.search(r"^```\n(ray_caster_module .*?)^```", (ROOT / "README.md").read_text(), re.M | re.S)[1]
+    named = {word for word in re.findall(r"\w+", listed) if "_" in word}
+    there = {path.stem for path in (ROOT / "rtl").rglob("*.py") if f"@block\ndef {path.stem}(" in path.read_text()}
+    assert named == {name for name in there if "_" in name}
+    assert all(re.search(rf"\b{name}\b", listed) for name in there)
+
+
+def test_the_module_that_the_page_adds(tmp_path: Path, monkeypatch):
+    """`docs/extend.md` has a module and its leaf test: they do what it says, by the project's own rules."""
+    page = (ROOT / "docs/extend.md").read_text()
+    module, _, leaf = re.findall(r"^```python\n(.*?)^```", page, re.M | re.S)
+    texts = {"rtl/engine/colour_dimmer.py": module, "verif/tests/test_leaves_dimmer.py": leaf}
+    for place, text in texts.items():
+        for rule in (["check"], ["format", "--check"]):
+            command = [sys.executable, "-m", "ruff", *rule, "--stdin-filename", ROOT / place, "-"]
+            done = subprocess.run(command, input=text, cwd=ROOT, capture_output=True, text=True, check=False)
+            assert done.returncode == 0, done.stdout
+        path = tmp_path / Path(place).name
+        path.write_text(text)
+        name = path.stem if "tests" in place else f"raycaster.{place.removesuffix('.py').replace('/', '.')}"
+        spec = importlib.util.spec_from_file_location(name, path)
+        monkeypatch.setitem(sys.modules, name, importlib.util.module_from_spec(spec))
+        spec.loader.exec_module(sys.modules[name])
+    assert rtl_lint.check(tmp_path / "colour_dimmer.py") == []
+    sys.modules["test_leaves_dimmer"].test_colour_dimmer(tmp_path)
 
 
 def draw_anew(verilog: list[Path] | None = None) -> dict[str, list[tuple[str, str]]]:
@@ -204,7 +236,7 @@ def top():
     """A small design."""
     config = configure(screen="tiny", units=2, rectangles=1, reflections=0, divider_bits=3, culling=False)
     with elaboration():
-        return ray_caster_module(**ModulePorts(config).all(), config=config)
+        return ray_caster_module(**module_ports(config), config=config)
 
 
 @pytest.fixture(scope="module")

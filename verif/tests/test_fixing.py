@@ -27,13 +27,14 @@ from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
 from raycaster.fpga import fit as search
 from raycaster.fpga.area import FAMILIES, measure
 from raycaster.golden import engines
-from raycaster.golden.world import Rectangles
+from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.registers import address_bits, register_map
-from raycaster.rtl.beam.facet_rom import facet_rom
-from raycaster.rtl.common.legacy import PipelinedRects, SequentialRects
-from raycaster.rtl.common.widths import AXIS_BITS, DISTANCE_BITS, RGB_BITS, bit, index_bits, signed, unsigned
-from raycaster.rtl.scene.rect_rom import FIELDS, fixed_rects, rect_rom
+from raycaster.rtl.beam.beam_caster import known_facet, known_growth
+from raycaster.rtl.common.interfaces import Rects
+from raycaster.rtl.common.widths import bit, index_bits
+from raycaster.rtl.scene.rect_rom import rect_rom
 from raycaster.scene import Rectangle, Scene, load_scene
+from raycaster.tools import run_yosys
 from raycaster.verif.leaf import Leaf
 from raycaster.verif.seeds import repeat, seed
 from raycaster.verif.simulator import SimulationError
@@ -212,66 +213,70 @@ def fixed_config(count: int, engine: str, camera: bool, alike: bool = False) -> 
     return configure(engine=engine, fixed=fixed, allow_underrun=True)
 
 
-@pytest.mark.parametrize("pipelined", [False, True])
-@pytest.mark.parametrize(("count", "alike"), [(2, False), (7, False), (8, False), (12, True), (32, False)])
-def test_rect_rom(count, alike, pipelined, tmp_path):
-    config = fixed_config(count, "beam" if pipelined else "seed", False, alike)
-    rects = (PipelinedRects if pipelined else SequentialRects)(config)
-    word, table = fixed_rects(rects, config)
-    assert int(rects.usable.val) == (1 << count) - 1
-    leaf = Leaf(
-        rect_rom,
-        lambda: {
-            "clk": bit(), "index": unsigned(index_bits(config)), "fetch": bit(), "word": unsigned(len(word)),
-            "table": table, "pipelined": pipelined, "config": config,
-        },
-        tmp_path,
-    )  # fmt: skip
+@pytest.mark.parametrize(("engine", "latency"), [("seed", 1), ("beam", 2)])
+@pytest.mark.parametrize(("count", "alike"), [(1, False), (2, False), (7, False), (8, False), (12, True), (32, False)])
+def test_rect_rom(count, alike, engine, latency, tmp_path):
+    config = fixed_config(count, engine, False, alike)
+    leaf = Leaf(rect_rom, lambda: {"clk": bit(), "rects": Rects(config), "config": config}, tmp_path)
     random = np.random.default_rng(seed())
-    stimulus = [{"index": int(random.integers(count)), "fetch": int(random.integers(2))} for _ in range(300)]
+    stimulus = [
+        {"rects_index": int(random.integers(count)), "rects_fetch": int(random.integers(2))} for _ in range(300)
+    ]
     outputs = leaf.run_both(stimulus, settled=8)
+    fields = [field.name for field in dataclasses.fields(FixedRectangle)]
     held, late = None, None
     for cycle, (inputs, output) in enumerate(zip(stimulus, outputs, strict=True)):
-        shown = late if pipelined else held
+        shown = held if latency == 1 else late
         if cycle >= 8 and shown is not None:
-            low = 0
-            for name in FIELDS:
-                value, column = getattr(rects.rect, name), config.fixed.column(name)
-                # A part of the word, or what never changes.
-                varies = len(set(column)) > 1
-                found = output["word"] >> low if varies else int(value.val)
-                low += varies * len(value)
-                assert found % (1 << len(value)) == column[shown], (cycle, name, repeat())
+            for name in fields:
+                assert output[f"rects_rect_{name}"] == config.fixed.column(name)[shown], (cycle, name, repeat())
         late = held
-        if inputs["fetch"]:
-            held = inputs["index"]
+        if inputs["rects_fetch"]:
+            held = inputs["rects_index"]
     assert held is not None
-    assert low == len(word)
-    assert len(word) < 71 or not alike
+
+
+@pytest.mark.parametrize("engine", ["seed", "beam"])
+def test_rect_rom_has_no_registers_for_what_is_alike(engine, tmp_path):
+    """With all rectangles on one axis its two bits are no registers; a single rectangle needs none at all."""
+    for count, alike in ((12, True), (1, False)):
+        config = fixed_config(count, engine, False, alike)
+        directory = tmp_path / str(count)
+        directory.mkdir()
+        Leaf(rect_rom, lambda config=config: {"clk": bit(), "rects": Rects(config), "config": config}, directory)
+        run_yosys(directory, "alike", ["read_verilog rect_rom.v", "synth -top rect_rom", "tee -o stat.txt stat"])
+        kinds = re.findall(r"^ +(\d+) .*_DFF\w*_|\$_DFF\w*_ +(\d+)", (directory / "stat.txt").read_text(), re.M)
+        registers = sum(int(number) for pair in kinds for number in pair if number)
+        columns = [config.fixed.column(field.name) for field in dataclasses.fields(FixedRectangle)]
+        most = sum(varying_bits(column).bit_count() for column in columns)
+        held = index_bits(config) if engine == "beam" and count > 1 else 0
+        assert registers <= most + held, repeat()
+        assert (registers > 0) == (count > 1)
 
 
 @pytest.mark.parametrize("camera", [False, True])
-@pytest.mark.parametrize("count", [1, 5, 16])
-def test_facet_rom(count, camera, tmp_path):
-    config = fixed_config(count, "beam", camera)
-    leaf = Leaf(
-        facet_rom,
-        lambda: {
-            "clk": bit(), "index": unsigned(index_bits(config)), "axis": unsigned(AXIS_BITS),
-            "distance": signed(DISTANCE_BITS) if camera else None, "colour": unsigned(RGB_BITS), "config": config,
-        },
-        tmp_path,
-    )  # fmt: skip
+def test_what_a_row_knows_of_fixed_rectangles(camera):
+    """In any row, from any camera or the fixed one, it is what the distances and their products are."""
+    config = fixed_config(32, "beam", camera)
     random = np.random.default_rng(seed())
-    stimulus = [{"index": int(random.integers(count))} for _ in range(200)]
-    outputs = leaf.run_both(stimulus, settled=1)
-    for inputs, output in zip(stimulus, outputs[1:], strict=False):
-        rectangle = config.fixed.rectangles[inputs["index"]]
-        expected = {"axis": rectangle.axis, "colour": rectangle.colour}
-        if camera:
-            way = rectangle.position - config.fixed.camera[rectangle.axis]
-            expected["distance"] = way % (1 << DISTANCE_BITS)
-        assert output == expected, repeat()
+    for number, rectangle in enumerate(config.fixed.rectangles):
+        facet, growth = known_facet(number, config), known_growth(number, config)
+        assert set(facet) == {"usable", "axis", "colour"} | ({"distance"} if camera else set())
+        assert camera == (len(growth) == 5)
+        for _ in range(8):
+            eye = config.fixed.camera or random.integers(512, size=3).tolist()
+            away = rectangle.position - eye[rectangle.axis]
+            u, v = OTHER_AXES[rectangle.axis]
+            bounds = {u: (rectangle.u_low, rectangle.u_high), v: (rectangle.v_low, rectangle.v_high)}
+            p, q = {0: (1, 2), 1: (0, 2), 2: (1, 0)}[rectangle.axis]
+            # A column adds 1 to the slope along y.
+            step = (0, 1, 0)
+            ends = {f"{end}_{name}": (bounds[axis][i] - eye[axis]) * step[rectangle.axis]
+                    for name, axis in (("p", p), ("q", q)) for i, end in enumerate(("low", "high"))}  # fmt: skip
+            seen = {"usable": 1, "axis": rectangle.axis, "colour": rectangle.colour, "distance": away}
+            assert facet == {name: seen[name] for name in facet}, repeat()
+            grown = {"way_p": away * step[p], **ends}
+            assert growth == {name: grown[name] for name in growth}, repeat()
 
 
 # Whole designs --------------------------------------------------------------------------------------------------------

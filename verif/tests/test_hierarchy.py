@@ -8,10 +8,12 @@ import os
 import re
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import ROOT
 from myhdl import ConcatSignal, Signal, always, always_comb, block, intbv
 from myhdl._simulator import _signals
 
@@ -163,6 +165,55 @@ def test_modules_ports_and_instances(tmp_path):
     assert "// A register.\nalways @(posedge clk) begin" in modules["step"].path.read_text()
 
 
+@block
+def few_words(clk, value, kept, both, either, stepped):
+    """Most of it explains itself."""
+
+    @always(clk.posedge)
+    def keep():
+        kept.next = value
+
+    @always_comb
+    def join():
+        both.next = kept & value
+
+    # The reason for this one is not plain.
+    @always_comb
+    def choose():
+        either.next = kept | value
+
+    stepping = step(clk, value, kept, stepped, unconnected(1))
+
+    return keep, join, choose, stepping
+
+
+def test_a_process_needs_no_comment(tmp_path):
+    modules = converted(few_words(bit(), *(unsigned(4) for _ in range(5))), tmp_path)
+    _, _, body = modules["few_words"].path.read_text().partition(");\n\n")
+    assert (
+        body
+        == """always @(posedge clk) begin
+    kept <= value;
+end
+
+assign both = kept & value;
+
+// The reason for this one is not plain.
+assign either = kept | value;
+
+step step_i (
+    .clk(clk),
+    .value(value),
+    .step_by(kept),
+    .stepped(stepped),
+    .wrapped()
+);
+
+endmodule
+"""
+    )
+
+
 def test_a_signed_port_is_signed(tmp_path):
     @block
     def double(value, doubled):
@@ -296,6 +347,198 @@ def test_the_class_of_an_interface_tells_modules_apart(tmp_path):
     assert leaf.run_both([{"pair_high": 3, "mirrored_low": 12}])[-1] == {"first": 3, "second": 12}
 
 
+@block
+def mix(clk, left, right, mixed):
+    """A block whose process could take one of its ports for the other."""
+
+    @always(clk.posedge)
+    def work():
+        mixed.next = left ^ right
+
+    return (work,)
+
+
+@block
+def mixes(clk, value, other, first, second):
+    """One signal at both ports, and then two."""
+    alike = mix(clk, value, value, first)
+    apart = mix(clk, value, other, second)
+
+    return alike, apart
+
+
+def test_one_signal_at_two_ports_is_no_module_for_two(tmp_path):
+    leaf = Leaf(
+        mixes,
+        lambda: {
+            "clk": bit(), "value": unsigned(4), "other": unsigned(4), "first": unsigned(4), "second": unsigned(4),
+        },
+        tmp_path,
+    )  # fmt: skip
+    assert leaf.run_both([{"value": 9, "other": 5}] * 3, settled=2)[-1] == {"first": 0, "second": 12}
+
+
+class Mode:
+    """A parameter that says less of itself than it is."""
+
+    def __init__(self, number: int):
+        self.number = number
+
+    def __repr__(self):
+        return "a mode"
+
+
+@block
+def offset(clk, value, moved, mode):
+    """value + mode, modulo 16."""
+    step_by = mode.number if isinstance(mode, Mode) else int(mode[len(mode) // 2])
+
+    @always(clk.posedge)
+    def work():
+        moved.next = (value + step_by) % 16
+
+    return (work,)
+
+
+@block
+def offsets(clk, value, first, second, modes):
+    """Two of them."""
+    one = offset(clk, value, first, modes[0])
+    two = offset(clk, value, second, modes[1])
+
+    return one, two
+
+
+def offsets_of(*modes):
+    return lambda: {
+        "clk": bit(), "value": unsigned(4), "first": unsigned(4), "second": unsigned(4), "modes": modes,
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("modes", "moved"),
+    [((Mode(1), Mode(2)), [8, 9]), ((np.eye(1, 3000, 1500)[0], 2 * np.eye(1, 3000, 1500)[0]), [8, 9])],
+    ids=["object", "array"],
+)
+def test_parameters_that_read_alike_are_two_modules(modes, moved, tmp_path):
+    leaf = Leaf(offsets, offsets_of(*modes), tmp_path)
+    assert [module.name for module in leaf.modules] == ["offset", "offset_1", "offsets"]
+    assert list(leaf.run_both([{"value": 7}] * 3, settled=2)[-1].values()) == moved
+
+
+def test_one_parameter_is_one_module(tmp_path):
+    mode = Mode(1)
+    assert len(Leaf(offsets, offsets_of(mode, mode), tmp_path).modules) == 2
+    assert len(Leaf(offsets, offsets_of((1, 2), (1, 2)), tmp_path).modules) == 2
+    assert len(Leaf(offsets, offsets_of((1, 2), (True, 2)), tmp_path).modules) == 3
+
+
+class Halves(Record):
+    """A byte in two parts, wherever it is cut."""
+
+    def __init__(self, high: int):
+        super().__init__({"high": high, "low": 8 - high})
+
+
+class Late(Interface):
+    """A nibble, and what is to be added to it."""
+
+    def __init__(self, amount: int):
+        self.value, self.amount = unsigned(4), amount
+
+
+@block
+def upper_part(halves, late, high, sum):
+    """Of a layout, and of an attribute that is no signal."""
+    amount = late.amount
+
+    @always_comb
+    def cut():
+        high.next = halves.high
+
+    @always_comb
+    def add():
+        sum.next = (late.value + amount) % 16
+
+    return cut, add
+
+
+@block
+def upper_parts(halves, others, late, later, high, higher, sum, more):
+    """Of one shape as ports, and of other layouts and attributes."""
+    one = upper_part(halves, late, high, sum)
+    two = upper_part(others, later, higher, more)
+
+    return one, two
+
+
+@pytest.mark.parametrize(("cuts", "amounts"), [((3, 5), (1, 1)), ((4, 4), (1, 2))])
+def test_a_layout_and_an_interfaces_attributes_tell_modules_apart(cuts, amounts, tmp_path):
+    leaf = Leaf(
+        upper_parts,
+        lambda: {
+            "halves": Halves(cuts[0]), "others": Halves(cuts[1]), "late": Late(amounts[0]), "later": Late(amounts[1]),
+            "high": unsigned(8), "higher": unsigned(8), "sum": unsigned(4), "more": unsigned(4),
+        },
+        tmp_path,
+    )  # fmt: skip
+    [outputs] = leaf.run_both(
+        [{"halves_high": 6, "halves_low": 1, "others_high": 9, "others_low": 1, "late_value": 3, "later_value": 3}]
+    )
+    assert outputs == {"high": 6, "higher": 9, "sum": 3 + amounts[0], "more": 3 + amounts[1]}
+
+
+@block
+def fields_apart(packed, first, second):
+    """Each of two instances has another field as its port."""
+    one = inverted(packed.high, first)
+    two = inverted(packed.low, second)
+
+    return one, two
+
+
+def test_fields_of_one_shape_are_no_two_modules(tmp_path):
+    leaf = Leaf(fields_apart, lambda: {"packed": Halves(4), "first": unsigned(4), "second": unsigned(4)}, tmp_path)
+    assert [module.name for module in leaf.modules] == ["inverted", "fields_apart"]
+    assert leaf.run_both([{"packed_high": 5, "packed_low": 12}])[-1] == {"first": 10, "second": 3}
+
+
+def test_the_top_keeps_its_name(tmp_path):
+    inner = another_step()
+
+    @block
+    def step(clk, value, by, result):
+        part = inner(clk, value, by, result, unconnected(1))
+        return (part,)
+
+    modules = converted(step(bit(), unsigned(4), unsigned(4), unsigned(4)), tmp_path)
+    assert list(modules) == ["step_1", "step"]
+    assert modules["step"].instances == {"step": "step_1"}
+    assert re.search(r"^step_1 step_i \($", modules["step"].path.read_text(), re.M)
+
+
+def test_two_instances_of_one_name_are_refused(tmp_path):
+    """The second instance of `step` would be `step_1`; that of a block of this name is, whichever comes first."""
+
+    @block
+    def step_1(clk, value, result):
+        @always(clk.posedge)
+        def work():
+            result.next = ~value
+
+        return (work,)
+
+    @block
+    def parent(clk, value, a, b, c, last):
+        stepping = [step(clk, value, value, out, unconnected(1)) for out in (a, b)]
+        other = step_1(clk, value, c)
+        return (stepping, other) if last else (other, stepping)
+
+    for last in (False, True):
+        with pytest.raises(HierarchyError, match="parent: two instances would be called step_1; rename a block"):
+            converted(parent(bit(), *(unsigned(4) for _ in range(4)), last), tmp_path)
+
+
 class Packed(Record):
     """A record of one field of each kind."""
 
@@ -353,6 +596,149 @@ def test_a_record_is_one_word(tmp_path):
         kept = memory.get(inputs["index"])
         if inputs["packed_flag"]:
             memory[inputs["index"]] = inputs["packed_offset"]
+
+
+@block
+def signal_like_port(clk, pair, result):
+    pair_high = unsigned(4)
+
+    @always(clk.posedge)
+    def keep():
+        pair_high.next = pair.low
+
+    @always_comb
+    def join():
+        result.next = pair_high ^ pair.high
+
+    return keep, join
+
+
+@block
+def signal_like_passed_port(clk, pair, result):
+    pair_high, crossed = unsigned(4), Pair()
+    crossing = swap(pair, crossed)
+
+    @always(clk.posedge)
+    def keep():
+        pair_high.next = crossed.low
+
+    @always_comb
+    def join():
+        result.next = pair_high ^ crossed.high
+
+    return crossing, keep, join
+
+
+@block
+def signal_like_word(clk, packed, result):
+    packed_word = unsigned(9)
+
+    @always(clk.posedge)
+    def keep():
+        packed_word.next = packed.word
+
+    @always_comb
+    def cut():
+        result.next = packed_word[4:]
+
+    return keep, cut
+
+
+@block
+def signal_like_field(clk, packed, result):
+    packed_count = unsigned(3)
+
+    @always(clk.posedge)
+    def keep():
+        packed_count.next = packed.count
+
+    @always_comb
+    def pad():
+        result.next = packed_count
+
+    return keep, pad
+
+
+@block
+def port_like_field(packed, packed_count, result):
+    @always_comb
+    def join():
+        result.next = packed_count ^ packed.count
+
+    return (join,)
+
+
+@block
+def port_like_port(pair_high, pair, result):
+    @always_comb
+    def copy():
+        result.next = pair_high
+
+    return (copy,)
+
+
+@block
+def memory_like_field(clk, packed, result):
+    packed_count = [unsigned(4) for _ in range(8)]
+
+    @always(clk.posedge)
+    def keep():
+        packed_count[packed.count].next = packed.count
+        result.next = packed_count[packed.count]
+
+    return (keep,)
+
+
+@block
+def signal_like_instance(clk, pair, result):
+    crossed = Pair()
+    swap_i = unsigned(4)
+    crossing = swap(pair, crossed)
+
+    @always(clk.posedge)
+    def keep():
+        swap_i.next = crossed.low ^ crossed.high
+
+    @always_comb
+    def copy():
+        result.next = swap_i
+
+    return crossing, keep, copy
+
+
+@block
+def signal_between_instances(clk, pair, result):
+    inner, inner_high = Pair(), unsigned(4)
+    first = swap(pair, inner)
+
+    @always(clk.posedge)
+    def keep():
+        inner_high.next = inner.low
+
+    second = step(clk, inner.high, inner_high, result, unconnected(1))
+
+    return first, keep, second
+
+
+@pytest.mark.parametrize(
+    ("function", "name", "arguments"),
+    [
+        (signal_like_port, "pair_high", lambda: (bit(), Pair(), unsigned(4))),
+        (signal_like_passed_port, "pair_high", lambda: (bit(), Pair(), unsigned(4))),
+        (signal_like_word, "packed_word", lambda: (bit(), Packed(), unsigned(4))),
+        (signal_like_field, "packed_count", lambda: (bit(), Packed(), unsigned(4))),
+        (port_like_field, "packed_count", lambda: (Packed(), unsigned(4), unsigned(4))),
+        (port_like_port, "pair_high", lambda: (unsigned(4), Pair(), unsigned(4))),
+        (memory_like_field, "packed_count", lambda: (bit(), Packed(), unsigned(4))),
+        (signal_like_instance, "swap_i", lambda: (bit(), Pair(), unsigned(4))),
+        (signal_between_instances, "inner_high", lambda: (bit(), Pair(), unsigned(4))),
+    ],
+    ids=lambda value: value.func.__name__ if hasattr(value, "func") else None,
+)
+def test_two_things_of_one_verilog_name_are_refused(function, name, arguments, tmp_path):
+    complaint = f"{function.func.__name__}: two things would be called {name} in Verilog; rename one"
+    with pytest.raises(HierarchyError, match=complaint):
+        converted(function(*arguments()), tmp_path)
 
 
 @block
@@ -489,6 +875,64 @@ endmodule
     assert done.stdout.split() == ["8", "11", "16"]
 
 
+@block
+def adders(clk, value, first, second, one_adder, other_adder, steps):
+    one = one_adder(clk, value, first, STEP=steps[0], WIDTH=4)
+    two = other_adder(clk, value, second, STEP=steps[1], WIDTH=4)
+
+    return one, two
+
+
+def adders_of(one_adder, other_adder, steps=(3, 4)):
+    return adders(bit(), unsigned(4), unsigned(4), unsigned(4), one_adder, other_adder, steps)
+
+
+def test_given_verilog_takes_two_sets_of_parameters(tmp_path):
+    source = tmp_path / "given.v"
+    source.write_text(ADDER)
+    adder = adder_of(source)
+    modules = converted(adders_of(adder, adder), tmp_path / "verilog")
+    assert list(modules) == ["adder", "adders"]
+    text = modules["adders"].path.read_text()
+    for number, step_by in enumerate((3, 4)):
+        assert f"adder #(\n    .STEP({step_by}),\n    .WIDTH(4)\n) adder_{number}_i (" in text
+
+
+def test_given_verilog_keeps_its_name(tmp_path):
+    source = tmp_path / "given.v"
+    source.write_text(ADDER)
+
+    @block
+    def adder(clk, value, sum, STEP, WIDTH):
+        @always(clk.posedge)
+        def work():
+            sum.next = value
+
+        return (work,)
+
+    given = adder_of(source)
+    modules = converted(adders_of(given, adder), tmp_path / "verilog")
+    assert modules["adders"].instances == {"adder_0": "adder", "adder_1": "adder_1"}
+    assert modules["adder"].path.read_text() == ADDER
+    for others in ((adder, given), (given, adder_of(source))):
+        with pytest.raises(HierarchyError, match="adder is given Verilog, whose name stays, and another block's name"):
+            converted(adders_of(*others), tmp_path / "verilog")
+
+
+def test_a_top_does_not_take_the_name_of_given_verilog(tmp_path):
+    source = tmp_path / "given.v"
+    source.write_text(ADDER)
+    given = adder_of(source)
+
+    @block
+    def adder(clk, value, sum):
+        inner = given(clk, value, sum, STEP=1, WIDTH=4)
+        return (inner,)
+
+    with pytest.raises(HierarchyError, match="adder is given Verilog, whose name stays"):
+        converted(adder(bit(), unsigned(4), unsigned(4)), tmp_path / "verilog")
+
+
 def test_an_output_of_given_verilog_must_be_an_argument(tmp_path):
     adder = adder_of(tmp_path / "given.v", ("sum", "carry"))
     with pytest.raises(HierarchyError, match=r"adder: carry is said to be an output, and is no argument"):
@@ -533,6 +977,40 @@ def sliced_elsewhere(clk, pair, swapped, narrow):
 
 
 @block
+def inverted(word, result):
+    """~word."""
+
+    @always_comb
+    def invert():
+        result.next = ~word
+
+    return (invert,)
+
+
+@block
+def side_by_side_elsewhere(pair, first, second):
+    """Two instances read two signals side by side as one port, and one of them looks at it from two levels down."""
+    both = ConcatSignal(pair.high, pair.low)
+    one = inverted(both, first)
+    two = passed_on(both, second)
+
+    return one, two
+
+
+@block
+def passed_on(word, result):
+    inner = inverted(word, result)
+
+    return (inner,)
+
+
+def test_signals_side_by_side_may_be_a_port(tmp_path):
+    leaf = Leaf(side_by_side_elsewhere, lambda: {"pair": Pair(), "first": unsigned(8), "second": unsigned(8)}, tmp_path)
+    assert [module.name for module in leaf.modules] == ["inverted", "passed_on", "side_by_side_elsewhere"]
+    assert leaf.run_both([{"pair_high": 5, "pair_low": 12}])[-1] == {"first": 0xA3, "second": 0xA3}
+
+
+@block
 def swap_low(pair, swapped):
     """Half of swap."""
 
@@ -560,6 +1038,39 @@ def test_elaboration_leaves_nothing_behind():
         assert _signals[-1] is signal
     assert inspect.stack is before
     assert len(_signals) == known
+
+
+def test_two_threads_convert_as_one_after_the_other(tmp_path):
+    """Each elaborates and converts several designs at once with the other, which MyHDL by itself cannot."""
+
+    def convert_all(directory: Path) -> dict[str, str]:
+        directory.mkdir(parents=True)
+        found = {}
+        for number in range(4):
+            with elaboration():
+                top = everything(**everything_arguments())
+            for name, module in converted(top, directory / str(number)).items():
+                found[f"{number}/{name}"] = module.path.read_text()
+        return found
+
+    before = inspect.stack
+    alone = convert_all(tmp_path / "alone")
+    with ThreadPoolExecutor(2) as threads:
+        together = list(threads.map(convert_all, (tmp_path / "first", tmp_path / "second")))
+    assert together == [alone, alone]
+    assert inspect.stack is before
+
+
+def test_myhdls_internals_are_imported_where_it_says():
+    """`raycaster.convert.hierarchy` names the files outside its own folder."""
+    found = set()
+    for folder in ("convert", "docs", "fit", "fpga", "golden", "raycaster", "report", "rtl", "sw", "verif"):
+        for path in (ROOT / folder).rglob("*.py"):
+            if re.search(r"^\s*(?:from|import) myhdl\.(?:_|conversion)", path.read_text(), re.M):
+                found.add(path.relative_to(ROOT).with_suffix("").as_posix())
+    outside = {"rtl/common/records", "rtl/common/ties", "docs/blocks", "verif/tests/test_hierarchy"}
+    inside = {"elaboration", "hierarchy", "inside", "verilog_style", "write"}
+    assert found == outside | {f"convert/{name}" for name in inside}
 
 
 def test_myhdl_is_the_version_that_this_was_written_for():

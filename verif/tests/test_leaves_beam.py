@@ -16,16 +16,17 @@ from raycaster.rtl.beam import fold_tester as tester
 from raycaster.rtl.beam import nearest_of_two as contest
 from raycaster.rtl.beam import ray_fold as folder
 from raycaster.rtl.beam.beam_caster import beam_caster, beam_latency
-from raycaster.rtl.beam.facet_register import facet_register
 from raycaster.rtl.beam.fold_tester import fold_tester
+from raycaster.rtl.beam.nearest_of import nearest_of
 from raycaster.rtl.beam.nearest_of_two import nearest_of_two
 from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.beam.rect_walker import rect_walker
+from raycaster.rtl.beam.row_register import row_register
 from raycaster.rtl.beam.slope_magnitudes import slope_magnitudes
 from raycaster.rtl.beam.slope_walker import slope_walker
-from raycaster.rtl.beam.unopposed import unopposed
 from raycaster.rtl.beam.winner_delay import winner_delay
-from raycaster.rtl.common.legacy import Candidate, Facet, Fold, PipelinedRects, Point, Reflector, Slope, Walk
+from raycaster.rtl.common.interfaces import Picture, Rects, Slope
+from raycaster.rtl.common.records import Facet, Pixel, Point, Reflector, Walk, candidate_of, fold_of
 from raycaster.rtl.common.widths import (
     DISTANCE_BITS,
     RGB_BITS,
@@ -33,6 +34,7 @@ from raycaster.rtl.common.widths import (
     bit,
     exact_slope_bits,
     fold_bits,
+    index_bits,
     signed,
     steepest_slope,
     unsigned,
@@ -48,9 +50,9 @@ from raycaster.verif.seeds import repeat, seed
 
 AXES = "xyz"
 LAST = WORLD_SIZE - 1
-U, V = (1, 0, 1), (2, 2, 0)
-"""By the axis of a plane: u is y unless the plane is on y, v is z unless it is on z."""
-WALK = ("way_u", "low_u", "high_u", "low_v", "high_v")
+P, Q = (1, 0, 1), (2, 2, 0)
+"""By the axis of a plane: p is y unless the plane is on y, q is z unless it is on z."""
+WALK = ("way_p", "low_p", "high_p", "low_q", "high_q")
 
 
 def config_id(value) -> str | None:
@@ -151,19 +153,19 @@ def test_every_row_is_set_up_in_its_blanking(place, rectangles, reflections):
 
 
 def products(table: Rectangles, index: int, camera, slope) -> dict[str, int]:
-    """What cross-multiplication compares, and the distance and way_v."""
+    """What cross-multiplication compares, and the distance and way_q."""
     axis = int(table.axes[index])
     low, high = (bound[index].astype(object) - camera for bound in (table.low, table.high))
     n, e = int(low[axis]), int(slope[axis])
-    u, v = U[axis], V[axis]
+    p, q = P[axis], Q[axis]
     return {
         "distance": n,
-        "way_u": n * int(slope[u]),
-        "way_v": n * int(slope[v]),
-        "low_u": int(low[u]) * e,
-        "high_u": int(high[u]) * e,
-        "low_v": int(low[v]) * e,
-        "high_v": int(high[v]) * e,
+        "way_p": n * int(slope[p]),
+        "way_q": n * int(slope[q]),
+        "low_p": int(low[p]) * e,
+        "high_p": int(high[p]) * e,
+        "low_q": int(low[q]) * e,
+        "high_q": int(high[q]) * e,
     }
 
 
@@ -185,12 +187,12 @@ def test_rect_setup(config, tmp_path):
             "clk": bit(),
             "reset": reset_signal(),
             "start_line": bit(),
-            "rects": PipelinedRects(config),
+            "rects": Rects(config),
             "camera": Point(),
             "column_slope": signed(exact_slope_bits(config) + 1),
             "row_slope": signed(exact_slope_bits(config) + 1),
             "load": unsigned(count),
-            "facet": Facet(config),
+            "facet": Facet(walk_bits(config)),
             "growth": Walk(DISTANCE_BITS),
             "start": Walk(walk_bits(config)),
             "config": config,
@@ -233,7 +235,7 @@ def test_rect_setup(config, tmp_path):
         assert output["facet_usable"] == table.enabled[index], case
         assert output["facet_axis"] == table.axes[index], case
         assert number(output["facet_distance"], DISTANCE_BITS) == now["distance"], case
-        assert number(output["facet_way_v"], width) == now["way_v"] == then["way_v"], case
+        assert number(output["facet_way_q"], width) == now["way_q"] == then["way_q"], case
         assert output["facet_colour"] == int.from_bytes(bytes(table.colours[index])), case
         for name in WALK:
             assert number(output[f"start_{name}"], width) == now[name], (name, case)
@@ -243,32 +245,29 @@ def test_rect_setup(config, tmp_path):
 # The walkers ----------------------------------------------------------------------------------------------------------
 
 
-def test_facet_register(tmp_path):
-    config = beam_config()
+@pytest.mark.parametrize("live", [0xFFF, 0x5C3, 0])
+def test_row_register(live, tmp_path):
+    """It keeps what is not known."""
+    known = 0x936 & ~live
     leaf = Leaf(
-        facet_register,
+        row_register,
         lambda: {
-            "clk": bit(),
-            "load": bit(),
-            "new_facet": Facet(config),
-            "new_growth": Walk(DISTANCE_BITS),
-            "facet": Facet(config),
-            "growth": Walk(DISTANCE_BITS),
+            "clk": bit(), "load": bit(), "given": unsigned(12), "live": unsigned(12), "known": unsigned(12),
+            "word": unsigned(12),
         },
         tmp_path,
-    )
+    )  # fmt: skip
     random = np.random.default_rng(seed())
     stimulus = [
-        {name: int(random.integers(1 << port.width)) for name, port in leaf.inputs.items()} | {"load": int(load)}
+        {"load": int(load), "given": int(random.integers(1 << 12)), "live": live, "known": known}
         for load in [1, *(random.random(200) < 0.3)]
     ]
-    outputs = leaf.run_both(stimulus, settled=1)
     kept = None
-    for inputs, output in zip(stimulus, outputs, strict=True):
+    for inputs, output in zip(stimulus, leaf.run_both(stimulus, settled=1), strict=True):
         if kept is not None:
-            assert output == {name: kept[f"new_{name}"] for name in output}, repeat()
+            assert output["word"] == kept & live | known, repeat()
         if inputs["load"]:
-            kept = inputs
+            kept = inputs["given"]
 
 
 @by_screen
@@ -305,7 +304,7 @@ def test_rect_walker(config, tmp_path):
         while min(way, bounds) < steps:
             slope = slopes[row, first] + np.array([0, 1, 0]) * [[way], [bounds]]
             seen = products(table, 0, camera, slope[0]), products(table, 0, camera, slope[1])
-            expected[len(stimulus)] = [word(seen[name != "way_u"][name], width) for name in WALK]
+            expected[len(stimulus)] = [word(seen[name != "way_p"][name], width) for name in WALK]
             step_way, step_bounds = (int(done < steps and random.random() < 0.9) for done in (way, bounds))
             stimulus.append({"load": 0, "step_way": step_way, "step_bounds": step_bounds})
             way, bounds = way + step_way, bounds + step_bounds
@@ -431,7 +430,7 @@ def folded(config: Configuration, camera, slope, mirrors) -> dict[str, int]:
     back = [sum(axis == mirror for mirror, _ in mirrors) % 2 for axis in range(3)]
     fields = {f"back_{name}": back[axis] for axis, name in enumerate(AXES)}
     fields |= {f"turn_{name}": word(turn[axis], TURN_BITS) for axis, name in enumerate(AXES)}
-    for letter, others in (("u", U), ("v", V)):
+    for letter, others in (("p", P), ("q", Q)):
         for axis, other in enumerate(others):
             flip = back[axis] != back[other]
             sign = -1 if flip else 1
@@ -457,13 +456,14 @@ def test_fold_tester(config, tmp_path):
         fold_tester,
         lambda: {
             "clk": bit(),
-            "facet": Facet(config),
+            "facet": Facet(walk_bits(config)),
             "walk": Walk(walk_bits(config)),
             "column_slope": signed(slope_bits + 1),
             "row_slope": signed(slope_bits + 1),
             "slope": Slope(slope_bits),
-            "fold": Fold(config),
-            "hit": Candidate(config),
+            "fold": fold_of(config),
+            "index": unsigned(index_bits(config)),
+            "hit": candidate_of(config),
             "view_distance": config.screen_geometry.view_distance,
         },
         tmp_path,
@@ -475,30 +475,31 @@ def test_fold_tester(config, tmp_path):
         eye, turned = seen_from(camera, slope, mirrors)
         for index in chosen:
             now = products(table, index, camera, slope)
-            bounds = {f"walk_{name}": word(now[name], walk_bits(config)) for name in WALK if name != "way_u"}
+            bounds = {f"walk_{name}": word(now[name], walk_bits(config)) for name in WALK if name != "way_p"}
             facet = {
                 "facet_usable": int(random.random() < 0.9),
                 "facet_axis": int(table.axes[index]),
                 "facet_distance": word(now["distance"], DISTANCE_BITS),
-                "facet_way_v": word(now["way_v"], walk_bits(config)),
+                "facet_way_q": word(now["way_q"], walk_bits(config)),
             }
-            ray = {"walk_way_u": word(now["way_u"], walk_bits(config)), **slope_ports(config, slope)}
+            ray = {"walk_way_p": word(now["way_p"], walk_bits(config)), **slope_ports(config, slope)}
             start = len(stimulus)
             stimulus += [
                 {**facet, **fold, **ray, "fold_active": int(bool(mirrors))},
                 bounds,
-                {f"slope_d{AXES[c]}": abs(int(slope[c])) for c in (1, 2)},
+                {"index": index} | {f"slope_d{AXES[c]}": abs(int(slope[c])) for c in (1, 2)},
             ]
             hit, n, e = verdict(table, index, eye, turned, mirrors[-1] if mirrors else None)
             seen.add((len(mirrors), hit))
-            expected[start + tester.LATENCY] = hit and bool(facet["facet_usable"]), n, e, (
+            expected[start + tester.LATENCY] = hit and bool(facet["facet_usable"]), n, e, index, (
                 table.corners[index].tolist(), camera, slope, mirrors, repeat()
             )  # fmt: skip
     outputs = leaf.run_both([*stimulus, {}], settled=tester.LATENCY)
     assert len(seen) == 2 * (config.reflections + 1)
-    for cycle, (hit, n, e, case) in expected.items():
+    for cycle, (hit, n, e, index, case) in expected.items():
         output = outputs[cycle]
         assert output["hit_valid"] == hit, case
+        assert output["hit_index"] == index, case
         assert not hit or (output["hit_numerator"], output["hit_denominator"]) == (n, e), case
 
 
@@ -518,7 +519,7 @@ def test_ray_fold(config, tmp_path):
             "last": Reflector(),
             "column_slope": signed(slope_bits),
             "row_slope": signed(slope_bits),
-            "fold": Fold(config),
+            "fold": fold_of(config),
             "view_distance": config.screen_geometry.view_distance,
         },
         tmp_path,
@@ -533,15 +534,12 @@ def test_ray_fold(config, tmp_path):
         for name, (axis, plane) in met.items():
             distance = word(plane - int(camera[axis]), DISTANCE_BITS)
             stimulus[cycle] |= {f"{name}_axis": axis, f"{name}_distance": distance}
-        stimulus[cycle]["earlier_active"] = int(len(mirrors) == 2)
+        stimulus[cycle] |= {"earlier_active": int(len(mirrors) == 2), "last_active": 1}
         stimulus[cycle + 1] |= slope_ports(config, slope)
-    outputs = leaf.run_both(
-        [{name: value for name, value in cycle.items() if name in leaf.inputs} for cycle in stimulus],
-        settled=folder.LATENCY,
-    )
+    outputs = leaf.run_both(stimulus, settled=folder.LATENCY)
     for cycle, (camera, slope, mirrors) in enumerate(rays):
         expected = {f"fold_{name}": value for name, value in folded(config, camera, slope, mirrors).items()}
-        assert outputs[cycle + folder.LATENCY] == expected, (camera, slope, mirrors, repeat())
+        assert outputs[cycle + folder.LATENCY] == expected | {"fold_active": 1}, (camera, slope, mirrors, repeat())
 
 
 # The nearest ----------------------------------------------------------------------------------------------------------
@@ -549,7 +547,7 @@ def test_ray_fold(config, tmp_path):
 
 def any_candidate(random: np.random.Generator, config: Configuration) -> tuple[int, int, int, int]:
     """valid, numerator, denominator, index; equal fractions in other terms are common."""
-    most = [(1 << len(signal)) - 1 for signal in (Candidate(config).numerator, Candidate(config).denominator)]
+    most = [(1 << len(signal)) - 1 for signal in (candidate_of(config).numerator, candidate_of(config).denominator)]
     if random.random() < 0.4:
         n, e, times = int(random.integers(1, 4)), int(random.integers(1, 4)), int(random.integers(1, 60))
         n, e = n * times, e * times
@@ -567,7 +565,7 @@ def candidate_ports(name: str, candidate) -> dict[str, int]:
 def test_nearest_of_two(config, tmp_path):
     leaf = Leaf(
         nearest_of_two,
-        lambda: {"clk": bit(), **{name: Candidate(config) for name in ("first", "second", "nearest")}},
+        lambda: {"clk": bit(), **{name: candidate_of(config) for name in ("first", "second", "nearest")}},
         tmp_path,
     )
     random = np.random.default_rng(seed())
@@ -585,32 +583,49 @@ def test_nearest_of_two(config, tmp_path):
     assert ties > 20
 
 
-def test_unopposed(tmp_path):
-    """It comes out as it is, with those that met another."""
-    config = beam_config()
-    leaf = Leaf(unopposed, lambda: {"clk": bit(), "first": Candidate(config), "nearest": Candidate(config)}, tmp_path)
+@pytest.mark.parametrize("count", [1, 2, 3, 5, 8, 12])
+def test_nearest_of(count, tmp_path):
+    """The first of the nearest, whatever the number; a single one takes a round too."""
+    config = beam_config(rectangles=count)
+    rounds = max(1, (count - 1).bit_length())
+    record = candidate_of(config)
+    leaf = Leaf(
+        nearest_of,
+        lambda: {
+            "clk": bit(), "candidates": unsigned(count * len(record.word)), "nearest": candidate_of(config),
+            "rounds": rounds,
+        },
+        tmp_path,
+    )  # fmt: skip
     random = np.random.default_rng(seed())
-    candidates = [any_candidate(random, config) for _ in range(200)]
-    stimulus = [candidate_ports("first", candidate) for candidate in candidates]
-    outputs = leaf.run_both([*stimulus, *[{}] * contest.LATENCY], settled=contest.LATENCY)
-    assert outputs[contest.LATENCY :] == [candidate_ports("nearest", candidate) for candidate in candidates]
+    names = ("valid", "numerator", "denominator", "index")
+    fields = [[(*any_candidate(random, config)[:3], index) for index in range(count)] for _ in range(400)]
+    stimulus = [
+        {"candidates": sum(record.pack(dict(zip(names, one, strict=True))) << i * len(record.word)
+                           for i, one in enumerate(field))}
+        for field in fields
+    ]  # fmt: skip
+    latency = rounds * contest.LATENCY
+    outputs = leaf.run_both([*stimulus, *[{}] * latency], settled=latency)
+    for field, output in zip(fields, outputs[latency:], strict=True):
+        valid = [one for one in field if one[0]]
+        assert output["nearest_valid"] == bool(valid), repeat()
+        if valid:
+            assert output == candidate_ports("nearest", min(valid, key=lambda one: Fraction(one[1], one[2]))), repeat()
 
 
 @pytest.mark.parametrize("cycles", [2, 3, 13])
 def test_winner_delay(cycles, tmp_path):
     leaf = Leaf(
         winner_delay,
-        lambda: {
-            "clk": bit(), "valid": bit(), "index": unsigned(4), "late_valid": bit(), "late_index": unsigned(4),
-            "cycles": cycles,
-        },
+        lambda: {"clk": bit(), "word": unsigned(5), "late_word": unsigned(5), "cycles": cycles},
         tmp_path,
-    )  # fmt: skip
+    )
     random = np.random.default_rng(seed())
-    stimulus = [{"valid": int(random.integers(2)), "index": int(random.integers(16))} for _ in range(100)]
+    stimulus = [{"word": int(random.integers(32))} for _ in range(100)]
     outputs = leaf.run_both(stimulus, settled=cycles)
     for inputs, output in zip(stimulus, outputs[cycles:], strict=False):
-        assert output == {f"late_{name}": value for name, value in inputs.items()}
+        assert output == {"late_word": inputs["word"]}
 
 
 # The colour -----------------------------------------------------------------------------------------------------------
@@ -763,10 +778,9 @@ def test_beam_caster(config, lines, tmp_path):
             "next_column": bit(),
             "row_slope": signed(exact_slope_bits(config) + 1),
             "camera": Point(),
-            "background": unsigned(RGB_BITS),
-            "reflections": unsigned(2),
-            "rects": PipelinedRects(config),
-            **{channel: unsigned(config.colour_bits) for channel in ("red", "green", "blue")},
+            "picture": Picture(),
+            "rects": Rects(config),
+            "pixel": Pixel(config.colour_bits),
             "config": config,
         },
         tmp_path,
@@ -788,8 +802,8 @@ def test_beam_caster(config, lines, tmp_path):
         traced = exact.trace(table, camera, background, line, reflections)
         fates |= {tuple(int(winner[column] >= 0) for winner in traced.winners) for column in range(len(line))}
         held = {f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)}
-        held |= {"reset": 0, "start_line": 0, "next_column": 0, "reflections": reflections}
-        held["background"] = int.from_bytes(bytes(background.astype(np.uint8)))
+        held |= {"reset": 0, "start_line": 0, "next_column": 0, "picture_reflections": reflections}
+        held["picture_background"] = int.from_bytes(bytes(background.astype(np.uint8)))
         held["rects_usable"] = sum(1 << int(index) for index in np.flatnonzero(table.visible))
         stimulus += [{**held, "start_line": 1}, held, held]
         held["row_slope"] = word(slopes[row, 0, 2], exact_slope_bits(config) + 1)
@@ -810,4 +824,7 @@ def test_beam_caster(config, lines, tmp_path):
     shift = config.colour_bits
     for cycle, (pixel, case) in expected.items():
         output = outputs[cycle]
-        assert (output["red"] << shift | output["green"]) << shift | output["blue"] == pixel, (cycle, case)
+        assert (output["pixel_red"] << shift | output["pixel_green"]) << shift | output["pixel_blue"] == pixel, (
+            cycle,
+            case,
+        )

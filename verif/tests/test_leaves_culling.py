@@ -11,21 +11,20 @@ from raycaster.golden import exact, seed_engine
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.common.legacy import Facet, PipelinedRects, Point, SequentialRects, Walk, WideRect
+from raycaster.rtl.common.interfaces import Place, Rects
+from raycaster.rtl.common.records import Facet, Point, Walk, WideRect
 from raycaster.rtl.common.widths import (
     WIDE_BITS,
     bit,
     exact_slope_bits,
-    offset_bits,
-    row_bits,
     signed,
     unsigned,
+    walk_bits,
     wide_walk_bits,
 )
-from raycaster.rtl.cull.group_culler import LATENCY, MARGIN, group_culler
+from raycaster.rtl.cull.group_culler import LATENCY, group_culler
 from raycaster.rtl.cull.group_tester import group_tester
 from raycaster.rtl.cull.rect_copy import rect_copy
-from raycaster.rtl.engine.renderers import RECTS
 from raycaster.verif.leaf import Leaf, sorted_rect
 from raycaster.verif.seeds import repeat, seed
 
@@ -116,20 +115,20 @@ def test_the_beam_engine_does_not_cull():
 
 
 @pytest.mark.parametrize("margin", [0, 1])
-@pytest.mark.parametrize(("view", "latency"), [(SequentialRects, 1), (PipelinedRects, 2)])
 @pytest.mark.parametrize("count", [1, 12, 32])
-def test_rect_copy(count, view, latency, margin, tmp_path):
+def test_rect_copy(count, margin, tmp_path):
     """Fetches of both readers in any order; the second sees what came to the first last, and further out."""
     config = configure(engine="exact", rectangles=count, allow_underrun=True)
+    latency = config.facts.rect_latency
 
     def copy():
-        copied = PipelinedRects(config)
+        copied = Rects(config)
         copied.rect = WideRect()
         return copied
 
     leaf = Leaf(
         rect_copy,
-        lambda: {"clk": bit(), "rects": view(config), "copy": copy(), "margin": margin, "config": config},
+        lambda: {"clk": bit(), "rects": Rects(config), "copy": copy(), "margin": margin, "config": config},
         tmp_path,
     )
     random = np.random.default_rng(seed())
@@ -185,18 +184,18 @@ designs = pytest.mark.parametrize(
 
 
 def leaf_of_tester(config: Configuration, directory) -> Leaf:
-    slope_bits, walk_bits = exact_slope_bits(config) + 1, wide_walk_bits(config)
+    slope_bits = exact_slope_bits(config) + 1
     return Leaf(
         group_tester,
         lambda: {
             "clk": bit(),
             "load": unsigned(config.rectangles),
-            "facet": Facet(config),
+            "facet": Facet(walk_bits(config)),
             "growth": Walk(WIDE_BITS),
-            "start": Walk(walk_bits),
+            "start": Walk(wide_walk_bits(config)),
             "column_slope": signed(slope_bits),
             "row_slope": signed(slope_bits),
-            "possible": unsigned(config.rectangles),
+            "may_hit": unsigned(config.rectangles),
             "config": config,
         },
         directory,
@@ -210,7 +209,7 @@ def test_group_tester(config, tmp_path):
     leaf = leaf_of_tester(config, tmp_path)
     random = np.random.default_rng(seed())
     slopes = primary_slopes(config.screen_geometry)
-    margin, rows = MARGIN[config.engine], config.screen_geometry.rows
+    margin, rows = config.facts.margin, config.screen_geometry.rows
     stimulus, expected = [], {}
     for (camera, drawn), _ in zip(scenes(random, config), range(3000 // config.rectangles), strict=False):
         row = int(random.choice([0, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))
@@ -221,18 +220,18 @@ def test_group_tester(config, tmp_path):
         held = {"column_slope": slope[1] % (1 << slope_bits), "row_slope": slope[2] % (1 << slope_bits)}
         for index in range(len(table)):
             axis = int(table.axes[index])
-            u, v = (0, 2) if axis == 1 else (1, 2) if axis == 0 else (1, 0)
+            p, q = (0, 2) if axis == 1 else (1, 2) if axis == 0 else (1, 0)
             low, high = (bound[index].astype(object) - camera for bound in (table.low - margin, table.high + margin))
             n, e = int(table.low[index, axis] - camera[axis]), slope[axis]
-            start = {"way_u": n * slope[u], "low_u": low[u] * e, "high_u": high[u] * e}
-            start |= {"low_v": low[v] * e, "high_v": high[v] * e}
-            growth = dict.fromkeys(start, 0) | {"way_u": n}
+            start = {"way_p": n * slope[p], "low_p": low[p] * e, "high_p": high[p] * e}
+            start |= {"low_q": low[q] * e, "high_q": high[q] * e}
+            growth = dict.fromkeys(start, 0) | {"way_p": n}
             if axis == 1:
-                growth = {"way_u": 0, "low_u": low[u], "high_u": high[u], "low_v": low[v], "high_v": high[v]}
-            inputs = {"facet_axis": axis, "facet_distance": n, "facet_way_v": n * slope[v]}
+                growth = {"way_p": 0, "low_p": low[p], "high_p": high[p], "low_q": low[q], "high_q": high[q]}
+            inputs = {"facet_axis": axis, "facet_distance": n, "facet_way_q": n * slope[q]}
             inputs |= {f"start_{name}": value for name, value in start.items()}
             inputs |= {f"growth_{name}": value for name, value in growth.items()}
-            inputs = {name: int(value) % (1 << leaf.inputs[name].width) for name, value in inputs.items()}
+            inputs = {name: int(value) % (1 << leaf.given[name].width) for name, value in inputs.items()}
             stimulus.append({**held, **inputs, "load": 1 << index})
         stimulus += [{"load": 0}] * 2
         expected[len(stimulus) - 1] = mask, row, offset, camera, table
@@ -240,7 +239,7 @@ def test_group_tester(config, tmp_path):
     seen = set()
     for cycle, (mask, row, offset, camera, table) in expected.items():
         case = row, offset, camera.tolist(), table.corners.tolist(), repeat()
-        assert outputs[cycle]["possible"] == mask, case
+        assert outputs[cycle]["may_hit"] == mask, case
         assert hit_mask(config, table, camera, row, offset) & ~mask == 0, case
         seen |= {mask >> index & 1 for index in range(len(table))}
     assert seen == {0, 1}
@@ -272,37 +271,37 @@ def test_group_tester_at_its_limits(config, tmp_path):
         if random.random() < 0.9:
             # Ahead, so that the bounds decide.
             distance = (-1 if backs[0] else 1) * max(1, abs(distance))
-        start = {"way_u": int(random.integers(-far // 4, far // 4)), "way_v": int(random.integers(-far // 4, far // 4))}
-        growth = {"way_u": int(random.integers(-far // 8, far // 8)) // units % 512 - 256}
-        growth["way_u"] = growth["way_u"] if abs(growth["way_u"]) * units < far // 8 else 0
+        start = {"way_p": int(random.integers(-far // 4, far // 4)), "way_q": int(random.integers(-far // 4, far // 4))}
+        growth = {"way_p": int(random.integers(-far // 8, far // 8)) // units % 512 - 256}
+        growth["way_p"] = growth["way_p"] if abs(growth["way_p"]) * units < far // 8 else 0
         # Bounds are far away on their side, but one that decides: at one end or both it is near.
         low, high = ("high", "low") if backs[0] else ("low", "high")
-        for u in "uv":
-            start |= {f"{low}_{u}": -far // 2, f"{high}_{u}": far // 2}
-            growth |= {f"{low}_{u}": 0, f"{high}_{u}": 0}
-        side, u = str(random.choice(["low", "high"])), str(random.choice(["u", "v"]))
+        for p in "pq":
+            start |= {f"{low}_{p}": -far // 2, f"{high}_{p}": far // 2}
+            growth |= {f"{low}_{p}": 0, f"{high}_{p}": 0}
+        side, p = str(random.choice(["low", "high"])), str(random.choice(["p", "q"]))
         more = int(random.choice([0, 0, 1, -1, small() % 64 - 32]))
         apart = small() - int(random.integers(2)) * more * units
-        start[f"{side}_{u}"] = start[f"way_{u}"] + apart
-        growth[f"{side}_{u}"] = growth.get(f"way_{u}", 0) + more
+        start[f"{side}_{p}"] = start[f"way_{p}"] + apart
+        growth[f"{side}_{p}"] = growth.get(f"way_{p}", 0) + more
         end = {name: value + growth.get(name, 0) * units for name, value in start.items()}
         impossible = distance == 0 or all((distance < 0) != back for back in backs)
         if backs[0] == backs[1]:
-            for u in "uv":
-                impossible |= all(at[f"way_{u}"] < at[f"{low}_{u}"] for at in (start, end))
-                impossible |= all(at[f"way_{u}"] > at[f"{high}_{u}"] for at in (start, end))
-        inputs = {"facet_axis": axis, "facet_distance": distance, "facet_way_v": start.pop("way_v")}
+            for p in "pq":
+                impossible |= all(at[f"way_{p}"] < at[f"{low}_{p}"] for at in (start, end))
+                impossible |= all(at[f"way_{p}"] > at[f"{high}_{p}"] for at in (start, end))
+        inputs = {"facet_axis": axis, "facet_distance": distance, "facet_way_q": start.pop("way_q")}
         inputs |= {"column_slope": column_slope, "row_slope": row_slope}
         inputs |= {f"start_{name}": value for name, value in start.items()}
         inputs |= {f"growth_{name}": value for name, value in growth.items()}
-        inputs = {name: value % (1 << leaf.inputs[name].width) for name, value in inputs.items()}
+        inputs = {name: value % (1 << leaf.given[name].width) for name, value in inputs.items()}
         index = len(stimulus) % config.rectangles
         expected[len(stimulus) + 2] = index, not impossible
         stimulus.append({**inputs, "load": 1 << index})
     stimulus += [{"load": 0}] * 2
     outputs = leaf.run_both(stimulus, settled=config.rectangles + 2)
     for cycle, (index, may_hit) in expected.items():
-        assert outputs[cycle]["possible"] >> index & 1 == may_hit, (stimulus[cycle - 2], repeat())
+        assert outputs[cycle]["may_hit"] >> index & 1 == may_hit, (stimulus[cycle - 2], repeat())
 
 
 # group_culler ---------------------------------------------------------------------------------------------------------
@@ -318,18 +317,17 @@ def test_group_culler(config, tmp_path):
             "reset_ray_caster": bit(),
             "start_group": bit(),
             "done": bit(),
-            "row": unsigned(row_bits(config)),
-            "column_offset": unsigned(offset_bits(config)),
+            "place": Place(config),
             "camera": Point(),
-            "rects": RECTS[config.engine](config),
-            "possible": unsigned(config.rectangles),
+            "rects": Rects(config),
+            "may_hit": unsigned(config.rectangles),
             "config": config,
         },
         tmp_path,
     )
     random = np.random.default_rng(seed())
     count, groups, rows = config.rectangles, config.groups, config.screen_geometry.rows
-    latency = 2 if RECTS[config.engine] is PipelinedRects else 1
+    latency = config.facts.rect_latency
     every = (1 << count) - 1
     stimulus, expected, fates = [], {}, set()
 
@@ -338,15 +336,15 @@ def test_group_culler(config, tmp_path):
         table = with_edges_on_rays(random, config, drawn, camera, *start)
         scene = {f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)}
         quiet = {**scene, "reset_ray_caster": 0, "start_group": 0, "done": 0, "rects_fetch": 0}
-        place, foreseen, known = (0, 0), None, False
+        place, predicted, known = (0, 0), None, False
         for number in range(12):
-            here = {**quiet, "row": place[0], "column_offset": place[1]}
-            answer = possible_mask(config, table, camera, *place) if foreseen == place else every
+            here = {**quiet, "place_row": place[0], "place_column_offset": place[1]}
+            answer = possible_mask(config, table, camera, *place) if predicted == place else every
             assert hit_mask(config, table, camera, *place) & ~answer == 0, repeat()
-            fates.add((known, foreseen == place, answer == every))
-            # The second cycle of reset; then the group's time.
+            fates.add((known, predicted == place, answer == every))
+            # The second cycle of reset; then the group's time, in which the answer holds to the next one's first cycle.
             stimulus.append({**here, "reset_ray_caster": 1})
-            expected[len(stimulus)] = answer, place, camera, table
+            begun = len(stimulus)
             stimulus += [here, {**here, "start_group": 1}]
             for index in range(count) if number == 0 else ():
                 shown = sorted_rect(table, index, "rects_rect")
@@ -360,9 +358,10 @@ def test_group_culler(config, tmp_path):
             # A frame of which not even that is done has taught nothing.
             abandoned = random.random() < 0.2
             stimulus.append({**here, "reset_ray_caster": 1, "done": int(not abandoned)})
+            expected |= dict.fromkeys(range(begun, len(stimulus)), (answer, place, camera, table))
 
             following = (place[0], place[1] + 1) if place[1] < groups - 1 else (place[0] + 1, 0)
-            foreseen = following if known and time >= count + LATENCY else None
+            predicted = following if known and time >= count + LATENCY else None
             known = known or (number == 0 and not abandoned)
             place = following
             if abandoned or place[0] == rows:
@@ -374,5 +373,5 @@ def test_group_culler(config, tmp_path):
     outputs = leaf.run_both(stimulus, settled=min(expected))
     for cycle, (answer, place, camera, table) in expected.items():
         case = cycle, place, camera.tolist(), table.corners.tolist(), repeat()
-        assert outputs[cycle]["possible"] == answer, case
+        assert outputs[cycle]["may_hit"] == answer, case
     assert {(True, True, False), (True, False, True), (False, False, True)} <= fates

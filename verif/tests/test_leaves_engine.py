@@ -9,33 +9,26 @@ from unittest import mock
 
 import numpy as np
 import pytest
-from fates import mask_of, possible_mask, prospects_in, random_fate
-from hard_scenes import edged, pixel_word, rectangles_in_view, traced_scene, tracer
+from fates import control_leaf, group_fate_in, mask_of, may_hit_mask, random_fate
+from hard_scenes import edged, pixel_of, pixel_word, rectangles_in_view, traced_scene, tracer
 
 from raycaster.configuration import WORLD_SIZE, Configuration, configure
 from raycaster.golden import engines, seed_engine
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.registers import register_map
-from raycaster.rtl.common.legacy import Outlook, Plane, Point, Prospects, Rect, SequentialRects, Steps
-from raycaster.rtl.common.widths import (
-    CYCLE_BITS,
-    RGB_BITS,
-    bit,
-    offset_bits,
-    pixel_bits,
-    row_bits,
-    unit_bits,
-    unsigned,
-)
+from raycaster.rtl.common.interfaces import Picture, Place, Progress, RayFate, Rects, Steps, Vga
+from raycaster.rtl.common.records import Pixel, Point, Rect
+from raycaster.rtl.common.widths import bit, pixel_bits, unit_bits, unsigned
 from raycaster.rtl.cull.group_culler import LATENCY
-from raycaster.rtl.engine.engines import ENGINES
-from raycaster.rtl.engine.renderers import RECTS, RENDERERS
+from raycaster.rtl.engine.engines import block_named
+from raycaster.rtl.engine.ray_caster import ray_caster
 from raycaster.rtl.seed.ray_control import ray_control
 from raycaster.rtl.seed.ray_unit import ray_unit
 from raycaster.rtl.system.camera_axis import STEP
-from raycaster.rtl.system.ray_caster_module import ModulePorts, ray_caster_module
-from raycaster.rtl.system.ray_caster_system import SystemPorts, ray_caster_system
+from raycaster.rtl.system.ports import module_ports, system_ports
+from raycaster.rtl.system.ray_caster_module import ray_caster_module
+from raycaster.rtl.system.ray_caster_system import ray_caster_system
 from raycaster.rtl.system.reset_release import HOLD_CYCLES
 from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import Camera, Rectangle, Scene
@@ -103,22 +96,7 @@ controls = pytest.mark.parametrize(
 
 @controls
 def test_ray_control(config, tmp_path):
-    leaf = Leaf(
-        ray_control,
-        lambda: {
-            "clk": bit(),
-            "reset_ray_caster": bit(),
-            "enable": bit(),
-            "reflections": unsigned(2),
-            "rects": SequentialRects(config),
-            "steps": Steps(),
-            "prospects": Prospects(config),
-            "finishing_rect": Rect(),
-            "done": bit(),
-            "config": config,
-        },
-        tmp_path,
-    )
+    leaf = control_leaf(ray_control, config, tmp_path)
     random = np.random.default_rng(seed())
     count = config.rectangles
     every = (1 << count) - 1
@@ -144,10 +122,10 @@ def test_ray_control(config, tmp_path):
     for number, mask in enumerate(masks):
         usable = [index for index in range(count) if mask >> index & 1]
         reflections = config.reflections if number < 2 else int(random.integers(config.reflections + 1))
-        held = {"rects_usable": mask, "reflections": reflections}
+        held = {"rects_usable": mask, "picture_reflections": reflections}
         fate = random_fate(random, usable, reflections, number)
-        # What is not usable may be possible, and is not visited.
-        held["prospects_possible"] = mask_of(fate["possible"]) | int(random.integers(1 << count)) & ~mask
+        # What is not usable is not visited, whatever the mask has for it.
+        held["fate_may_hit"] = mask_of(fate["may_hit"]) | int(random.integers(1 << count)) & ~mask
         quiet = ({f"steps_{name}": 0 for name in vars(Steps()) if name != "initial_ray"} | {"done": 0}, None, None)
         for _ in range(2):
             drive({**held, "reset_ray_caster": 1, "enable": int(random.integers(2))})
@@ -163,11 +141,11 @@ def test_ray_control(config, tmp_path):
             wanted = cycle.steps | {"done": 0}
             if cycle.steps["steps_screen_to_ray"]:
                 del wanted["steps_initial_ray"]
-            if cycle.finishing is not None and first_known is None:
+            if cycle.offered is not None and first_known is None:
                 first_known = len(stimulus)
             inputs = {**held, "reset_ray_caster": 0, "enable": int(random.integers(2))}
-            inputs |= prospects_in(random, cycle, leaf)
-            drive(inputs, (wanted, cycle.current, cycle.finishing), cycle.current)
+            inputs |= group_fate_in(random, cycle, leaf)
+            drive(inputs, (wanted, cycle.current, cycle.offered), cycle.current)
         if not abandoned:
             for _ in range(int(random.integers(1, 4))):
                 wanted = {**quiet[0], "done": 1}
@@ -177,12 +155,12 @@ def test_ray_control(config, tmp_path):
     held_by_memory = None
     for cycle, (output, wanted) in enumerate(zip(outputs, expected, strict=True)):
         if wanted is not None:
-            signals, current, finishing = wanted
+            signals, current, offered = wanted
             assert {name: output[name] for name in signals} == signals, (cycle, repeat())
             if current is not None:
                 assert held_by_memory == current, f"cycle {cycle}: it fetched another rectangle; {repeat()}"
-            if finishing is not None:
-                rect = sorted_rect(table, finishing, "finishing_rect")
+            if offered is not None:
+                rect = sorted_rect(table, offered, "offered")
                 assert {name: output[name] for name in rect} == rect, (cycle, repeat())
         if output["rects_fetch"]:
             held_by_memory = output["rects_index"]
@@ -190,37 +168,36 @@ def test_ray_control(config, tmp_path):
 
 def fate_of(golden) -> dict[str, Any]:
     """What the control is told of a group that golden has traced: the keyword arguments of `trace_cycles`."""
-    hopeless = {
+    behind = {
         (number, index)
         for number, bounce in enumerate(golden.bounces)
         for index in range(len(bounce.numerators))
         if not np.any(bounce.alive & (bounce.numerators[index] * bounce.denominators[index] > 0))
     }
     missed = np.logical_or.accumulate(np.array(golden.winners) < 0)
-    return {"hopeless": hopeless, "lost": next(iter(np.flatnonzero(missed.all(axis=1))), None)}
+    return {"behind": behind, "lost": next(iter(np.flatnonzero(missed.all(axis=1))), None)}
 
 
 # ray_unit ------------------------------------------------------------------------------------------------------------
 
 
-def plane_and_rect(cycle, table: Rectangles) -> dict[str, int]:
+def rects_shown(cycle, table: Rectangles) -> dict[str, int]:
     """What the control and the memory show all units in a cycle."""
     inputs = {}
     if cycle.current is not None:
-        rect = sorted_rect(table, cycle.current, "current_plane")
-        inputs |= {name: rect[name] for name in ("current_plane_axis", "current_plane_position")}
-    if cycle.finishing is not None:
-        inputs |= sorted_rect(table, cycle.finishing, "finishing_rect")
+        inputs |= sorted_rect(table, cycle.current, "rect")
+    if cycle.offered is not None:
+        inputs |= sorted_rect(table, cycle.offered, "offered")
     return inputs
 
 
 def unrelated_inputs(random: np.random.Generator, config: Configuration) -> dict[str, int]:
-    """What a unit looks at in one step only, the pixel's place and the plane, as it may stand in the other cycles."""
+    """What a unit reads in one step only, the pixel's place and the plane, as it may be in the other cycles."""
     return {
-        "row": int(random.integers(config.screen_geometry.rows)),
-        "column_offset": int(random.integers(config.groups)),
-        "current_plane_axis": int(random.integers(3)),
-        "current_plane_position": int(random.integers(WORLD_SIZE)),
+        "place_row": int(random.integers(config.screen_geometry.rows)),
+        "place_column_offset": int(random.integers(config.groups)),
+        "rect_axis": int(random.integers(3)),
+        "rect_position": int(random.integers(WORLD_SIZE)),
     }
 
 
@@ -230,16 +207,14 @@ def ray_unit_leaf(config: Configuration, directory) -> Leaf:
         lambda: {
             "clk": bit(),
             "steps": Steps(),
-            "row": unsigned(row_bits(config)),
+            "place": Place(config),
             "column_base": unsigned(unit_bits(config)),
-            "column_offset": unsigned(offset_bits(config)),
             "camera": Point(),
-            "current_plane": Plane(),
-            "finishing_rect": Rect(),
-            "background": unsigned(RGB_BITS),
-            "reflections": unsigned(2),
-            "pixel": unsigned(pixel_bits(config)),
-            "outlook": Outlook(),
+            "rect": Rect(),
+            "offered": Rect(),
+            "picture": Picture(),
+            "pixel": Pixel(config.colour_bits),
+            "fate": RayFate(),
             "config": config,
         },
         directory,
@@ -251,7 +226,7 @@ def check_ray_unit(leaf: Leaf, config: Configuration, rays: int = 24) -> None:
     random = np.random.default_rng(seed())
     slopes = primary_slopes(config.screen_geometry)
     rows, columns, _ = slopes.shape
-    stimulus, results, outlooks = [], [], []
+    stimulus, results, told = [], [], []
     # How many mirrors a ray meets: none, one, and all that it may.
     fates, every_fate = set(), set(range(config.reflections + 2))
     while len(results) < rays or fates != every_fate:
@@ -263,31 +238,31 @@ def check_ray_unit(leaf: Leaf, config: Configuration, rays: int = 24) -> None:
             continue
         fates.add(fate)
         held = {
-            "row": row,
+            "place_row": row,
+            "place_column_offset": column // config.units,
             "column_base": column % config.units,
-            "column_offset": column // config.units,
-            "background": colour_word(background),
-            "reflections": reflections,
+            "picture_background": colour_word(background),
+            "picture_reflections": reflections,
             **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
         }
         fated = fate_of(golden) if config.culling else {}
         for cycle in trace_cycles(config, visible_indices(table), reflections, **fated):
-            inputs = {**held, **cycle.steps, **plane_and_rect(cycle, table)}
+            inputs = {**held, **cycle.steps, **rects_shown(cycle, table)}
             if config.culling:
-                outlooks.append((len(stimulus), cycle.ahead, cycle.alive))
+                told.append((len(stimulus), cycle.towards, cycle.alive))
             if not cycle.steps["steps_screen_to_ray"] and not cycle.steps["steps_find_intersection"]:
                 inputs |= unrelated_inputs(random, config)
             stimulus.append(inputs)
         case = f"row {row}, column {column}, camera {camera}, corners {table.corners.tolist()}; {repeat()}"
         results.append((len(stimulus), pixel_word(config, golden.colours[0]), case))
         # done: the pixel stands, whatever comes.
-        stimulus.append({**held, **dict.fromkeys(stimulus[-1], 0), "reflections": reflections})
+        stimulus.append({**held, **dict.fromkeys(stimulus[-1], 0), "picture_reflections": reflections})
     outputs = leaf.run_both(stimulus, settled=results[0][0])
     for cycle, pixel, case in results:
-        assert outputs[cycle]["pixel"] == pixel, case
-    for cycle, ahead, alive in outlooks:
-        assert ahead is None or outputs[cycle].get("outlook_ahead", ahead) == ahead, (cycle, repeat())
-        assert alive is None or outputs[cycle]["outlook_alive"] == alive, (cycle, repeat())
+        assert pixel_of(config, outputs[cycle]) == pixel, case
+    for cycle, towards, alive in told:
+        assert towards is None or outputs[cycle].get("fate_towards", towards) == towards, (cycle, repeat())
+        assert alive is None or outputs[cycle]["fate_alive"] == alive, (cycle, repeat())
 
 
 @pytest.mark.parametrize(
@@ -367,24 +342,22 @@ def remembered(config: Configuration, cycles: list[TraceCycle], usable: list[int
     ids=config_id,
 )
 def test_ray_caster(config, tmp_path):
-    """Of either engine, whose ports are the same: pixels, and the cycle in which they are done.
+    """Of either engine: pixels, and the cycle in which they are done.
 
-    Where groups are culled, a group comes after others of its frame, from which it is foreseen or not.
+    Where groups are culled, a group comes after others of its frame, in which its rectangles were tested or not.
     """
     leaf = Leaf(
-        ENGINES[config.engine],
+        ray_caster,
         lambda: {
             "clk": bit(),
             "reset_ray_caster": bit(),
             "enable": bit(),
-            "row": unsigned(row_bits(config)),
-            "column_offset": unsigned(offset_bits(config)),
+            "place": Place(config),
             "camera": Point(),
-            "background": unsigned(RGB_BITS),
-            "reflections": unsigned(2),
-            "rects": SequentialRects(config),
+            "picture": Picture(),
+            "rects": Rects(config),
             "done": bit(),
-            "colours": unsigned(config.units * pixel_bits(config)),
+            "pixels": unsigned(config.units * pixel_bits(config)),
             "config": config,
         },
         tmp_path,
@@ -399,8 +372,8 @@ def test_ray_caster(config, tmp_path):
         trace = tracer(config, camera=camera, background=background, reflections=reflections)
         usable = visible_indices(table)
         scene = {
-            "background": colour_word(background),
-            "reflections": reflections,
+            "picture_background": colour_word(background),
+            "picture_reflections": reflections,
             "rects_usable": usable_mask(table),
             **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
         }
@@ -411,10 +384,10 @@ def test_ray_caster(config, tmp_path):
             golden = trace(table, slopes=groups[place])
             fate = fate_of(golden) if config.culling else {}
             if place == following:
-                mask = possible_mask(config, table, camera, *place)
-                fate["possible"] = [index for index in usable if mask >> index & 1]
-                culled += len(usable) - len(fate["possible"])
-            held = {**scene, "row": place[0], "column_offset": place[1]}
+                mask = may_hit_mask(config, table, camera, *place)
+                fate["may_hit"] = [index for index in usable if mask >> index & 1]
+                culled += len(usable) - len(fate["may_hit"])
+            held = {**scene, "place_row": place[0], "place_column_offset": place[1]}
             if place == places[0]:
                 stimulus.append({**held, "reset_ray_caster": 1, "enable": 1})
             stimulus.append({**held, **rects.get(at_hand, {}), "reset_ray_caster": 1, "enable": 1})
@@ -431,9 +404,9 @@ def test_ray_caster(config, tmp_path):
             colours = [pixel_word(config, colour) for colour in golden.colours]
             case = f"group {place} of {places}, camera {camera}, corners {table.corners.tolist()}; {repeat()}"
             results.append((len(stimulus) - 1, colours, case))
-            # The first teaches what there is; the others look ahead if they take long enough.
-            foresees = place != (0, 0) and len(cycles) >= config.rectangles + LATENCY
-            following = place_after(config, place) if foresees else None
+            # In the first the rectangles are copied; the others test them if they take long enough.
+            tests = place != (0, 0) and len(cycles) >= config.rectangles + LATENCY
+            following = place_after(config, place) if tests else None
         stimulus.append({})
         results.append((len(stimulus) - 1, *results[-1][1:]))
     outputs = leaf.run_both(stimulus, settled=results[0][0])
@@ -442,12 +415,12 @@ def test_ray_caster(config, tmp_path):
     for cycle, colours, case in results:
         assert outputs[cycle]["done"], case
         assert outputs[cycle - 1]["done"] == (cycle - 1 in done), case
-        units = [outputs[cycle]["colours"] >> width * unit & (1 << width) - 1 for unit in range(config.units)]
+        units = [outputs[cycle]["pixels"] >> width * unit & (1 << width) - 1 for unit in range(config.units)]
         assert units == colours, case
     for cycle, index in shown.items():
         before = next(past for past in range(cycle - 1, -1, -1) if outputs[past]["rects_fetch"])
         assert outputs[before]["rects_index"] == index, f"cycle {cycle}: it fetched another rectangle; {repeat()}"
-    assert bool(culled) == config.culling, "some groups were to be foreseen"
+    assert bool(culled) == config.culling, "some groups were to be culled"
 
 
 # The picture ---------------------------------------------------------------------------------------------------------
@@ -488,22 +461,15 @@ def start_screen_cycle(screen: Screen) -> int:
 
 def renderer_leaf(config: Configuration, directory) -> Leaf:
     return Leaf(
-        RENDERERS[config.engine],
+        block_named(config.facts.renderer),
         lambda: {
             "clk": bit(),
             "reset": reset_signal(),
-            "run": bit(),
-            "reflections": unsigned(2),
-            "background": unsigned(RGB_BITS),
+            "picture": Picture(),
             "camera": Point(),
-            "rects": RECTS[config.engine](config),
-            "start_screen": bit(),
-            "busy": bit(),
-            "underrun": bit(),
-            "row_cycles": unsigned(CYCLE_BITS),
-            "group_cycles": unsigned(CYCLE_BITS),
-            **{f"vga_{channel}": unsigned(config.colour_bits) for channel in "rgb"},
-            **{f"vga_{name}": bit() for name in ("hs", "vs", "blank_n", "sync_n", "clk")},
+            "rects": Rects(config),
+            "progress": Progress(),
+            "vga": Vga(config.colour_bits),
             "config": config,
         },
         directory,
@@ -537,15 +503,15 @@ def test_ray_caster_renderer(config, tmp_path):
     )
     background = random.integers(1, 256, size=3)
     scene = {
-        "background": colour_word(background),
-        "reflections": config.reflections,
+        "picture_background": colour_word(background),
+        "picture_reflections": config.reflections,
         **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
         **sorted_rect(table, 0, "rects_rect"),
     }
     start, frame = start_screen_cycle(screen), screen.frame_cycles
     # From the cycle after each StartScreen on, the next scene.
-    stimulus = [{**scene, "reset": 1}] * 2 + [{"reset": 0, "run": 1, "rects_usable": 0}] * (start + 1 + frame)
-    stimulus += [{"rects_usable": 1}] * frame + [{"run": 0}] * (frame // 2)
+    stimulus = [{**scene, "reset": 1}] * 2 + [{"reset": 0, "picture_run": 1, "rects_usable": 0}] * (start + 1 + frame)
+    stimulus += [{"rects_usable": 1}] * frame + [{"picture_run": 0}] * (frame // 2)
     # What the control asks the memory for is known from the first group on.
     outputs = renderer_leaf(config, tmp_path).run_both(stimulus, settled=2 + start + 6)[2:]
 
@@ -570,24 +536,27 @@ def test_ray_caster_renderer(config, tmp_path):
 
     assert not any(output[f"vga_{channel}"] for output in outputs[start + 2 * frame + 1 :] for channel in "rgb")
 
-    strobes = [cycle for cycle, output in enumerate(outputs) if output["start_screen"]]
+    strobes = [cycle for cycle, output in enumerate(outputs) if output["progress_start_screen"]]
     assert strobes == [start, start + frame, start + 2 * frame]
-    late = [cycle for cycle, output in enumerate(outputs) if output["underrun"]]
+    late = [cycle for cycle, output in enumerate(outputs) if output["progress_underrun"]]
     rows = [start + frame + row * screen.row_cycles for row in range(1, screen.rows + 1)]
     assert late == (rows if config.allow_underrun else [])
     in_second = outputs[start + frame + 1 : start + 2 * frame]
-    busy = sum(output["busy"] for output in in_second)
+    busy = sum(output["progress_busy"] for output in in_second)
     if config.culling:
         # In the first two groups nothing is known yet.
         assert 2 * group < busy < screen.rows * config.groups * group / 2
         return
     if not config.allow_underrun:
-        assert max(output["row_cycles"] for output in in_second if output["busy"]) == config.groups * group
+        assert (
+            max(output["progress_row_cycles"] for output in in_second if output["progress_busy"])
+            == config.groups * group
+        )
         assert busy == screen.rows * config.groups * group
-        times = [output["group_cycles"] for output in in_second]
+        times = [output["progress_group_cycles"] for output in in_second]
         finished = [before for before, after in pairwise(times) if after < before]
         assert finished == [group] * screen.rows * config.groups
-    assert max(output["group_cycles"] for output in in_second) == group
+    assert max(output["progress_group_cycles"] for output in in_second) == group
 
 
 TINY_SCREEN = Screen(
@@ -642,13 +611,13 @@ def test_ray_caster_renderer_scenes(config, tmp_path):
     disabled = Rectangles(table.corners, table.colours, np.zeros(1, dtype=bool))
     empty = golden_words(config, np.broadcast_to(background, (words.size, 3)))
     scenes.insert(0, (camera, disabled, background, reflections, empty))
-    stimulus = [{"reset": 1, "run": 1}] * 2
+    stimulus = [{"reset": 1, "picture_run": 1}] * 2
     start = start_screen_cycle(screen)
     for number, (camera, table, background, reflections, _) in enumerate(scenes):
         scene = {
             "reset": 0,
-            "background": colour_word(background),
-            "reflections": reflections,
+            "picture_background": colour_word(background),
+            "picture_reflections": reflections,
             "rects_usable": usable_mask(table),
             **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
         }
@@ -656,7 +625,7 @@ def test_ray_caster_renderer_scenes(config, tmp_path):
             scene |= sorted_rect(table, 0, "rects_rect")
         # From the cycle after each StartScreen on, the next scene.
         stimulus += [scene] * (screen.frame_cycles if number else start + 1 + screen.frame_cycles)
-    stimulus += [{"run": 0}] * screen.frame_cycles
+    stimulus += [{"picture_run": 0}] * screen.frame_cycles
     stimulus += [{"reset": 1}] * 2
     outputs = renderer_leaf(config, tmp_path).run_both(stimulus, settled=2 + start + 6)[2:]
     frames = monitored(outputs, config)
@@ -745,7 +714,7 @@ def test_ray_caster_module(config, tmp_path):
     for name in ("status", "cycles", "engine", "size"):
         bus.read(name)
     bus.wait(60)
-    leaf = Leaf(ray_caster_module, lambda: {**ModulePorts(config).all(), "config": config}, tmp_path)
+    leaf = Leaf(ray_caster_module, lambda: {**module_ports(config), "config": config}, tmp_path)
     outputs = leaf.run_both(bus.stimulus, settled=2)
 
     frames = monitored(outputs[2:], config)
@@ -803,7 +772,7 @@ def test_ray_caster_module_scenes(config, tmp_path):
         bus.write_scene(camera, background, reflections, table, run)
         traffic(start + 1)
     bus.wait(screen.frame_cycles)
-    leaf = Leaf(ray_caster_module, lambda: {**ModulePorts(config).all(), "config": config}, tmp_path)
+    leaf = Leaf(ray_caster_module, lambda: {**module_ports(config), "config": config}, tmp_path)
     frames = monitored(leaf.run_both(bus.stimulus, settled=2)[2:], config)
     assert len(frames) == len(pictures)
     for number, (frame, picture) in enumerate(zip(frames, pictures, strict=True)):
@@ -848,7 +817,7 @@ def test_ray_caster_system(tmp_path):
         until = start + start_screen_cycle(screen) + number * screen.frame_cycles + 2
         stimulus += [{"ready": 1, "buttons": int(held)}] * (until - len(stimulus))
     stimulus += [{"ready": 1, "buttons": 0}] * screen.frame_cycles
-    leaf = Leaf(ray_caster_system, lambda: {**SystemPorts(config).all(), "config": config, "scene": scene}, tmp_path)
+    leaf = Leaf(ray_caster_system, lambda: {**system_ports(config), "config": config, "scene": scene}, tmp_path)
     shown = monitored(leaf.run_both(stimulus, settled=ready)[start:], config)
     assert len(shown) == frames
     for number, (frame, picture) in enumerate(zip(shown, pictures, strict=True)):

@@ -6,45 +6,31 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from fates import mask_of, prospects_in, random_fate
-from hard_scenes import pixel_word, sharpened, traced_scene, verdict
+from fates import control_leaf, group_fate_in, mask_of, random_fate
+from hard_scenes import pixel_of, pixel_word, sharpened, traced_scene, verdict
 
 from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
-from raycaster.rtl.common.legacy import (
-    Eye,
-    Mirror,
-    Outlook,
-    Point,
-    Prospects,
-    RaySteps,
-    Rect,
-    SequentialRects,
-    Signs,
-    Slope,
-    Surface,
-)
+from raycaster.rtl.common.interfaces import Eye, Picture, Place, RayFate, Slope, Steps
+from raycaster.rtl.common.records import Mirror, Pixel, Point, Rect, Signs, Surface
 from raycaster.rtl.common.widths import (
-    RGB_BITS,
     bit,
     exact_slope_bits,
     eye_bits,
     index_bits,
-    offset_bits,
-    pixel_bits,
-    row_bits,
     unit_bits,
     unsigned,
 )
-from raycaster.rtl.engine.ray_sequencer import GIVE_UP_AT, impatient, ray_sequencer
+from raycaster.rtl.engine.ray_sequencer import EARLY_OUT_AT, ends_early, ray_sequencer
 from raycaster.rtl.engine.rect_sequencer import rect_sequencer
 from raycaster.rtl.exact.exact_control import exact_control
 from raycaster.rtl.exact.exact_unit import exact_unit
 from raycaster.rtl.exact.eye_register import eye_register
 from raycaster.rtl.exact.nearest_hit import nearest_hit
 from raycaster.rtl.exact.rect_tester import rect_tester
+from raycaster.rtl.seed.ray_control import ray_control
 from raycaster.verif.leaf import Leaf, TraceCycle, sorted_rect, trace_cycles
 from raycaster.verif.seeds import repeat, seed
 
@@ -119,7 +105,7 @@ def leaf_of_tester(config: Configuration, directory) -> Leaf:
         rect_tester,
         lambda: {
             "clk": bit(),
-            "steps": RaySteps(),
+            "steps": Steps(),
             "rect": Rect(),
             "eye": Eye(eye_bits(config)),
             "signs": Signs(),
@@ -177,7 +163,6 @@ def test_rect_tester(reflections, tmp_path):
                     "steps_find_intersection": started,
                 }
             )  # fmt: skip
-            stimulus[-1].pop("rect_colour")
             expected.append(verdict(table, index, eye, slope, mirror) if started else None)
     seen = set()
     outputs = leaf.run_both([*stimulus, *[{"steps_find_intersection": 0}] * LATENCY], settled=LATENCY)
@@ -215,7 +200,6 @@ def test_the_widths_are_just_wide_enough(reflections, tmp_path):
                     slope[axis] = -steepest if place > 0 else steepest
                     for index in range(3):
                         rect = sorted_rect(table, index, "rect")
-                        rect.pop("rect_colour")
                         eyes = two_complement(eye, eye_bits(config), "eye")
                         stimulus.append({**rect, **eyes, **slope_inputs(slope), "steps_find_intersection": 1})
                         expected.append(verdict(table, index, eye, slope, None))
@@ -238,7 +222,7 @@ def test_nearest_hit(reflections, tmp_path):
         nearest_hit,
         lambda: {
             "clk": bit(),
-            "steps": RaySteps(),
+            "steps": Steps(),
             "offered": Surface(),
             "hit": bit(),
             "numerator": unsigned(numerator_bits),
@@ -303,7 +287,7 @@ def test_eye_register(reflections, tmp_path):
         eye_register,
         lambda: {
             "clk": bit(),
-            "steps": RaySteps(),
+            "steps": Steps(),
             "camera": Point(),
             "initial_signs": Signs(),
             "found_surface": Surface(),
@@ -363,7 +347,7 @@ def test_rect_sequencer(count, slot_cycles, tmp_path):
             "reset_ray_caster": bit(),
             "start_ray": bit(),
             "wanted": unsigned(count),
-            "give_up": bit(),
+            "early_out": bit(),
             "index": unsigned(index_bits(config)),
             "fetch": bit(),
             "fetched": bit(),
@@ -376,9 +360,9 @@ def test_rect_sequencer(count, slot_cycles, tmp_path):
     random = np.random.default_rng(seed())
     stimulus, expected = [], []
 
-    def drive(reset, start, mask, current=None, first=False, give_up=0):
+    def drive(reset, start, mask, current=None, first=False, early_out=0):
         """A cycle in which `current` is at hand."""
-        stimulus.append({"reset_ray_caster": reset, "start_ray": start, "wanted": mask, "give_up": give_up})
+        stimulus.append({"reset_ray_caster": reset, "start_ray": start, "wanted": mask, "early_out": early_out})
         expected.append((current, first))
 
     every = (1 << count) - 1
@@ -394,13 +378,13 @@ def test_rect_sequencer(count, slot_cycles, tmp_path):
         slots = []
         for index in range(count):
             if mask >> index & 1:
-                # Some are given up, in any cycle of their slot.
+                # Some end early, in any cycle of their slot.
                 last = int(random.integers(slot_cycles)) if random.random() < 0.3 else slot_cycles - 1
-                given_up = last < slot_cycles - 1
-                slots += [(index, cycle == 0, int(given_up and cycle == last)) for cycle in range(last + 1)]
+                ends = last < slot_cycles - 1
+                slots += [(index, cycle == 0, int(ends and cycle == last)) for cycle in range(last + 1)]
         # Only a reset comes before the end.
-        for current, first, give_up in slots[: int(random.integers(len(slots) + 1))] if number % 5 == 4 else slots:
-            drive(0, 0, mask, current, first, give_up)
+        for current, first, early_out in slots[: int(random.integers(len(slots) + 1))] if number % 5 == 4 else slots:
+            drive(0, 0, mask, current, first, early_out)
         if number % 5 != 4:
             drive(0, 0, mask)
     outputs = leaf.run_both(stimulus, settled=4)
@@ -436,27 +420,8 @@ def seed_config(**options) -> Configuration:
     ids=lambda value: value.name if isinstance(value, Configuration) else value.__name__,
 )
 def test_controls(function, config, tmp_path):
-    arguments = {"in_flight": lambda: unsigned(write_at + 1), "give_up": bit}
-    if function is exact_control:
-        arguments = {"offered": Surface}
     write_at = 2 if config.engine == "exact" else config.divider_steps + 3
-    leaf = Leaf(
-        function,
-        lambda: {
-            "clk": bit(),
-            "reset_ray_caster": bit(),
-            "enable": bit(),
-            "reflections": unsigned(2),
-            "rects": SequentialRects(config),
-            "steps": RaySteps(),
-            "prospects": Prospects(config),
-            **{name: make() for name, make in arguments.items()},
-            "done": bit(),
-            **({"slot_cycles": config.slot_cycles} if function is ray_sequencer else {}),
-            "config": config,
-        },
-        tmp_path,
-    )
+    leaf = control_leaf(function, config, tmp_path)
     random = np.random.default_rng(seed())
     count = config.rectangles
     every = (1 << count) - 1
@@ -475,18 +440,18 @@ def test_controls(function, config, tmp_path):
     quiet_cycle = TraceCycle({}, 0)
     stimulus, expected = [], []
 
-    def drive(inputs, wanted=None, current=None, finishing=None):
+    def drive(inputs, wanted=None, current=None, offered=None):
         rect = sorted_rect(table, int(random.integers(count)) if current is None else current, "rects_rect")
-        stimulus.append({**inputs, **{name: value for name, value in rect.items() if name in leaf.inputs}})
-        expected.append((wanted, current, finishing))
+        stimulus.append({**inputs, **{name: value for name, value in rect.items() if name in leaf.given}})
+        expected.append((wanted, current, offered))
 
     for number, mask in enumerate(masks):
         usable = [index for index in range(count) if mask >> index & 1]
         reflections = config.reflections if number < 2 else int(random.integers(config.reflections + 1))
-        held = {"rects_usable": mask, "reflections": reflections}
+        held = {"rects_usable": mask, "picture_reflections": reflections}
         fate = random_fate(random, usable, reflections, number)
-        # What is not usable may be possible, and is not visited.
-        held["prospects_possible"] = mask_of(fate["possible"]) | int(random.integers(1 << count)) & ~mask
+        # What is not usable is not visited, whatever the mask has for it.
+        held["fate_may_hit"] = mask_of(fate["may_hit"]) | int(random.integers(1 << count)) & ~mask
         for _ in range(2):
             drive({**held, "reset_ray_caster": 1, "enable": int(random.integers(2))})
         for _ in range(int(random.integers(3))):
@@ -502,19 +467,21 @@ def test_controls(function, config, tmp_path):
             if cycle.steps["steps_screen_to_ray"]:
                 del wanted["steps_initial_ray"]
             inputs = {**held, "reset_ray_caster": 0, "enable": int(random.integers(2))}
-            inputs |= {"give_up": int(impatient(config) and before.ahead == 0)} if function is ray_sequencer else {}
-            drive(inputs | prospects_in(random, cycle, leaf), wanted, cycle.current, cycle.finishing)
+            inputs |= (
+                {"early_out": int(ends_early(config) and before.towards == 0)} if function is ray_sequencer else {}
+            )
+            drive(inputs | group_fate_in(random, cycle, leaf), wanted, cycle.current, cycle.offered)
         if not abandoned:
             for _ in range(int(random.integers(1, 4))):
                 # Nothing is rendered any more, so that reflections may change.
-                after = {"reflections": int(random.integers(config.reflections + 1))}
+                after = {"picture_reflections": int(random.integers(config.reflections + 1))}
                 after |= {"reset_ray_caster": 0, "enable": int(random.integers(2))}
                 drive({**held, **after}, {**quiet, "done": 1})
 
-    settled = next(cycle for cycle, (_, _, finishing) in enumerate(expected) if finishing is not None)
+    settled = next(cycle for cycle, (_, _, offered) in enumerate(expected) if offered is not None)
     outputs = leaf.run_both(stimulus, settled=settled)
     held_by_memory = None
-    for cycle, (output, (wanted, current, finishing)) in enumerate(zip(outputs, expected, strict=True)):
+    for cycle, (output, (wanted, current, offered)) in enumerate(zip(outputs, expected, strict=True)):
         if wanted is not None:
             assert {name: output[name] for name in wanted} == wanted, (cycle, repeat())
         if current is not None:
@@ -526,16 +493,61 @@ def test_controls(function, config, tmp_path):
             ]
             resets = [stimulus[before]["reset_ray_caster"] for before in range(cycle - 1, cycle - write_at - 2, -1)]
             alive = started[: resets.index(1)] if 1 in resets else started
-            # What was given up in its second cycle is not seen from the third on.
-            for place in range(GIVE_UP_AT, len(alive)):
-                alive[place] &= not stimulus[cycle - 1 - place + GIVE_UP_AT].get("give_up", 0)
+            # What ended early is not in flight from the next cycle on.
+            for place in range(EARLY_OUT_AT, len(alive)):
+                alive[place] &= not stimulus[cycle - 1 - place + EARLY_OUT_AT].get("early_out", 0)
             assert output["in_flight"] == sum(bit << place for place, bit in enumerate(alive)), (cycle, repeat())
-        elif finishing is not None:
-            rect = sorted_rect(table, finishing, "offered")
+        elif offered is not None:
+            rect = sorted_rect(table, offered, "offered")
             surface = {name: rect[name] for name in ("offered_axis", "offered_position", "offered_colour")}
             assert {name: output[name] for name in surface} == surface, (cycle, repeat())
         if output["rects_fetch"]:
             held_by_memory = output["rects_index"]
+
+
+@pytest.mark.parametrize(
+    ("function", "config"),
+    [
+        (ray_control, seed_config(rectangles=5, reflections=2, divider_bits=1)),
+        (exact_control, exact_config(rectangles=5, reflections=2, culling=True)),
+    ],
+    ids=lambda value: value.name if isinstance(value, Configuration) else value.__name__,
+)
+def test_fate_is_read_in_one_cycle(function, config, tmp_path):
+    """What the units say holds in the cycle that ray_sequencer states, and is the opposite in the cycles beside it.
+
+    So a register more between the units and what the control does with it, or one less, is found.
+    """
+    leaf = control_leaf(function, config, tmp_path)
+    random = np.random.default_rng(seed())
+    usable, reflections = list(range(config.rectangles)), config.reflections
+    held = {"rects_usable": mask_of(usable), "fate_may_hit": mask_of(usable), "picture_reflections": reflections}
+    stimulus, expected = [], []
+    for lost in (None, 0, 1, None):
+        behind = [(bounce, index) for bounce in range(reflections + 1) for index in usable if random.random() < 0.5]
+        trace = trace_cycles(config, usable, reflections, behind=behind, lost=lost)
+        stimulus += [{**held, "reset_ray_caster": 1, "enable": 0}, {**held, "reset_ray_caster": 0, "enable": 1}]
+        # In the first cycle initial_ray is don't care.
+        expected += [None, None, None, *(cycle.steps | {"done": 0} for cycle in trace[1:]), {"done": 1}]
+        said = {
+            "fate_any_towards": opposite_beside([cycle.towards for cycle in trace]),
+            "fate_any_alive": opposite_beside([cycle.alive for cycle in trace]),
+        }
+        cycles = [dict(zip(said, values, strict=True)) for values in zip(*said.values(), strict=True)]
+        stimulus += [{name: value for name, value in cycle.items() if name in leaf.inputs} for cycle in [*cycles, {}]]
+    outputs = leaf.run_both(stimulus, settled=len(trace))
+    for cycle, wanted in enumerate(expected):
+        if wanted is not None:
+            assert {name: outputs[cycle][name] for name in wanted} == wanted, (cycle, repeat())
+
+
+def opposite_beside(values: list[int | None]) -> list[int]:
+    """Bits, and where there is none the opposite of one that is there in the cycle before or after."""
+    padded = [None, *values, None]
+    return [
+        value if value is not None else 1 - next((one for one in (before, after) if one is not None), 1)
+        for before, value, after in zip(padded, values, padded[2:], strict=False)
+    ]
 
 
 # exact_unit ---------------------------------------------------------------------------------------------------------
@@ -543,7 +555,7 @@ def test_controls(function, config, tmp_path):
 
 def held_inputs(camera, background, reflections) -> dict[str, int]:
     colour = int.from_bytes(bytes(background.astype(np.uint8)))
-    return {**two_complement(camera, 9, "camera"), "background": colour, "reflections": reflections}
+    return {**two_complement(camera, 9, "camera"), "picture_background": colour, "picture_reflections": reflections}
 
 
 @pytest.mark.parametrize(
@@ -562,17 +574,15 @@ def test_exact_unit(config, tmp_path):
         exact_unit,
         lambda: {
             "clk": bit(),
-            "steps": RaySteps(),
-            "row": unsigned(row_bits(config)),
+            "steps": Steps(),
+            "place": Place(config),
             "column_base": unsigned(unit_bits(config)),
-            "column_offset": unsigned(offset_bits(config)),
             "camera": Point(),
             "rect": Rect(),
             "offered": Surface(),
-            "background": unsigned(RGB_BITS),
-            "reflections": unsigned(2),
-            "pixel": unsigned(pixel_bits(config)),
-            "outlook": Outlook(),
+            "picture": Picture(),
+            "pixel": Pixel(config.colour_bits),
+            "fate": RayFate(),
             "config": config,
         },
         tmp_path,
@@ -580,13 +590,13 @@ def test_exact_unit(config, tmp_path):
     random = np.random.default_rng(seed())
     slopes = primary_slopes(config.screen_geometry)
     rows, columns, _ = slopes.shape
-    stimulus, results, fates, outlooks = [], [], set(), {}
+    stimulus, results, fates, alive = [], [], set(), {}
     for _ in range(300 if config.units == 5 else 80):
         row = int(random.choice([0, 1, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))
         column = int(random.choice([0, 1, columns // 2, columns - 1, random.integers(columns)]))
         camera, table, background, reflections, traced = traced_scene(random, config, slopes[row, column][None])
         fates.add((reflections, sum(int(winner[0]) >= 0 for winner in traced.winners)))
-        place = {"row": row, "column_base": column % config.units, "column_offset": column // config.units}
+        place = {"place_row": row, "place_column_offset": column // config.units, "column_base": column % config.units}
         held = {**held_inputs(camera, background, reflections), **place}
         usable = [int(index) for index in np.flatnonzero(table.visible)]
         if not usable:
@@ -596,11 +606,10 @@ def test_exact_unit(config, tmp_path):
         for cycle in trace_cycles(config, usable, reflections, lost=lost):
             inputs = {**held, **cycle.steps}
             if cycle.alive is not None and config.culling:
-                outlooks[len(stimulus)] = cycle.alive
+                alive[len(stimulus)] = cycle.alive
             other = int(random.choice(usable))
-            rect = sorted_rect(table, other if cycle.current is None else cycle.current, "rect")
-            inputs |= {name: value for name, value in rect.items() if name != "rect_colour"}
-            offered = sorted_rect(table, other if cycle.finishing is None else cycle.finishing, "offered")
+            inputs |= sorted_rect(table, other if cycle.current is None else cycle.current, "rect")
+            offered = sorted_rect(table, other if cycle.offered is None else cycle.offered, "offered")
             inputs |= {f"offered_{name}": offered[f"offered_{name}"] for name in ("axis", "position", "colour")}
             stimulus.append(inputs)
         case = f"row {row}, column {column}, camera {camera}, corners {table.corners.tolist()}; {repeat()}"
@@ -609,7 +618,7 @@ def test_exact_unit(config, tmp_path):
     assert len(fates) >= 2 + 2 * config.reflections, repeat()
     outputs = leaf.run_both(stimulus, settled=results[0][0])
     for cycle, pixel, case in results:
-        assert outputs[cycle]["pixel"] == pixel, case
-    for cycle, alive in outlooks.items():
-        assert outputs[cycle]["outlook_alive"] == alive, (cycle, repeat())
-    assert not config.culling or set(outlooks.values()) == {0, 1}
+        assert pixel_of(config, outputs[cycle]) == pixel, case
+    for cycle, expected in alive.items():
+        assert outputs[cycle]["fate_alive"] == expected, (cycle, repeat())
+    assert not config.culling or set(alive.values()) == {0, 1}

@@ -12,7 +12,7 @@ from raycaster.memory_map import BUTTON_NAMES, BUTTONS, INTERRUPT_BIT, MEMORY_WO
 from raycaster.rtl.bus.avalon_host import avalon_host
 from raycaster.rtl.bus.bus_decoder import bus_decoder
 from raycaster.rtl.bus.word_memory import word_memory
-from raycaster.rtl.common.legacy import ProcessorBus
+from raycaster.rtl.common.interfaces import Access, AvalonPort, ProcessorBus
 from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, bits_for, unsigned
 from raycaster.rtl.system.button_port import button_port
 from raycaster.rtl.system.uart_transmitter import DATA_BITS, FRAME_BITS, uart_transmitter
@@ -44,12 +44,10 @@ def memory_leaf(words: int, program: str, directory: Path) -> Leaf:
         lambda: {
             "clk": bit(),
             "reset": reset_signal(),
-            "select": bit(),
+            "access": Access(),
             "strobe": unsigned(LANES),
             "address": unsigned(bits_for(words)),
             "data": unsigned(WORD_BITS),
-            "ready": bit(),
-            "word": unsigned(WORD_BITS),
             "words": words,
             "program": program,
         },
@@ -66,30 +64,30 @@ def test_word_memory(words, tmp_path):
     leaf = memory_leaf(words, str(program), tmp_path)
     assert f'$readmemh("{program}", memory);' in leaf.verilog[-1].read_text()
     # Reset in the first cycle of an access starts that anew; the first read makes `word` known.
-    stimulus = [{"reset": 1, "select": 1, "strobe": 0, "address": 3}, {"reset": 0}, {}]
+    stimulus = [{"reset": 1, "access_select": 1, "strobe": 0, "address": 3}, {"reset": 0}, {}]
     expected = {2: model[3]}
     for _ in range(20 * words):
         if random.random() < 0.3:
-            stimulus.append({"select": 0, "strobe": any_strobe(random), "data": any_word(random)})
+            stimulus.append({"access_select": 0, "strobe": any_strobe(random), "data": any_word(random)})
             continue
         strobe, address, data = any_strobe(random), int(random.integers(words)), any_word(random)
-        stimulus += [{"select": 1, "strobe": strobe, "address": address, "data": data}, {}]
+        stimulus += [{"access_select": 1, "strobe": strobe, "address": address, "data": data}, {}]
         mask = mask_of(strobe)
         model[address] = model[address] & ~mask | data & mask
         expected[len(stimulus) - 1] = None if strobe else model[address]
     outputs = leaf.run_both(stimulus, settled=2)
     for cycle, output in enumerate(outputs[2:], 2):
-        assert output["ready"] == (cycle in expected), (cycle, repeat())
+        assert output["access_ready"] == (cycle in expected), (cycle, repeat())
         if expected.get(cycle) is not None:
-            assert output["word"] == expected[cycle], (cycle, repeat())
+            assert output["access_word"] == expected[cycle], (cycle, repeat())
 
 
 def test_word_memory_without_a_program(tmp_path):
     """It converts all the same: the file is only looked for where the Verilog runs."""
     leaf = memory_leaf(8, "nowhere.hex", tmp_path)
     assert '$readmemh("nowhere.hex", memory);' in leaf.verilog[-1].read_text()
-    outputs = leaf.run_myhdl([{"reset": 1}, {"reset": 0, "select": 1}, {}])
-    assert outputs[-1] == {"ready": 1, "word": 0}
+    outputs = leaf.run_myhdl([{"reset": 1}, {"reset": 0, "access_select": 1}, {}])
+    assert outputs[-1] == {"access_ready": 1, "access_word": 0}
 
 
 # avalon_host ----------------------------------------------------------------------------------------------------------
@@ -104,20 +102,11 @@ def test_avalon_host(patience, latency, tmp_path):
         lambda: {
             "clk": bit(),
             "reset": reset_signal(),
-            "select": bit(),
+            "access": Access(),
             "strobe": unsigned(LANES),
             "address": unsigned(address_bits),
             "data": unsigned(WORD_BITS),
-            "ready": bit(),
-            "word": unsigned(WORD_BITS),
-            "avm_m0_address": unsigned(address_bits),
-            "avm_m0_read": bit(),
-            "avm_m0_write": bit(),
-            "avm_m0_writedata": unsigned(WORD_BITS),
-            "avm_m0_byteenable": unsigned(LANES),
-            "avm_m0_readdata": unsigned(WORD_BITS),
-            "avm_m0_readdatavalid": bit(),
-            "avm_m0_waitrequest": bit(),
+            "avm_m0": AvalonPort(address_bits),
         },
         tmp_path,
     )
@@ -136,7 +125,7 @@ def test_avalon_host(patience, latency, tmp_path):
         stimulus.append(
             {
                 "reset": 0,
-                "select": int(request is not None),
+                "access_select": int(request is not None),
                 "strobe": strobe,
                 "address": address,
                 "data": data,
@@ -147,18 +136,18 @@ def test_avalon_host(patience, latency, tmp_path):
         )
         read = reading and answer_in is None
         outputs = {
-            "ready": int(answered or (writing and not wait)),
+            "access_ready": int(answered or (writing and not wait)),
             "avm_m0_read": int(read),
             "avm_m0_write": int(writing),
         }
         if answered:
-            outputs["word"] = word
+            outputs["access_word"] = word
         if read or writing:
             outputs |= {"avm_m0_address": address, "avm_m0_byteenable": strobe or EVERY_LANE}
         if writing:
             outputs["avm_m0_writedata"] = data
         expected.append(outputs)
-        if outputs["ready"]:
+        if outputs["access_ready"]:
             request = answer_in = None
         elif answer_in is not None:
             answer_in -= 1
@@ -183,11 +172,9 @@ def test_uart_transmitter(clocks, tmp_path):
         lambda: {
             "clk": bit(),
             "reset": reset_signal(),
-            "select": bit(),
+            "access": Access(),
             "strobe": unsigned(LANES),
             "data": unsigned(DATA_BITS),
-            "ready": bit(),
-            "word": unsigned(WORD_BITS),
             "uart_tx": bit(),
             "clocks_per_bit": clocks,
         },
@@ -202,7 +189,7 @@ def test_uart_transmitter(clocks, tmp_path):
             request = any_strobe(random), int(random.integers(1 << DATA_BITS))
         strobe, data = request or (any_strobe(random), 0)
         reset = int(random.random() < 0.2 / (FRAME_BITS * clocks))
-        stimulus.append({"reset": reset, "select": int(request is not None), "strobe": strobe, "data": data})
+        stimulus.append({"reset": reset, "access_select": int(request is not None), "strobe": strobe, "data": data})
         writes = request is not None and strobe & 1
         line.append(sending[0] if sending else 1)
         busy.append(int(bool(sending)))
@@ -218,7 +205,7 @@ def test_uart_transmitter(clocks, tmp_path):
             sending = [level for level in levels for _ in range(clocks)]
     for cycle, output in enumerate(leaf.run_both(stimulus, settled=1)):
         if cycle:
-            wanted = {"uart_tx": line[cycle], "word": busy[cycle], "ready": ready[cycle]}
+            wanted = {"uart_tx": line[cycle], "access_word": busy[cycle], "access_ready": ready[cycle]}
             assert output == wanted, (cycle, repeat())
 
 
@@ -261,9 +248,8 @@ def test_bus_decoder(tracer_address_bits, tmp_path):
         bus_decoder,
         lambda: {
             "bus": ProcessorBus(),
-            **{name: unsigned(WORD_BITS) for name in words},
-            **{name: bit() for name in readies},
-            **{f"select_{name}": bit() for name in asked},
+            **{name: Access() for name in asked},
+            "buttons_word": unsigned(WORD_BITS),
             "tracer_address_bits": tracer_address_bits,
         },
         tmp_path,
@@ -291,7 +277,7 @@ def test_bus_decoder(tracer_address_bits, tmp_path):
         else:
             owner = {BUTTONS: "buttons", UART: "uart"}.get(address, "")
         for name in asked:
-            assert output[f"select_{name}"] == int(valid and owner == name), (hex(address), repeat())
+            assert output[f"{name}_select"] == int(valid and owner == name), (hex(address), repeat())
         if valid:
             assert output["bus_ready"] == inputs.get(f"{owner}_ready", 1), (hex(address), repeat())
             assert output["bus_word"] == inputs.get(f"{owner}_word", 0), (hex(address), repeat())

@@ -13,7 +13,9 @@ from conftest import SMALL_SCENE
 from raycaster.configuration import COORDINATE_BITS, WORLD_SIZE, configure
 from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
-from raycaster.rtl.common.widths import WORD_BITS, bit, unsigned
+from raycaster.rtl.common.interfaces import AvalonPort
+from raycaster.rtl.common.synchroniser import synchroniser
+from raycaster.rtl.common.widths import bit, unsigned
 from raycaster.rtl.system.camera_axis import STEP, camera_axis
 from raycaster.rtl.system.reset_release import HOLD_CYCLES, reset_release
 from raycaster.rtl.system.scene_player import BUTTONS, scene_player
@@ -64,6 +66,30 @@ def test_camera_axis(tmp_path):
             position = stepped(position, inputs["more"], inputs["less"])
 
 
+@pytest.mark.parametrize("resettable", [False, True])
+@pytest.mark.parametrize("width", [1, 5])
+def test_synchroniser(width, resettable, tmp_path):
+    leaf = Leaf(
+        synchroniser,
+        lambda: {
+            "clk": bit(),
+            "reset": reset_signal() if resettable else None,
+            "value": unsigned(width) if width > 1 else bit(),
+            "held": unsigned(width) if width > 1 else bit(),
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    stimulus = [{"value": int(random.integers(1 << width))} for _ in range(200)]
+    if resettable:
+        stimulus = [cycle | {"reset": int(random.random() < 0.1)} for cycle in stimulus]
+    for cycle, output in enumerate(leaf.run_both(stimulus, settled=2)):
+        if cycle > 1:
+            before, last = stimulus[cycle - 2 : cycle]
+            expected = 0 if before.get("reset") or last.get("reset") else before["value"]
+            assert output == {"held": expected}, (cycle, repeat())
+
+
 def test_reset_release(tmp_path):
     leaf = Leaf(reset_release, lambda: {"clk": bit(), "ready": bit(), "reset": reset_signal()}, tmp_path)
     random = np.random.default_rng(seed())
@@ -91,11 +117,7 @@ def test_scene_player(rectangles, tmp_path):
             "reset": reset_signal(),
             "buttons": unsigned(len(BUTTONS)),
             "irq": bit(),
-            "avm_m0_address": unsigned(address_bits(rectangles)),
-            "avm_m0_write": bit(),
-            "avm_m0_writedata": unsigned(WORD_BITS),
-            "avm_m0_byteenable": unsigned(4),
-            "avm_m0_waitrequest": bit(),
+            "avm_m0": AvalonPort(address_bits(rectangles)),
             "config": config,
             "scene": scene,
         },

@@ -11,18 +11,19 @@ from raycaster.golden.colour import blend
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles, random_slopes
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.common.legacy import Origin, Plane, Rect, Signs, Slope, Steps
+from raycaster.rtl.common.interfaces import Picture, Place, Slope, Steps
+from raycaster.rtl.common.magnitude import magnitude
+from raycaster.rtl.common.records import Origin, Pixel, Ray, Rect, Signs
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
     RGB_BITS,
     bit,
-    offset_bits,
-    pixel_bits,
     position_bits,
-    row_bits,
+    signed,
     unit_bits,
     unsigned,
 )
+from raycaster.rtl.engine.colour_average import colour_average
 from raycaster.rtl.engine.colour_channel import colour_channel
 from raycaster.rtl.engine.colour_combiner import colour_combiner
 from raycaster.rtl.engine.ray_generator import ray_generator
@@ -67,15 +68,14 @@ def finder_leaf(config: Configuration, directory) -> Leaf:
         lambda: {
             "clk": bit(),
             "steps": Steps(),
-            "current_plane": Plane(),
-            "finishing_rect": Rect(),
-            "origin": Origin(config),
-            "signs": Signs(),
+            "rect": Rect(),
+            "offered": Rect(),
+            "ray": Ray(config),
             "slope": Slope(),
             "hit": bit(),
             "depth": unsigned(position_bits(config)),
             "point": Origin(config),
-            "ahead": bit(),
+            "towards": bit(),
             "config": config,
         },
         directory,
@@ -83,9 +83,9 @@ def finder_leaf(config: Configuration, directory) -> Leaf:
 
 
 def ray_inputs(origin, slope) -> dict[str, int]:
-    inputs = {f"origin_{axis}": int(value) for axis, value in zip(AXES, origin, strict=True)}
+    inputs = {f"ray_{axis}": int(value) for axis, value in zip(AXES, origin, strict=True)}
     inputs |= {f"slope_d{axis}": abs(int(value)) for axis, value in zip(AXES, slope, strict=True)}
-    return inputs | {f"signs_d{axis}": int(value < 0) for axis, value in zip(AXES, slope, strict=True)}
+    return inputs | {f"ray_d{axis}": int(value < 0) for axis, value in zip(AXES, slope, strict=True)}
 
 
 def finder_stimulus(config: Configuration, rays) -> tuple[list[dict[str, int]], list[tuple[int, int, int]]]:
@@ -98,13 +98,11 @@ def finder_stimulus(config: Configuration, rays) -> tuple[list[dict[str, int]], 
             for name in ("find_intersection", "load_divider", "store_quotient"):
                 inputs[f"steps_{name}"] = cycle.steps[f"steps_{name}"]
             if cycle.current is not None:
-                rect = sorted_rect(table, cycle.current, "current_plane")
-                inputs |= {name: rect[name] for name in ("current_plane_axis", "current_plane_position")}
-            if cycle.finishing is not None:
-                inputs |= sorted_rect(table, cycle.finishing, "finishing_rect")
-                del inputs["finishing_rect_colour"]
+                inputs |= sorted_rect(table, cycle.current, "rect")
+            if cycle.offered is not None:
+                inputs |= sorted_rect(table, cycle.offered, "offered")
             if cycle.steps["steps_write_z_buf"]:
-                results.append((len(stimulus), number, cycle.finishing))
+                results.append((len(stimulus), number, cycle.offered))
             stimulus.append(inputs)
     return stimulus, results
 
@@ -195,7 +193,7 @@ def test_z_buffer(config, tmp_path):
         lambda: {
             "clk": bit(),
             "steps": Steps(),
-            "finishing_rect": Rect(),
+            "offered": Rect(),
             "hit": bit(),
             "depth": unsigned(width),
             "point": Origin(config),
@@ -220,8 +218,8 @@ def test_z_buffer(config, tmp_path):
                 "steps_write_z_buf": int(write),
                 "hit": int(number == 0 or random.random() < 0.7),
                 "depth": int(depth),
-                "finishing_rect_axis": int(random.integers(3)),
-                "finishing_rect_colour": int(random.integers(1 << RGB_BITS)),
+                "offered_axis": int(random.integers(3)),
+                "offered_colour": int(random.integers(1 << RGB_BITS)),
                 **{f"point_{axis}": int(random.integers(limit + 1)) for axis in AXES},
             }
         )
@@ -230,8 +228,8 @@ def test_z_buffer(config, tmp_path):
     for cycle, (inputs, output) in enumerate(zip(stimulus[1:], outputs[1:], strict=True)):
         assert output["found"] == (kept is not None), (cycle, repeat())
         if kept is not None:
-            assert output["found_axis"] == kept["finishing_rect_axis"], (cycle, repeat())
-            assert output["found_colour"] == kept["finishing_rect_colour"], (cycle, repeat())
+            assert output["found_axis"] == kept["offered_axis"], (cycle, repeat())
+            assert output["found_colour"] == kept["offered_colour"], (cycle, repeat())
             for axis in AXES:
                 assert output[f"found_point_{axis}"] == kept[f"point_{axis}"], (cycle, repeat())
         if inputs["steps_reset_z_buf"]:
@@ -249,9 +247,8 @@ def test_ray_mem(config, tmp_path):
             "steps": Steps(),
             "found_axis": unsigned(AXIS_BITS),
             "found_point": Origin(config),
-            "signs": Signs(),
-            "reflected_origin": Origin(config),
-            "reflected_signs": Signs(),
+            "ray": Ray(config),
+            "reflected": Ray(config),
         },
         tmp_path,
     )
@@ -262,16 +259,17 @@ def test_ray_mem(config, tmp_path):
             "steps_store_ray": int(number == 0 or random.random() < 0.7),
             "found_axis": number % 3,
             **{f"found_point_{axis}": int(random.choice(values)) for axis in AXES},
-            **{f"signs_d{axis}": int(random.integers(2)) for axis in AXES},
+            **{f"ray_d{axis}": int(random.integers(2)) for axis in AXES},
+            **{f"ray_{axis}": int(random.choice(values)) for axis in AXES},
         }
         for number in range(300)
     ]
     outputs = leaf.run_both(stimulus, settled=1)
     for inputs, output in zip(stimulus[:-1], outputs[1:], strict=True):
         if inputs["steps_store_ray"]:
-            expected = {f"reflected_origin_{axis}": inputs[f"found_point_{axis}"] for axis in AXES}
+            expected = {f"reflected_{axis}": inputs[f"found_point_{axis}"] for axis in AXES}
             for number, axis in enumerate(AXES):
-                expected[f"reflected_signs_d{axis}"] = inputs[f"signs_d{axis}"] ^ (inputs["found_axis"] == number)
+                expected[f"reflected_d{axis}"] = inputs[f"ray_d{axis}"] ^ (inputs["found_axis"] == number)
         assert output == expected, (inputs, repeat())
 
 
@@ -292,9 +290,8 @@ def test_ray_generator(config, tmp_path):
         lambda: {
             "clk": bit(),
             "steps": Steps(),
-            "row": unsigned(row_bits(config)),
+            "place": Place(config),
             "column_base": unsigned(unit_bits(config)),
-            "column_offset": unsigned(offset_bits(config)),
             "initial_signs": Signs(),
             "slope": Slope(),
             "config": config,
@@ -307,8 +304,8 @@ def test_ray_generator(config, tmp_path):
     rays |= {(row, column) for row in range(screen.rows) for column in (0, screen.centre_column, last_column)}
     stimulus = [
         {
-            "row": row,
-            "column_offset": column // config.units,
+            "place_row": row,
+            "place_column_offset": column // config.units,
             "column_base": column % config.units,
             "steps_screen_to_ray": load,
         }
@@ -317,20 +314,48 @@ def test_ray_generator(config, tmp_path):
         for load in ([1] if number % 8 == 0 else [0] if number % 8 == 1 else [0, 1])
     ]
     # The counters rest one past their last value; nothing there may overflow.
-    stimulus.append({"row": screen.rows, "column_offset": config.groups, "column_base": config.units - 1})
+    stimulus.append({"place_row": screen.rows, "place_column_offset": config.groups, "column_base": config.units - 1})
     outputs = leaf.run_both(stimulus, settled=1)
     slopes = primary_slopes(screen)
     loaded = 0
     for inputs, output in zip(stimulus[:-1], outputs[1:], strict=True):
         if inputs["steps_screen_to_ray"]:
             loaded += 1
-            column = inputs["column_offset"] * config.units + inputs["column_base"]
-            slope = slopes[inputs["row"], column]
+            column = inputs["place_column_offset"] * config.units + inputs["column_base"]
+            slope = slopes[inputs["place_row"], column]
             expected = {f"slope_d{axis}": abs(int(value)) for axis, value in zip(AXES, slope, strict=True)}
             expected |= {f"initial_signs_d{axis}": int(value < 0) for axis, value in zip(AXES, slope, strict=True)}
             assert expected["slope_dx"] == VIEW_DISTANCE
         assert output == expected, inputs
     assert loaded > len(rays) * 3 // 4
+
+
+@pytest.mark.parametrize(("value_bits", "bits"), [(2, 1), (5, 4), (10, 9), (13, 9)])
+def test_magnitude(value_bits, bits, tmp_path):
+    """Of each value whose magnitude fits."""
+    leaf = Leaf(magnitude, lambda: {"value": signed(value_bits), "result": unsigned(bits)}, tmp_path)
+    values = range(1 - (1 << bits), 1 << bits)
+    outputs = leaf.run_both([{"value": value % (1 << value_bits)} for value in values])
+    assert [output["result"] for output in outputs] == [abs(value) for value in values]
+
+
+@pytest.mark.parametrize("colour_bits", range(1, CHANNEL_BITS + 1))
+def test_colour_average(colour_bits, tmp_path):
+    """Of each sum that so many reflections may lead to."""
+    config = any_config(colour_bits=colour_bits, reflections=2)
+    leaf = Leaf(
+        colour_average,
+        lambda: {
+            "total": unsigned(CHANNEL_BITS + 2), "reflections": unsigned(2), "mean": unsigned(colour_bits),
+            "config": config,
+        },
+        tmp_path,
+    )  # fmt: skip
+    weights = (1, 2, 4)
+    sums = [(total, number) for number, weight in enumerate(weights) for total in range(255 * weight + 1)]
+    outputs = leaf.run_both([{"total": total, "reflections": number} for total, number in sums])
+    for (total, number), output in zip(sums, outputs, strict=True):
+        assert output["mean"] == total // weights[number] >> (CHANNEL_BITS - colour_bits), (total, number)
 
 
 @pytest.mark.parametrize("colour_bits", range(1, CHANNEL_BITS + 1))
@@ -380,10 +405,9 @@ def test_colour_combiner(colour_bits, reflections, tmp_path):
             "steps": Steps(),
             "found": bit(),
             "found_colour": unsigned(RGB_BITS),
-            "background": unsigned(RGB_BITS),
-            "reflections": unsigned(2),
+            "picture": Picture(),
             "missed": bit(),
-            "pixel": unsigned(pixel_bits(config)),
+            "pixel": Pixel(colour_bits),
             "config": config,
         },
         tmp_path,
@@ -394,7 +418,8 @@ def test_colour_combiner(colour_bits, reflections, tmp_path):
         run_time = int(random.integers(reflections + 1))
         palette = random.choice([0, 1, 255, 128, *random.integers(256, size=4)], (run_time + 2, 3)).astype(np.uint8)
         words = [int.from_bytes(bytes(colour)) for colour in palette]
-        held = {"background": words[-1], "reflections": run_time, "steps_reset_colour": 0, "steps_add_colour": 0}
+        held = {"picture_background": words[-1], "picture_reflections": run_time}
+        held |= {"steps_reset_colour": 0, "steps_add_colour": 0}
         stimulus.append({**held, "steps_reset_colour": 1})
         winners, missed = [], False
         for number in range(run_time + 1):
@@ -410,8 +435,7 @@ def test_colour_combiner(colour_bits, reflections, tmp_path):
         stimulus.append({**held, "found": int(random.integers(2))})
     outputs = leaf.run_both(stimulus, settled=1)
     for cycle, palette, winners, missed in results:
-        expected = 0
-        for channel in blend(palette[:-1], palette[-1], winners)[0]:
-            expected = expected << colour_bits | int(channel) >> (CHANNEL_BITS - colour_bits)
-        assert outputs[cycle]["pixel"] == expected, (palette.tolist(), winners, repeat())
+        for name, channel in zip(("red", "green", "blue"), blend(palette[:-1], palette[-1], winners)[0], strict=True):
+            expected = int(channel) >> (CHANNEL_BITS - colour_bits)
+            assert outputs[cycle][f"pixel_{name}"] == expected, (palette.tolist(), winners, repeat())
         assert outputs[cycle]["missed"] == missed, (winners, repeat())

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from raycaster.configuration import Configuration, configure
+from raycaster.rtl.common.interfaces import Scan, Vga
+from raycaster.rtl.common.records import Pixel
 from raycaster.rtl.common.widths import bit, bits_for, offset_bits, pixel_bits, unsigned
 from raycaster.rtl.video.line_buffer import line_buffer
 from raycaster.rtl.video.video_generator import video_generator
@@ -83,10 +85,10 @@ def video_model(screen: Screen, lead: int, cycle: int, colours: list[tuple[int, 
     column = x + lead
     in_columns = 0 <= column < horizontal.visible
     outputs = {
-        "start_screen": line_start and y == -doubling,
-        "start_row": line_start and y >= 0 and y % doubling == 0,
-        "visible_line": in_columns,
-        "next_column": in_columns and clock == clocks - 1 and column % doubling == doubling - 1,
+        "scan_start_screen": line_start and y == -doubling,
+        "scan_start_row": line_start and y >= 0 and y % doubling == 0,
+        "scan_visible_line": in_columns,
+        "scan_next_column": in_columns and clock == clocks - 1 and column % doubling == doubling - 1,
         # With a clock a pixel it is the clock inverted, and the bench looks while that is low.
         "vga_clk": clock == clocks - 1,
         "vga_sync_n": 0,
@@ -126,16 +128,15 @@ BEAMS = {
 @pytest.mark.parametrize("name", [*SMALL_SCREENS, *BEAMS])
 def test_video_generator(name, colour_bits, tmp_path):
     screen, lead = BEAMS[name] if name in BEAMS else (SMALL_SCREENS[name], 0)
-    channels = ("red", "green", "blue")
+    channels = ("pixel_red", "pixel_green", "pixel_blue")
     leaf = Leaf(
         video_generator,
         lambda: {
             "clk": bit(),
             "reset": reset_signal(),
-            **{port: bit() for port in ("start_screen", "start_row", "visible_line", "next_column")},
-            **{channel: unsigned(colour_bits) for channel in channels},
-            **{f"vga_{channel}": unsigned(colour_bits) for channel in "rgb"},
-            **{f"vga_{port}": bit() for port in ("hs", "vs", "blank_n", "sync_n", "clk")},
+            "scan": Scan(),
+            "pixel": Pixel(colour_bits),
+            "vga": Vga(colour_bits),
             "screen": screen,
             "lead": lead,
         },

@@ -4,38 +4,105 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import subprocess
 from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from conftest import ROOT
 
 from raycaster.configuration import Configuration, configure
 from raycaster.convert.hierarchy import Port
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM, READS_IN_FLIGHT, component, interfaces
 from raycaster.convert.take_home import FILE_LIST, TOP
 from raycaster.convert.write import write_verilog
+from raycaster.fit.fixing import fix
 from raycaster.registers import register_map
 from raycaster.tools import run_yosys
 
 CONFIGURATIONS = [
     configure(screen="tiny", units=2, rectangles=2, allow_underrun=True),
     configure(screen="tiny", units=1, rectangles=32, colour_bits=4, fraction_bits=8, allow_underrun=True),
+    *(
+        fix(
+            ROOT / "scenes/boxes.toml", {"screen": "tiny", "units": 2, "allow_underrun": True}, scope
+        ).design.configuration
+        for scope in ("rects", "all")
+    ),
 ]
 
-COMMANDS = (
-    "set_module_property", "set_module_assignment", "add_fileset", "set_fileset_property", "add_fileset_file",
-    "add_interface", "set_interface_property", "add_interface_port",
-)  # fmt: skip
-"""Those of Platform Designer that the component may use; Tcl refuses any other."""
+COMMANDS = {
+    "set_module_property": "property value",
+    "set_module_assignment": "name {value {}}",
+    "add_fileset": "name kind {callback {}} {display_name {}}",
+    "set_fileset_property": "fileset property value",
+    "add_fileset_file": "output_file file_type file_source path_or_contents {attributes {}}",
+    "add_interface": "name type direction {associated_clock {}}",
+    "set_interface_property": "interface property value",
+    "add_interface_port": "interface port signal_type direction width",
+}
+"""Those of Platform Designer that the component may use, with the arguments that its user guide gives them."""
 
-STAND_INS = (
-    "rename package real_package\n"
-    "proc package {action args} { record package $action {*}$args }\n"
-    "proc record {args} { puts [join $args \\t] }\n"
-    + "".join(f"proc {name} {{args}} {{ record {name} {{*}}$args }}\n" for name in COMMANDS)
-)
+PATTERNS = {
+    ("set_module_property", 0): "NAME|DISPLAY_NAME|DESCRIPTION|GROUP|VERSION|EDITABLE",
+    ("set_module_assignment", 0): r"embeddedsw\.CMacro\.[A-Z][A-Z0-9_]*",
+    ("set_module_assignment", 1): r'\d+|"[^"\\]*"',
+    ("add_fileset", 1): "QUARTUS_SYNTH|SIM_VERILOG|SIM_VHDL|EXAMPLE_DESIGN",
+    ("set_fileset_property", 1): "TOP_LEVEL",
+    ("add_fileset_file", 1): "VERILOG",
+    ("add_fileset_file", 2): "PATH|TEXT",
+    ("add_interface", 0): r"[a-z]\w*",
+    ("add_interface", 1): "clock|reset|avalon|interrupt|conduit",
+    ("add_interface", 2): "end|start|sink|source|master|slave|sender|receiver",
+    ("add_interface_port", 3): "Input|Output|Bidir",
+    ("add_interface_port", 4): r"[1-9]\d*",
+    ("create_system", 0): r"[a-z]\w*",
+    ("set_project_property", 0): "DEVICE_FAMILY|DEVICE",
+    ("add_connection", 0): r"\w+\.\w+",
+    ("add_connection", 1): r"\w+\.\w+",
+    ("set_connection_parameter_value", 0): r"\w+\.\w+/\w+\.\w+",
+    ("set_connection_parameter_value", 1): "baseAddress|irqNumber",
+    ("set_connection_parameter_value", 2): r"0x[0-9a-fA-F]{1,8}|\d+",
+    ("save_system", 0): r"\w+\.qsys",
+}
+"""By command and place, what an argument may be."""
+
+VALUES = {
+    "NAME": r"[a-z]\w*",
+    "VERSION": r"\d+(\.\d+)*",
+    "EDITABLE": "true|false",
+    "TOP_LEVEL": r"[a-z]\w*",
+    "clockRate": r"\d+",
+    "synchronousEdges": "NONE|DEASSERT|BOTH",
+    "associatedClock": r"\w+",
+    "associatedReset": r"\w+",
+    "associatedAddressablePoint": r"\w+",
+    "addressUnits": "WORDS|SYMBOLS",
+    "bitsPerSymbol": r"[1-9]\d*",
+    "maximumPendingReadTransactions": r"\d+",
+    "readLatency": r"\d+",
+    "isMemoryDevice": "true|false",
+    "EXPORT_OF": r"\w+\.\w+",
+    "clockFrequency": r"\d+",
+    "resetSynchronousEdges": "NONE|DEASSERT|BOTH",
+    "memorySize": r"\d+",
+    "dataWidth": "8|16|32|64|128|256|512|1024",
+    "direction": "Input|Output|InOut|Bidir",
+    "width": r"[1-9]|[12]\d|3[0-2]",
+}
+"""By property or parameter of those that are set, what its value may be."""
+
+
+def stand_ins(commands: dict[str, str]) -> str:
+    """Tcl procedures that write each call as a line; as the real ones they refuse arguments too few or too many."""
+    return (
+        "rename package real_package\n"
+        "proc package {action exact name version} { record package $action $exact $name $version }\n"
+        "proc record {args} { puts [join $args \\t] }\n"
+    ) + "".join(f"proc {name} {{{taken}}} {{ record {{*}}[info level 0] }}\n" for name, taken in commands.items())
+
 
 AVALON_ROLES = {
     "address", "read", "write", "writedata", "byteenable", "readdata", "readdatavalid", "waitrequest",
@@ -45,15 +112,31 @@ AVALON_ROLES = {
 Call = list[str]
 
 
-def tcl(directory: Path) -> list[Call]:
-    """What the component in a directory calls, in order: the command and its arguments."""
+def run_tcl(directory: Path, commands: dict[str, str], script: str) -> subprocess.CompletedProcess[str]:
+    """Run a script in a directory, in which the commands stand for Platform Designer's."""
     if not shutil.which("tclsh"):
         pytest.skip("no tclsh here: Debian's package tcl")
-    (directory / "stand_ins.tcl").write_text(STAND_INS)
-    (directory / "main.tcl").write_text(f"source stand_ins.tcl\nsource {COMPONENT}\n")
-    done = subprocess.run(["tclsh", "main.tcl"], cwd=directory, capture_output=True, text=True, check=False)
+    (directory / "main.tcl").write_text(stand_ins(commands) + script)
+    return subprocess.run(["tclsh", "main.tcl"], cwd=directory, capture_output=True, text=True, check=False)
+
+
+def calls_of(done: subprocess.CompletedProcess[str]) -> list[Call]:
+    """What a script called, in order: the command and its arguments, of which each is what it may be."""
     assert (done.returncode, done.stderr) == (0, "")
-    return [line.split("\t") for line in done.stdout.splitlines()]
+    calls = [line.split("\t") for line in done.stdout.splitlines()]
+    for command, *arguments in calls:
+        for place, argument in enumerate(arguments):
+            pattern = PATTERNS.get((command, place), r".*")
+            assert re.fullmatch(pattern, argument), f"{command}: {argument} is not {pattern}"
+        if command.startswith("set_") and command != "set_module_assignment" and arguments[-2] in VALUES:
+            pattern = VALUES[arguments[-2]]
+            assert re.fullmatch(pattern, arguments[-1]), f"{command}: {arguments[-2]} {arguments[-1]} is not {pattern}"
+    return calls
+
+
+def tcl(directory: Path) -> list[Call]:
+    """What the component in a directory calls."""
+    return calls_of(run_tcl(directory, COMMANDS, f"source {COMPONENT}\n"))
 
 
 def declared_ports(calls: list[Call]) -> dict[str, tuple[str, int]]:
@@ -115,7 +198,7 @@ def test_interfaces(written, config):
     roles = {call[2]: call[3] for call in calls if call[0] == "add_interface_port" and call[1] == "s0"}
     assert set(roles.values()) == AVALON_ROLES
     address_width = declared_ports(calls)["avs_s0_address"][1]
-    last = max(register.address for register in register_map(config.rectangles).values())
+    last = max(register.address for register in register_map(config.table).values())
     assert 1 << address_width - 1 <= last < 1 << address_width
 
 
@@ -134,6 +217,30 @@ def test_software_gets_the_configuration(written, config):
     macros = {call[1].rpartition(".")[2]: call[2] for call in tcl(written) if call[0] == "set_module_assignment"}
     assert macros["RECTANGLES"] == str(config.rectangles)
     assert macros["ROUNDING"] == '"truncate"'
+    assert macros["CULLING"] == str(int(config.culling))
+    assert macros.get("FIXED") == (f'"{config.fixed.scope}"' if config.fixed else None)
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ('ROUNDING {"truncate"}', "ROUNDING one two"),
+        ('ROUNDING {"truncate"}', "ROUNDING truncate"),
+        ("CULLING 1", "CULLING None"),
+        ("EDITABLE false", "EDITABLE False"),
+        ("synchronousEdges BOTH", "synchronousEdges Both"),
+        ("add_interface irq interrupt end", "add_interface irq interrupt"),
+        ("irq irq Output 1\n", "irq irq output 1\n"),
+    ],
+)
+def test_an_argument_that_platform_designer_refuses_is_noticed(tmp_path, right, wrong):
+    text = component(CONFIGURATIONS[0], [Port("irq", 1, False, True)], [f"{TOP}.v"])
+    assert text.count(right) == 1
+    (tmp_path / COMPONENT).write_text(text)
+    tcl(tmp_path)
+    (tmp_path / COMPONENT).write_text(text.replace(right, wrong))
+    with pytest.raises(AssertionError):
+        tcl(tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -172,10 +279,18 @@ def test_an_unknown_port_is_refused():
         component(CONFIGURATIONS[0], [Port("strange", 1, False, True)], [f"{TOP}.v"])
 
 
-SYSTEM_COMMANDS = (
-    "create_system", "set_project_property", "add_instance", "set_instance_parameter_value", "add_connection",
-    "set_connection_parameter_value", "add_interface", "set_interface_property", "save_system",
-)  # fmt: skip
+SYSTEM_COMMANDS = {
+    "create_system": "{name {}}",
+    "set_project_property": "property value",
+    "add_instance": "name type {version {}}",
+    "set_instance_parameter_value": "instance parameter value",
+    "add_connection": "start {end {}}",
+    "set_connection_parameter_value": "connection parameter value",
+    "add_interface": "name type direction",
+    "set_interface_property": "interface property value",
+    "save_system": "{file {}}",
+}
+"""The same for a system's script."""
 
 AGENT, HOST, CLOCK, RESET, SENDER, RECEIVER, CONDUIT = (
     "agent", "host", "clock", "reset", "interrupt sender", "interrupt receiver", "conduit",
@@ -208,21 +323,14 @@ def own_ends(config: Configuration) -> dict[str, str]:
 
 
 def run_system(directory: Path, settings: str, script: str) -> subprocess.CompletedProcess[str]:
-    if not shutil.which("tclsh"):
-        pytest.skip("no tclsh here: Debian's package tcl")
-    commands = "".join(f"proc {name} {{args}} {{ record {name} {{*}}$args }}\n" for name in SYSTEM_COMMANDS)
-    record = 'rename package real_package\nproc package {args} {}\nproc record {args} { puts [join $args "\\t"] }\n'
     (directory / NIOS_SYSTEM.name).write_text(script)
-    (directory / "main.tcl").write_text(f"{record}{commands}{settings}\nsource {NIOS_SYSTEM.name}\n")
-    return subprocess.run(["tclsh", "main.tcl"], cwd=directory, capture_output=True, text=True, check=False)
+    return run_tcl(directory, SYSTEM_COMMANDS, f"{settings}\nsource {NIOS_SYSTEM.name}\n")
 
 
 def check_system(directory: Path, processor: str, script: str) -> None:
     """Every end is there and connected to what it fits, and no two agents of a host have an address in common."""
     config = CONFIGURATIONS[0]
-    done = run_system(directory, f"set processor {processor}\nset family {{MAX 10}}\nset device 10M50", script)
-    assert (done.returncode, done.stderr) == (0, "")
-    calls = [line.split("\t") for line in done.stdout.splitlines()]
+    calls = calls_of(run_system(directory, f"set processor {processor}\nset family {{MAX 10}}\nset device X", script))
     ends: dict[str, str] = {}
     for command, *arguments in calls:
         if command == "add_instance":
@@ -267,8 +375,10 @@ def test_a_nios_system_fits_together(tmp_path, processor):
         ("raycaster.clock raycaster.reset", "raycaster.clk raycaster.reset"),
         ("{raycaster.irq serial.irq}", "{serial.irq raycaster.irq}"),
         ("    vga conduit end raycaster.vga\n", ""),
+        ("memory memorySize 65536", "memory memorySize {64 KiB}"),
+        ("memory memorySize 65536", "memory memorySize 64 KiB"),
     ],
-    ids=["overlap", "clock", "interrupt", "export"],
+    ids=["overlap", "clock", "interrupt", "export", "value", "count"],
 )
 def test_a_nios_system_that_does_not_fit_is_noticed(tmp_path, right, wrong):
     script = NIOS_SYSTEM.read_text()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The lint of the hardware's sources: clean on them, and each rule seen to catch what it is for."""
 
+import ast
 import re
 import subprocess
 import sys
@@ -47,6 +48,20 @@ def test_the_hardware_is_clean():
     files = sorted(RTL.rglob("*.py"))
     assert len(files) > 20
     assert [finding for path in files for finding in check(path)] == []
+
+
+def test_one_block_alone_has_logic_on_the_clock():
+    """A board replaces it by a register of its own; all else uses the clock's edge and nothing of it otherwise."""
+    users = []
+    for path in sorted(RTL.rglob("*.py")):
+        functions = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.FunctionDef)]
+        processes = [one for one in functions if any("always" in ast.unparse(line) for line in one.decorator_list)]
+        names = [
+            node for one in processes for line in one.body for node in ast.walk(line) if isinstance(node, ast.Name)
+        ]
+        if any(name.id == "clk" for name in names):
+            users.append(path.name)
+    assert users == ["pixel_clock.py"]
 
 
 @pytest.mark.parametrize(

@@ -10,9 +10,10 @@ import pytest
 
 from raycaster.golden.tmds import CONTROL_SYMBOLS, Sample, decode, encode, minimise_transitions
 from raycaster.rtl.common.widths import bit, unsigned
-from raycaster.rtl.dvi.dvi_encoder import DviPorts, dvi_encoder
+from raycaster.rtl.dvi.dvi_encoder import dvi_encoder
 from raycaster.rtl.dvi.ones_count import ones_count
 from raycaster.rtl.dvi.tmds_encoder import DISPARITY_BITS, SYMBOL_BITS, tmds_encoder
+from raycaster.rtl.system.ports import dvi_ports
 from raycaster.verif.leaf import Leaf
 from raycaster.verif.seeds import repeat, seed
 
@@ -99,7 +100,7 @@ def test_tmds_encoder(tmp_path):
 
 @pytest.mark.parametrize("clocks_per_pixel", [1, 2])
 def test_dvi_encoder(clocks_per_pixel, tmp_path):
-    leaf = Leaf(dvi_encoder, lambda: DviPorts().all(), tmp_path)
+    leaf = Leaf(dvi_encoder, dvi_ports, tmp_path)
     rng = random.Random(seed())
     pixels = []
     for _ in range(30):

@@ -17,9 +17,10 @@ from rich.console import Console
 
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
+from raycaster.rtl.common.records import Signs
 from raycaster.rtl.engine.ray_sequencer import RayState
 from raycaster.verif.monitor import CLOCK_NS
-from raycaster.verif.probes.ray import Ray
+from raycaster.verif.probes.ray import Ray, fields
 from raycaster.verif.recorder import build_and_record
 from raycaster.verif.simulator import FST_HEADERS, has_headers
 from raycaster.verif.wave import main, viewer, write_view
@@ -84,6 +85,26 @@ def test_samples_stand_before_the_edge(vcd):
         "bench.dut.wide": [None, (1 << 69) + 1, (1 << 69) + 1],
         "bench.dut.mem[1]": [1, 1, 2],
     }
+
+
+def test_bits_of_a_signal(vcd):
+    high, low, element = "bench.dut.wide[69:68]", "bench.dut.wide[1:0]", "bench.dut.mem[1][1:1]"
+    assert vcd.sample([high, low, element]).values == {high: [None, 2, 2], low: [None, 1, 1], element: [0, 0, 1]}
+    assert (vcd.width(high), vcd.width(element)) == (2, 1)
+    assert fields("bench.dut", "signs", ("dx", "dz:hex"), Signs()) == (
+        "bench.dut.signs_word[2:2]", "bench.dut.signs_word[0:0]:hex",
+    )  # fmt: skip
+    for mistake in ("[70:0]", "[0:1]"):
+        with pytest.raises(UserError, match=r"bench\.dut\.wide has 70 bits, not \[\d+:\d\]$"):
+            vcd.width(f"bench.dut.wide{mistake}")
+
+
+def test_viewers_are_told_of_bits(vcd):
+    files = write_files(vcd, View({"control": ["bench.clk", "bench.dut.wide[69:68]:signed"]}, {}, 5, 70))
+    gtkwave, surfer = (path.read_text() for path in files)
+    bits = [f"({place})bench.dut.wide[69:0]" for place in (0, 1)]
+    assert f"#{{wide[69:68]}} {' '.join(bits)}\n" in gtkwave
+    assert "variable_add bench.dut.wide\n" in surfer
 
 
 def test_range_of_times(vcd):
@@ -161,7 +182,8 @@ def test_window_has_its_rows_alone(wave):
 def test_viewers_show_what_there_is(wave):
     """Every signal of the save files stands in the waveform, with its width; the states have the design's names."""
     _, _, waves, (gtkwave, surfer) = wave
-    shown = re.findall(r"^(?:\+\{.*\} )?(bench\.\S+)$", gtkwave.read_text(), re.MULTILINE)
+    # Bits of a word are shown as bits, or as the word.
+    shown = re.findall(r"^(?:\+\{.*\} |#\{.*\} (?:.*\(\d+\)|\(\d+\)))?(bench\.\S+)$", gtkwave.read_text(), re.MULTILINE)
     assert len(shown) > 30
     for name in shown:
         signal, _, last_bit = name.removesuffix(":0]").partition("[")
@@ -171,7 +193,7 @@ def test_viewers_show_what_there_is(wave):
     groups = re.findall(r"^divider_add (\S+)$", surfer.read_text(), re.MULTILINE)
     assert groups[0] == "control"
     assert groups[-2:] == ["video", "bus"]
-    labels = re.findall(r"^\+\{(.*)\}", gtkwave.read_text(), re.MULTILINE)
+    labels = re.findall(r"^[+#]\{(.*?)\}", gtkwave.read_text(), re.MULTILINE)
     assert len(set(labels)) == len(labels), "two signals have one label"
 
 

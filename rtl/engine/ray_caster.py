@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: MIT
+"""What fills a line buffer, whichever engine it is of: one control, and units that it operates in step."""
+
+from myhdl import always_comb, block, instances
+
+from raycaster.configuration import Configuration
+from raycaster.rtl.common.interfaces import GroupFate, RayFate, Steps
+from raycaster.rtl.common.records import Pixel, Rect, Surface
+from raycaster.rtl.common.ties import tied
+from raycaster.rtl.common.widths import side_by_side, unit_bits
+from raycaster.rtl.cull.group_culler import group_culler
+from raycaster.rtl.engine.engines import block_named
+from raycaster.rtl.engine.ray_sequencer import ends_early
+
+
+@block
+def ray_caster(clk, reset_ray_caster, enable, place, camera, picture, rects, done, pixels, config: Configuration):
+    """Compute the pixels of config.units neighbouring columns at once.
+
+    Starts where enable is high and reset_ray_caster low; place and the scene then hold still until done, which stays
+    high, as pixels do, until reset_ray_caster. pixels: all units' `Pixel` words, unit 0's in the lowest bits.
+    """
+    control, unit = block_named(config.facts.control), block_named(config.facts.unit)
+    steps = Steps()
+    offered = Rect() if config.facts.divides else Surface()
+    unit_pixels = [Pixel(config.colour_bits) for _ in range(config.units)]
+    fates = [RayFate() for _ in range(config.units)]
+    together = side_by_side([pixel.word for pixel in unit_pixels])
+    alive = side_by_side([fate.alive for fate in fates])
+    towards = side_by_side([fate.towards for fate in fates])
+    fate = GroupFate(config)
+    if not config.culling:
+        fate.may_hit = tied((1 << config.rectangles) - 1, fate.may_hit)
+        fate.any_towards, fate.any_alive = tied(1, fate.any_towards), tied(1, fate.any_alive)
+
+    operator = control(
+        clk=clk, reset_ray_caster=reset_ray_caster, enable=enable, picture=picture, rects=rects, steps=steps, fate=fate,
+        offered=offered, done=done, config=config,
+    )  # fmt: skip
+    units = [
+        unit(
+            clk=clk, steps=steps, place=place, column_base=tied(number, unit_bits(config)), camera=camera,
+            rect=rects.rect, offered=offered, picture=picture, pixel=unit_pixels[number], fate=fates[number],
+            config=config,
+        )
+        for number in range(config.units)
+    ]  # fmt: skip
+
+    @always_comb
+    def join_pixels():
+        pixels.next = together
+
+    if config.culling:
+        culler = group_culler(
+            clk=clk, reset_ray_caster=reset_ray_caster, start_group=steps.screen_to_ray, done=done, place=place,
+            camera=camera, rects=rects, may_hit=fate.may_hit, config=config,
+        )  # fmt: skip
+
+        @always_comb
+        def judge_alive():
+            fate.any_alive.next = alive != 0
+
+    if ends_early(config):
+
+        @always_comb
+        def judge_towards():
+            fate.any_towards.next = towards != 0
+
+    return instances()

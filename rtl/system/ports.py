@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: MIT
+"""Signals for every port of a top, by the names of its arguments: `top(**its_ports(config), config=config)`."""
+
+from typing import Any
+
+from myhdl import ResetSignal
+
+from raycaster.configuration import CHANNEL_BITS, Configuration
+from raycaster.memory_map import BUTTON_NAMES
+from raycaster.registers import address_bits
+from raycaster.rtl.common.interfaces import AvalonPort, Vga
+from raycaster.rtl.common.widths import bit, unsigned
+from raycaster.rtl.dvi.tmds_encoder import SYMBOL_BITS
+from raycaster.rtl.system.scene_player import BUTTONS
+
+
+def module_ports(config: Configuration) -> dict[str, Any]:
+    """Those of ray_caster_module; Verilog has avs_s0_* and vga_*."""
+    reset, avs_s0 = ResetSignal(0, active=1, isasync=False), AvalonPort(address_bits(config.table))
+    return {"clk": bit(), "reset": reset, "avs_s0": avs_s0, "irq": bit(), "vga": Vga(config.colour_bits)}
+
+
+def system_ports(config: Configuration) -> dict[str, Any]:
+    """Those of ray_caster_system."""
+    return {"clk": bit(), "ready": bit(), "buttons": unsigned(len(BUTTONS)), "vga": Vga(config.colour_bits)}
+
+
+def processor_ports(config: Configuration) -> dict[str, Any]:
+    """Those of processor_system."""
+    return system_ports(config) | {"buttons": unsigned(len(BUTTON_NAMES)), "uart_tx": bit()}
+
+
+def dvi_ports() -> dict[str, Any]:
+    """Those of dvi_encoder."""
+    symbols = {channel: unsigned(SYMBOL_BITS) for channel in ("blue", "green", "red")}
+    return {"clk": bit(), "ready": bit(), "pixel_end": bit(), "vga": Vga(CHANNEL_BITS), **symbols, "pixel": bit()}
