@@ -39,7 +39,7 @@ $(COMMANDS) $(CHECKS): $(VENV)/base
 lint test: $(VENV)/base
 	@$(call install,$(EXTRAS))
 	@$(if $(filter lint,$@),$(PYTHON) -m ruff check && $(PYTHON) -m ruff format --check)
-	@$(if $(filter lint,$@),$(PYTHON) -m raycaster.verif.rtl_lint,$(PYTHON) -m raycaster.verif.ensure_icarus)
+	@$(if $(filter lint,$@),$(PYTHON) -m raycaster.verif.rtl_lint,$(PYTHON) -m raycaster.sim.ensure_icarus)
 	@$(if $(filter test,$@),$(PYTHON) -m pytest -q -n 2 --dist worksteal verif/tests)
 
 clean:

@@ -26,14 +26,14 @@ class Command:
 
 
 COMMANDS: Mapping[str, Command] = {
-    "sim": Command("raycaster.verif.simulate", "show scenes through the converted hardware, every pixel checked"),
+    "sim": Command("raycaster.sim.scenes", "show scenes through the converted hardware, every pixel checked"),
     "scenes": Command(__name__, "list the scenes that come with it"),
     "play": Command(
-        "raycaster.verif.window", "the game on the simulated hardware in a window, or a scene to walk through"
+        "raycaster.play.window", "the game on the simulated hardware in a window, or a scene to walk through"
     ),
-    "game": Command("raycaster.verif.game", "a recorded game on the simulated system, every pixel checked"),
-    "wave": Command("raycaster.verif.wave", "a waveform of some rows for GTKWave and Surfer"),
-    "trace": Command("raycaster.verif.trace", "the life of one pixel, golden's values beside the hardware's"),
+    "game": Command("raycaster.play.game", "a recorded game on the simulated system, every pixel checked"),
+    "wave": Command("raycaster.debug.wave", "a waveform of some rows for GTKWave and Surfer"),
+    "trace": Command("raycaster.debug.trace", "the life of one pixel, golden's values beside the hardware's"),
     "verilog": Command("raycaster.fpga.verilog", "the hardware as Verilog, with what other flows want beside it"),
     "fit": Command("raycaster.fpga.fit", "the smallest hardware that shows a scene"),
     "area": Command("raycaster.fpga.area", "the cells of a design in three families of chips"),

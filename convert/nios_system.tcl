@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # The ray tracer with a Nios processor, memory, buttons and a serial port over JTAG, for Intel's Platform Designer, which
-# writes nios_system.qsys. Not run there so far; see the README for what was.
+# writes nios_system.qsys. Not run there so far; see docs/boards.md for what was.
 #
 # From the directory that `make verilog` wrote, as the component raycaster_hw.tcl is looked for in it:
 #   qsys-script --script=nios_system.tcl \

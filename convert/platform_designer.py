@@ -95,7 +95,7 @@ def component(config: Configuration, ports: Sequence[Port], sources: Sequence[st
     top = sources[-1].removesuffix(".v")
     lines = [
         "# SPDX-License-Identifier: MIT",
-        f"# {top}, {config.name}, for Platform Designer. Not run there so far; see the README for what was.",
+        f"# {top}, {config.name}, for Platform Designer. Not run there so far; see docs/boards.md for what was.",
         f"package require -exact qsys {QSYS_VERSION}",
         "",
         f"set_module_property NAME {top}",

@@ -16,8 +16,8 @@ from raycaster.errors import UserError
 from raycaster.options import CommandParser
 from raycaster.output import replaced
 from raycaster.register_views import write_page
-from raycaster.verif import ensure_icarus
-from raycaster.verif.simulator import BUILD, SimulationError
+from raycaster.sim import ensure_icarus
+from raycaster.sim.simulator import BUILD, SimulationError
 
 HERE = Path(__file__).parent
 

@@ -19,12 +19,12 @@ from typing import Any
 import wavedrom
 
 from raycaster.configuration import Configuration, configure
+from raycaster.debug.probes.ray import fields
+from raycaster.debug.waves import Waves, signed
 from raycaster.errors import UserError
 from raycaster.rtl.common.records import Origin, Ray, Record
-from raycaster.verif.job import Job
-from raycaster.verif.probes.ray import fields
-from raycaster.verif.simulator import build_model, run_bench
-from raycaster.verif.waves import Waves, signed
+from raycaster.sim.job import Job
+from raycaster.sim.simulator import build_model, run_bench
 
 HERE = Path(__file__).parent
 SOURCES = HERE / "timing"
@@ -271,7 +271,7 @@ def simulate(build: Path, verilog: Sequence[Path] | None = None) -> Iterator[tup
     )
     with tempfile.TemporaryDirectory(dir=build, prefix=".timing-") as scratch:
         job = Job(CONFIGURATION, scene=str(SCENE.resolve()), output=str(Path(scratch).resolve()))
-        waves = run_bench(model, "raycaster.verif.frame_bench", job, Path(scratch))
+        waves = run_bench(model, "raycaster.sim.frame_bench", job, Path(scratch))
         frame = Frame(Waves(waves), CONFIGURATION)
         for diagram in DIAGRAMS:
             yield diagram.name, wave_json(diagram, frame)

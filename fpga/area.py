@@ -24,7 +24,7 @@ from rich.table import Table
 from raycaster.configuration import Configuration
 from raycaster.convert.take_home import TOP
 from raycaster.convert.write import write_verilog
-from raycaster.errors import UserError
+from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.tools import TIMEOUT, find_program, prepare_wasm, run_program, run_yosys
@@ -288,7 +288,7 @@ def route(config: Configuration, directory: Path) -> float:
     """
     nextpnr = find_program(NEXTPNR)
     if nextpnr is None:
-        raise UserError(f"{NEXTPNR} is missing; pip install 'raycaster[fpga]'")
+        raise UserError(not_installed(NEXTPNR, "fpga"))
     measure(config, FAMILIES["ecp5"], directory)
     prepare_wasm(nextpnr)
     command = [nextpnr, "--85k", "--package", "CABGA381", "--speed", "6", "--json", "netlist.json"]

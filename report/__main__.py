@@ -26,7 +26,7 @@ from raycaster.report.page import Section, write_csv, write_html, write_markdown
 from raycaster.report.points import CASE, UNITS, CellsPoint, HitsPoint, PicturePoint, Point, TimePoint, View, command
 from raycaster.report.sweep import Store, executor, run
 from raycaster.scene import find_scene, packaged_scenes
-from raycaster.verif.simulator import SimulationError
+from raycaster.sim.simulator import SimulationError
 
 WORST_SCENE = find_scene("mirror_room")
 """With as many rectangles as the hardware has, so that no row takes longer; and the picture of the day."""

@@ -29,9 +29,9 @@ from raycaster.golden.world import Rectangles
 from raycaster.options import add_configuration_options, as_options, given_options, run_command
 from raycaster.scene import Scene, dump_scene, load_scene
 from raycaster.screens import SCREENS, Screen
+from raycaster.sim.job import Job
+from raycaster.sim.simulator import build_model, run_bench
 from raycaster.verif.hit_points import build_probed_model, hit_points
-from raycaster.verif.job import Job
-from raycaster.verif.simulator import build_model, run_bench
 
 CASE = "case:"
 """Before the name of a scene of the catalogue, where a scene file's path would stand."""
@@ -179,7 +179,7 @@ class TimePoint:
             file = Path(scratch) / "scene.toml"
             file.write_text(dump_scene(self.scene))
             job = Job(self.config, scene=str(file), output=scratch, reflections=self.config.reflections)
-            run_bench(build_model(self.config), "raycaster.verif.frame_bench", job, Path(scratch))
+            run_bench(build_model(self.config), "raycaster.sim.frame_bench", job, Path(scratch))
             result = json.loads((Path(scratch) / "result.json").read_text())
         return {
             "group_cycles": result["worst_group_cycles"],

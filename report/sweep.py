@@ -17,7 +17,7 @@ from typing import Any, TypeVar
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from raycaster.errors import UserError
+from raycaster.errors import UserError, not_installed
 from raycaster.report.points import Point, command, fingerprint
 
 ATTEMPTS = 3
@@ -71,7 +71,7 @@ def executor(scheduler: str | None, jobs: int) -> Iterator[Callable[[], Executor
     try:
         from distributed import Client  # noqa: PLC0415 - wanted only where a cluster is
     except ImportError:
-        raise UserError("Dask is missing; pip install 'raycaster[report]'") from None
+        raise UserError(not_installed("Dask", "report")) from None
     try:
         client = Client(scheduler, timeout=10)
     except (OSError, ValueError) as error:

@@ -15,7 +15,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from raycaster.errors import UserError
+from raycaster.errors import UserError, not_installed
 from raycaster.memory_map import MEMORY, MEMORY_BYTES
 from raycaster.options import run_command
 from raycaster.output import replaced
@@ -57,7 +57,7 @@ def build_firmware(output: Path) -> Firmware:
     """
     for module in ("ziglang", "elftools"):
         if find_spec(module) is None:
-            raise UserError(f"{module} is missing; pip install 'raycaster[firmware]'")
+            raise UserError(not_installed(module, "play"))
     with replaced(output) as work, tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
         script = Path(scratch) / "link.ld"
         _compile("-E", "-P", "-x", "c", FIRMWARE / "link.ld", "-o", script)

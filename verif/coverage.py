@@ -26,12 +26,9 @@ from raycaster.configuration import Configuration, configure
 from raycaster.errors import UserError
 from raycaster.options import CommandParser
 from raycaster.scene import find_scene, load_scene, packaged_scenes
-from raycaster.verif.coverage_code import KINDS, Judgement, Point, describe, judge, load_explanations, read_counts
-from raycaster.verif.coverage_functional import POINTS, FunctionalCoverage
-from raycaster.verif.job import Job
-from raycaster.verif.random_scenes import random_scene
-from raycaster.verif.simulate import LOG_COLUMNS
-from raycaster.verif.simulator import (
+from raycaster.sim.job import Job
+from raycaster.sim.scenes import LOG_COLUMNS
+from raycaster.sim.simulator import (
     BUILD,
     MODULE_BENCH,
     VERILATOR_FLAGS,
@@ -40,6 +37,9 @@ from raycaster.verif.simulator import (
     build_model,
     run_bench,
 )
+from raycaster.verif.coverage_code import KINDS, Judgement, Point, describe, judge, load_explanations, read_counts
+from raycaster.verif.coverage_functional import POINTS, FunctionalCoverage
+from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.soak import soak
 
 # One design that every bench can run, so that nothing must be merged. At full size, for the counters to run through
@@ -80,10 +80,10 @@ class Run:
 
 BENCHES = (
     # Culled, it meets the row budget even with two reflections.
-    Run("register_bench", find_scene("floor"), 2),
-    Run("motion_bench", find_scene("floor"), 2),
-    Run("underrun_bench"),
-    Run("coverage_bench"),
+    Run("verif.benches.register_bench", find_scene("floor"), 2),
+    Run("verif.benches.motion_bench", find_scene("floor"), 2),
+    Run("verif.benches.underrun_bench"),
+    Run("verif.benches.coverage_bench"),
 )
 """Beyond a frame of every scene. The longest come first."""
 
@@ -120,7 +120,11 @@ def _run(model: Model, run: Run, directory: Path) -> Counter[Point]:
     job = Job(model.configuration, scene=scene, output=str(directory.resolve()), reflections=run.reflections)
     counts_file = directory.resolve() / "coverage.dat"
     run_bench(
-        model, f"raycaster.verif.{run.bench}", job, directory, plusargs=[f"+verilator+coverage+file+{counts_file}"]
+        model,
+        f"raycaster.{run.bench}",
+        job,
+        directory,
+        plusargs=[f"+verilator+coverage+file+{counts_file}"],
     )
     return read_counts(counts_file, leave_out=MODULE_BENCH.modules)
 
@@ -232,7 +236,7 @@ def main(argv: list[str] | None = None) -> int:
     started = time.perf_counter()
 
     counting = _build(DESIGN, console, arguments.build, FLAGS, "coverage")
-    runs = [*BENCHES, *(Run("frame_bench", scene) for scene in scenes)]
+    runs = [*BENCHES, *(Run("sim.frame_bench", scene) for scene in scenes)]
     counts, failures = run_all(counting, runs, output / "runs", arguments.jobs, console)
     judgement = judge(counts, explanations)
 

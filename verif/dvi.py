@@ -28,8 +28,8 @@ from raycaster.golden.tmds import CONTROL_SYMBOLS, decode
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.scene import find_scene
 from raycaster.screens import Screen
-from raycaster.verif.monitor import Line, VideoError, decode_frame
-from raycaster.verif.simulator import SimulationError, add_simulator_option, find_tool
+from raycaster.sim.monitor import Line, VideoError, decode_frame
+from raycaster.sim.simulator import SimulationError, add_simulator_option, find_tool
 
 SYMBOL_BITS = 10
 HERE = Path(__file__).parent
@@ -55,7 +55,7 @@ def watch(
         screen: what the design shows it on.
         frames: how many.
         directory: for the model and the recording.
-        simulator: one of `raycaster.verif.simulator.SIMULATORS`; only Icarus knows unknown bits.
+        simulator: one of `raycaster.sim.simulator.SIMULATORS`; only Icarus knows unknown bits.
         buttons: a bit for each of the board's that is held all the time, as its port `btn` has them.
         late_ns: added to the time that reset lasts.
 

@@ -52,8 +52,8 @@ from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
 from raycaster.rtl.seed.divider import divider
 from raycaster.rtl.seed.intersection_helper import intersection_helper
+from raycaster.sim.simulator import find_tool
 from raycaster.verif.seeds import seed
-from raycaster.verif.simulator import find_tool
 
 SOURCES = Path(__file__).parent
 INTERSECTIONS = 400_000_000

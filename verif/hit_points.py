@@ -9,8 +9,8 @@ import numpy as np
 
 from raycaster.configuration import Configuration
 from raycaster.scene import Scene, dump_scene
-from raycaster.verif.job import Job
-from raycaster.verif.simulator import BUILD, VERILATOR_FLAGS, Model, build_model, convert, run_bench
+from raycaster.sim.job import Job
+from raycaster.sim.simulator import BUILD, VERILATOR_FLAGS, Model, build_model, convert, run_bench
 
 PROBE = Path(__file__).with_name("hit_probe.v")
 
@@ -47,7 +47,7 @@ def hit_points(model: Model, scene: Scene, reflections: int, directory: Path) ->
     file = directory / "scene.toml"
     file.write_text(dump_scene(scene))
     job = Job(model.configuration, scene=str(file.resolve()), output=str(directory.resolve()), reflections=reflections)
-    run_bench(model, "raycaster.verif.frame_bench", job, directory)
+    run_bench(model, "raycaster.sim.frame_bench", job, directory)
     screen = model.configuration.screen_geometry
     points = np.full((reflections + 1, screen.rows, screen.columns, 3), -1, dtype=np.int64)
     for path in sorted(directory.glob("hits.*")):

@@ -3,7 +3,8 @@
 
 The leaf tests run once and record what they drive and expect. Then, for each recording, Yosys plants up to --mutants
 faults, spread over the cells of the module under test, into its Verilog: an inverted or stuck bit of a cell's port, for
-all values or for those of another bit. Verilator compiles the netlist with all faults in it and an input that chooses
+all values or for those of another bit. A submodule's input bit that the submodule does not read is no place for a
+fault, as nobody could see it there. Verilator compiles the netlist with all faults in it and an input that chooses
 one, and each fault is replayed. It is caught where an output differs from the expected one in a cycle that the test
 looks at; registers start as zeros, as ones and at random, as the tests' own simulator has them unknown.
 
@@ -27,7 +28,9 @@ import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, field
+from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from rich.box import SIMPLE
 from rich.console import Console
@@ -37,8 +40,8 @@ from rich.table import Table
 
 from raycaster.errors import UserError
 from raycaster.options import CommandParser
+from raycaster.sim import ensure_icarus
 from raycaster.tools import run_yosys
-from raycaster.verif import ensure_icarus
 from raycaster.verif.exhaustive import Builder
 from raycaster.verif.formal.prover import missing_tools
 from raycaster.verif.leaf import RECORD_VARIABLE, recording_name
@@ -229,10 +232,7 @@ class Recording:
             look_into: submodules that are part of what the solver sees.
         """
         submodules = [Path(name).stem for name in self._files[:-1]]
-        width = count.bit_length()
-        listing = f"mutate -list {count} -seed {seed} -ctrl mutsel {width} 1 -o mutants.ys"
-        run_yosys(self._work, "list", [*self._read(), listing])
-        lines = (self._work / "mutants.ys").read_text().splitlines()
+        lines = self._choose(count, seed)
         mutants = [self._describe(number, line) for number, line in enumerate(lines, 1)]
         cut = [
             f"write_verilog -noattr -selected {self.module}_mutants.v",
@@ -252,6 +252,61 @@ class Recording:
         ]
         run_yosys(self._work, "plant", [*self._read(), *lines, *cut])
         return mutants
+
+    def _choose(self, count: int, seed: int) -> list[str]:
+        """Yosys's commands for as many faults, or all that there are, numbered from 1 without a gap for the replay."""
+        width, wanted = count.bit_length(), count
+        while True:
+            listing = f"mutate -list {wanted} -seed {seed} -ctrl mutsel {width} 1 -o mutants.ys"
+            run_yosys(self._work, "list", [*self._read(), listing])
+            lines = (self._work / "mutants.ys").read_text().splitlines()
+            seen = [line for line in lines if not self._hidden(line)]
+            if len(seen) >= count or len(lines) < wanted:
+                break
+            wanted += wanted - len(seen)
+        return [
+            re.sub(r"-ctrl mutsel \d+ \d+", f"-ctrl mutsel {width} {number}", line)
+            for number, line in enumerate(seen[:count], 1)
+        ]
+
+    def _hidden(self, line: str) -> bool:
+        """Whether the fault is in a bit that the submodule does not read."""
+        options = dict(re.findall(r"-(cell|port|portbit) (\S+)", line))
+        read = self.read_bits.get((options["cell"], options["port"]), -1)
+        return not read >> int(options["portbit"]) & 1
+
+    @cached_property
+    def read_bits(self) -> dict[tuple[str, str], int]:
+        """Of the input ports of the submodules, by instance and port: a mask of the bits that the submodule reads.
+
+        What does not reach an output of the submodule, through whatever it is made of, is not read.
+        """
+        run_yosys(self._work, "instances", [*self._read(), "write_json -selected instances.json"])
+        cells = _netlist(self._work / "instances.json", self.module)["cells"]
+        names = {Path(name).stem for name in self._files[:-1]}
+        instances = {name: cell["type"] for name, cell in cells.items() if cell["type"] in names}
+        script = [f"read_verilog {' '.join(self._files)}", f"hierarchy -check -top {self.module}", "design -save all"]
+        for name in sorted(set(instances.values())):
+            script += [
+                "design -load all",
+                f"hierarchy -top {name}",
+                "proc -norom",
+                "flatten",
+                # Only what is certain whatever registers start with; in the end cells of a bit each, where that is
+                # possible, so that those which no output needs go.
+                "opt_expr -keepdc",
+                "opt_clean",
+                "wreduce -keepdc",
+                "pmuxtree",
+                "simplemap",
+                "opt_expr -keepdc",
+                "opt_clean",
+                f"write_json {name}.json",
+            ]
+        if instances:
+            run_yosys(self._work, "read", script)
+        masks = {name: _read_masks(_netlist(self._work / f"{name}.json", name)) for name in set(instances.values())}
+        return {(instance, port): mask for instance, name in instances.items() for port, mask in masks[name].items()}
 
     def _describe(self, number: int, line: str) -> Mutant:
         options = dict(re.findall(r"-(mode|cell|port|portbit) (\S+)", line))
@@ -310,15 +365,33 @@ endmodule
         # z3 may be missing where only this file's help or names are wanted.
         from raycaster.verif.mutation_equivalence import Comparison  # noqa: PLC0415
 
-        alone = Comparison(self._work, self.module)
+        read = {f"{instance}_{port}": mask for (instance, port), mask in self.read_bits.items()}
+        alone = Comparison(self._work, self.module, read)
         contract = None
         if expectation.assumptions or expectation.invariants:
-            contract = Comparison(self._work, self.module, tuple(expectation.assumptions), expectation.invariants)
+            contract = Comparison(self._work, self.module, read, tuple(expectation.assumptions), expectation.invariants)
         for mutant in survivors:
             if alone.equivalent(mutant.selector):
                 mutant.outcome = "equivalent"
             elif contract and contract.equivalent(mutant.selector):
                 mutant.outcome = "contract"
+
+
+def _netlist(path: Path, module: str) -> dict[str, Any]:
+    """A module as Yosys writes it as JSON."""
+    return json.loads(path.read_text())["modules"][module]
+
+
+def _read_masks(netlist: Mapping[str, Any]) -> dict[str, int]:
+    """Of each input port, the bits that a cell or an output of the netlist is connected to."""
+    used = {bit for cell in netlist["cells"].values() for bits in cell["connections"].values() for bit in bits}
+    ports = netlist["ports"]
+    used |= {bit for port in ports.values() if port["direction"] != "input" for bit in port["bits"]}
+    return {
+        name: sum(1 << place for place, bit in enumerate(port["bits"]) if bit in used)
+        for name, port in ports.items()
+        if port["direction"] == "input"
+    }
 
 
 class ReplayBuilder(Builder):

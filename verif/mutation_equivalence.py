@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import z3
@@ -31,6 +31,8 @@ class Comparison:
     Args:
         work: has the netlist with all mutants as `<module>.smt2`, as Yosys writes it, the input `mutsel` to choose one.
         module: its name.
+        read: masks of outputs that are inputs of submodules: the bits that the submodule reads. In the others the
+            mutant may differ.
         assumptions: Verilog expressions of its inputs that are taken to hold always.
         invariants: Verilog expressions of its registers that hold from reset on, which is proved first.
 
@@ -38,7 +40,14 @@ class Comparison:
         ContractError: an invariant does not hold, or an expression names what is not there.
     """
 
-    def __init__(self, work: Path, module: str, assumptions: Sequence[str] = (), invariants: Sequence[str] = ()):
+    def __init__(
+        self,
+        work: Path,
+        module: str,
+        read: Mapping[str, int],
+        assumptions: Sequence[str] = (),
+        invariants: Sequence[str] = (),
+    ):
         self._module = module
         self._model = (work / f"{module}.smt2").read_text()
         self._bits = _state_bits(self._model)
@@ -59,7 +68,9 @@ class Comparison:
             (match[1], fields[match[2]])
             for match in re.finditer(rf"^  \(= (.+) \(\|({number})\| next_state\)\) ; ", self._model, re.M)
         ]
-        self._outputs = re.findall(r"^; yosys-smt2-output (\S+) \d+$", self._model, re.M)
+        outputs = re.findall(r"^; yosys-smt2-output (\S+) (\d+)$", self._model, re.M)
+        # Of each output its width and the bits that count.
+        self._outputs = {name: (int(width), read.get(name, -1) & (1 << int(width)) - 1) for name, width in outputs}
         inputs = re.findall(r"^; yosys-smt2-input (\S+) \d+$", self._model, re.M)
         self._resets = [name for name in ("reset", "reset_ray_caster") if name in inputs]
         self._constants: dict[int, tuple[int, int]] = {}
@@ -93,9 +104,17 @@ class Comparison:
             for index, _ in enumerate(equal):
                 equal[index] &= ~model.get(f"apart{index}", 0)
         unequal = (
-            f"(not (= (|{self._module}_n {name}| module) (|{self._module}_n {name}| mutant)))" for name in self._outputs
+            f"(not (= {self._output(name, 'module')} {self._output(name, 'mutant')}))"
+            for name, (_, mask) in self._outputs.items()
+            if mask
         )
-        return _solve(f"{self._both(mutant, equal)}(assert (or {' '.join(unequal)}))", deadline) == {}
+        return _solve(f"{self._both(mutant, equal)}(assert (or false {' '.join(unequal)}))", deadline) == {}
+
+    def _output(self, name: str, state: str) -> str:
+        """What counts of an output's value."""
+        width, mask = self._outputs[name]
+        value = f"(|{self._module}_n {name}| {state})"
+        return value if mask == (1 << width) - 1 else f"(bvand {value} (_ bv{mask} {width}))"
 
     def _both(self, mutant: int, equal: Iterable[int]) -> str:
         """A state of the module, and one of the mutant with the same inputs and these bits of its registers."""

@@ -19,9 +19,9 @@ from raycaster.configuration import Configuration, configure
 from raycaster.errors import UserError
 from raycaster.golden.catalogue import catalogue
 from raycaster.options import CommandParser, add_build_option, add_configuration_options, given_options
-from raycaster.verif.job import Job
+from raycaster.sim.job import Job
+from raycaster.sim.simulator import Model, SimulationError, add_simulator_option, build_model, run_bench
 from raycaster.verif.random_scenes import style_of
-from raycaster.verif.simulator import Model, SimulationError, add_simulator_option, build_model, run_bench
 
 POLL_SECONDS = 0.2
 
@@ -78,7 +78,7 @@ def _run(model: Model, seeds: range, directory: Path, stiff: bool) -> None:
         seeds=tuple(seeds),
         stiff=stiff,
     )
-    run_bench(model, "raycaster.verif.soak_bench", job, directory)
+    run_bench(model, "raycaster.verif.benches.soak_bench", job, directory)
 
 
 def _lines(path: Path) -> list[str]:

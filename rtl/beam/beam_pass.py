@@ -11,9 +11,9 @@ from raycaster.rtl.beam import nearest_of_two as contest
 from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.nearest_of import nearest_of
 from raycaster.rtl.beam.rect_walker import rect_walker
-from raycaster.rtl.beam.slope_magnitudes import slope_magnitudes
 from raycaster.rtl.beam.slope_walker import slope_walker
 from raycaster.rtl.common.interfaces import Slope
+from raycaster.rtl.common.magnitude import magnitude
 from raycaster.rtl.common.records import Facet, Walk, candidate_of
 from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import DISTANCE_BITS, exact_slope_bits, index_bits, side_by_side, signed, walk_bits
@@ -57,7 +57,7 @@ def beam_pass(
     ]  # fmt: skip
     early = slope_walker(clk, start_line, step, early_slope, config)
     late = slope_walker(clk, start_line, step_slope, late_slope, config)
-    magnitudes = slope_magnitudes(late_slope, row_slope, slope)
+    magnitudes = magnitude(late_slope, slope.dy), magnitude(row_slope, slope.dz)
     testers = [
         fold_tester(clk, facet=facet, walk=walk, column_slope=early_slope, row_slope=row_slope, slope=slope, fold=fold,
             index=tied(i, index_bits(config)), hit=hit, view_distance=view_distance)

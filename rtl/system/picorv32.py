@@ -6,7 +6,7 @@ from pathlib import Path
 
 from myhdl import block
 
-from raycaster.errors import UserError
+from raycaster.errors import UserError, not_installed
 from raycaster.rtl.common.given import given_verilog
 
 PACKAGE = "pythondata_cpu_picorv32"
@@ -20,7 +20,7 @@ def picorv32_source() -> Path:
     """
     package = importlib.util.find_spec(PACKAGE)
     if package is None or package.origin is None:
-        raise UserError("PicoRV32 is missing; pip install 'raycaster[play]'")
+        raise UserError(not_installed("PicoRV32", "play"))
     return Path(package.origin).parent / "verilog" / "picorv32.v"
 
 

@@ -12,8 +12,8 @@ import pytest
 
 from raycaster.configuration import Configuration
 from raycaster.options import run_command
-from raycaster.verif.job import Job
-from raycaster.verif.simulator import build_model, run_bench
+from raycaster.sim.job import Job
+from raycaster.sim.simulator import build_model, run_bench
 
 ROOT = Path(__file__).parents[2]
 BUILD = ROOT / "build"
@@ -53,7 +53,13 @@ def bench(output: Path) -> Bench:
         job = Job(
             configuration, scene=str(scene), output=str(output), reflections=configuration.reflections, seeds=seeds
         )
-        run_bench(model, f"raycaster.verif.{module}", job, output, plusargs=plusargs)
+        run_bench(
+            model,
+            f"raycaster.{module}",
+            job,
+            output,
+            plusargs=plusargs,
+        )
         return output
 
     return run

@@ -53,6 +53,21 @@ def edged(random: np.random.Generator, config: Configuration, golden, table: Rec
     return Rectangles(corners, table.colours, table.enabled)
 
 
+def rivalled(random: np.random.Generator, table: Rectangles, winner: int, camera, slope) -> Rectangles:
+    """The table with a rectangle across the ray on another axis, where the ray hits the winner or next to there."""
+    axis, rival = int(table.axes[winner]), int(random.integers(len(table)))
+    across = int(random.choice(OTHER_AXES[axis]))
+    if winner in (-1, rival) or slope[across] == 0:
+        return table
+    t = Fraction(int(table.low[winner, axis] - camera[axis]), int(slope[axis]))
+    corners, enabled = table.corners.copy(), table.enabled.copy()
+    corners[rival] = [[0] * 3, [WORLD_SIZE - 1] * 3]
+    place = round(int(camera[across]) + int(slope[across]) * t) + int(random.integers(-1, 2))
+    corners[rival, :, across] = np.clip(place, 0, WORLD_SIZE - 1)
+    enabled[rival] = True
+    return Rectangles(corners, table.colours, enabled)
+
+
 def tracer(config: Configuration, **given) -> Callable:
     """Golden's trace by a design's engine, with these of its arguments, to be called with the others."""
     if config.engine != "seed":

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from raycaster.configuration import Configuration, configure
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.registers import register_map
-from raycaster.verif.register_model import LiveScene, RegisterFile, Request
+from raycaster.sim.register_model import LiveScene, RegisterFile, Request
 
 ROOT = Path(__file__).parents[2]
 SOFTWARE = ROOT / "sw"

@@ -12,8 +12,8 @@ import pytest
 from conftest import ROOT, SMALL_SCENE, Bench
 
 from raycaster.configuration import Configuration, configure
+from raycaster.sim.simulator import SimulationError
 from raycaster.verif.seeds import repeat, seed
-from raycaster.verif.simulator import SimulationError
 
 TRAFFIC_SEEDS = {"verilator": 2, "icarus": 1}
 FULL_SCENE = ROOT / "scenes" / "mirror_room.toml"
@@ -27,18 +27,18 @@ DESIGNS = [
 @pytest.mark.parametrize(("simulator", "configuration", "scene"), DESIGNS)
 def test_motion(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
     """Changes show in whole frames only; StartScreen and its interrupt."""
-    bench("motion_bench", configuration, simulator, scene)
+    bench("verif.benches.motion_bench", configuration, simulator, scene)
 
 
 def test_motion_full_size(bench: Bench):
     """The same at 640x480."""
-    bench("motion_bench", configure(), "verilator", FULL_SCENE)
+    bench("verif.benches.motion_bench", configure(), "verilator", FULL_SCENE)
 
 
 @pytest.mark.parametrize(("simulator", "configuration", "scene"), DESIGNS)
 def test_registers(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
     """The register map, and what its bits do."""
-    bench("register_bench", configuration, simulator, scene)
+    bench("verif.benches.register_bench", configuration, simulator, scene)
 
 
 @pytest.mark.parametrize(("simulator", "configuration", "scene"), DESIGNS)
@@ -46,7 +46,12 @@ def test_traffic(bench: Bench, simulator: str, configuration: Configuration, sce
     """Random traffic and a reset at every moment: each answer, the interrupt, the sync and the picture."""
     first = 100 * seed()
     try:
-        bench("traffic_bench", configuration, simulator, seeds=tuple(range(first, first + TRAFFIC_SEEDS[simulator])))
+        bench(
+            "verif.benches.traffic_bench",
+            configuration,
+            simulator,
+            seeds=tuple(range(first, first + TRAFFIC_SEEDS[simulator])),
+        )
     except SimulationError as error:
         pytest.fail(f"{error}; {repeat()}")
 
@@ -60,4 +65,4 @@ def test_traffic(bench: Bench, simulator: str, configuration: Configuration, sce
 )
 def test_underrun(bench: Bench, simulator: str, options: dict[str, int]):
     """Fewer units than the scene would need."""
-    bench("underrun_bench", configure(screen="tiny", allow_underrun=True, **options), simulator)
+    bench("verif.benches.underrun_bench", configure(screen="tiny", allow_underrun=True, **options), simulator)

@@ -11,7 +11,7 @@ from conftest import BUILD, SMALL_SCENE, Bench
 
 from raycaster.configuration import configure
 from raycaster.registers import address_bits
-from raycaster.verif.simulator import SimulationError, convert
+from raycaster.sim.simulator import SimulationError, convert
 
 CONFIGURATION = configure(screen="tiny", units=8, rectangles=3)
 
@@ -93,4 +93,4 @@ def test_is_noticed(bench: Bench, tmp_path, pins, complaint):
     wrapper.write_text(WRAPPER.format(address_top=address_bits(CONFIGURATION.rectangles) - 1, **PINS | pins))
     noticed = pytest.raises(SimulationError, match=complaint) if complaint else contextlib.nullcontext()
     with noticed:
-        bench("frame_bench", CONFIGURATION, "icarus", SMALL_SCENE, verilog=[*files, wrapper])
+        bench("sim.frame_bench", CONFIGURATION, "icarus", SMALL_SCENE, verilog=[*files, wrapper])

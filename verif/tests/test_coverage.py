@@ -17,11 +17,11 @@ from raycaster.errors import UserError
 from raycaster.golden import seed_engine
 from raycaster.golden.world import Rectangles
 from raycaster.scene import dump_scene, load_scene
+from raycaster.sim.simulator import build_model
 from raycaster.verif.coverage import EXTRA_SCENE, FLAGS, Run, export_code, run_all, show_code, show_functional, verdict
 from raycaster.verif.coverage_code import Explanation, Judgement, describe, judge, load_explanations, read_counts
 from raycaster.verif.coverage_functional import IMPOSSIBLE, POINTS, FunctionalCoverage, count
 from raycaster.verif.random_scenes import random_scene
-from raycaster.verif.simulator import build_model
 
 VGA = configure(reflections=2)
 SOURCE = """module counter (clk, on, value);
@@ -168,7 +168,7 @@ def test_verilator_counts(output):
     one.write_text(dump_scene(small.model_copy(update={"rect": small.rect[1:2]})))
     # Not optimised: there is more to compile than to run.
     model = build_model(configuration, build=BUILD, flags=(*FLAGS, "-CFLAGS", "-O0"), variant="coverage-quick")
-    counts, failures = run_all(model, [Run("frame_bench", one, 0)], output / "runs", 1, Console())
+    counts, failures = run_all(model, [Run("sim.frame_bench", one, 0)], output / "runs", 1, Console())
     assert failures == []
     modules = {point.module for point in counts}
     assert {"ray_caster_module", "divider_step", "scene_word"} <= modules
@@ -178,7 +178,7 @@ def test_verilator_counts(output):
     holes = {(point.module, point.what) for point in judge(counts, []).unexplained}
     # No interrupt is enabled, and with one rectangle there is nothing nearer.
     assert {("avalon_interface", "irq_enable:0->1"), ("ray_caster_module", "irq:0->1")} <= holes
-    assert ("avalon_interface", "if: if (underrun) begin") in holes
+    assert ("avalon_interface", "if: if (progress_underrun) begin") in holes
     assert any(module == "z_buffer" and "depth < nearest" in what for module, what in holes)
 
 

@@ -26,8 +26,8 @@ from raycaster.docs.commands import commands_of, outside_make
 from raycaster.errors import UserError
 from raycaster.rtl.system.ports import module_ports
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
+from raycaster.sim.simulator import convert
 from raycaster.verif import rtl_lint
-from raycaster.verif.simulator import convert
 
 PAGES = sorted((ROOT / "docs").glob("*.md"))
 
@@ -111,9 +111,9 @@ def test_commands_are_run(tmp_path: Path, monkeypatch, capsys):
         commands.main(["--output", str(logs), "--only", "sing"])
 
 
-def test_every_module_is_in_the_readme():
+def test_every_module_is_on_the_page_of_the_structure():
     """Its list of modules has each file of the hardware with a block of its name, and nothing else."""
-    listed = re.search(r"^```\n(ray_caster_module .*?)^```", (ROOT / "README.md").read_text(), re.M | re.S)[1]
+    listed = re.search(r"^```\n(ray_caster_module .*?)^```", (ROOT / "docs/structure.md").read_text(), re.M | re.S)[1]
     named = {word for word in re.findall(r"\w+", listed) if "_" in word}
     there = {path.stem for path in (ROOT / "rtl").rglob("*.py") if f"@block\ndef {path.stem}(" in path.read_text()}
     assert named == {name for name in there if "_" in name}
@@ -160,12 +160,11 @@ def test_timing_is_true():
 
 def test_a_changed_design_is_noticed(output: Path):
     """The halves of the line buffer trade places: the picture stays right, so that golden says nothing."""
-    files = []
+    files, right = [], "assign line_buf_sel = place_row[0];"
     for path in convert(timing.CONFIGURATION, BUILD):
         files.append(output / path.name)
-        files[-1].write_text(
-            path.read_text().replace("assign line_buf_sel = row[0];", "assign line_buf_sel = ~row[0];")
-        )
+        files[-1].write_text(path.read_text().replace(right, right.replace("place", "~place")))
+    assert right.replace("place", "~place") in (output / "ray_caster_renderer.v").read_text()
     parted = {
         (name, json.loads(old.rstrip(","))["name"]) for name, pairs in draw_anew(files).items() for old, _ in pairs
     }
@@ -259,12 +258,12 @@ def test_look_inside(renderer):
 
     assert called(parts["delay_reset"].reads) == {"restart"}
     assert called(parts["delay_reset"].drives) == {"reset_delay"}
-    # Its input is a slice of all colours, and join puts those together of the units' pixels.
-    assert "colours" in called(parts["line_buffer"].reads)
-    assert called(parts["join"].reads) == {"pixels_0", "pixels_1"}
+    # Its input is a slice of all pixels, and join_pixels puts those together of the units' words.
+    assert "pixels" in called(parts["line_buffer"].reads)
+    assert called(parts["join_pixels"].reads) == {"unit_pixels_0_word", "unit_pixels_1_word"}
     assert "done" in called(parts["ray_control"].drives) & called(parts["finish_group"].reads)
     # A counter reads itself; that goes nowhere.
-    assert "row" not in called(parts["count_rows"].reads)
+    assert "place_row" not in called(parts["count_rows"].reads)
 
 
 def test_find_block_of_no_such_name(top):
@@ -279,7 +278,7 @@ def test_nets(renderer):
     assert nets["reset_delay",].readers == {"join_resets"}
     assert nets["vga_*",].is_port
     assert nets["vga_*",].drivers == {"video_generator"}
-    assert not nets["run",].drivers
+    assert not nets["picture_run",].drivers
     assert "steps_*" in {name for net in nets.values() for name in net.names}
     assert not {"clk", "reset"} & {name for net in nets.values() for name in net.names}
 
@@ -317,8 +316,9 @@ def test_pages_with_a_fault(tmp_path: Path):
     shutil.copytree(ROOT / "docs", tmp_path / "docs", ignore=shutil.ignore_patterns("__pycache__"))
     (tmp_path / "docs" / "scenes.md").write_text("# Scenes\n\n[nowhere](nowhere.md)\n")
     script = (
-        "import sys; from pathlib import Path; from raycaster.docs import __main__ as docs; "
-        "docs.HERE = Path('docs'); docs.blocks.DRAWINGS = (); docs.run_command(docs.main)"
+        "from pathlib import Path; from raycaster.docs import __main__ as docs; "
+        "from raycaster.options import run_command; "
+        "docs.HERE = Path('docs'); docs.blocks.DRAWINGS = (); run_command(docs.main)"
     )
     done = subprocess.run(
         [sys.executable, "-c", script, "--keep-timing"], cwd=tmp_path, capture_output=True, text=True, check=False

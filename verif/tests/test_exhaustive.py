@@ -49,9 +49,9 @@ def test_every_division_is_in_the_full_run():
         ("divider-f0t-d1", r"too_large <= (.*) >= (\w+);", r"too_large <= \1 > \2;"),
         ("divider-f0n-d2", r"twice_remainder >= divisor_held", r"twice_remainder > divisor_held"),
         ("divider-f0t-d3", r"difference < 0", r"difference <= 0"),
-        ("intersection-f0t-d1", r"stored_negative <= loaded_negative", r"stored_negative <= started_negative"),
-        ("intersection-f4n-d3", r"stored_ahead && !overflow", r"stored_ahead"),
-        ("intersection-f1t-d2", r"distance <= loaded_distance", r"distance <= started_distance"),
+        ("intersection-f0t-d1", r"stored_negative = stored_word", r"stored_negative = started_word"),
+        ("intersection-f4n-d3", r"stored_towards && !overflow", r"stored_towards"),
+        ("intersection-f1t-d2", r"stored_distance = stored_word", r"stored_distance = started_word"),
         ("reduced-w4-f0t-d2", r"backward = a - quotient", r"backward = a + quotient"),
     ],
 )

@@ -14,9 +14,9 @@ from host_software import CONFIG, FIRE, Registers, Session, compile_library
 
 from raycaster.memory_map import BUTTONS, MEMORY, MEMORY_BYTES, RAY_TRACER, UART, UART_BUSY, c_header
 from raycaster.registers import register_map
+from raycaster.sim.register_model import LiveScene
 from raycaster.sw.firmware import FIRMWARE, Firmware, build_firmware, main
 from raycaster.sw.play_script import DEMO, load
-from raycaster.verif.register_model import LiveScene
 
 PAGE = 0x1000
 
@@ -200,7 +200,7 @@ def test_the_command(tmp_path):
 @pytest.mark.parametrize("missing", ["ziglang", "elftools"])
 def test_a_missing_tool_is_one_line(tmp_path, monkeypatch, missing):
     monkeypatch.setattr("raycaster.sw.firmware.find_spec", lambda name: None if name == missing else name)
-    with pytest.raises(Exception, match=rf"^{missing} is missing; pip install 'raycaster\[firmware\]'$"):
+    with pytest.raises(Exception, match=rf"^{missing} is missing; it comes with the extra play: "):
         main(["--output", str(tmp_path / "output")])
     assert not any(tmp_path.iterdir())
 

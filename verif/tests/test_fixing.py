@@ -34,10 +34,10 @@ from raycaster.rtl.common.interfaces import Rects
 from raycaster.rtl.common.widths import bit, index_bits
 from raycaster.rtl.scene.rect_rom import rect_rom
 from raycaster.scene import Rectangle, Scene, load_scene
+from raycaster.sim.simulator import SimulationError
 from raycaster.tools import run_yosys
 from raycaster.verif.leaf import Leaf
 from raycaster.verif.seeds import repeat, seed
-from raycaster.verif.simulator import SimulationError
 
 ENGINES = ("seed", "exact", "beam")
 BOXES = ROOT / "scenes" / "boxes.toml"
@@ -286,7 +286,7 @@ def test_what_a_row_knows_of_fixed_rectangles(camera):
 @pytest.mark.parametrize("engine", ENGINES)
 def test_no_pixel_changes(bench: Bench, engine, scope):
     design = fix(BOXES, {"engine": engine, "screen": "tiny"}, scope).design
-    result = json.loads((bench("frame_bench", design.configuration, "icarus", BOXES) / "result.json").read_text())
+    result = json.loads((bench("sim.frame_bench", design.configuration, "icarus", BOXES) / "result.json").read_text())
     assert result["wrong_vs_golden"] == 0
     assert result["worst_group_cycles"] <= design.configuration.group_cycles
 
@@ -299,7 +299,7 @@ def test_two_reflections(bench: Bench, engine, options):
     scene = ROOT / "scenes" / "facing_mirrors.toml"
     design = fix(scene, {"engine": engine, "screen": "tiny", **options}, "all").design
     assert design.reflections == 2
-    bench("frame_bench", design.configuration, "icarus", scene)
+    bench("sim.frame_bench", design.configuration, "icarus", scene)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -307,13 +307,13 @@ def test_any_camera_may_look_at_fixed_rectangles(bench: Bench, engine):
     """With the rectangles in a plane with others and at x = 0 that `rects` leaves out."""
     scene = ROOT / "scenes" / "mirror_room.toml"
     design = fix(scene, {"engine": engine, "screen": "tiny"}, "rects").design
-    bench("camera_bench", design.configuration, "verilator", scene, seeds=tuple(range(24)))
+    bench("verif.benches.camera_bench", design.configuration, "verilator", scene, seeds=tuple(range(24)))
 
 
 @pytest.mark.parametrize("scope", SCOPES)
 def test_what_is_fixed_ignores_writes(bench: Bench, scope):
     design = fix(SMALL_SCENE, {"engine": "exact", "screen": "tiny"}, scope).design
-    bench("fixed_bench", design.configuration, "icarus", SMALL_SCENE)
+    bench("verif.benches.fixed_bench", design.configuration, "icarus", SMALL_SCENE)
 
 
 def test_nothing_in_sight(bench: Bench, tmp_path):
@@ -324,7 +324,7 @@ def test_nothing_in_sight(bench: Bench, tmp_path):
     )
     for engine in ENGINES:
         design = fix(path, {"engine": engine, "screen": "tiny"}, "all").design
-        bench("frame_bench", design.configuration, "icarus", path)
+        bench("sim.frame_bench", design.configuration, "icarus", path)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -336,7 +336,7 @@ def test_a_rectangle_wrongly_left_out_is_caught(bench: Bench, engine):
     assert fewer != config.fixed
     broken = dataclasses.replace(config, fixed=fewer)
     with pytest.raises(SimulationError, match="pixels are wrong"):
-        bench("frame_bench", broken, "icarus", SMALL_SCENE)
+        bench("sim.frame_bench", broken, "icarus", SMALL_SCENE)
 
 
 @pytest.mark.parametrize("scope", SCOPES)

@@ -36,7 +36,7 @@ def test_full_size_beam(bench: Bench, rows, scale, shown):
     """As `make sim ENGINE=beam` shows it: doubled, native, and at 720 lines; a line takes a clock a pixel."""
     configuration = configure(engine="beam", rows=rows, scale=scale)
     scene = ROOT / "scenes" / "mirror_room.toml"
-    directory = bench("frame_bench", configuration, "verilator", scene)
+    directory = bench("sim.frame_bench", configuration, "verilator", scene)
     result = json.loads((directory / "result.json").read_text())
     assert (result["pixels"], result["wrong_vs_golden"], result["wrong_vs_exact"]) == (shown, 0, 0)
     assert result["worst_row_cycles"] == configuration.screen_geometry.horizontal.visible
@@ -50,7 +50,7 @@ def test_full_size_beam(bench: Bench, rows, scale, shown):
 def check_full_size(bench: Bench, scene, engine: str) -> dict:
     contents = load_scene(scene)
     configuration = configure(engine=engine, rows=contents.rows, reflections=contents.reflections)
-    result = json.loads((bench("frame_bench", configuration, "verilator", scene) / "result.json").read_text())
+    result = json.loads((bench("sim.frame_bench", configuration, "verilator", scene) / "result.json").read_text())
     assert result["pixels"] == 640 * 2 * configuration.rows
     assert result["wrong_vs_golden"] == 0
     assert not result["underrun"]
@@ -65,7 +65,7 @@ def test_tiny_in_icarus(engine):
     build = BUILD / "test" / f"tiny_in_icarus_{engine}"
     scenes = [ROOT / "scenes" / f"{name}.toml" for name in ("matte", "corners", "degenerate", "facing_mirrors")]
     options = ("--engine", engine, "--screen", "tiny", "--simulator", "icarus", "--build", str(build))
-    options += tuple(word for scene in scenes for word in (str(scene)))
+    options += tuple(map(str, scenes))
     subprocess.run([sys.executable, "-m", "raycaster.cli", "sim", *options], cwd=ROOT, check=True)
     for scene in scenes:
         result = json.loads((build / "sim" / scene.stem / "result.json").read_text())
@@ -104,4 +104,4 @@ def test_configurations(bench: Bench, tmp_path, options):
     path = tmp_path / "scene.toml"
     path.write_text(scene)
     configuration = configure(screen="tiny", **{"rectangles": 3} | options)
-    bench("frame_bench", configuration, "icarus", path)
+    bench("sim.frame_bench", configuration, "icarus", path)

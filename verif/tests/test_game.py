@@ -27,8 +27,8 @@ from raycaster.configuration import configure
 from raycaster.golden import exact
 from raycaster.golden.rays import primary_slopes
 from raycaster.memory_map import BUTTON_NAMES
+from raycaster.sim.register_model import LiveScene
 from raycaster.sw.play_script import DEMO, PlayScriptError, dump, load
-from raycaster.verif.register_model import LiveScene
 
 ENTRIES = enumerators(GAME_HEADER, "game_entry")
 COURT = {"x": (44, 281), "y": (89, 423), "z": (0, 264)}

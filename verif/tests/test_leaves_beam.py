@@ -2,6 +2,7 @@
 """The beam engine's blocks: MyHDL's simulator, the converted Verilog and exact arithmetic on one set of vectors."""
 
 from fractions import Fraction
+from math import gcd
 
 import numpy as np
 import pytest
@@ -22,7 +23,6 @@ from raycaster.rtl.beam.nearest_of_two import nearest_of_two
 from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.beam.rect_walker import rect_walker
 from raycaster.rtl.beam.row_register import row_register
-from raycaster.rtl.beam.slope_magnitudes import slope_magnitudes
 from raycaster.rtl.beam.slope_walker import slope_walker
 from raycaster.rtl.beam.winner_delay import winner_delay
 from raycaster.rtl.common.interfaces import Picture, Rects, Slope
@@ -247,8 +247,7 @@ def test_rect_setup(config, tmp_path):
 
 @pytest.mark.parametrize("live", [0xFFF, 0x5C3, 0])
 def test_row_register(live, tmp_path):
-    """It keeps what is not known."""
-    known = 0x936 & ~live
+    """It keeps what is not known, whichever bits these are."""
     leaf = Leaf(
         row_register,
         lambda: {
@@ -258,14 +257,15 @@ def test_row_register(live, tmp_path):
         tmp_path,
     )  # fmt: skip
     random = np.random.default_rng(seed())
-    stimulus = [
-        {"load": int(load), "given": int(random.integers(1 << 12)), "live": live, "known": known}
-        for load in [1, *(random.random(200) < 0.3)]
-    ]
+    stimulus = []
+    for load in [1, *(random.random(200) < 0.3)]:
+        given, other, known = (int(bits) for bits in random.integers(1 << 12, size=3))
+        now = live if random.random() < 0.5 else other
+        stimulus.append({"load": int(load), "given": given, "live": now, "known": known & ~now})
     kept = None
     for inputs, output in zip(stimulus, leaf.run_both(stimulus, settled=1), strict=True):
         if kept is not None:
-            assert output["word"] == kept & live | known, repeat()
+            assert output["word"] == kept & inputs["live"] | inputs["known"], repeat()
         if inputs["load"]:
             kept = inputs["given"]
 
@@ -338,21 +338,6 @@ def test_slope_walker(config, tmp_path):
         assert number(output["column_slope"], slope_bits) == column - columns // 2
         column += inputs.get("step", 0)
     assert number(outputs[-1]["column_slope"], slope_bits) == -columns // 2
-
-
-def test_slope_magnitudes(tmp_path):
-    config = beam_config(rows=180)
-    width = exact_slope_bits(config) + 1
-    leaf = Leaf(
-        slope_magnitudes,
-        lambda: {"column_slope": signed(width), "row_slope": signed(width), "slope": Slope(width - 1)},
-        tmp_path,
-    )
-    most = (1 << width - 1) - 1
-    pairs = [(value, -value) for value in range(-most, most + 1)]
-    outputs = leaf.run_both([{"column_slope": word(dy, width), "row_slope": word(dz, width)} for dy, dz in pairs])
-    for (dy, dz), output in zip(pairs, outputs, strict=True):
-        assert (output["slope_dy"], output["slope_dz"]) == (abs(dy), abs(dz))
 
 
 # ray_fold and fold_tester ---------------------------------------------------------------------------------------------
@@ -556,6 +541,23 @@ def any_candidate(random: np.random.Generator, config: Configuration) -> tuple[i
     return int(random.random() < 0.8), n, e, int(random.integers(config.rectangles))
 
 
+def close_candidates(random: np.random.Generator, config: Configuration) -> tuple:
+    """Two whose products with the other's denominator are large, and differ by two at most."""
+    most, most_below = (
+        (1 << len(signal)) - 1 for signal in (candidate_of(config).numerator, candidate_of(config).denominator)
+    )
+    while True:
+        apart, *below = map(int, [random.integers(-2, 3), *random.integers(most_below // 2, most_below, size=2)])
+        if gcd(*below) > 1:
+            continue
+        first = -apart * pow(below[1], -1, below[0]) % below[0]
+        first += below[0] * int(random.integers(most // below[0] + 1))
+        second = (first * below[1] + apart) // below[0]
+        if 0 < first <= most and 0 < second <= most:
+            indices = map(int, random.integers(config.rectangles, size=2))
+            return tuple((1, *one) for one in zip((first, second), below, indices, strict=True))
+
+
 def candidate_ports(name: str, candidate) -> dict[str, int]:
     fields = zip(("valid", "numerator", "denominator", "index"), candidate, strict=True)
     return {f"{name}_{field}": value for field, value in fields}
@@ -570,6 +572,7 @@ def test_nearest_of_two(config, tmp_path):
     )
     random = np.random.default_rng(seed())
     pairs = [(any_candidate(random, config), any_candidate(random, config)) for _ in range(3000)]
+    pairs += [close_candidates(random, config) for _ in range(1000)]
     stimulus = [candidate_ports("first", first) | candidate_ports("second", second) for first, second in pairs]
     outputs = leaf.run_both([*stimulus, *[{}] * contest.LATENCY], settled=contest.LATENCY)
     ties = 0
@@ -599,7 +602,16 @@ def test_nearest_of(count, tmp_path):
     )  # fmt: skip
     random = np.random.default_rng(seed())
     names = ("valid", "numerator", "denominator", "index")
-    fields = [[(*any_candidate(random, config)[:3], index) for index in range(count)] for _ in range(400)]
+    # Often with few that are valid, so that each of them is the nearest often enough.
+    fields = []
+    for _ in range(1200):
+        share = random.choice([0.2, 0.5, 1])
+        field = [any_candidate(random, config) for _ in range(count)]
+        field = [(int(valid and random.random() < share), *others) for valid, *others in field]
+        if count > 1 and random.random() < 0.5:
+            place = 2 * int(random.integers(count // 2))
+            field[place : place + 2] = close_candidates(random, config)
+        fields.append(field)
     stimulus = [
         {"candidates": sum(record.pack(dict(zip(names, one, strict=True))) << i * len(record.word)
                            for i, one in enumerate(field))}
@@ -668,9 +680,8 @@ def test_colour_blend(tmp_path):
             "clk": bit(),
             **{f"found_{number}": bit() for number in range(3)},
             **{f"colour_{number}": unsigned(RGB_BITS) for number in range(3)},
-            "background": unsigned(RGB_BITS),
-            "reflections": unsigned(2),
-            **{channel: unsigned(6) for channel in ("red", "green", "blue")},
+            "picture": Picture(),
+            "pixel": Pixel(config.colour_bits),
             "config": config,
         },
         tmp_path,
@@ -678,13 +689,13 @@ def test_colour_blend(tmp_path):
     random = np.random.default_rng(seed())
     stimulus, expected = [], []
     background, reflections = 0x123456, 0
-    for number in range(900):
+    for number in range(1800):
         if number % 100 == 0:
             background, reflections = int(random.integers(1 << RGB_BITS)), number // 100 % 3
         found = (random.random(3) < 0.7).astype(int).tolist()
         colours = [int(random.integers(1 << RGB_BITS)) for _ in found]
         stimulus.append({
-            "background": background, "reflections": reflections,
+            "picture_background": background, "picture_reflections": reflections,
             **{f"found_{i}": one for i, one in enumerate(found)},
             **{f"colour_{i}": one for i, one in enumerate(colours)},
         })  # fmt: skip
@@ -695,7 +706,7 @@ def test_colour_blend(tmp_path):
     outputs = leaf.run_both([*stimulus, {}, {}], settled=2)
     for number, (colour, output) in enumerate(zip(expected, outputs[2:], strict=True)):
         if number % 100 != 99:  # whose background has changed on the way
-            assert [output[channel] for channel in ("red", "green", "blue")] == colour, (number, repeat())
+            assert [output[f"pixel_{channel}"] for channel in ("red", "green", "blue")] == colour, (number, repeat())
 
 
 # The engine -----------------------------------------------------------------------------------------------------------
@@ -805,6 +816,11 @@ def test_beam_caster(config, lines, tmp_path):
         held |= {"reset": 0, "start_line": 0, "next_column": 0, "picture_reflections": reflections}
         held["picture_background"] = int.from_bytes(bytes(background.astype(np.uint8)))
         held["rects_usable"] = sum(1 << int(index) for index in np.flatnonzero(table.visible))
+        if number % 16 == 4:
+            # Reset ends what a line has begun.
+            begun = int(random.integers(config.rectangles + 2))
+            stimulus += [{**held, "start_line": 1}, *[held] * begun, {**held, "reset": 1}]
+            stimulus += [held] * beam_latency(config)
         stimulus += [{**held, "start_line": 1}, held, held]
         held["row_slope"] = word(slopes[row, 0, 2], exact_slope_bits(config) + 1)
         for index in range(config.rectangles):

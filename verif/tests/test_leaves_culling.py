@@ -4,7 +4,7 @@ Python's integers, and golden, whose hits are all among them."""
 
 import numpy as np
 import pytest
-from fates import possible_mask
+from fates import may_hit_mask
 
 from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
 from raycaster.golden import exact, seed_engine
@@ -216,7 +216,7 @@ def test_group_tester(config, tmp_path):
         offset = int(random.integers(config.groups))
         slope = [int(d) for d in slopes[row, offset * config.units]]
         table = with_edges_on_rays(random, config, drawn, camera, row, offset)
-        mask = possible_mask(config, table, camera, row, offset)
+        mask = may_hit_mask(config, table, camera, row, offset)
         held = {"column_slope": slope[1] % (1 << slope_bits), "row_slope": slope[2] % (1 << slope_bits)}
         for index in range(len(table)):
             axis = int(table.axes[index])
@@ -339,7 +339,7 @@ def test_group_culler(config, tmp_path):
         place, predicted, known = (0, 0), None, False
         for number in range(12):
             here = {**quiet, "place_row": place[0], "place_column_offset": place[1]}
-            answer = possible_mask(config, table, camera, *place) if predicted == place else every
+            answer = may_hit_mask(config, table, camera, *place) if predicted == place else every
             assert hit_mask(config, table, camera, *place) & ~answer == 0, repeat()
             fates.add((known, predicted == place, answer == every))
             # The second cycle of reset; then the group's time, in which the answer holds to the next one's first cycle.

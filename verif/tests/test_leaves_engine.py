@@ -576,7 +576,7 @@ def scene_in_view(random: np.random.Generator, config: Configuration, axis: int)
     slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
     anything = random.random() < 0.2
     for _ in range(300):
-        camera = random.integers(WORLD_SIZE, size=3) // [2, 1, 1]
+        camera = random.integers(WORLD_SIZE, size=3) // [random.choice([1, 2]), 1, 1]
         table = rectangles_in_view(random, camera, slopes, config.rectangles)
         table = Rectangles(table.corners, table.colours, random.random(config.rectangles) < 0.7)
         background = random.integers(256, size=3)

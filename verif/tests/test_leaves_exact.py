@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from fates import control_leaf, group_fate_in, mask_of, random_fate
-from hard_scenes import pixel_of, pixel_word, sharpened, traced_scene, verdict
+from hard_scenes import pixel_of, pixel_word, rivalled, sharpened, traced_scene, tracer, verdict
 
 from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
@@ -594,7 +594,12 @@ def test_exact_unit(config, tmp_path):
     for _ in range(300 if config.units == 5 else 80):
         row = int(random.choice([0, 1, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))
         column = int(random.choice([0, 1, columns // 2, columns - 1, random.integers(columns)]))
-        camera, table, background, reflections, traced = traced_scene(random, config, slopes[row, column][None])
+        slope = slopes[row, column][None]
+        camera, table, background, reflections, traced = traced_scene(random, config, slope)
+        if random.random() < 0.5:
+            table = rivalled(random, table, int(traced.winners[0][0]), camera, slope[0])
+            given = {"camera": camera, "background": background, "slopes": slope, "reflections": reflections}
+            traced = tracer(config, **given)(table)
         fates.add((reflections, sum(int(winner[0]) >= 0 for winner in traced.winners)))
         place = {"place_row": row, "place_column_offset": column // config.units, "column_base": column % config.units}
         held = {**held_inputs(camera, background, reflections), **place}

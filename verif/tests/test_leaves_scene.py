@@ -20,8 +20,8 @@ from raycaster.rtl.scene.rect_slot import rect_slot
 from raycaster.rtl.scene.rect_sorter import rect_sorter
 from raycaster.rtl.scene.scene_word import scene_word
 from raycaster.rtl.scene.written_rect import WrittenRect
+from raycaster.sim.register_model import AXES, COLOURS, Agent, Table, Word
 from raycaster.verif.leaf import Leaf, reset_signal, sorted_rect
-from raycaster.verif.register_model import AXES, COLOURS, Agent, Table, Word
 from raycaster.verif.seeds import repeat, seed
 
 CYCLES = 500

@@ -133,6 +133,50 @@ def test_a_contract_that_does_not_hold_is_an_error(expectation, complaint, tmp_p
         word_recording(tmp_path, 2).run(MUTANTS, 1, expectation, builder)
 
 
+# The reader hands the word on to a block that reads bit 6, reads bits 1 and 2 itself, and keeps bit 4 where nothing
+# looks at it; bit 0 reaches an output that the parent has no use for.
+READERS = {
+    "inner": "module inner(input wire [7:0] word, output wire seen); assign seen = word[6]; endmodule",
+    "reader": """module reader(input wire clk, input wire [7:0] word, output wire [2:0] seen, output wire unused);
+reg kept;
+inner inner_i(.word(word), .seen(seen[2]));
+assign seen[1:0] = word[2:1];
+assign unused = word[0];
+always @(posedge clk) kept <= kept ^ word[4];
+endmodule""",
+    "parent": """module parent(input wire clk, input wire [7:0] word, input wire turn, output wire [2:0] seen);
+wire [7:0] turned = turn ? ~word : word;
+reader reader_i(.clk(clk), .word(turned), .seen(seen), .unused());
+endmodule""",
+}
+
+
+def test_bits_that_a_submodule_does_not_read_have_no_faults(tmp_path, builder):
+    directory = tmp_path / "recording"
+    directory.mkdir()
+    for name, text in READERS.items():
+        (directory / f"{name}.v").write_text(f"{text}\n")
+    vectors = [(turn << 8 | word, (word ^ -turn) & 0xFF) for turn in (0, 1) for word in range(256)]
+    lines = [f"{(given & 0xFF) << 1 | given >> 8:x} {word >> 6 << 2 & 4 | word >> 1 & 3:x}" for given, word in vectors]
+    (directory / "vectors.txt").write_text("\n".join(lines) + "\n")
+    description = {
+        "module": "parent", "files": [f"{name}.v" for name in READERS], "clocked": True,
+        "inputs": {"word": 8, "turn": 1}, "outputs": {"seen": 3}, "settled": 0, "cycles": len(lines),
+    }  # fmt: skip
+    (directory / "leaf.json").write_text(json.dumps(description))
+    recording = Recording(directory, tmp_path / "work")
+    result = recording.run(1000, 1, Expectation(()), builder)
+    assert [mutant.selector for mutant in result.mutants] == list(range(1, len(result.mutants) + 1))
+    planted = {mutant.port for mutant in result.mutants if mutant.kind == "reader_i" and mutant.port.startswith("word")}
+    assert planted == {f"word[{place}]" for place in (0, 1, 2, 6)}
+    # A fault of the parent on the way to a bit that is not read is equivalent.
+    fates = {(mutant.kind, mutant.port): mutant.outcome for mutant in result.mutants if mutant.mode == "inv"}
+    assert [fates["ternary", f"Y[{place}]"] for place in (0, 1, 2, 6)] == ["surviving", "caught", "caught", "caught"]
+    assert [fates["ternary", f"Y[{place}]"] for place in (3, 4, 5, 7)] == ["equivalent"] * 4
+    # Fewer faults than there are: as many as were asked for are found, though some had to go.
+    assert len(Recording(directory, tmp_path / "few").plant(40, 1)) == 40
+
+
 def test_explanations(tmp_path, builder):
     needed, stale = Explanation("anything"), Explanation("nothing", kind="none")
     expectation = Expectation((), explained=(stale, needed))

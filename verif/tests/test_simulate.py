@@ -84,7 +84,7 @@ def test_a_wrong_pixel_fails(build, scenes):
     assert _sim(*SMALL_OPTIONS, build=build).returncode == 0
     (verilog,) = (build / "model").glob("*/verilog")
     (combiner,) = verilog.glob("colour_combiner*.v")
-    broken = re.sub(r"assign pixel = (.+);", r"assign pixel = ~(\1);", combiner.read_text())
+    broken = re.sub(r"assign pixel_word = (.+);", r"assign pixel_word = ~\1;", combiner.read_text())
     assert broken != combiner.read_text()
     combiner.write_text(broken)
     ran = _sim(*SMALL_OPTIONS, build=build)

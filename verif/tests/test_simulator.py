@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from raycaster.configuration import configure
-from raycaster.verif import ensure_icarus, simulator
-from raycaster.verif.simulator import SimulationError, build_model, convert, system_verilator
+from raycaster.sim import ensure_icarus, simulator
+from raycaster.sim.simulator import SimulationError, build_model, convert, system_verilator
 
 TINY = configure(screen="tiny")
 

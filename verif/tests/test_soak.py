@@ -13,9 +13,9 @@ from conftest import BUILD, ROOT
 from raycaster.configuration import configure
 from raycaster.golden.catalogue import catalogue
 from raycaster.scene import dump_scene, load_scene
-from raycaster.verif.job import Job
+from raycaster.sim.job import Job
+from raycaster.sim.simulator import SimulationError, build_model, convert, run_bench
 from raycaster.verif.random_scenes import STYLES, random_scene
-from raycaster.verif.simulator import SimulationError, build_model, convert, run_bench
 
 SMALL = configure(screen="tiny", units=8, rectangles=4, reflections=2, divider_bits=3)
 
@@ -66,13 +66,13 @@ def test_a_wrong_scene_shrinks(tmp_path):
     files = []
     for source in convert(SMALL, BUILD):
         copy = tmp_path / source.name
-        copy.write_text(source.read_text().replace("(u_0 <= u_1)", "(u_0 > u_1)"))
+        copy.write_text(source.read_text().replace("(u_0 > u_1)", "(u_0 <= u_1)"))
         files.append(copy)
-    assert any("(u_0 > u_1)" in file.read_text() for file in files)
+    assert any("(u_0 <= u_1)" in file.read_text() for file in files)
     model = build_model(SMALL, "icarus", build=BUILD, verilog=files, variant="broken")
     seeds = (0, 1, 5)
     with pytest.raises(SimulationError, match="wrong pixels in the scenes of seeds"):
-        run_bench(model, "raycaster.verif.soak_bench", Job(SMALL, output=str(tmp_path), seeds=seeds), tmp_path)
+        run_bench(model, "raycaster.verif.benches.soak_bench", Job(SMALL, output=str(tmp_path), seeds=seeds), tmp_path)
     shrunk = [load_scene(path) for path in tmp_path.glob("*-shrunk.toml")]
     assert shrunk
     assert all(len(scene.rect) == 1 for scene in shrunk)

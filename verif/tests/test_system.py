@@ -13,10 +13,10 @@ from raycaster.configuration import configure
 from raycaster.convert.write import write_processor_system
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, MEMORY_WORDS
+from raycaster.play import game
+from raycaster.play.system import check_program, play, read_buttons
 from raycaster.rtl.system import picorv32
-from raycaster.verif import game
-from raycaster.verif.play import check_program, play, read_buttons
-from raycaster.verif.simulator import SYSTEM_BENCH, SimulationError, build_model
+from raycaster.sim.simulator import SYSTEM_BENCH, SimulationError, build_model
 
 pytestmark = pytest.mark.skipif(
     picorv32.importlib.util.find_spec(picorv32.PACKAGE) is None, reason="PicoRV32 is not installed"
@@ -117,7 +117,7 @@ def test_a_program_that_is_none_is_refused(text, tmp_path):
 
 def test_picorv32_is_said_to_be_missing(monkeypatch):
     monkeypatch.setattr(picorv32.importlib.util, "find_spec", lambda _: None)
-    with pytest.raises(UserError, match=r"PicoRV32 is missing; pip install 'raycaster\[play\]'"):
+    with pytest.raises(UserError, match=r"^PicoRV32 is missing; it comes with the extra play: "):
         picorv32.picorv32_source()
 
 

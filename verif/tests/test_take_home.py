@@ -18,7 +18,7 @@ from raycaster.configuration import Configuration, configure
 from raycaster.convert.take_home import FILE_LIST, TOP, WAIVERS
 from raycaster.convert.write import write_verilog
 from raycaster.fit.fixing import fix
-from raycaster.verif.simulator import find_tool
+from raycaster.sim.simulator import find_tool
 
 CONFIGURATIONS = [
     configure(),

@@ -13,15 +13,15 @@ import pytest
 from conftest import BUILD, ROOT
 from rich.console import Console
 
+from raycaster.debug.probes.engines import description_of
+from raycaster.debug.probes.ray import Ray, Reading, first_difference, module_of, read
+from raycaster.debug.recorder import pixel_place, record
+from raycaster.debug.trace import difference_line, main, show
+from raycaster.debug.wave_files import View, signal_names
+from raycaster.debug.waves import Waves
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
-from raycaster.verif.probes.engines import description_of
-from raycaster.verif.probes.ray import Ray, Reading, first_difference, module_of, read
-from raycaster.verif.recorder import pixel_place, record
-from raycaster.verif.simulator import WINDOW_BENCH, build_model, convert
-from raycaster.verif.trace import difference_line, main, show
-from raycaster.verif.wave_files import View, signal_names
-from raycaster.verif.waves import Waves
+from raycaster.sim.simulator import WINDOW_BENCH, build_model, convert
 
 SCENE = Path(__file__).with_name("tall.toml")
 OPTIONS = {

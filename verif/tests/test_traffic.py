@@ -9,7 +9,7 @@ import pytest
 from conftest import BUILD, SMALL_SCENE, Bench
 
 from raycaster.configuration import configure
-from raycaster.verif.simulator import SimulationError, convert
+from raycaster.sim.simulator import SimulationError, convert
 
 SMALL = configure(screen="tiny", units=8, rectangles=3)
 
@@ -55,13 +55,13 @@ def test_is_noticed(bench: Bench, tmp_path, module, right, wrong, complaint):
     """One fault at a time, each with the complaint that it must cause."""
     files = broken(tmp_path, module, right, wrong)
     with pytest.raises(SimulationError, match=rf"seed \d+: .*({complaint})"):
-        bench("traffic_bench", SMALL, "icarus", seeds=(1, 2), verilog=files)
+        bench("verif.benches.traffic_bench", SMALL, "icarus", seeds=(1, 2), verilog=files)
 
 
 @pytest.mark.parametrize("start", [1, 2, 3, 4])
 def test_random_start(bench: Bench, start):
     """Registers and memories start with random values, and nothing of them is seen after reset."""
-    bench("frame_bench", SMALL, "verilator", SMALL_SCENE, plusargs=random_values(start))
+    bench("sim.frame_bench", SMALL, "verilator", SMALL_SCENE, plusargs=random_values(start))
 
 
 def random_values(start: int) -> tuple[str, str]:
@@ -75,7 +75,14 @@ def test_the_start_is_random(bench: Bench, tmp_path):
     complaints = set()
     for start in (1, 2, 3):
         with pytest.raises(SimulationError, match="status reads") as caught:
-            bench("traffic_bench", SMALL, "verilator", seeds=(1,), verilog=files, plusargs=random_values(start))
+            bench(
+                "verif.benches.traffic_bench",
+                SMALL,
+                "verilator",
+                seeds=(1,),
+                verilog=files,
+                plusargs=random_values(start),
+            )
         complaints.add(str(caught.value).partition(";")[0])
     assert len(complaints) == 3, complaints
 
@@ -84,4 +91,4 @@ def test_an_unknown_start_is_noticed(bench: Bench, tmp_path):
     """The same without its reset in Icarus, where registers start unknown and stay so."""
     files = broken(tmp_path, "video_generator", "if (reset == 1)", "if (1'b0)")
     with pytest.raises(SimulationError, match=r"no leading edge of HS|neither 0 nor 1"):
-        bench("frame_bench", SMALL, "icarus", SMALL_SCENE, verilog=files)
+        bench("sim.frame_bench", SMALL, "icarus", SMALL_SCENE, verilog=files)

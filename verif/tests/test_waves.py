@@ -15,17 +15,17 @@ import pytest
 from conftest import BUILD, SMALL_SCENE
 from rich.console import Console
 
+from raycaster.debug.probes.ray import Ray, fields
+from raycaster.debug.recorder import build_and_record
+from raycaster.debug.wave import main, viewer, write_view
+from raycaster.debug.wave_files import View, write_files
+from raycaster.debug.waves import Waves, signed
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
 from raycaster.rtl.common.records import Signs
 from raycaster.rtl.engine.ray_sequencer import RayState
-from raycaster.verif.monitor import CLOCK_NS
-from raycaster.verif.probes.ray import Ray, fields
-from raycaster.verif.recorder import build_and_record
-from raycaster.verif.simulator import FST_HEADERS, has_headers
-from raycaster.verif.wave import main, viewer, write_view
-from raycaster.verif.wave_files import View, write_files
-from raycaster.verif.waves import Waves, signed
+from raycaster.sim.monitor import CLOCK_NS
+from raycaster.sim.simulator import FST_HEADERS, has_headers
 
 VCD = """
 $timescale 10ps $end
@@ -222,10 +222,10 @@ def test_cursor_is_at_the_pixel(wave):
     time_ns = int(ticks) / waves.ticks(1)
     if design.configuration.engine == "beam":
         assert waves.value("bench.dut.beam_renderer_i.row", time_ns) == ray.row
-        assert waves.value("bench.dut.beam_renderer_i.next_column", time_ns) == 1
+        assert waves.value("bench.dut.beam_renderer_i.scan_next_column", time_ns) == 1
         return
-    assert waves.value("bench.dut.ray_caster_renderer_i.row", time_ns) == ray.row
-    assert waves.value("bench.dut.ray_caster_renderer_i.column_offset", time_ns) == ray.offset
+    assert waves.value("bench.dut.ray_caster_renderer_i.place_row", time_ns) == ray.row
+    assert waves.value("bench.dut.ray_caster_renderer_i.place_column_offset", time_ns) == ray.offset
     assert waves.value(waves.find("*.ray_sequencer_i.steps_screen_to_ray"), time_ns) == 1
 
 

@@ -14,11 +14,11 @@ from PIL import Image
 from raycaster.configuration import configure
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES
+from raycaster.play import window
+from raycaster.play.machine import Machine, build_machine
 from raycaster.rtl.system import scene_player
 from raycaster.rtl.system.camera_axis import STEP
 from raycaster.scene import load_scene
-from raycaster.verif import window
-from raycaster.verif.machine import Machine, build_machine
 
 MIRROR_ROOM = ROOT / "scenes" / "mirror_room.toml"
 pygame = pytest.importorskip("pygame", reason="the extra play is not installed")

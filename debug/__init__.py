@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""A wrong pixel: waveforms, and one pixel's life held against golden."""

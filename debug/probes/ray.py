@@ -1,0 +1,388 @@
+# SPDX-License-Identifier: MIT
+"""One ray's life in a waveform, held against golden: what the descriptions of the engines share.
+
+A description says at which events of the control which signals hold a value, and what golden says the value is. Events
+come from strobes and states in the waveform itself; a register shows what it took at an event in the cycle after it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Any, Protocol
+
+import numpy as np
+
+from raycaster.configuration import CHANNEL_BITS, Configuration
+from raycaster.debug.waves import Samples, Waves, signed
+from raycaster.design import Design
+from raycaster.errors import UserError
+from raycaster.golden import exact, seed_engine
+from raycaster.golden.picture import shown
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.rtl.common.records import Record
+
+DUT = "bench.dut"
+AXES = "xyz"
+
+ENDS = ("blend", "done")
+"""Events after which a ray has seen all that it will see."""
+
+Value = int | Fraction | str | None
+"""What is held against what; None means nothing, and is like everything."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A moment of a ray's life."""
+
+    bounce: int
+    """0 for the primary ray, then one more for each reflection."""
+
+    rectangle: int | None = None
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that the hardware did."""
+
+    kind: str
+    cycle: int
+    """Index of the sample; what is sampled there stood in the event's cycle."""
+
+    place: Place
+
+
+Read = Callable[["Ray", Place], Sequence[Value]]
+"""Golden's values at a place; components in the order of the signals."""
+
+
+@dataclass(frozen=True)
+class Probe:
+    """Where the hardware has a value, and what golden says that it is."""
+
+    quantity: str
+    signals: tuple[str, ...]
+    """Whole names, or what a description makes such of; the module that contains a signal answers for it."""
+
+    event: str
+    golden: Read
+    late: int = 0
+    """Cycles after the event's."""
+
+    decode: Callable[..., Sequence[Value]] | None = None
+    """Makes values of the ray, the place and the signals' samples, where they are not the same."""
+
+    signed: bool | tuple[int, ...] = False
+    """Whether the signals are in two's complement, or the numbers of those that are."""
+
+    true: Read | None = None
+    """The value without any rounding, where that may be another."""
+
+    scale: bool = False
+    """Values are in units of 2^-F."""
+
+    colour: bool = False
+    module: str = ""
+    """Which one answers for it, where that is not the one that contains the signal."""
+
+    shown: bool = True
+    """Whether it has a place in the table even where it is right."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A probe's values at one event: golden's beside the hardware's."""
+
+    probe: Probe
+    place: Place
+    cycle: int
+    time_ns: float
+    """When the cycle begins in which the values stand."""
+
+    golden: tuple[Value, ...]
+    found: tuple[Value, ...]
+
+    @property
+    def wrong(self) -> int | None:
+        """The first component that is not as golden has it."""
+        pairs = zip(self.golden, self.found, strict=True)
+        return next((i for i, (golden, found) in enumerate(pairs) if golden is not None and golden != found), None)
+
+    @property
+    def signal(self) -> str:
+        """The signal that is wrong, or the first one."""
+        signals = self.probe.signals
+        return signals[min(self.wrong or 0, len(signals) - 1)]
+
+    @property
+    def module(self) -> str:
+        """The module that answers for it."""
+        return self.probe.module or module_of(self.signal)
+
+
+class Description(Protocol):
+    """What an engine's description offers."""
+
+    probes: Sequence[Probe]
+    tells: Mapping[str, tuple[str, str]]
+    """By kind of event, what it is called and which signal tells of it."""
+
+    def events(self, samples: Samples, ray: Ray) -> list[Event]:
+        """What the hardware did for the pixel."""
+
+    def expected(self, ray: Ray) -> Iterable[tuple[str, Place]]:
+        """The events, by kind and place, that golden knows must happen."""
+
+    def controls(self) -> Iterable[str]:
+        """The signals that `events` reads."""
+
+    def named(self, signal: str, place: Place, ray: Ray) -> str:
+        """The whole name of a probe's signal at a place."""
+
+    def groups(self, ray: Ray) -> Mapping[str, Sequence[str]]:
+        """What a viewer shows, by the group's name: whole names, with `:signed` or `:hex` behind those that are not
+        unsigned numbers or single bits."""
+
+
+class Ray:
+    """All that golden knows of one pixel."""
+
+    def __init__(self, design: Design, row: int, column: int):
+        """Trace it.
+
+        Raises:
+            UserError: there is no such pixel.
+        """
+        self.design, self.config, self.scene = design, design.configuration, design.scene
+        screen = self.config.screen_geometry
+        if not (0 <= row < screen.rows and 0 <= column < screen.columns):
+            raise UserError(
+                f"pixel: column from 0 to {screen.columns - 1} and row from 0 to {screen.rows - 1}, not {column},{row}"
+            )
+        self.row, self.column = row, column
+        self.rectangles = Rectangles.of_scene(self.scene)
+        slopes = primary_slopes(screen)[row, column][None]
+        arguments = self.rectangles, self.scene.camera.position, self.scene.background, slopes, design.reflections
+        self.true = exact.trace(*arguments, keep=True)
+        self.golden: seed_engine.Trace | exact.Trace = self.true
+        if self.config.engine == "seed":
+            self.golden = seed_engine.trace(
+                *arguments, fraction_bits=self.config.fraction_bits, rounding=self.config.rounding, keep=True
+            )
+
+    @property
+    def reflections(self) -> int:
+        """Of the scene, as it is shown."""
+        return self.design.reflections
+
+    @property
+    def unit(self) -> int:
+        """The ray unit that has the pixel; see the seed engine's ray_generator."""
+        return self.column % self.config.units
+
+    @property
+    def offset(self) -> int:
+        """The group that it is in."""
+        return self.column // self.config.units
+
+    def alive(self, bounce: int) -> bool:
+        """Whether there is such a ray: everything before it has hit something."""
+        return bounce <= self.reflections and bool(self.golden.bounces[bounce].alive[0])
+
+    def of_rectangle(self, place: Place, name: str) -> Any:
+        """One of golden's arrays by rectangle, at a place; int, bool, or a tuple of them."""
+        value = getattr(self.golden.bounces[place.bounce], name)[place.rectangle, 0]
+        return tuple(value.tolist()) if value.ndim else value.item()
+
+    def of_ray(self, bounce: int, name: str) -> tuple[int, ...]:
+        """One of golden's arrays by ray."""
+        return tuple(getattr(self.golden.bounces[bounce], name)[0].tolist())
+
+    def winner(self, bounce: int) -> int:
+        """The rectangle that is hit, -1 for none."""
+        return int(self.golden.winners[bounce][0]) if self.alive(bounce) else -1
+
+    def nearest(self, place: Place) -> int:
+        """The nearest rectangle of those up to the place's, -1 for none."""
+        return self.nearest_of(place.bounce, range(place.rectangle + 1))
+
+    def nearest_of(self, number: int, candidates: Iterable[int]) -> int:
+        """The nearest rectangle of some, at a bounce; -1 for none."""
+        bounce = self.golden.bounces[number]
+        hits = [i for i in candidates if i < len(self.rectangles) and bounce.hits[i, 0]]
+        # Of a fraction; the seed engine's depths are all over one.
+        divisors = np.ones(len(self.rectangles)) if self.config.engine == "seed" else bounce.denominators[:, 0]
+        return min(hits, key=lambda i: (Fraction(int(bounce.depths[i, 0]), int(divisors[i])), i), default=-1)
+
+    def colour(self, rectangle: int) -> int:
+        """A rectangle's, or the background for -1; 24 bits, red above green above blue."""
+        channels = self.scene.background if rectangle < 0 else self.rectangles.colours[rectangle]
+        return packed(channels, CHANNEL_BITS)
+
+    @cached_property
+    def pixel(self) -> int:
+        """The pixel's colour, as wide as the design has it."""
+        bits = self.config.colour_bits
+        picture = shown(self.golden.colours[0].reshape(1, 1, 3), self.config)[0, 0]
+        return packed(picture >> (CHANNEL_BITS - bits), bits)
+
+    def sums(self, bounce: int) -> list[int]:
+        """The weighted sum of each channel, up to a bounce's ray."""
+        totals = np.zeros(3, dtype=np.int64)
+        for number in range(bounce + 1):
+            weight = 2 if number == 0 and self.reflections == 2 else 1
+            colour = self.colour(self.winner(number))
+            totals += weight * np.array(channels_of(colour, CHANNEL_BITS))
+        return totals.tolist()
+
+    def plane(self, place: Place) -> tuple[int, int, tuple[int, ...]]:
+        """A rectangle's axis, its plane's coordinate, and its bounds as the hardware sorts them."""
+        axis = int(self.rectangles.axes[place.rectangle])
+        low, high = self.rectangles.low[place.rectangle], self.rectangles.high[place.rectangle]
+        u, v = OTHER_AXES[axis]
+        return axis, int(low[axis]), tuple(int(value) for value in (low[u], high[u], low[v], high[v]))
+
+    def true_origin(self, bounce: int) -> tuple[Fraction, ...]:
+        """Where a ray starts without rounding; a ray that misses leads nowhere."""
+        if bounce == 0:
+            return tuple(Fraction(coordinate) for coordinate in self.scene.camera.position)
+        return self._true_point(self.true.points[bounce - 1][0], self.true.denominators[bounce - 1][0])
+
+    def true_hit(self, place: Place) -> tuple[Fraction, ...] | None:
+        """Where a ray meets a rectangle's plane without rounding, or None where it runs along it or away from it."""
+        bounce = self.true.bounces[place.bounce]
+        divisor, ahead = int(bounce.denominators[place.rectangle, 0]), self.true_numerator(place)
+        if not divisor or not bounce.alive[0] or ahead * self.true_denominator(place) <= 0:
+            return None
+        return self._true_point(bounce.points[place.rectangle, 0], divisor)
+
+    def true_numerator(self, place: Place) -> Fraction:
+        """From where the ray starts to the plane, without rounding."""
+        axis, position, _ = self.plane(place)
+        return position - self.true_origin(place.bounce)[axis]
+
+    def true_denominator(self, place: Place) -> int:
+        """The slope along the rectangle's axis."""
+        axis, _, _ = self.plane(place)
+        return int(self.true.bounces[place.bounce].slopes[0, axis])
+
+    @staticmethod
+    def _true_point(scaled: np.ndarray, divisor: int) -> tuple[Fraction, ...]:
+        return tuple(Fraction(int(coordinate), int(divisor) or 1) for coordinate in scaled)
+
+
+def packed(channels: Iterable[int], bits: int) -> int:
+    """Red, green and blue side by side."""
+    red, green, blue = (int(channel) for channel in channels)
+    return (red << 2 * bits) | (green << bits) | blue
+
+
+def channels_of(colour: int, bits: int) -> tuple[int, int, int]:
+    """And apart again."""
+    mask = (1 << bits) - 1
+    return colour >> 2 * bits & mask, colour >> bits & mask, colour & mask
+
+
+def fields(scope: str, group: str, names: Iterable[str], record: Record | None = None) -> tuple[str, ...]:
+    """The signals of an interface by its attributes.
+
+    Args:
+        scope: the instance.
+        group: the interface or record in it.
+        names: of attributes, with a viewer's number format behind a colon where that matters.
+        record: one of the group's layout, where that is a record: of its word the fields' bits are named, which are
+            there whether the instance reads the field or not.
+    """
+    if record is None:
+        return tuple(f"{scope}.{group}_{name}" for name in names)
+    parts = [name.partition(":") for name in names]
+    ranges = [record.slice(field) for field, _, _ in parts]
+    return tuple(
+        f"{scope}.{group}_word[{high}:{low}]{colon}{kind}"
+        for (high, low), (_, colon, kind) in zip(ranges, parts, strict=True)
+    )
+
+
+def module_of(signal: str) -> str:
+    """The module in which a signal stands, by the name of its instance."""
+    instance = signal.split(".")[-2]
+    match = re.fullmatch(r"(\w+?)(?:_\d+)?_i", instance)
+    return match[1] if match else {"dut": "ray_caster_module"}.get(instance, instance)
+
+
+def unit_name(module: str, config: Configuration, unit: int) -> str:
+    """The instance of a module that there is one of for each unit."""
+    return f"{module}_i" if config.units == 1 else f"{module}_{unit}_i"
+
+
+def read(waves: Waves, description: Description, ray: Ray) -> list[Reading]:
+    """All that the waveform has of a pixel's life, in the order in which it happened.
+
+    What should have happened and did not is a reading too, which is wrong; it stands at the end of its ray.
+
+    Raises:
+        UserError: the waveform is of another design.
+    """
+    samples = waves.sample(description.controls())
+    if not samples.times_ns:
+        raise UserError(f"{waves.path}: the clock never rises")
+    events = description.events(samples, ray)
+    found, probes = [], description.probes
+    for event in events:
+        for probe in probes:
+            if probe.event != event.kind:
+                continue
+            golden = tuple(probe.golden(ray, event.place))
+            if any(value is not None for value in golden):
+                names = tuple(description.named(signal, event.place, ray) for signal in probe.signals)
+                found.append((replace(probe, signals=names), event, golden))
+    samples = waves.sample(sorted({signal for probe, _, _ in found for signal in probe.signals}))
+    readings = [
+        _reading(waves, samples, probe, event, golden, ray)
+        for probe, event, golden in found
+        if event.cycle + probe.late < len(samples.times_ns)
+    ]
+    omissions = []
+    happened = {(event.kind, event.place) for event in events}
+    for kind, place in description.expected(ray):
+        if (kind, place) not in happened:
+            ends = (event.cycle for event in events if event.kind in ENDS and event.place.bounce >= place.bounce)
+            cycle = min(ends, default=len(samples.times_ns) - 1)
+            quantity, signal = description.tells[kind]
+            probe = Probe(quantity, (signal,), kind, _happens)
+            omissions.append(Reading(probe, place, cycle, _begin(samples, cycle), ("yes",), ("no",)))
+    # Sorting keeps the order of the description within a cycle, which is that in which values depend on each other; and
+    # what is missed by then should have happened before.
+    return sorted(omissions + readings, key=lambda reading: reading.cycle)
+
+
+def _happens(ray: Ray, place: Place) -> Sequence[Value]:
+    return ("yes",)
+
+
+def _reading(
+    waves: Waves, samples: Samples, probe: Probe, event: Event, golden: tuple[Value, ...], ray: Ray
+) -> Reading:
+    cycle = event.cycle + probe.late
+    raw = [samples.values[name][cycle] for name in probe.signals]
+    for number in range(len(raw)) if probe.signed is True else probe.signed or ():
+        raw[number] = signed(raw[number], waves.width(probe.signals[number]))
+    found: tuple[Value, ...] = tuple(raw)
+    if probe.decode:
+        found = tuple(probe.decode(ray, event.place, *raw)) if None not in raw else len(golden) * (None,)
+    return Reading(probe, event.place, cycle, _begin(samples, cycle), golden, found)
+
+
+def _begin(samples: Samples, cycle: int) -> float:
+    """When a cycle begins, which is where a viewer shows what stands in it."""
+    return samples.times_ns[max(0, cycle - 1)]
+
+
+def first_difference(readings: Iterable[Reading]) -> Reading | None:
+    """The first reading that is not as golden has it."""
+    return next((reading for reading in readings if reading.wrong is not None), None)

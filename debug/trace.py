@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: MIT
+"""The life of one pixel, golden's values beside the hardware's, and where they part: `make trace`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from fractions import Fraction
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from raycaster.configuration import CHANNEL_BITS
+from raycaster.debug.probes.engines import description_of
+from raycaster.debug.probes.ray import Place, Probe, Ray, Reading, Value, first_difference, read
+from raycaster.debug.recorder import add_recording_options, build_and_record, pixel_place
+from raycaster.debug.waves import Waves
+from raycaster.design import design_for
+from raycaster.errors import UserError
+from raycaster.options import CommandParser, given_options
+from raycaster.sim.simulator import SimulationError
+
+LOG_COLUMNS = 140
+PIXEL_EVENTS = ("done", "shown")
+WRONG = "bold red"
+ERROR_DIGITS = 3
+
+
+def show(ray: Ray, readings: Sequence[Reading], console: Console) -> None:
+    """Print the life of a pixel: a table of each ray's rectangles, and one of all else."""
+    first = first_difference(readings)
+    colour = f"#{ray.pixel:0{(3 * ray.config.colour_bits + 3) // 4}x}"
+    console.print(f"{ray.design.path}, column {ray.column}, row {ray.row}: golden has {colour}", highlight=False)
+    for bounce in range(ray.reflections + 1):
+        name = "the ray from the camera" if bounce == 0 else f"reflection {bounce}"
+        lost = "" if ray.alive(bounce) else ": there is none, as the ray before it hit nothing"
+        console.print(f"\n[bold]{name}[/]{lost}", highlight=False)
+        mine = [reading for reading in readings if reading.place.bounce == bounce and not _of_pixel(reading)]
+        # What has no column of its own is told where it is wrong.
+        console.print(_others(ray, [reading for reading in mine if _is_line(reading)], first))
+        if ray.alive(bounce):
+            rectangles = [reading for reading in mine if not _is_line(reading)]
+            console.print(_rectangles(ray, bounce, rectangles, first))
+    console.print("\n[bold]the pixel[/]")
+    console.print(_others(ray, [reading for reading in readings if _of_pixel(reading)], first))
+    console.print(
+        "*: what the ray sees. left out: what culling found it cannot see. exact: without rounding.", style="dim"
+    )
+    if first is None:
+        console.print("The hardware does what golden does.", highlight=False)
+        return
+    console.print(difference_line(ray, first), style=WRONG, markup=False, highlight=False, soft_wrap=True)
+
+
+def difference_line(ray: Ray, reading: Reading) -> str:
+    """Where the hardware parts from golden, in a line."""
+    part = reading.wrong or 0
+    golden = _text(ray, reading.probe, reading.golden[part : part + 1])
+    found = _text(ray, reading.probe, reading.found[part : part + 1])
+    of = "the ray" if reading.place.bounce == 0 else f"reflection {reading.place.bounce}"
+    if _of_pixel(reading):
+        of = "the pixel"
+    if reading.place.rectangle is not None:
+        of += f", rectangle {_label(ray, reading.place.rectangle)}"
+    return (
+        f"First difference: at {reading.time_ns:.0f} ns, {of}: {reading.probe.quantity} is {found}, "
+        f"golden has {golden}; module {reading.module}, signal {reading.signal}"
+    )
+
+
+def _of_pixel(reading: Reading) -> bool:
+    """Whether it comes after all rays."""
+    return reading.probe.event in PIXEL_EVENTS
+
+
+def _is_line(reading: Reading) -> bool:
+    """Whether it has a line of its own, and not a place among the values of a rectangle."""
+    return reading.place.rectangle is None or not reading.probe.shown
+
+
+def _table() -> Table:
+    return Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+
+
+def _others(ray: Ray, readings: Sequence[Reading], first: Reading | None) -> Table:
+    """What is told a line each."""
+    table = _table()
+    table.add_column("", no_wrap=True)
+    exactly = any(reading.probe.true for reading in readings)
+    for heading in ("golden", "hardware", *(("exact", "error") if exactly else ())):
+        table.add_column(heading, justify="right", no_wrap=True)
+    table.add_column("ns", justify="right", no_wrap=True)
+    table.add_column("module", no_wrap=True)
+    for reading in readings:
+        probe = reading.probe
+        if not probe.shown and reading.wrong is None:
+            continue
+        true = tuple(probe.true(ray, reading.place)) if probe.true else ()
+        of = "" if reading.place.rectangle is None else f", {_label(ray, reading.place.rectangle)}"
+        table.add_row(
+            probe.quantity + of,
+            _text(ray, probe, reading.golden),
+            _found(ray, reading, first),
+            *((_true_text(true), _error_text(ray, probe, reading.golden, true)) if exactly else ()),
+            f"{reading.time_ns:.0f}",
+            reading.module,
+        )
+    return table
+
+
+def _rectangles(ray: Ray, bounce: int, readings: Sequence[Reading], first: Reading | None) -> Table:
+    """A rectangle's values side by side: golden's, the hardware's below them, and below these the exact ones."""
+    by_place: dict[tuple[int, Probe], Reading] = {}
+    probes: dict[str, Probe] = {}
+    for reading in readings:
+        probes[reading.probe.quantity] = reading.probe
+        by_place[reading.place.rectangle, reading.probe.quantity] = reading
+    table = _table()
+    table.add_column("rectangle", no_wrap=True)
+    table.add_column("", no_wrap=True)
+    for quantity in probes:
+        table.add_column(quantity, justify="right", no_wrap=True)
+    for rectangle in range(len(ray.rectangles)):
+        cells = [by_place.get((rectangle, quantity)) for quantity in probes]
+        name = _label(ray, rectangle)
+        if ray.winner(bounce) == rectangle:
+            name += " *"
+        if not any(cells):
+            table.add_row(name, "left out", style="dim", end_section=True)
+            continue
+        place = Place(bounce, rectangle)
+        true = [tuple(probe.true(ray, place)) if probe.true else () for probe in probes.values()]
+        table.add_row(name, "golden", *(_text(ray, cell.probe, cell.golden) if cell else "" for cell in cells))
+        table.add_row("", "hardware", *(_found(ray, cell, first) if cell else "" for cell in cells))
+        if any(true):
+            table.add_row("", "exact", *map(_true_text, true), style="dim")
+            errors = [
+                _error_text(ray, cell.probe, cell.golden, value) if cell else ""
+                for cell, value in zip(cells, true, strict=True)
+            ]
+            table.add_row("", "error", *errors, style="dim", end_section=True)
+    return table
+
+
+def _label(ray: Ray, rectangle: int) -> str:
+    """A rectangle's number and name."""
+    name = ray.scene.rect[rectangle].name
+    return f"{rectangle} {name}" if name else str(rectangle)
+
+
+def _found(ray: Ray, reading: Reading, first: Reading | None) -> Text:
+    """What the hardware has, which stands out where it is wrong."""
+    text = _text(ray, reading.probe, reading.found, like=reading.golden)
+    if reading.wrong is None:
+        return Text(text)
+    return Text(f"{text} <- first" if reading is first else text, style=WRONG)
+
+
+def _text(ray: Ray, probe: Probe, values: Sequence[Value], like: Sequence[Value] | None = None) -> str:
+    """Values as people read them; what means nothing is a dash."""
+    likes = values if like is None else like
+    shown = [_one(ray, probe, value) if hint is not None else "-" for value, hint in zip(values, likes, strict=True)]
+    return ", ".join(shown)
+
+
+def _one(ray: Ray, probe: Probe, value: Value) -> str:
+    if value is None:
+        return "unknown"
+    if isinstance(value, str):
+        return value
+    if probe.colour:
+        bits = 3 * (ray.config.colour_bits if probe.quantity.startswith("pixel") else CHANNEL_BITS)
+        return f"#{int(value):0{(bits + 3) // 4}x}"
+    if probe.scale and ray.config.fraction_bits:
+        return f"{int(value) / (1 << ray.config.fraction_bits):g}"
+    return str(int(value))
+
+
+def _true_text(values: Sequence[Value]) -> str:
+    return ", ".join(
+        "-" if value is None else f"{float(value):.{ERROR_DIGITS}f}".rstrip("0").rstrip(".") for value in values
+    )
+
+
+def _error_text(ray: Ray, probe: Probe, golden: Sequence[Value], true: Sequence[Value]) -> str:
+    """How far golden is from the value without rounding; nothing where there is no error."""
+    unit = 1 << ray.config.fraction_bits if probe.scale else 1
+    errors = [
+        "-" if value is None or exact is None else f"{float(Fraction(int(value), unit) - exact):+.{ERROR_DIGITS}f}"
+        for value, exact in zip(golden, true, strict=False)
+    ]
+    return ", ".join("0" if error.strip("+-0.") == "" and error != "-" else error for error in errors)
+
+
+def parse_arguments(argv: Sequence[str] | None) -> argparse.Namespace:
+    """The command line."""
+    parser = CommandParser("trace", __doc__, "boxes --pixel 160,120")
+    add_recording_options(parser, "of rays, from 0 on")
+    return parser.parse_args(argv)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command; returns its exit code."""
+    arguments = parse_arguments(argv)
+    if arguments.pixel is None:
+        raise UserError("pixel: say which one, as in PIXEL=160,120")
+    column, row = pixel_place(arguments.pixel)
+    console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
+    design = design_for(arguments.scene, given_options(arguments))
+    ray = Ray(design, row, column)
+    target = arguments.build / "trace" / design.name
+    try:
+        waves = build_and_record(
+            design, arguments.simulator, (row, row), target, build=arguments.build, console=console
+        )
+    except SimulationError as error:
+        console.print(str(error), style="red", markup=False, soft_wrap=True)
+        return 1
+    readings = read(Waves(waves), description_of(design.configuration, ray.unit), ray)
+    show(ray, readings, console)
+    console.print(f"The waveform of its row is {waves}", highlight=False, soft_wrap=True)
+    return int(first_difference(readings) is not None)

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: MIT
+"""A waveform of some rows of a scene's frame, with what viewers open it with: `make wave`."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+
+from raycaster.convert.write import design_states
+from raycaster.debug.probes.engines import description_of
+from raycaster.debug.probes.ray import Ray
+from raycaster.debug.recorder import add_recording_options, build_and_record, check_rows, pixel_place
+from raycaster.debug.wave_files import View, write_files
+from raycaster.debug.waves import Waves
+from raycaster.design import Design, design_for
+from raycaster.errors import UserError
+from raycaster.options import CommandParser, given_options
+from raycaster.sim.simulator import SimulationError
+
+MEGABYTE = 1_000_000
+
+
+def rows_of(text: str | None, row: int) -> tuple[int, int]:
+    """The rows that are asked for, or the one alone.
+
+    Raises:
+        UserError: they are not one number or two.
+    """
+    if text is None:
+        return row, row
+    numbers = [number.strip() for number in text.split(",")]
+    if len(numbers) > 2 or not all(number.isdecimal() for number in numbers):
+        raise UserError(f"span: the first row and the last one, as in 118,122, not {text}")
+    return int(numbers[0]), int(numbers[-1])
+
+
+def write_view(path: Path, design: Design, ray: Ray) -> list[Path]:
+    """Write viewers' files with the cursor at a pixel's ray.
+
+    Args:
+        path: a waveform that has the pixel's row.
+        design: what it is of.
+        ray: of the pixel.
+
+    Returns:
+        The files of GTKWave and Surfer, beside the waveform.
+    """
+    waves = Waves(path)
+    description = description_of(design.configuration, ray.unit)
+    samples = waves.sample(description.controls())
+    events = description.events(samples, ray)
+    cycles = [event.cycle for event in events if event.kind != "shown"] or [0, len(samples.times_ns) - 1]
+    begin, end = (samples.times_ns[max(0, cycle - 1)] for cycle in (cycles[0], max(cycles)))
+    view = View(description.groups(ray), design_states(design.configuration), begin, end)
+    return write_files(waves, view)
+
+
+def viewer(waves: Path, files: list[Path]) -> list[str] | None:
+    """The command that shows a waveform, where there is a viewer and a screen to show it on."""
+    if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        return None
+    return next((command for command in commands(waves, files) if shutil.which(command[0])), None)
+
+
+def commands(waves: Path, files: list[Path]) -> list[list[str]]:
+    """How to open a waveform: in GTKWave, and in Surfer, which finds the names of states where it is started."""
+    gtkwave, surfer = files
+    return [["gtkwave", str(gtkwave.resolve())], ["surfer", "--command-file", surfer.name, waves.name]]
+
+
+def parse_arguments(argv: Sequence[str] | None) -> argparse.Namespace:
+    """The command line."""
+    parser = CommandParser("wave", __doc__, "boxes --pixel 160,120")
+    add_recording_options(parser, "of rays, from 0 on; the cursor is put there (the middle)")
+    parser.add_argument("--span", metavar="FIRST,LAST", help="rows to write (default: that of the pixel)")
+    parser.add_argument("--no-viewer", action="store_true", help="open nothing")
+    return parser.parse_args(argv)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command; returns its exit code."""
+    arguments = parse_arguments(argv)
+    design = design_for(arguments.scene, given_options(arguments))
+    screen = design.configuration.screen_geometry
+    column, row = pixel_place(arguments.pixel or f"{screen.centre_column},{screen.rows // 2}")
+    ray = Ray(design, row, column)
+    rows = rows_of(arguments.span, row)
+    check_rows(design.configuration, rows)
+    if not rows[0] <= row <= rows[1]:
+        raise UserError(f"span: rows {rows[0]} to {rows[1]} do not have the pixel's, which is {row}")
+    console = Console(soft_wrap=True)
+    target = arguments.build / "wave" / design.name
+    try:
+        waves = build_and_record(design, arguments.simulator, rows, target, build=arguments.build, console=console)
+    except SimulationError as error:
+        console.print(str(error), style="red", markup=False)
+        return 1
+    files = write_view(waves, design, ray)
+    size = waves.stat().st_size / MEGABYTE
+    console.print(f"{waves}: rows {rows[0]} to {rows[1]}, {size:.1f} MB", highlight=False)
+    command = None if arguments.no_viewer else viewer(waves, files)
+    if command:
+        with (waves.parent / "viewer.log").open("w") as log:
+            subprocess.Popen(command, cwd=waves.parent, stdout=log, stderr=log, start_new_session=True)
+        console.print(f"opened in {command[0]}", highlight=False)
+        return 0
+    _, surfer = commands(waves, files)
+    console.print(f"to open it: gtkwave {waves.parent / files[0].name}", highlight=False)
+    console.print(f"        or: cd {waves.parent} && {' '.join(surfer)}", highlight=False)
+    return 0

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: MIT
+"""What viewers open a waveform with: GTKWave's save file, Surfer's command file, and names of states for both."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from vcd.gtkw import GTKWSave, make_translation_filter
+
+from raycaster.debug.probes.ray import module_of
+from raycaster.debug.waves import RANGE, Waves
+from raycaster.errors import UserError
+
+GTKWAVE_FILE = "view.gtkw"
+SURFER_FILE = "view.sucl"
+
+FORMATS = {"": "dec", "signed": "signed", "hex": "hex"}
+"""GTKWave's names of number formats, by what stands behind a signal's name."""
+
+SURFER_FORMATS = {"": "Unsigned", "signed": "Signed", "hex": "Hexadecimal"}
+"""Surfer's."""
+
+WINDOW_SIZE = 1500, 1000
+NAMES_WIDTH = 360
+WAVES_WIDTH = 1050
+"""Pixels of GTKWave's window, and about what its waveforms have of them."""
+
+PIXELS_A_FRAME = 200
+"""Two to the power of GTKWave's zoom are the units of time that so many pixels have."""
+
+SURFER_DIGITS = "abcdefghijklmnop"
+"""Surfer numbers what it shows in sixteen letters."""
+
+States = Mapping[tuple[str, str], Mapping[int, str]]
+
+
+@dataclass(frozen=True)
+class View:
+    """What a viewer is to show."""
+
+    groups: Mapping[str, Sequence[str]]
+    """Signals by group; see `raycaster.debug.probes.ray.Description`."""
+
+    states: States
+    """By module and signal, the names of an enumerated signal's values."""
+
+    cursor_ns: float
+    end_ns: float
+    """The last that is to be seen at first."""
+
+
+def signal_names(view: View) -> list[str]:
+    """The whole names of all that is shown."""
+    return [_name_and_kind(name)[0] for names in view.groups.values() for name in names]
+
+
+def write_files(waves: Waves, view: View) -> list[Path]:
+    """Write everything beside a waveform; each file appears whole.
+
+    Returns:
+        GTKWave's file and Surfer's.
+
+    Raises:
+        UserError: the waveform lacks a signal.
+    """
+    for name in signal_names(view):
+        waves.width(name)
+    directory = waves.path.resolve().parent
+    filters = {}
+    for place, names in view.states.items():
+        title, bits = ".".join(place), max(names).bit_length()
+        filters[place] = directory / f"{title}.txt"
+        _write(filters[place], make_translation_filter(list(names.items()), "bin", bits) + "\n")
+        lines = [f"Name = {title}", f"Bits = {bits}", *(f"{value} {name}" for value, name in names.items())]
+        mappings = directory / ".surfer" / "mappings"
+        mappings.mkdir(parents=True, exist_ok=True)
+        _write(mappings / f"{title}.txt", "\n".join(lines) + "\n")
+    return [
+        _write(directory / GTKWAVE_FILE, _gtkwave(waves, view, filters)),
+        _write(directory / SURFER_FILE, _surfer(waves, view)),
+    ]
+
+
+def _write(path: Path, text: str) -> Path:
+    partial = path.with_name(f".{path.name}.partial")
+    partial.write_text(text)
+    return partial.replace(path)
+
+
+def _name_and_kind(name: str) -> tuple[str, str]:
+    """A signal's whole name, which may end with a range of its bits, and what stands behind it."""
+    signal, _, kind = name.rpartition(":")
+    return (signal, kind) if signal and not kind.endswith("]") else (name, "")
+
+
+def _parts(name: str) -> tuple[str, str, tuple[str, str]]:
+    """A signal's whole name, its number format, and the module and signal that it is."""
+    signal, kind = _name_and_kind(name)
+    if kind not in FORMATS:
+        raise UserError(f"{name}: there is no such number format as {kind}")
+    return signal, kind, (module_of(signal), signal.rpartition(".")[2])
+
+
+def _gtkwave(waves: Waves, view: View, filters: Mapping[tuple[str, str], Path]) -> str:
+    text = io.StringIO()
+    save = GTKWSave(text)
+    save.dumpfile(str(waves.path.resolve()))
+    # GTKWave counts whole units where the file counts tens or hundreds of them.
+    begin, end = (waves.ticks(time) * waves.tick_units for time in (view.cursor_ns, view.end_ns))
+    zoom = math.log2(max(1, end - begin) * 1.2 / WAVES_WIDTH * PIXELS_A_FRAME)
+    save.timestart(begin - (end - begin) // 20)
+    save.size(*WINDOW_SIZE)
+    save.zoom_markers(-zoom, begin)
+    save.signals_width(NAMES_WIDTH)
+    save.sst_expanded(False)
+    for group, names in view.groups.items():
+        labels = _labels([_parts(name)[0] for name in names])
+        with save.group(group):
+            for name, label in zip(names, labels, strict=True):
+                signal, kind, place = _parts(name)
+                width = waves.width(signal)
+                if RANGE.fullmatch(signal):
+                    signal, high, low = waves.bits(signal)
+                    count = waves.width(signal)
+                    # GTKWave numbers a signal's bits from the left.
+                    bits = [(count - 1 - bit, f"{signal}[{count - 1}:0]") for bit in range(high, low - 1, -1)]
+                    save.trace_combined(label, bits, datafmt=FORMATS[kind] if width > 1 else "bin")
+                    continue
+                whole = f"{signal}[{width - 1}:0]" if width > 1 else signal
+                if place in filters:
+                    save.trace(whole, label, datafmt="bin", translate_filter_file=str(filters[place]))
+                else:
+                    save.trace(whole, label, datafmt=FORMATS[kind] if width > 1 else "bin")
+    return text.getvalue()
+
+
+def _surfer(waves: Waves, view: View) -> str:
+    lines, count = [], 0
+    for group, names in view.groups.items():
+        lines.append(f"divider_add {group.replace(' ', '_')}")
+        count += 1
+        for name in names:
+            signal, kind, place = _parts(name)
+            # Surfer has no names for bits of a signal, so it shows all of them.
+            signal, kind = (waves.bits(signal)[0], "hex") if RANGE.fullmatch(signal) else (signal, kind)
+            lines.append(f"variable_add {signal}")
+            shown = ".".join(place) if place in view.states else SURFER_FORMATS[kind]
+            if waves.width(signal) > 1:
+                lines += [f"item_focus {_letters(count)}", f"item_set_format {shown}", "item_unfocus"]
+            count += 1
+    return "\n".join([*lines, f"cursor_set {waves.ticks(view.cursor_ns)}", "goto_cursor"]) + "\n"
+
+
+def _letters(number: int) -> str:
+    """A number as Surfer writes it."""
+    return "".join(SURFER_DIGITS[int(digit, 16)] for digit in f"{number:x}")
+
+
+def _labels(signals: Sequence[str]) -> list[str]:
+    """Names as short as tells them apart, with their instances before them where it takes these.
+
+    GTKWave shows what follows the last dot, so there is none.
+    """
+    labels = []
+    for signal in signals:
+        path = [part.removesuffix("_i") for part in signal.split(".")]
+        ends = [other for other in signals if other.endswith(f".{path[-1]}")]
+        depth = next((n for n in range(1, len(path)) if len({end.split(".")[-n] for end in ends}) == len(ends)), 1)
+        labels.append(":".join([path[-depth], path[-1]] if depth > 1 else path[-1:]))
+    return labels

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+"""`raycaster game`: a recorded game on the simulated system, every pixel checked, as an animation."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from PIL import Image
+from rich.console import Console
+from rich.progress import Progress
+from rich.table import Table
+
+from raycaster.configuration import configure
+from raycaster.errors import UserError
+from raycaster.options import CommandParser, add_build_option, add_configuration_options, given_options
+from raycaster.play.system import FASTEST, play
+from raycaster.sim.contact_sheet import write_contact_sheet
+from raycaster.sim.simulator import SYSTEM_BENCH, SimulationError, build_model
+from raycaster.sw.firmware import build_firmware
+from raycaster.sw.play_script import DEMO, load
+
+FRAMES = 240
+ANIMATION = "game.webp"
+SHOWN_HZ = 30
+"""Pictures a second of the animation: half the speed of the monitor, which browsers keep up with."""
+
+SHEET = "sheet.png"
+SHEET_COLUMNS = 3
+SHEET_FRAMES = 9
+"""Of the game, evenly spread."""
+
+POLL_SECONDS = 0.5
+
+
+def write_animation(frames: list[Path], path: Path) -> None:
+    """Write pictures as a WebP that repeats, without loss."""
+    first, *others = (Image.open(frame) for frame in frames)
+    first.save(path, save_all=True, append_images=others, duration=1000 // SHOWN_HZ, loop=0, lossless=True)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command; returns its exit code.
+
+    Args:
+        argv: its arguments, those of the process by default.
+    """
+    parser = CommandParser("game", __doc__, "--frames 24")
+    parser.add_argument("--script", type=Path, default=DEMO, help="the buttons of each frame (default: %(default)s)")
+    parser.add_argument("--frames", type=int, default=FRAMES, help="of the script, at most (default: %(default)s)")
+    add_build_option(parser)
+    parser.add_argument("--output", type=Path, help="where frames and animation go (default: game/ in there)")
+    add_configuration_options(parser)
+    arguments = parser.parse_args(argv)
+    if arguments.frames < 1:
+        raise UserError(f"frames: at least 1, not {arguments.frames}")
+    buttons = load(arguments.script)[: arguments.frames]
+    configuration = configure(**FASTEST | given_options(arguments))
+    console = Console()
+    build, output = arguments.build, arguments.output or arguments.build / "game"
+    firmware = build_firmware((build / "firmware").absolute())
+    try:
+        with console.status(f"building {configuration.name} with a processor"):
+            model = build_model(configuration, "verilator", build=build, bench=SYSTEM_BENCH)
+        with Progress(console=console, transient=True) as bars, ThreadPoolExecutor(1) as pool:
+            bar = bars.add_task("frames", total=len(buttons))
+            future = pool.submit(play, model, firmware.words, buttons, output)
+            while not future.done():
+                bars.update(bar, completed=len(list(output.glob("frame_*.png"))))
+                time.sleep(POLL_SECONDS)
+        result = future.result()
+    except SimulationError as error:
+        print(error, file=sys.stderr)
+        return 1
+    frames = sorted(output.glob("frame_*.png"))
+    write_animation(frames, output / ANIMATION)
+    step = max(1, len(frames) // SHEET_FRAMES)
+    write_contact_sheet(frames[step - 1 :: step][:SHEET_FRAMES], output / SHEET, SHEET_COLUMNS)
+    console.print((output / "uart.txt").read_text(errors="replace"), highlight=False, markup=False, end="")
+    rate = result["clocks_a_second"]
+    table = Table("design", "frames", "with a scene", "wrong pixels", "clocks/s", "frames/s")
+    for column in table.columns[1:]:
+        column.justify = "right"
+    speed = rate / configuration.screen_geometry.frame_cycles
+    shown = str(result["frames"]), str(result["shown"]), "0", f"{rate:,}", f"{speed:.2f}"
+    table.add_row(configuration.name, *shown)
+    console.print(table)
+    console.print(f"{output / ANIMATION}, with each frame beside it, and {SHEET}", highlight=False)
+    return 0

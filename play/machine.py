@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: MIT
+"""A whole system in Verilator, as fast as it goes: buttons in, frames out."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import struct
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from raycaster.configuration import CHANNEL_BITS, Configuration
+from raycaster.convert.write import write_system
+from raycaster.memory_map import BUTTON_NAMES, PROGRAM_FILE, clocks_per_bit
+from raycaster.registers import address_bits
+from raycaster.rtl.system import scene_player
+from raycaster.scene import Scene
+from raycaster.sim.register_model import LiveScene, SceneFollower
+from raycaster.sim.simulator import BUILD, SimulationError, convert, find_tool, lock, stamped, write_stamp
+
+TOP = "machine"
+BENCH, LOOP = (Path(__file__).with_name(f"{TOP}.{kind}") for kind in ("v", "cpp"))
+EVENT_WORDS = 6
+"""Of 32 bits, that the loop writes for what happens in a clock."""
+
+TIMEOUT = 900
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What a system did between two vertical syncs."""
+
+    picture: np.ndarray
+    """uint8 (lines, pixels, 3), as the monitor shows it; the first frame after reset lacks what was over by then."""
+
+    clocks: int
+    busy: int
+    """Clocks in which a picture was computed."""
+
+    scene: LiveScene | None
+    """What the registers told the renderer for this picture; None before the first StartScreen."""
+
+    text: str
+    """From the serial port."""
+
+
+class Machine:
+    """A running system; a context manager, which ends it.
+
+    Args:
+        executable: of `build_machine`.
+        config: the design in it.
+        program: for its processor, if it has one.
+    """
+
+    def __init__(self, executable: Path, config: Configuration, program: Path | None = None):
+        self._screen, self._lost_bits = config.screen_geometry, CHANNEL_BITS - config.colour_bits
+        self._scenes = SceneFollower(config)
+        self._directory = tempfile.TemporaryDirectory(prefix="raycaster-")
+        if program:
+            shutil.copyfile(program, Path(self._directory.name) / PROGRAM_FILE)
+        self._process = subprocess.Popen(
+            [executable.resolve()], cwd=self._directory.name, stdin=subprocess.PIPE, stdout=subprocess.PIPE
+        )
+        self.frame(0)  # that in which it comes up, of which the monitor sees a part
+
+    def __enter__(self) -> Machine:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._process.stdin.close()
+        self._process.wait()
+        self._process.stdout.close()
+        self._directory.cleanup()
+
+    def frame(self, buttons: int) -> Frame:
+        """Run to the next vertical sync.
+
+        Args:
+            buttons: those held, a bit each.
+
+        Raises:
+            SimulationError: the simulation ended.
+        """
+        self._process.stdin.write(struct.pack("<I", buttons))
+        self._process.stdin.flush()
+        clocks, busy, count, events, characters = struct.unpack("<5I", self._read(20))
+        pixels = np.frombuffer(self._read(3 * count), dtype=np.uint8) << self._lost_bits
+        width, height = self._screen.horizontal.visible, self._screen.vertical.visible
+        picture = np.zeros((height * width, 3), dtype=np.uint8)
+        shown = pixels.reshape(-1, 3)[-height * width :]
+        picture[len(picture) - len(shown) :] = shown
+        words = np.frombuffer(self._read(4 * EVENT_WORDS * events), dtype="<u4").reshape(-1, EVENT_WORDS).tolist()
+        for clock, start_screen, written, address, data, lanes in words:
+            # What is written in StartScreen's clock is too late for it.
+            if start_screen:
+                self._scenes.start_screen(clock)
+            if written:
+                self._scenes.write(clock, address, data, lanes)
+        text = self._read(characters).decode("ascii", "replace")
+        return Frame(picture.reshape(height, width, 3), clocks, busy, self._scenes.live, text)
+
+    def _read(self, size: int) -> bytes:
+        data = self._process.stdout.read(size)
+        if len(data) != size:
+            raise SimulationError("the simulated system ended")
+        return data
+
+
+def build_machine(config: Configuration, scene: Scene | None = None, build: Path = BUILD) -> Path:
+    """Compile a system, or find it compiled.
+
+    Args:
+        config: the design.
+        scene: what it shows, moved by buttons; None for a system with a processor instead.
+        build: the directory that holds `machine/`.
+
+    Returns:
+        The executable, for `Machine`.
+
+    Raises:
+        UserError: Verilator, or what it needs, is missing, or PicoRV32.
+        SimulationError: it could not be compiled.
+    """
+    tool = find_tool("verilator")
+    directory = build / "machine" / f"{config.name}-{'scene' if scene else 'processor'}"
+    with lock(directory):
+        files = write_system(config, scene, directory / "verilog") if scene else convert(config, build, system=True)
+        screen = config.screen_geometry
+        defines = (
+            f"-DVS_ACTIVE={int(screen.vertical.active_high)}",
+            f"-DCLOCKS_PER_BIT={0 if scene else clocks_per_bit(screen.clock_hz)}",
+        )
+        options = (
+            "-O3", "--x-assign", "fast", "-Wno-fatal", "-Wno-lint", "-Wno-style", f"-DSYSTEM={files[-1].stem}",
+            *(() if scene else ("-DSERIAL",)), f"-GBUTTONS={len(scene_player.BUTTONS if scene else BUTTON_NAMES)}",
+            f"-GCOLOUR_BITS={config.colour_bits}", f"-GADDRESS_BITS={address_bits(config.table)}",
+        )  # fmt: skip
+        digest = hashlib.sha256(repr((tool.version, options, defines)).encode())
+        for path in (*files, BENCH, LOOP):
+            digest.update(path.read_bytes())
+        executable = directory / "model" / f"V{TOP}"
+        if stamped(directory / "stamp.json", digest.hexdigest()) is None:
+            shutil.rmtree(executable.parent, ignore_errors=True)
+            executable.parent.mkdir(parents=True)
+            command = [
+                "verilator", "--cc", "--exe", "--build", "-j", "2", *options, "--top-module", TOP,
+                "--Mdir", executable.parent, "-CFLAGS", f"-O2 -std=gnu++20 {' '.join(defines)}", *files, BENCH, LOOP,
+            ]  # fmt: skip
+            done = subprocess.run(
+                [str(part.resolve()) if isinstance(part, Path) else part for part in command],
+                env=os.environ | tool.environment, capture_output=True, text=True, timeout=TIMEOUT, check=False,
+            )  # fmt: skip
+            if done.returncode:
+                log = directory / "model.log"
+                log.write_text(done.stdout + done.stderr)
+                raise SimulationError(f"{config.name} could not be compiled; the log is {log}")
+            write_stamp(directory / "stamp.json", digest.hexdigest(), [])
+    return executable

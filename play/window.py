@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: MIT
+"""`raycaster play`: the simulated hardware in a window: the game, or a scene to walk through."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+
+from raycaster.configuration import Configuration, configure
+from raycaster.design import design_for
+from raycaster.errors import UserError, not_installed
+from raycaster.golden import exact
+from raycaster.golden.picture import count_wrong, shown
+from raycaster.memory_map import BUTTON_NAMES
+from raycaster.options import (
+    CommandParser,
+    add_build_option,
+    add_configuration_options,
+    add_scene_argument,
+    given_options,
+)
+from raycaster.play.machine import Frame, Machine, build_machine
+from raycaster.play.system import FASTEST
+from raycaster.rtl.system import scene_player
+from raycaster.sim.simulator import SimulationError
+from raycaster.sw.firmware import build_firmware
+
+GAME_KEYS = {"left": ("left", "a"), "right": ("right", "d"), "up": ("up", "w"), "down": ("down", "s")}
+GAME_KEYS |= {"fire": ("space", "return")}
+SCENE_KEYS = {"forward": ("w",), "back": ("s",), "left": ("left", "a"), "right": ("right", "d")}
+SCENE_KEYS |= {"up": ("up",), "down": ("down",)}
+"""By button, the names of the keys that hold it."""
+
+LEAST_WIDTH = 960
+"""Of the window: smaller pictures are shown so many times larger."""
+
+DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
+BAR = 28
+
+
+class Judge:
+    """How many pixels of the pictures are not those of rational arithmetic, of as many pictures as there is time for.
+
+    Args:
+        config: the design that draws.
+    """
+
+    def __init__(self, config: Configuration):
+        self._config = config
+        self._pool = ThreadPoolExecutor(1)
+        self._asked: Future[int] | None = None
+        self.wrong: int | None = None
+        """Of the last picture that was looked at; None: of none yet."""
+        self.pictures = self.all_wrong = 0
+        """That were looked at, and what was wrong in them together."""
+
+    def look(self, frame: Frame) -> None:
+        """Have a picture looked at, unless the one before still is."""
+        if self._asked is not None and not self._asked.done():
+            return
+        self.finish()
+        if frame.scene is not None and frame.scene.run:
+            self._asked = self._pool.submit(self._count, frame)
+
+    def finish(self) -> None:
+        """Wait for the picture that is being looked at."""
+        if self._asked is not None:
+            self.wrong, self._asked = self._asked.result(), None
+            self.pictures += 1
+            self.all_wrong += self.wrong
+
+    def _count(self, frame: Frame) -> int:
+        scene = frame.scene
+        perfect = exact.picture(
+            self._config.screen_geometry, scene.rectangles, scene.camera, scene.background, scene.reflections
+        )
+        return count_wrong(frame.picture, shown(perfect, self._config))
+
+
+class Window:
+    """The picture, magnified, with a line of text below it. Closing it, or Escape, ends."""
+
+    def __init__(self, config: Configuration, title: str, keys: dict[str, tuple[str, ...]], buttons: Sequence[str]):
+        pygame = self._pygame = _pygame()
+        screen = config.screen_geometry
+        width, height = screen.horizontal.visible, screen.vertical.visible
+        times = max(1, LEAST_WIDTH // width)
+        self._size = times * width, times * height
+        try:
+            # Without any of these SDL would draw where nobody sees it.
+            if sys.platform == "linux" and not any(name in os.environ for name in DISPLAYS):
+                raise pygame.error
+            pygame.display.init()
+            self._surface = pygame.display.set_mode((self._size[0], self._size[1] + BAR))
+        except pygame.error:
+            raise UserError("there is no display to open a window on; make game writes an animation instead") from None
+        pygame.font.init()
+        pygame.display.set_caption(title)
+        self._font = pygame.font.Font(None, BAR - 6)
+        self._keys = {pygame.key.key_code(key): buttons.index(button) for button, held in keys.items() for key in held}
+        self._held: set[int] = set()
+
+    def held(self) -> int | None:
+        """The buttons that are held, a bit each; None where the window is to close."""
+        pygame = self._pygame
+        for event in pygame.event.get():
+            if event.type == pygame.QUIT or (event.type == pygame.KEYDOWN and event.key == pygame.K_ESCAPE):
+                return None
+            if event.type == pygame.KEYDOWN and event.key in self._keys:
+                self._held.add(event.key)
+            elif event.type == pygame.KEYUP:
+                self._held.discard(event.key)
+        return sum({1 << self._keys[key] for key in self._held})
+
+    def show(self, picture: np.ndarray, text: str) -> None:
+        """Draw a frame."""
+        pygame = self._pygame
+        drawn = pygame.surfarray.make_surface(picture.swapaxes(0, 1))
+        self._surface.blit(pygame.transform.scale(drawn, self._size), (0, 0))
+        self._surface.fill("black", (0, self._size[1], self._size[0], BAR))
+        self._surface.blit(self._font.render(text, True, "white"), (8, self._size[1] + 5))
+        pygame.display.flip()
+
+    def save(self, path: Path) -> None:
+        """Write what the window shows as a PNG."""
+        self._pygame.image.save(self._surface, str(path))
+
+    def close(self) -> None:
+        """Close it."""
+        self._pygame.quit()
+
+
+def _pygame():
+    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
+    try:
+        import pygame  # noqa: PLC0415 - wanted only where a window is
+    except ImportError:
+        raise UserError(not_installed("pygame", "play")) from None
+    return pygame
+
+
+def loop(
+    machine: Machine,
+    window: Window,
+    judge: Judge,
+    config: Configuration,
+    say: Callable[[str], None],
+    frames: int | None,
+) -> tuple[int, float]:
+    """Show frame after frame.
+
+    Args:
+        machine: what draws.
+        window: what shows.
+        judge: looks at pictures on the way.
+        config: the design.
+        say: told what the serial port said.
+        frames: after which it ends, or None to go on until the window is closed.
+
+    Returns:
+        Frames, and those a second.
+    """
+    started, count, rate = time.perf_counter(), 0, 0.0
+    while (frames is None or count < frames) and (held := window.held()) is not None:
+        before = time.perf_counter()
+        frame = machine.frame(held)
+        say(frame.text)
+        judge.look(frame)
+        took = time.perf_counter() - before
+        rate = 0.9 * rate + 0.1 / took if rate else 1 / took
+        parts = [f"{config.engine} engine", f"{rate:.1f} frames a second"]
+        parts += [f"{frame.clocks:,} clocks a frame, {frame.busy:,} of them computing"]
+        if judge.wrong is not None:
+            parts += [f"{judge.wrong:,} pixels unlike exact arithmetic"]
+        window.show(frame.picture, "    ".join(parts))
+        count += 1
+    return count, count / (time.perf_counter() - started)
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """The command.
+
+    Args:
+        argv: its arguments, those of the process by default.
+    """
+    parser = CommandParser("play", __doc__, "")
+    add_scene_argument(parser, "walk through this scene instead of the game")
+    parser.add_argument("--frames", type=int, help="end after so many (default: when the window is closed)")
+    parser.add_argument("--screenshot", type=Path, metavar="PNG", help="write what the window showed last")
+    add_build_option(parser)
+    add_configuration_options(parser)
+    arguments = parser.parse_args(argv)
+    console = Console()
+    options = given_options(arguments)
+    if arguments.scene:
+        design = design_for(arguments.scene, options, FASTEST)
+        config, scene, program = design.configuration, design.shown, None
+        keys, names = SCENE_KEYS, scene_player.BUTTONS
+    else:
+        config, scene = configure(**FASTEST | options), None
+        program = build_firmware((arguments.build / "firmware").absolute()).words
+        keys, names = GAME_KEYS, BUTTON_NAMES
+
+    judge = Judge(config)
+    say = partial(console.print, end="", highlight=False, markup=False)
+    # A window that cannot be opened is known before anything is built.
+    window = Window(config, "RayCaster", keys, names)
+    try:
+        for button, held in keys.items():
+            console.print(f"{button}: {' or '.join(held)}", highlight=False)
+        with console.status(f"building {config.name}"):
+            executable = build_machine(config, scene, arguments.build)
+        with Machine(executable, config, program) as machine:
+            count, rate = loop(machine, window, judge, config, say, arguments.frames)
+        judge.finish()
+        if arguments.screenshot:
+            window.save(arguments.screenshot)
+    except SimulationError as error:
+        raise UserError(str(error)) from None
+    finally:
+        window.close()
+    # The serial port may stop within a line.
+    console.print()
+    console.print(
+        f"{count} frames, {rate:.1f} a second; in {judge.pictures} of them, held against exact arithmetic, "
+        f"{judge.all_wrong:,} pixels are wrong",
+        highlight=False,
+        soft_wrap=True,
+    )

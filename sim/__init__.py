@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Models of a design in a simulator: building and running them, and what every bench needs."""

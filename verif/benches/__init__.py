@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""cocotb benches that verify a whole design."""

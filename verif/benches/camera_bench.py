@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: MIT
+"""cocotb: one scene from one camera after another, a frame each, held against golden in every pixel."""
+
+from __future__ import annotations
+
+import itertools
+
+import cocotb
+import numpy as np
+from cocotb.handle import HierarchyObject
+
+from raycaster.configuration import WORLD_SIZE
+from raycaster.scene import load_scene
+from raycaster.sim.harness import Harness
+
+CORNERS = list(itertools.product((0, WORLD_SIZE - 1), repeat=3))
+
+
+@cocotb.test()
+async def cameras(bench: HierarchyObject) -> None:
+    """From the scene's own camera, every corner of the world, and a random place for each of the job's seeds."""
+    harness = Harness(bench)
+    bus, job = harness.bus, harness.job
+    scene = load_scene(job.scene, harness.configuration.capacity)
+    places = [scene.camera.position, *CORNERS]
+    places += [tuple(np.random.default_rng(seed).integers(WORLD_SIZE, size=3).tolist()) for seed in job.seeds]
+    await harness.reset()
+    await bus.load_scene(scene)
+    for number, place in enumerate(places):
+        seen_from = scene.model_copy(update={"camera": scene.camera.model_copy(update={"position": place})})
+        await bus.write_camera(place)
+        await bus.commit(reflections=job.reflections)
+        expected = harness.golden(seen_from, job.reflections)
+        harness.expect_picture(await harness.monitor.frame(), expected, f"camera {number} at {place}")
+    assert not (await bus.read("status"))["underrun"], "a row was not complete in time"

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: MIT
+"""cocotb: scenes that no one would look at, for what the others leave uncovered."""
+
+from __future__ import annotations
+
+import cocotb
+from cocotb.handle import HierarchyObject
+
+from raycaster.configuration import CHANNEL_BITS, WORLD_SIZE
+from raycaster.scene import Camera, Rectangle, Scene
+from raycaster.sim.harness import Harness
+
+
+@cocotb.test()
+async def every_bit_of_the_live_scene(bench: HierarchyObject) -> None:
+    """All coordinates and colours at their greatest, then all 0, each for a frame."""
+    harness = Harness(bench)
+    await harness.reset()
+    for high in (True, False):
+        point = (WORLD_SIZE - 1,) * 3 if high else (0,) * 3
+        colour = ((1 << CHANNEL_BITS) - 1,) * 3 if high else (0,) * 3
+        scene = Scene(
+            background=colour,
+            camera=Camera(position=point),
+            rect=(Rectangle(corners=(point, point), colour=colour),) * harness.configuration.rectangles,
+        )
+        # No reflections: so many rectangles need not meet the row budget with all that there are.
+        await harness.bus.load_scene(scene)
+        await harness.bus.commit(reflections=0)
+        golden = harness.golden(scene, 0)
+        harness.expect_picture(await harness.monitor.frame(), golden, "all ones" if high else "all zeros")
+
+
+@cocotb.test()
+async def every_axis_in_every_entry(bench: HierarchyObject) -> None:
+    """The whole table along each axis, one frame after the other."""
+    harness = Harness(bench)
+    await harness.reset()
+    for axis in (1, 2, 0):
+        corners = [[100, 100, 100], [400, 400, 400]]
+        corners[1][axis] = corners[0][axis]
+        scene = Scene(
+            camera=Camera(position=(20, 256, 200)),
+            rect=(Rectangle(corners=corners, colour=(200, 100, 50)),) * harness.configuration.rectangles,
+        )
+        await harness.bus.load_scene(scene)
+        await harness.bus.commit(reflections=0)
+        harness.expect_picture(await harness.monitor.frame(), harness.golden(scene, 0), f"along {'xyz'[axis]}")

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: MIT
+"""cocotb: the registers of a design with a scene built in."""
+
+from __future__ import annotations
+
+import cocotb
+from cocotb.handle import HierarchyObject
+
+from raycaster.scene import load_scene
+from raycaster.sim.harness import Harness
+
+EVERY_BIT = (1 << 32) - 1
+
+
+@cocotb.test()
+async def what_is_fixed_ignores_writes(bench: HierarchyObject) -> None:
+    """It is said to be fixed, reads 0, and the picture stays what it is, whatever is written and committed."""
+    harness = Harness(bench)
+    bus, config, job = harness.bus, harness.configuration, harness.job
+    scene = load_scene(job.scene, config.capacity)
+    everything = config.fixed.camera is not None
+    await harness.reset()
+    assert (await bus.read("engine"))["fixed"] == (2 if everything else 1)
+    assert (await bus.read("size"))["rectangles"] == 0
+    assert not any(name.startswith("rectangle") for name in bus.registers)
+
+    await bus.load_scene(scene)
+    await bus.commit(reflections=job.reflections)
+    harness.expect_picture(await harness.monitor.frame(), harness.golden(scene, job.reflections), "the scene")
+    written = ("camera", "background") if everything else ()
+    for name in written:
+        await bus.write_word(bus.registers[name].address, EVERY_BIT)
+        assert await bus.read_word(bus.registers[name].address) == 0, f"{name} is fixed, and reads 0"
+    reflections = 0 if everything else job.reflections
+    await bus.commit(reflections=reflections)
+    kept = 0 if everything else job.reflections
+    assert (await bus.read("control"))["reflections"] == kept
+    for address in set(range(1 << len(bench.avs_s0_address))) - {one.address for one in bus.registers.values()}:
+        await bus.write_word(address, EVERY_BIT)
+        assert await bus.read_word(address) == 0, f"there is nothing at {address}"
+    await harness.monitor.frame()
+    expected = harness.golden(scene, job.reflections)
+    harness.expect_picture(await harness.monitor.frame(), expected, "after writes to what is fixed")
+    assert await bus.read("status") | {"busy": 0, "frame": 0} == {
+        "busy": 0, "underrun": 0, "bad_rectangle": 0, "frame": 0,
+    }  # fmt: skip

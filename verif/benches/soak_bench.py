@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: MIT
+"""cocotb: one random or stiff scene after the other, a frame each, held against golden in every pixel."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import cocotb
+from cocotb.handle import HierarchyObject
+
+from raycaster.golden import exact
+from raycaster.golden.catalogue import catalogue
+from raycaster.golden.picture import count_wrong
+from raycaster.scene import Scene, dump_scene
+from raycaster.sim.harness import Harness
+from raycaster.verif.random_scenes import random_scene
+
+
+@cocotb.test()
+async def soak(bench: HierarchyObject) -> None:
+    """Show the job's seeds; write a line of JSON for each, and each failing scene, whole and shrunk, as a file."""
+    harness = Harness(bench)
+    job, configuration = harness.job, harness.configuration
+    output = Path(job.output)
+    await harness.reset()
+    failed, cases = [], catalogue()
+    with (output / "results.jsonl").open("w") as results:
+        for number, seed in enumerate(job.seeds):
+            if job.stiff:
+                scene = cases[seed].scene
+            else:
+                scene = random_scene(seed, configuration.rectangles, configuration.reflections)
+            result = {"seed": seed, "title": scene.title} | await show(harness, scene)
+            if result["wrong_vs_golden"]:
+                failed.append(seed)
+                (output / f"{seed}.toml").write_text(dump_scene(scene))
+                (output / f"{seed}-shrunk.toml").write_text(dump_scene(await shrink(harness, scene)))
+            results.write(json.dumps(result) + "\n")
+            results.flush()
+            harness.write_progress(number + 1)
+    status = await harness.bus.read("status")
+    assert not status["underrun"], "a row was not complete in time"
+    assert not failed, f"wrong pixels in the scenes of seeds {failed}"
+
+
+async def show(harness: Harness, scene: Scene) -> dict[str, int]:
+    """One frame of a scene, and how many of its pixels are wrong; follows the frame before without a gap."""
+    await harness.bus.load_scene(scene)
+    await harness.bus.commit(reflections=scene.reflections)
+    frame = await harness.monitor.frame()
+    perfect = harness.shown(exact.render(scene, harness.screen))
+    return {
+        "reflections": scene.reflections,
+        "pixels": frame[..., 0].size,
+        "wrong_vs_golden": count_wrong(frame, harness.golden(scene, scene.reflections)),
+        "wrong_vs_exact": count_wrong(frame, perfect),
+    }
+
+
+async def shrink(harness: Harness, scene: Scene) -> Scene:
+    """Leave out rectangles, one by one, for as long as pixels are still wrong."""
+    index = 0
+    while index < len(scene.rect) and len(scene.rect) > 1:
+        fewer = scene.model_copy(update={"rect": scene.rect[:index] + scene.rect[index + 1 :]})
+        if (await show(harness, fewer))["wrong_vs_golden"]:
+            scene = fewer
+        else:
+            index += 1
+    return scene

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: MIT
+"""cocotb: a design too small for its scene loses columns, says so, and never disturbs the monitor."""
+
+from __future__ import annotations
+
+import cocotb
+import numpy as np
+from cocotb.handle import HierarchyObject
+
+from raycaster.scene import Scene
+from raycaster.sim.harness import Harness
+
+_CAMERA = {"position": [20, 256, 100]}
+_COLOURS = ("#ff0000", "#00ff00", "#0000ff", "#ffff00", "#00ffff", "#ff00ff")
+
+
+def _light() -> Scene:
+    floor = {"corners": [[0, 0, 0], [511, 511, 0]], "colour": "#c8c8b4"}
+    return Scene.model_validate({"background": "#402010", "camera": _CAMERA, "rect": [floor]})
+
+
+def _heavy(rectangles: int) -> Scene:
+    """Two mirrors that a ray goes to and fro between, under ceilings that it rises to: culling spares few of these."""
+    mirrors = [{"corners": [[x, 0, 0], [x, 511, 511]], "colour": "#50a0ff"} for x in (10, 30)]
+    ceilings = [
+        {"corners": [[0, 0, 120 + n], [511, 511, 120 + n]], "colour": _COLOURS[n % len(_COLOURS)]}
+        for n in range(rectangles - len(mirrors))
+    ]
+    return Scene.model_validate({"background": "#104020", "camera": _CAMERA, "rect": mirrors + ceilings})
+
+
+@cocotb.test()
+async def underrun(bench: HierarchyObject) -> None:
+    """A light scene, one that is too heavy, and the light one again. The monitor checks the sync of each frame."""
+    harness = Harness(bench)
+    bus, monitor, configuration = harness.bus, harness.monitor, harness.configuration
+    assert configuration.group_cycles > configuration.group_budget, "this design cannot underrun"
+    light, heavy = _light(), _heavy(configuration.rectangles)
+    reflections = configuration.reflections
+    light_picture, heavy_picture = harness.golden(light, reflections), harness.golden(heavy, reflections)
+
+    await harness.reset()
+    await bus.load_scene(light)
+    await bus.commit(reflections=reflections)
+    harness.expect_picture(await monitor.frame(), light_picture, "the light scene")
+    assert (await bus.read("status"))["underrun"] == 0
+    assert (await bus.read("cycles"))["row"] <= harness.screen.row_cycles
+
+    await bus.load_scene(heavy)
+    await bus.commit(reflections=reflections)
+    _expect_abandoned_rows(harness, await monitor.frame(), heavy_picture, light_picture)
+    assert (await bus.read("status"))["underrun"] == 1
+    assert (await bus.read("cycles"))["row"] == harness.screen.row_cycles, "a row is abandoned when its time is over"
+    await bus.write("cycles")
+    assert (await bus.read("cycles"))["row"] < harness.screen.row_cycles
+
+    await bus.load_scene(light)
+    await bus.commit(reflections=reflections)
+    harness.expect_picture(await monitor.frame(), light_picture, "the light scene after the heavy one")
+    assert (await bus.read("status"))["underrun"] == 1, "underrun is sticky"
+    await bus.write("status", underrun=0)
+    assert (await bus.read("status"))["underrun"] == 1, "writing 0 must not clear underrun"
+    await bus.write("status", underrun=1)
+    assert (await bus.read("status"))["underrun"] == 0, "writing 1 clears underrun"
+    harness.expect_picture(await monitor.frame(), light_picture, "the light scene, one frame later")
+    assert (await bus.read("status"))["underrun"] == 0
+    monitor.check_pins()
+
+
+def _expect_abandoned_rows(harness: Harness, seen: np.ndarray, complete: np.ndarray, before: np.ndarray) -> None:
+    """Every row must be new up to some group of columns, and from there on hold what its half of the buffer held."""
+    screen, configuration = harness.screen, harness.configuration
+    lengths = set()
+    # The halves were last written whole by the last two rows of the frame before.
+    halves = [before[(screen.rows - 2 + half) * screen.doubling] for half in range(2)]
+    for row in range(screen.rows):
+        line = row * screen.doubling
+        for groups in range(configuration.groups + 1):
+            new = groups * configuration.units * screen.doubling
+            if np.array_equal(seen[line], np.concatenate([complete[line, :new], halves[row % 2][new:]])):
+                lengths.add(groups)
+                break
+        else:
+            raise AssertionError(f"row {row}: not a new beginning and the old rest of its half of the buffer")
+        assert (seen[line : line + screen.doubling] == seen[line]).all(), f"row {row}: its lines differ"
+        halves[row % 2] = seen[line]
+    assert max(lengths) > 0, "no group of columns was ever complete"
+    assert min(lengths) < configuration.groups, "no row was abandoned"
