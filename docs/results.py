@@ -76,18 +76,17 @@ def table(results: Mapping[str, Any]) -> str:
         "|---|---:|---:|---:|---:|---:|---:|",
     ]
     for row in results["designs"]:
-        wrong = f"{row['wrong_vs_exact']:,} ({row['wrong_vs_exact'] / row['pixels']:.2%})"
+        wrong = f"{row['wrong_vs_exact']:,} of {row['pixels']:,}"
         lines.append(
             f"| `{' '.join(f'{name.upper()}={value}' for name, value in row['options'].items())}` "
-            f"| {row['columns']} x {row['rows']} | {wrong if row['wrong_vs_exact'] else '0'} "
+            f"| {row['columns']} x {row['rows']} | {wrong} "
             f"| {row['luts']:,} | {row['registers']:,} | {row['multipliers']} | {row['clock_mhz']:g} MHz |"
         )
-    pixels = ", ".join(f"{count:,}" for count in dict.fromkeys(row["pixels"] for row in results["designs"]))
     lines += [
         "",
-        f"Wrong: unlike exact arithmetic, of {pixels} pixels in {results['scenes']} scenes; unlike the model "
-        f"of the same engine: {sum(row['wrong_vs_golden'] for row in results['designs'])}. Cells: of an ECP5, as "
-        f"Yosys counts them. 12 rectangles, reflections as the scenes have them, all else by default. "
+        f"Wrong: unlike exact arithmetic, in {results['scenes']} scenes; unlike the model of the same engine: "
+        f"{sum(row['wrong_vs_golden'] for row in results['designs'])}. Cells: of an ECP5, as Yosys counts them. "
+        "12 rectangles, reflections as the scenes have them, all else by default. "
         f"Measured on {results['date']} by `raycaster results`.",
     ]
     return "\n".join(lines) + "\n"

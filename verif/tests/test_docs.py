@@ -21,7 +21,7 @@ from conftest import BUILD, ROOT
 from raycaster.configuration import configure
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.inside import find_block, look_inside
-from raycaster.docs import blocks, commands, facts, timing
+from raycaster.docs import blocks, commands, facts, results, timing
 from raycaster.docs.commands import commands_of, outside_make
 from raycaster.errors import UserError
 from raycaster.rtl.system.ports import module_ports
@@ -327,3 +327,22 @@ def test_pages_with_a_fault(tmp_path: Path):
     assert "scenes.md" in done.stderr
     assert "error: the pages have faults" in done.stderr
     assert [path.name for path in (tmp_path / "build").iterdir()] == []
+
+
+def test_the_readme_has_what_was_measured():
+    """Its table is that of `results/`, and a number that is typed into it is noticed."""
+    readme, measured = results.README.read_text(), json.loads(results.RESULTS.read_text())
+    assert results.rendered(readme, measured) == readme
+    count = f"{measured['designs'][0]['luts']:,}"
+    assert readme.count(count) == 1
+    assert results.rendered(readme.replace(count, "1"), measured) == readme
+    with pytest.raises(UserError, match="has no line"):
+        results.rendered("no table", measured)
+
+
+def test_the_measured_designs_drew_what_they_had_to():
+    measured = json.loads(results.RESULTS.read_text())
+    assert [design["options"] for design in measured["designs"]] == list(map(dict, results.DESIGNS))
+    for design in measured["designs"]:
+        assert design["wrong_vs_golden"] == 0
+        assert (design["wrong_vs_exact"] > 0) == (design["options"]["engine"] == "seed")
