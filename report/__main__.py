@@ -15,6 +15,7 @@ from rich.console import Console
 
 from raycaster.configuration import Configuration, configure
 from raycaster.design import design_for
+from raycaster.errors import UserError
 from raycaster.fpga.area import with_units
 from raycaster.golden.catalogue import Case, catalogue
 from raycaster.golden.errors import DepthErrors, compare
@@ -25,10 +26,12 @@ from raycaster.report import conclusions, hardware, plots
 from raycaster.report.page import Section, write_csv, write_html, write_markdown
 from raycaster.report.points import CASE, UNITS, CellsPoint, HitsPoint, PicturePoint, Point, TimePoint, View, command
 from raycaster.report.sweep import Store, executor, run
-from raycaster.scene import find_scene, packaged_scenes
 from raycaster.sim.simulator import SimulationError
 
-WORST_SCENE = find_scene("mirror_room")
+SCENES = Path("scenes")
+"""Of the clone that it runs in, so that the commands of its points say which file they mean."""
+
+WORST_SCENE = SCENES / "mirror_room.toml"
 """With as many rectangles as the hardware has, so that no row takes longer; and the picture of the day."""
 
 CASE_REFLECTIONS = 2
@@ -146,7 +149,9 @@ def write_report(directory: Path, what: Extent, sweep: Sweeper) -> Path:
         UserError: there are no scenes here, or a tool is missing.
         SimulationError: the hardware departs from golden.
     """
-    scenes = [View.of(str(path)) for path in packaged_scenes().values()]
+    scenes = [View.of(str(path)) for path in sorted(SCENES.glob("*.toml"))]
+    if not scenes:
+        raise UserError(f"{SCENES}: has no scene files; run this in the project's directory")
     of_scenes = [
         PicturePoint(scene, f, rounding, reflections)
         for scene in scenes for f in what.fractions for rounding in ROUNDINGS for reflections in what.reflections

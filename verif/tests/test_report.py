@@ -208,6 +208,7 @@ def test_a_command_repeats_its_point(point, tmp_path):
         (("points", "picture", "case:nothing"), "error: case:nothing: the catalogue has no such case; it has "),
         (("points", "time", "nowhere.toml"), "error: nowhere.toml: cannot be read"),
         (("points", "cells", "ray_unit", "--units", "7"), "error: units: 7 does not divide"),
+        (("report",), "error: scenes: has no scene files; run this in the project's directory"),
         (("report", "--scheduler", "nowhere"), "error: scheduler: no Dask scheduler answers at nowhere"),
         (("report", "--scheduler", "tcp://127.0.0.1:1"), "error: scheduler: no Dask scheduler answers at tcp://127"),
     ],
@@ -440,8 +441,10 @@ def test_a_small_report(tmp_path, monkeypatch):
         return Area(units * (600 + 20 * config.fraction_bits) + (0 if alone else 3000), 0, 0, 2 * units, 0)
 
     monkeypatch.setattr("raycaster.report.points.measure", cells)
-    two = {name: find_scene(name) for name in ("mirror_room", "matte")}
-    monkeypatch.setattr(report, "packaged_scenes", lambda: two)
+    scenes = tmp_path / "scenes"
+    scenes.mkdir()
+    for name in ("mirror_room", "matte"):
+        (scenes / f"{name}.toml").write_text(find_scene(name).read_text())
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(report, "GROWING", ("facing_x",))
     cases = catalogue()[::20]
