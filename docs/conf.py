@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Sphinx's configuration. `python -m raycaster.docs` runs it, after it has put what is drawn beside the pages."""
+"""Sphinx's configuration. `raycaster docs` runs it, after it has put what is drawn beside the pages."""
 
 from raycaster.docs.facts import facts
 

@@ -61,7 +61,7 @@ def add_fix_option(parser: argparse.ArgumentParser) -> None:
     scopes = "; ".join(f"{name}: {meaning}" for name, meaning in SCOPES.items())
     parser.add_argument("--fix", metavar="SCOPE", help=f"build the scene into the hardware; {scopes}")
     parser.add_argument(
-        "--fit", dest="fix", action="store_const", const=FIT, help="build what raycaster.fpga.fit chose for the scene"
+        "--fit", dest="fix", action="store_const", const=FIT, help="build what `raycaster fit` chose for the scene"
     )
 
 

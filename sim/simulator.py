@@ -29,14 +29,12 @@ import raycaster.rtl
 from raycaster.configuration import Configuration
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, clocks_per_bit
+from raycaster.options import BUILD
 from raycaster.output import replaced
 from raycaster.registers import address_bits
 from raycaster.sim.job import Job
 
 SIMULATORS = ("verilator", "icarus")
-BUILD = Path("build")
-"""Where everything that is made goes, unless told otherwise."""
-
 HERE = Path(__file__).parent
 
 MINIMUM_VERILATOR = (5, 36)

@@ -89,14 +89,6 @@ class Record:
             word = word << bits | int(values.get(name, 0)) % (1 << bits)
         return word
 
-    def unpack(self, word: int) -> dict[str, int]:
-        """Each field's bits in a word, as an unsigned number."""
-        values = {}
-        for name, bits in reversed(self.layout.items()):
-            values[name] = word % (1 << bits)
-            word >>= bits
-        return values
-
     def slice(self, name: str) -> tuple[int, int]:
         """The highest and the lowest bit of a field."""
         names = list(self.layout)
