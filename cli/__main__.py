@@ -44,12 +44,12 @@ COMMANDS: Mapping[str, Command] = {
     "docs": Command("raycaster.docs.__main__", "the documentation, its diagrams and numbers made anew"),
     "results": Command("raycaster.docs.results", "measure what the README's table says, and write it there"),
     "commands": Command("raycaster.docs.commands", "run every command of the documentation"),
-    "verify soak": Command("raycaster.verif.soak", "random scenes at full size"),
-    "verify prove": Command("raycaster.verif.formal.__main__", "proofs of the converted Verilog"),
-    "verify mutate": Command("raycaster.verif.mutation", "faults in every module that has leaf tests"),
-    "verify exhaustive": Command("raycaster.verif.exhaustive", "the arithmetic at a volume for compiled benches"),
-    "verify coverage": Command("raycaster.verif.coverage", "code and functional coverage"),
-    "verify dvi": Command("raycaster.verif.dvi", "the DVI output of a board's simulated top, decoded"),
+    "verify soak": Command("raycaster.verif.soak.soak", "random scenes at full size"),
+    "verify prove": Command("raycaster.verif.formal.prove", "proofs of the converted Verilog"),
+    "verify mutate": Command("raycaster.verif.mutation.mutate", "faults in every module that has leaf tests"),
+    "verify exhaustive": Command("raycaster.verif.exhaustive.run", "the arithmetic at a volume for compiled benches"),
+    "verify coverage": Command("raycaster.verif.coverage.measure", "code and functional coverage"),
+    "verify dvi": Command("raycaster.verif.dvi.watch", "the DVI output of a board's simulated top, decoded"),
 }
 
 

@@ -24,7 +24,7 @@ from raycaster.golden.picture import shown as as_shown
 from raycaster.rtl.system.camera_axis import STEP
 from raycaster.scene import load_scene
 from raycaster.sim.monitor import VideoError
-from raycaster.verif.dvi import golden, watch
+from raycaster.verif.dvi.watch import golden, watch
 
 ULX3S = BOARDS["ulx3s"]
 CLOCKS, SERIALISER, LANE, TOP = "ulx3s_clocks.v", "dvi_serialiser.v", "dvi_lane.v", "ulx3s.v"

@@ -18,9 +18,18 @@ from raycaster.golden import seed_engine
 from raycaster.golden.world import Rectangles
 from raycaster.scene import dump_scene, load_scene
 from raycaster.sim.simulator import build_model
-from raycaster.verif.coverage import EXTRA_SCENE, FLAGS, Run, export_code, run_all, show_code, show_functional, verdict
-from raycaster.verif.coverage_code import Explanation, Judgement, describe, judge, load_explanations, read_counts
-from raycaster.verif.coverage_functional import IMPOSSIBLE, POINTS, FunctionalCoverage, count
+from raycaster.verif.coverage.code import Explanation, Judgement, describe, judge, load_explanations, read_counts
+from raycaster.verif.coverage.functional import IMPOSSIBLE, POINTS, FunctionalCoverage, count
+from raycaster.verif.coverage.measure import (
+    EXTRA_SCENE,
+    FLAGS,
+    Run,
+    export_code,
+    run_all,
+    show_code,
+    show_functional,
+    verdict,
+)
 from raycaster.verif.random_scenes import random_scene
 
 VGA = configure(reflections=2)

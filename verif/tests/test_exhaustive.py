@@ -6,8 +6,8 @@ import re
 import pytest
 
 from raycaster.errors import UserError
-from raycaster.verif import exhaustive
-from raycaster.verif.exhaustive import Bench, Builder, Mismatch, benches, main, run
+from raycaster.verif.exhaustive import run as exhaustive
+from raycaster.verif.exhaustive.run import Bench, Builder, Mismatch, benches, main, run
 from raycaster.verif.seeds import repeat, seed
 
 VECTORS = 200_000

@@ -19,7 +19,7 @@ from raycaster.rtl.seed.divider_step import divider_step
 from raycaster.scene import load_scene
 from raycaster.verif.formal.prover import missing_tools
 from raycaster.verif.leaf import Leaf, reset_signal
-from raycaster.verif.mutation import (
+from raycaster.verif.mutation.mutate import (
     LEAST_CAUGHT,
     Expectation,
     Explanation,

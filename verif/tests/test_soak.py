@@ -72,7 +72,7 @@ def test_a_wrong_scene_shrinks(tmp_path):
     model = build_model(SMALL, "icarus", build=BUILD, verilog=files, variant="broken")
     seeds = (0, 1, 5)
     with pytest.raises(SimulationError, match="wrong pixels in the scenes of seeds"):
-        run_bench(model, "raycaster.verif.benches.soak_bench", Job(SMALL, output=str(tmp_path), seeds=seeds), tmp_path)
+        run_bench(model, "raycaster.verif.soak.bench", Job(SMALL, output=str(tmp_path), seeds=seeds), tmp_path)
     shrunk = [load_scene(path) for path in tmp_path.glob("*-shrunk.toml")]
     assert shrunk
     assert all(len(scene.rect) == 1 for scene in shrunk)

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "exhaustive_common.h"
+#include "common.h"
 
 int main(int, char** argv) {
     std::vector<uint32_t> dividends;

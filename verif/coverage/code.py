@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
 from raycaster.errors import UserError
 
-HOLES = Path(__file__).with_name("coverage_holes.toml")
+HOLES = Path(__file__).with_name("holes.toml")
 KINDS = {"lines": ("line", "branch"), "conditions": ("expr",), "toggles": ("toggle",)}
 """Verilator's types of points, as they are reported."""
 

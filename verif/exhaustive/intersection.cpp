@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Streams operands through an a + b * (c - d) / e unit, a vector each STEPS cycles, and checks every result.
 // Arguments: the number of vectors (0 for every combination of operands), and the seed.
-#include "exhaustive_common.h"
+#include "common.h"
 
 namespace {
 

@@ -34,7 +34,7 @@ from raycaster.sim.simulator import SimulationError, add_simulator_option, find_
 SYMBOL_BITS = 10
 HERE = Path(__file__).parent
 TOP = "dvi_bench"
-BENCH, MODELS = HERE / "dvi_bench.v", HERE / "ecp5_models.v"
+BENCH, MODELS = HERE / "bench.v", HERE / "ecp5_models.v"
 _CHANNELS = ("blue", "green", "red", "clock")
 
 

@@ -236,7 +236,7 @@ class Builder:
         )  # fmt: skip
         program = "divider" if bench.kind == "divider" else "intersection"
         # As one text it compiles several times as fast as file by file, and the clock's two edges inline.
-        parts = [*sorted(path.name for path in model.glob("*.cpp")), SOURCES / f"exhaustive_{program}.cpp"]
+        parts = [*sorted(path.name for path in model.glob("*.cpp")), SOURCES / f"{program}.cpp"]
         (model / "all.cc").write_text("".join(f'#include "{part}"\n' for part in parts))
         widths = {
             "POSITION_BITS": bench.position_bits,

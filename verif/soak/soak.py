@@ -78,7 +78,7 @@ def _run(model: Model, seeds: range, directory: Path, stiff: bool) -> None:
         seeds=tuple(seeds),
         stiff=stiff,
     )
-    run_bench(model, "raycaster.verif.benches.soak_bench", job, directory)
+    run_bench(model, "raycaster.verif.soak.bench", job, directory)
 
 
 def _lines(path: Path) -> list[str]:

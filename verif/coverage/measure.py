@@ -37,10 +37,10 @@ from raycaster.sim.simulator import (
     build_model,
     run_bench,
 )
-from raycaster.verif.coverage_code import KINDS, Judgement, Point, describe, judge, load_explanations, read_counts
-from raycaster.verif.coverage_functional import POINTS, FunctionalCoverage
+from raycaster.verif.coverage.code import KINDS, Judgement, Point, describe, judge, load_explanations, read_counts
+from raycaster.verif.coverage.functional import POINTS, FunctionalCoverage
 from raycaster.verif.random_scenes import random_scene
-from raycaster.verif.soak import soak
+from raycaster.verif.soak.soak import soak
 
 # One design that every bench can run, so that nothing must be merged. At full size, for the counters to run through
 # their range. Not 32 units but 16, whose budget is 159 cycles a group: all 12 rectangles with two reflections take 202,
@@ -83,11 +83,11 @@ BENCHES = (
     Run("verif.benches.register_bench", find_scene("floor"), 2),
     Run("verif.benches.motion_bench", find_scene("floor"), 2),
     Run("verif.benches.underrun_bench"),
-    Run("verif.benches.coverage_bench"),
+    Run("verif.coverage.bench"),
 )
 """Beyond a frame of every scene. The longest come first."""
 
-EXTRA_SCENE = Path(__file__).with_name("coverage_scene.toml")
+EXTRA_SCENE = Path(__file__).with_name("extra_scene.toml")
 
 
 def run_all(

@@ -42,7 +42,7 @@ from raycaster.errors import UserError
 from raycaster.options import CommandParser
 from raycaster.sim import ensure_icarus
 from raycaster.tools import run_yosys
-from raycaster.verif.exhaustive import Builder
+from raycaster.verif.exhaustive.run import Builder
 from raycaster.verif.formal.prover import missing_tools
 from raycaster.verif.leaf import RECORD_VARIABLE, recording_name
 
@@ -363,7 +363,7 @@ endmodule
 
     def _compare(self, survivors: Iterable[Mutant], expectation: Expectation) -> None:
         # z3 may be missing where only this file's help or names are wanted.
-        from raycaster.verif.mutation_equivalence import Comparison  # noqa: PLC0415
+        from raycaster.verif.mutation.equivalence import Comparison  # noqa: PLC0415
 
         read = {f"{instance}_{port}": mask for (instance, port), mask in self.read_bits.items()}
         alone = Comparison(self._work, self.module, read)
@@ -425,7 +425,7 @@ class ReplayBuilder(Builder):
             "replay.v", *sources,
         )  # fmt: skip
         model = directory / "model"
-        parts = [*sorted(path.name for path in model.glob("*.cpp")), SOURCES / "mutation_replay.cpp"]
+        parts = [*sorted(path.name for path in model.glob("*.cpp")), SOURCES / "replay.cpp"]
         (model / "all.cc").write_text("".join(f'#include "{part}"\n' for part in parts))
         self._compile(
             model, f"-DIN_WORDS={words_in}", f"-DOUT_WORDS={words_out}", "-O1", "all.cc", *self._objects,
@@ -448,7 +448,7 @@ def record(tests: Iterable[str], directory: Path, jobs: int) -> None:
     shutil.rmtree(directory, ignore_errors=True)
     command = [sys.executable, "-m", "pytest", "-q", "-n", str(jobs), "--dist", "worksteal"]
     done = subprocess.run(
-        [*command, *tests], cwd=SOURCES / "tests", env=os.environ | {RECORD_VARIABLE: str(directory.resolve())},
+        [*command, *tests], cwd=SOURCES.parent / "tests", env=os.environ | {RECORD_VARIABLE: str(directory.resolve())},
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     if done.returncode:

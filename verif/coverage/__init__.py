@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""How much of the hardware the checks reach."""

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""The DVI output of a board's simulated top."""

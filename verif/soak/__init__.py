@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Random scenes at full size."""
