@@ -5,13 +5,14 @@
 PYTHON3 ?= python3
 VENV := .venv
 PYTHON := $(VENV)/bin/python
-COMMANDS := sim scenes play game wave trace verilog fit area quartus bitstream registers report docs results commands
-CHECKS := soak prove mutate exhaustive coverage
+COMMANDS := sim scenes options play game wave trace verilog fit area quartus bitstream registers report docs results commands
+CHECKS := soak prove mutate exhaustive coverage dvi verify-all
 ARGUMENTS = $(filter-out PYTHON3=% PYTHON=% VENV=%,$(MAKEOVERRIDES))
 
 # Extras of pyproject.toml that a target needs beside the program itself.
 play game: EXTRAS := play
-fit area results: EXTRAS := fpga
+fit area: EXTRAS := fpga
+results: EXTRAS := fpga,docs
 bitstream: EXTRAS := fpga,play
 report: EXTRAS := fpga,report
 docs: EXTRAS := docs
@@ -20,27 +21,24 @@ prove: EXTRAS := formal
 sim: EXTRAS := $(if $(filter-out 0,$(GATES)),formal)
 mutate: EXTRAS := formal,test
 lint: EXTRAS := test
-test: EXTRAS := formal,fpga,report,coverage,play,docs,test
+test verify-all: EXTRAS := formal,fpga,report,coverage,play,docs,test
 
 .PHONY: help $(COMMANDS) $(CHECKS) test lint clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
-help: $(VENV)/base
-	@$(PYTHON) -m raycaster.cli
-	@echo "From a clone: make COMMAND NAME=value, as in make sim SCENE=boxes ENGINE=beam, without the word verify."
-	@echo "make test runs all tests, make lint checks the sources, make clean removes what was made."
-	@echo "PYTHON3= is the Python, 3.11 or newer, that the environment is made with."
+help:
+	@$(PYTHON3) cli/commands.py
 
 $(COMMANDS) $(CHECKS): $(VENV)/base
 	@$(call install,$(EXTRAS))
-	@$(PYTHON) -m raycaster.cli $(if $(filter $@,$(CHECKS)),verify )$@ $(ARGUMENTS)
+	@RAYCASTER_FROM_MAKE=1 $(PYTHON) -m raycaster.cli $(if $(filter $@,$(CHECKS)),verify )$(patsubst verify-%,%,$@) $(ARGUMENTS)
 
 lint test: $(VENV)/base
 	@$(call install,$(EXTRAS))
 	@$(if $(filter lint,$@),$(PYTHON) -m ruff check && $(PYTHON) -m ruff format --check)
 	@$(if $(filter lint,$@),$(PYTHON) -m raycaster.verif.rtl_lint,$(PYTHON) -m raycaster.sim.ensure_icarus)
-	@$(if $(filter test,$@),$(PYTHON) -m pytest -q -n 2 --dist worksteal verif/tests)
+	@$(if $(filter test,$@),$(PYTHON) -m pytest -q -n 2 --dist worksteal -m 'not slow' --durations=10 verif/tests)
 
 clean:
 	rm -rf build .pytest_cache .ruff_cache

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Sequence
 from fractions import Fraction
@@ -195,16 +194,16 @@ def _error_text(ray: Ray, probe: Probe, golden: Sequence[Value], true: Sequence[
     return ", ".join("0" if error.strip("+-0.") == "" and error != "-" else error for error in errors)
 
 
-def parse_arguments(argv: Sequence[str] | None) -> argparse.Namespace:
-    """The command line."""
+def command_parser() -> CommandParser:
+    """What the command takes."""
     parser = CommandParser("trace", __doc__, "boxes --pixel 160,120")
     add_recording_options(parser, "of rays, from 0 on")
-    return parser.parse_args(argv)
+    return parser
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns its exit code."""
-    arguments = parse_arguments(argv)
+    arguments = command_parser().parse_args(argv)
     if arguments.pixel is None:
         raise UserError("pixel: say which one, as in PIXEL=160,120")
     column, row = pixel_place(arguments.pixel)

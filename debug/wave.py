@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import argparse
 import os
 import shutil
 import subprocess
@@ -74,18 +73,18 @@ def commands(waves: Path, files: list[Path]) -> list[list[str]]:
     return [["gtkwave", str(gtkwave.resolve())], ["surfer", "--command-file", surfer.name, waves.name]]
 
 
-def parse_arguments(argv: Sequence[str] | None) -> argparse.Namespace:
-    """The command line."""
+def command_parser() -> CommandParser:
+    """What the command takes."""
     parser = CommandParser("wave", __doc__, "boxes --pixel 160,120")
     add_recording_options(parser, "of rays, from 0 on; the cursor is put there (the middle)")
     parser.add_argument("--span", metavar="FIRST,LAST", help="rows to write (default: that of the pixel)")
     parser.add_argument("--no-viewer", action="store_true", help="open nothing")
-    return parser.parse_args(argv)
+    return parser
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns its exit code."""
-    arguments = parse_arguments(argv)
+    arguments = command_parser().parse_args(argv)
     design = design_for(arguments.scene, given_options(arguments))
     screen = design.configuration.screen_geometry
     column, row = pixel_place(arguments.pixel or f"{screen.centre_column},{screen.rows // 2}")

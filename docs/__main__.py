@@ -3,15 +3,17 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from sphinx.cmd.build import build_main
 
 from raycaster.configuration import Configuration
-from raycaster.docs import blocks, timing
+from raycaster.docs import timing
+from raycaster.docs.drawings import draw_all
 from raycaster.errors import UserError
 from raycaster.options import CommandParser
 from raycaster.output import replaced
@@ -20,6 +22,18 @@ from raycaster.sim import ensure_icarus
 from raycaster.sim.simulator import BUILD, SimulationError
 
 HERE = Path(__file__).parent
+REFERENCE = (
+    "raycaster.scene",
+    "raycaster.configuration",
+    "raycaster.design",
+    "raycaster.golden.exact",
+    "raycaster.golden.engines",
+    "raycaster.golden.picture",
+    "raycaster.convert.write",
+    "raycaster.sim.simulator",
+    "raycaster.errors",
+)
+"""What a program of one's own calls, in the order in which it needs them."""
 
 
 def draw_timing(build: Path) -> None:
@@ -54,28 +68,48 @@ def write_site(output: Path) -> Path:
     with replaced(output) as written, tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
         pages = Path(scratch) / "pages"
         shutil.copytree(HERE, pages, ignore=shutil.ignore_patterns("__pycache__", "timing"))
-        diagrams = pages / "diagrams"
-        diagrams.mkdir()
-        for diagram in timing.DIAGRAMS:
-            timing.render(timing.kept(diagram.name), diagrams / f"{diagram.name}.svg")
-        for drawing in blocks.DRAWINGS:
-            blocks.draw(drawing, diagrams)
+        _add_what_forges_would_not_show(pages)
         write_page(Configuration().rectangles, pages / "extra" / "register_map")
         if build_main(["-q", "-W", "--keep-going", "-d", f"{scratch}/doctrees", str(pages), str(written)]):
             raise UserError("the pages have faults, which stand above")
     return output / "index.html"
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+def command_parser() -> CommandParser:
+    """What the command takes."""
     parser = CommandParser("docs", __doc__, "")
     parser.add_argument("--output", type=Path, default=BUILD / "docs", help="(default: %(default)s)")
     parser.add_argument(
         "--keep-timing", action="store_true", help="take the timing diagrams as they are, without a simulation"
     )
-    arguments = parser.parse_args(argv)
+    return parser
+
+
+def _add_what_forges_would_not_show(pages: Path) -> None:
+    """The order of the pages, the library's reference, and the link to the register map's own page."""
+    (pages / "library.rst").write_text("\n".join(_reference()))
+    index, registers = pages / "index.md", pages / "registers.md"
+    order = [*re.findall(r"^- \[.*?\]\((\w+)\.md\)", index.read_text(), re.MULTILINE), "library"]
+    toctree = "\n".join(["```{toctree}", ":hidden:", *order, "```", ""])
+    index.write_text(f"{index.read_text()}\n{toctree}")
+    link = '<a href="register_map/index.html">The register map as a page of its own, which decodes words.</a>'
+    registers.write_text(f"{registers.read_text()}\n{link}\n")
+
+
+def _reference() -> Iterator[str]:
+    """A page of what the docstrings say of the modules that a program of one's own calls."""
+    yield from ("The library", "===========", "")
+    for module in REFERENCE:
+        yield from (module, "-" * len(module), "", f".. automodule:: {module}", "")
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """The command."""
+    arguments = command_parser().parse_args(argv)
     if not arguments.keep_timing:
         ensure_icarus.main()
         BUILD.mkdir(exist_ok=True)
         draw_timing(BUILD)
+    for path in draw_all():
+        print(f"drawn anew: {path}")
     print(f"documentation: {write_site(arguments.output)}")

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import takewhile
-from pathlib import Path
 
 import pygraphviz
 from myhdl._block import _Block
@@ -135,7 +134,7 @@ def graph(drawing: Drawing, inside: Inside) -> pygraphviz.AGraph:
     """The diagram, without places."""
     drawn = pygraphviz.AGraph(directed=True, strict=False, name=drawing.name)
     drawn.graph_attr.update(
-        rankdir="LR", fontname=FONT, fontsize=11, nodesep=0.12, ranksep=0.3, outputorder="edgesfirst"
+        rankdir="TB", fontname=FONT, fontsize=11, nodesep=0.08, ranksep=0.3, outputorder="edgesfirst"
     )
     drawn.node_attr.update(fontname=FONT, fontsize=11, fontcolor=INK, color=INK, height=0.25, margin="0.08,0.04")
     drawn.edge_attr.update(fontname=FONT, fontsize=9, fontcolor=INK, color=PALE, arrowsize=0.6)
@@ -178,9 +177,7 @@ def _add_net(drawn: pygraphviz.AGraph, cluster: pygraphviz.AGraph, net: Net, nam
         drawn.add_edge(name, reader)
 
 
-def draw(drawing: Drawing, directory: Path) -> Path:
-    """Write a diagram as `<name>.svg` into a directory."""
-    path = directory / f"{drawing.name}.svg"
+def draw(drawing: Drawing) -> str:
+    """A diagram as SVG."""
     # To a file it would open for itself, as some versions of Python do not let it.
-    path.write_bytes(graph(drawing, inside_of(drawing)).draw(format="svg", prog="dot"))
-    return path
+    return graph(drawing, inside_of(drawing)).draw(format="svg", prog="dot").decode()

@@ -13,12 +13,10 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
+from raycaster.docs.pages import PAGES, ROOT, need_clone
 from raycaster.errors import UserError
-from raycaster.options import CommandParser
+from raycaster.options import FROM_MAKE, CommandParser
 from raycaster.tools import find_program
-
-ROOT = Path(__file__).parents[1]
-PAGES = (*sorted((ROOT / "docs").glob("*.md")), ROOT / "README.md", ROOT / "CONTRIBUTING.md")
 
 LEFT_OUT = {
     "make test": "what runs this, too",
@@ -53,7 +51,9 @@ def left_out(command: str) -> str | None:
 
 def outside_make() -> dict[str, str]:
     """The environment without the settings of a make that runs this."""
-    return {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS")}
+    return {
+        name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", FROM_MAKE)
+    }
 
 
 def run(command: str, log: Path) -> tuple[int, float]:
@@ -77,16 +77,22 @@ def run(command: str, log: Path) -> tuple[int, float]:
     return done.returncode, time.monotonic() - started
 
 
+def command_parser() -> CommandParser:
+    """What the command takes."""
+    parser = CommandParser("commands", __doc__, "--only boxes")
+    parser.add_argument("--only", default="", metavar="TEXT", help="those that have this in them")
+    parser.add_argument("--output", type=Path, default=Path("build/commands"), help="of logs (default: %(default)s)")
+    return parser
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns its exit code.
 
     Args:
         argv: its arguments, those of the process by default.
     """
-    parser = CommandParser("commands", __doc__, "--only boxes")
-    parser.add_argument("--only", default="", metavar="TEXT", help="those that have this in them")
-    parser.add_argument("--output", type=Path, default=Path("build/commands"), help="of logs (default: %(default)s)")
-    arguments = parser.parse_args(argv)
+    arguments = command_parser().parse_args(argv)
+    need_clone()
     chosen = [command for command in commands_of(PAGES) if arguments.only in command]
     if not chosen:
         raise UserError(f"only: no command of the documentation has {arguments.only!r} in it")

@@ -1,16 +1,33 @@
 # SPDX-License-Identifier: MIT
-"""Sphinx's configuration. `raycaster docs` runs it, after it has put what is drawn beside the pages."""
+"""Sphinx's configuration. `raycaster docs` runs it, on a copy of the pages."""
 
-from raycaster.docs.facts import facts
+from __future__ import annotations
+
+import re
+from typing import Any
 
 project = "RayCaster"
+author = "The RayCaster authors"
+copyright = f"2026 {author}, MIT licence"
 html_title = "RayCaster"
-extensions = ["myst_parser"]
-myst_enable_extensions = ["substitution"]
-myst_substitutions = facts()
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+autodoc_default_options = {"members": True}
+autodoc_typehints = "description"
+autodoc_typehints_description_target = "documented"
+default_role = "code"
 myst_heading_anchors = 2
 html_theme = "furo"
 html_static_path = ["style"]
 html_css_files = ["wide.css"]
 html_extra_path = ["extra"]
 html_copy_source = False
+
+
+def _keep_bars(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
+    """Docstrings write |x| for a magnitude, which reStructuredText takes for a substitution."""
+    lines[:] = [re.sub(r"(`[^`]*`)|\|", lambda found: found[1] or r"\|", line) for line in lines]
+
+
+def setup(app: Any) -> None:
+    """What Sphinx asks of a configuration with code of its own."""
+    app.connect("autodoc-process-docstring", _keep_bars)

@@ -134,7 +134,7 @@ def _access(field: FieldNode) -> str:
 
 
 def facts() -> dict[str, str]:
-    """What the pages name in double braces."""
+    """What the pages have of the design itself, by the names in their markers."""
     default = configure()
     return {
         "options": options(),

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster results`: measure what the README's table says of each engine, and write it there."""
+"""`raycaster results`: measure the engines, and write all measured tables into the README and the manual."""
 
 from __future__ import annotations
 
-import datetime
 import json
-import re
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
@@ -15,13 +13,13 @@ from typing import Any
 from rich.console import Console
 
 from raycaster.configuration import configure
+from raycaster.docs.facts import facts
+from raycaster.docs.pages import need_clone, render_all
+from raycaster.docs.tables import RESULTS, tables
 from raycaster.errors import UserError
 from raycaster.options import CommandParser
+from raycaster.outcomes import add_keep_option, keep
 from raycaster.scene import packaged_scenes
-
-ROOT = Path(__file__).parents[1]
-README = ROOT / "README.md"
-RESULTS = ROOT / "results" / "engines.json"
 
 DESIGNS: tuple[Mapping[str, Any], ...] = (
     {"engine": "seed"},
@@ -32,7 +30,6 @@ DESIGNS: tuple[Mapping[str, Any], ...] = (
 """Options of the designs that are compared; all else is as by default."""
 
 FAMILY = "ecp5"
-BEGIN, END = "<!-- begin: raycaster results -->\n", "<!-- end: raycaster results -->\n"
 
 
 def measured(options: Mapping[str, Any], build: Path) -> dict[str, Any]:
@@ -69,60 +66,26 @@ def _run(*words: str) -> None:
         raise UserError(f"raycaster {' '.join(words)}: {(done.stderr or done.stdout).strip().splitlines()[-1]}")
 
 
-def table(results: Mapping[str, Any]) -> str:
-    """The README's table, and the line that says what it is of."""
-    lines = [
-        "| engine | rays a frame | wrong pixels | LUT4 | registers | multipliers | clock it needs |",
-        "|---|---:|---:|---:|---:|---:|---:|",
-    ]
-    for row in results["designs"]:
-        wrong = f"{row['wrong_vs_exact']:,} of {row['pixels']:,}"
-        lines.append(
-            f"| `{' '.join(f'{name.upper()}={value}' for name, value in row['options'].items())}` "
-            f"| {row['columns']} x {row['rows']} | {wrong} "
-            f"| {row['luts']:,} | {row['registers']:,} | {row['multipliers']} | {row['clock_mhz']:g} MHz |"
-        )
-    lines += [
-        "",
-        f"Wrong: unlike exact arithmetic, in {results['scenes']} scenes; unlike the model of the same engine: "
-        f"{sum(row['wrong_vs_golden'] for row in results['designs'])}. Cells: of an ECP5, as Yosys counts them. "
-        "12 rectangles, reflections as the scenes have them, all else by default. "
-        f"Measured on {results['date']} by `raycaster results`.",
-    ]
-    return "\n".join(lines) + "\n"
-
-
-def rendered(readme: str, results: Mapping[str, Any]) -> str:
-    """The README with the table of these results.
-
-    Raises:
-        UserError: it has no place for it.
-    """
-    pattern = re.compile(re.escape(BEGIN) + ".*?" + re.escape(END), re.DOTALL)
-    if not pattern.search(readme):
-        raise UserError(f"{README}: has no line {BEGIN.strip()}")
-    return pattern.sub(lambda _: BEGIN + table(results) + END, readme)
+def command_parser() -> CommandParser:
+    """What the command takes."""
+    parser = CommandParser("results", __doc__, "--render")
+    parser.add_argument("--render", action="store_true", help="only write the pages, from what results/ has")
+    parser.add_argument("--output", type=Path, default=Path("build/results"), help="for what is made (%(default)s)")
+    add_keep_option(parser)
+    return parser
 
 
 def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
-    parser = CommandParser("results", __doc__, "--render")
-    parser.add_argument("--render", action="store_true", help="only write the README's table from what was measured")
-    parser.add_argument("--output", type=Path, default=Path("build/results"), help="for what is made (%(default)s)")
-    arguments = parser.parse_args(argv)
+    arguments = command_parser().parse_args(argv)
+    need_clone()
     if not arguments.render:
+        arguments.keep = arguments.keep or RESULTS / "engines.json"
         console, designs = Console(), []
         for options in DESIGNS:
             with console.status(f"measuring {configure(**options).name}"):
                 designs.append(measured(options, arguments.output / configure(**options).name))
-        commit = subprocess.run(["git", "rev-parse", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=False)
-        results = {
-            "command": "raycaster results",
-            "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
-            "commit": commit.stdout.strip(),
-            "scenes": len(packaged_scenes()),
-            "designs": designs,
-        }
-        RESULTS.write_text(json.dumps(results, indent=2) + "\n")
-    README.write_text(rendered(README.read_text(), json.loads(RESULTS.read_text())))
-    print(f"{RESULTS} and {README}")
+        figures = {"scenes": len(packaged_scenes()), "designs": designs}
+        keep(arguments, figures, {"rectangles": configure().rectangles}, left_out="placing and routing")
+    for page in render_all(facts() | tables()):
+        print(f"written: {page}")

@@ -22,6 +22,7 @@ from raycaster.configuration import Configuration, configure
 from raycaster.debug.probes.ray import fields
 from raycaster.debug.waves import Waves, signed
 from raycaster.errors import UserError
+from raycaster.options import command_line
 from raycaster.rtl.common.records import Origin, Ray, Record
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import build_model, run_bench
@@ -266,9 +267,7 @@ def simulate(build: Path, verilog: Sequence[Path] | None = None) -> Iterator[tup
         UserError: Icarus Verilog is missing, or the simulation has no such moments any more.
         SimulationError: the design's picture is wrong.
     """
-    model = build_model(
-        CONFIGURATION, "icarus", waves=True, build=build, verilog=verilog, variant="docs-broken" if verilog else ""
-    )
+    model = build_model(CONFIGURATION, "icarus", waves=True, build=build, verilog=verilog)
     with tempfile.TemporaryDirectory(dir=build, prefix=".timing-") as scratch:
         job = Job(CONFIGURATION, scene=str(SCENE.resolve()), output=str(Path(scratch).resolve()))
         waves = run_bench(model, "raycaster.sim.frame_bench", job, Path(scratch))
@@ -375,7 +374,7 @@ def kept(name: str) -> str:
     try:
         return path.read_text()
     except OSError as error:
-        raise UserError(f"{path}: cannot be read: {error.strerror}; make docs draws it") from None
+        raise UserError(f"{path}: cannot be read: {error.strerror}; {command_line('docs')} draws it") from None
 
 
 def measured(diagram: Diagram, source: str) -> list[tuple[str, str, int]]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.errors import UserError
+from raycaster.options import command_line
 
 BUILD = Path("build/fit")
 """Where it is kept, a file for each scene."""
@@ -48,12 +49,12 @@ def kept_choice(path: Path, output: Path = BUILD) -> tuple[dict[str, Any], str]:
     """
     kept = output / f"{path.stem}.json"
     if not kept.exists():
-        raise UserError(f"fit: nothing was chosen for {path} yet; run make fit SCENE={path}")
+        raise UserError(f"fit: nothing was chosen for {path} yet; run {command_line('fit', path)}")
     try:
         choice = json.loads(kept.read_text())
         digest, options, scope = choice["sha256"], choice["options"], choice["scope"]
     except (ValueError, KeyError, TypeError):
-        raise UserError(f"fit: {kept} is not what make fit wrote; run make fit SCENE={path}") from None
+        raise UserError(f"fit: {kept} is not what the command fit wrote; run {command_line('fit', path)}") from None
     if not path.exists() or digest != _digest(path):
-        raise UserError(f"fit: {path} is not the scene that {kept} was chosen for; run make fit SCENE={path}")
+        raise UserError(f"fit: {path} is not the scene that {kept} was chosen for; run {command_line('fit', path)}")
     return options, scope

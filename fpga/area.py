@@ -27,6 +27,7 @@ from raycaster.convert.write import write_verilog
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
+from raycaster.outcomes import add_keep_option, keep, scope_of
 from raycaster.tools import TIMEOUT, find_program, prepare_wasm, run_program, run_yosys
 
 HARD_MULTIPLIER = Path(__file__).with_name("hard_multiplier.v")
@@ -350,8 +351,8 @@ def _table(title: str, first: str, *others: str) -> Table:
     return table
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+def command_parser() -> CommandParser:
+    """What the command takes."""
     parser = CommandParser("area", __doc__, "--engine exact --family ecp5")
     parser.add_argument("--family", help=f"one of {', '.join(FAMILIES)} (default: all)")
     parser.add_argument("--route", action="store_true", help="place and route for the ECP5 too, which takes minutes")
@@ -359,7 +360,13 @@ def main(argv: Sequence[str] | None = None) -> None:
     add_scene_argument(parser, "what to build in, with --fix")
     add_fix_option(parser)
     add_configuration_options(parser)
-    arguments = parser.parse_args(argv)
+    add_keep_option(parser)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """The command."""
+    arguments = command_parser().parse_args(argv)
     if arguments.family and arguments.family not in FAMILIES:
         raise UserError(f"family: {arguments.family} is not known here; choose one of {', '.join(FAMILIES)}")
     console = Console()
@@ -391,6 +398,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         published["routed_mhz"] = round(results["route", config.units], 2)
         console.print(f"placed and routed for an LFE5U-85F-6, on any pins: {published['routed_mhz']} MHz")
     (arguments.output / "area.json").write_text(json.dumps(published, indent=2) + "\n")
+    keep(arguments, published, scope_of(config), left_out="" if arguments.route else "placing and routing")
 
 
 def _run(

@@ -26,6 +26,7 @@ from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
+from raycaster.outcomes import add_keep_option, keep, scope_of
 from raycaster.output import replaced
 from raycaster.scene import find_scene
 from raycaster.sw.firmware import build_firmware
@@ -322,8 +323,8 @@ def show(board: Board, outcome: Outcome, console: Console) -> None:
     console.print(table)
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+def command_parser() -> CommandParser:
+    """What the command takes."""
     parser = CommandParser("bitstream", __doc__, "boxes --board ulx3s")
     parser.add_argument("--board", default="ulx3s", help=f"one of {', '.join(BOARDS)} (default: %(default)s)")
     add_scene_argument(parser, "what to show (mirror_room)")
@@ -332,7 +333,13 @@ def main(argv: Sequence[str] | None = None) -> None:
     parser.add_argument("--seed", type=int, default=1, help="of the placement (default: %(default)s)")
     add_fix_option(parser)
     add_configuration_options(parser)
-    arguments = parser.parse_args(argv)
+    add_keep_option(parser)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """The command."""
+    arguments = command_parser().parse_args(argv)
     board = find_board(arguments.board)
     console = Console()
     options = given_options(arguments)
@@ -346,6 +353,9 @@ def main(argv: Sequence[str] | None = None) -> None:
     output = arguments.output / board.name
     outcome = make_bitstream(board, design, output, seed=arguments.seed, console=console)
     show(board, outcome, console)
+    figures = {"board": board.name, "seed": arguments.seed, "missed": outcome.missed}
+    figures |= {"cells": dict(outcome.cells), "clocks": dict(outcome.clocks)}
+    keep(arguments, figures, scope_of(design.configuration), left_out="a run on the board")
     if outcome.missed:
         raise UserError(f"too slow: {', '.join(outcome.missed)}; the reports are in {output}; another SEED may do")
     size = (output / f"{board.name}.bit").stat().st_size

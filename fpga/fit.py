@@ -4,15 +4,15 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from raycaster.configuration import Configuration
@@ -24,14 +24,21 @@ from raycaster.fit.fixing import SCOPES, Fixing, fix, general_design, show
 from raycaster.fpga.area import FAMILIES, Area, measure
 from raycaster.golden import engines, exact
 from raycaster.golden.picture import count_wrong
-from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
+from raycaster.jobs import add_job_options, executors, run_jobs
+from raycaster.options import (
+    CommandParser,
+    add_configuration_options,
+    add_scene_argument,
+    command_line,
+    given_options,
+)
+from raycaster.outcomes import add_keep_option, keep
 from raycaster.scene import packaged_scenes
 from raycaster.tools import find_program
 
 FRACTIONS, ROUNDINGS = range(9), ("truncate", "nearest")
 GENERAL = "general"
 FAMILY = FAMILIES["ecp5"]
-JOBS = 2
 LOG_COLUMNS = 120
 
 
@@ -126,22 +133,20 @@ def _arithmetic(
                 break
 
 
-def count_all(found: Sequence[Candidate], output: Path, console: Console) -> list[Area]:
+def count_all(
+    found: Sequence[Candidate], output: Path, console: Console, make_executor: Callable[[], Executor]
+) -> list[Area]:
     """Synthesise each candidate for an ECP5, some at a time.
 
     Raises:
         UserError: Yosys is missing, or refuses something.
     """
-    columns = TextColumn("counting cells"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
-    with Progress(*columns, console=console, transient=True) as progress, ThreadPoolExecutor(JOBS) as pool:
-        task = progress.add_task("", total=len(found))
+    configurations = [candidate.configuration for candidate in found]
+    return run_jobs("counting cells", partial(_count, output=output), configurations, make_executor, console)
 
-        def count(candidate: Candidate) -> Area:
-            area = measure(candidate.configuration, FAMILY, output / candidate.configuration.name)
-            progress.advance(task)
-            return area
 
-        return list(pool.map(count, found))
+def _count(configuration: Configuration, output: Path) -> Area:
+    return measure(configuration, FAMILY, output / configuration.name)
 
 
 def smallest(found: Sequence[Candidate], areas: Sequence[Area], scope: str) -> int:
@@ -177,8 +182,9 @@ def engine_of(config: Configuration) -> str:
 
 
 def search(
-    path: Path, options: Mapping[str, Any], scope: str, error: float | None, output: Path, console: Console
-) -> None:
+    path: Path, options: Mapping[str, Any], scope: str, error: float | None, output: Path, console: Console,
+    make_executor: Callable[[], Executor] = ProcessPoolExecutor,
+) -> list[dict[str, Any]]:  # fmt: skip
     """Find, show and keep the smallest design for a scene.
 
     Args:
@@ -188,6 +194,10 @@ def search(
         error: the greatest share of wrong pixels; any where it is None.
         output: for the choice, and for what was synthesised.
         console: where to show it.
+        make_executor: of what synthesises; see `raycaster.jobs.executors`.
+
+    Returns:
+        The cells of each design that was counted.
 
     Raises:
         UserError: the scene or the options are not good, nothing meets the error, or Yosys is missing.
@@ -195,25 +205,38 @@ def search(
     found = list(candidates(path, options, tuple(SCOPES), error))
     if not found:
         raise UserError(f"error: no design of {path} has at most {error:.4%} of its pixels wrong; allow more")
-    areas = count_all(found, output / "cells", console)
+    areas = count_all(found, output / "cells", console, make_executor)
     best = smallest(found, areas, scope)
     show_all(found, areas, best, console)
     chosen = found[best]
     show(chosen.fixing, console)
     kept = keep_choice(path, chosen.options, scope, output)
-    console.print(f"{chosen.configuration.name}, kept in {kept}: make verilog FIT=1 SCENE={path}", soft_wrap=True)
+    console.print(f"{chosen.configuration.name}, kept in {kept}", soft_wrap=True)
+    console.print(f"to build it: {command_line('verilog', path, {'fit': True})}", soft_wrap=True)
+    return [
+        {"configuration": one.configuration.name, "engine": one.configuration.engine, "scope": one.scope,
+         "luts": area.tables, "registers": area.registers, "multipliers": area.multipliers, "wrong_share": one.error}
+        for one, area in zip(found, areas, strict=True)
+    ]  # fmt: skip
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+def command_parser() -> CommandParser:
+    """What the command takes."""
     parser = CommandParser("fit", __doc__, "boxes")
     add_scene_argument(parser, "what to show (all that come with it)", many=True)
     parser.add_argument("--fps", type=int, default=60, help="frames a second that are wanted (default: %(default)s)")
     parser.add_argument("--error", type=float, metavar="PERCENT", help="wrong pixels that are allowed (default: any)")
     parser.add_argument("--fix", default="all", metavar="SCOPE", help=f"{' or '.join(SCOPES)} (default: %(default)s)")
     parser.add_argument("--output", type=Path, default=BUILD, metavar="DIR", help="(default: %(default)s)")
+    add_job_options(parser)
     add_configuration_options(parser)
-    arguments = parser.parse_args(argv)
+    add_keep_option(parser)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """The command."""
+    arguments = command_parser().parse_args(argv)
     if arguments.fix not in SCOPES:
         raise UserError(f"fix: {' or '.join(SCOPES)}, not {arguments.fix}")
     if arguments.error is not None and not 0 <= arguments.error <= 100:
@@ -226,8 +249,12 @@ def main(argv: Sequence[str] | None = None) -> None:
     error = None if arguments.error is None else arguments.error / 100
     for path in paths:
         _check_rate(path, options, arguments.fps)
-    for path in paths:
-        search(path, options, arguments.fix, error, arguments.output, console)
+    with executors(arguments.scheduler, arguments.jobs) as make_executor:
+        figures = {
+            path.stem: search(path, options, arguments.fix, error, arguments.output, console, make_executor)
+            for path in paths
+        }
+    keep(arguments, figures, {"fix": arguments.fix, "family": FAMILY.name})
 
 
 def _check_rate(path: Path, options: Mapping[str, Any], wanted: int) -> None:

@@ -183,8 +183,8 @@ def _patterns(bits: Iterable[str]) -> str:
     return " ".join(dict.fromkeys(re.sub(r"\[\d+\]$", "[*]", bit) for bit in bits))
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+def command_parser() -> CommandParser:
+    """What the command takes."""
     parser = CommandParser("quartus", __doc__, "boxes --board de1_soc")
     parser.add_argument("--board", required=True, help=", ".join(BOARDS))
     add_scene_argument(parser, "what to show (mirror_room)", default=find_scene("mirror_room"))
@@ -197,7 +197,12 @@ def main(argv: Sequence[str] | None = None) -> None:
     )
     add_fix_option(parser)
     add_configuration_options(parser)
-    arguments = parser.parse_args(argv)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """The command."""
+    arguments = command_parser().parse_args(argv)
     board = find_board(arguments.board)
     design = design_of(arguments.scene, given_options(arguments), arguments.fix, Console(), **board.configuration)
     directory = arguments.output / arguments.board

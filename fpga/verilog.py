@@ -14,14 +14,19 @@ from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+def command_parser() -> CommandParser:
+    """What the command takes."""
     parser = CommandParser("verilog", __doc__, "--engine exact")
     parser.add_argument("--output", type=Path, default=Path("build/verilog"), help="(default: %(default)s)")
     add_scene_argument(parser, "what to build in, with --fix")
     add_fix_option(parser)
     add_configuration_options(parser)
-    arguments = parser.parse_args(argv)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """The command."""
+    arguments = command_parser().parse_args(argv)
     config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, Console())
     files = write_verilog(config, arguments.output)
     print(f"{len(files)} modules of {config.name} in {arguments.output}/, listed in {arguments.output / FILE_LIST}")

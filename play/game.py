@@ -17,6 +17,7 @@ from rich.table import Table
 from raycaster.configuration import configure
 from raycaster.errors import UserError
 from raycaster.options import CommandParser, add_build_option, add_configuration_options, given_options
+from raycaster.outcomes import add_keep_option, keep, scope_of
 from raycaster.play.system import FASTEST, play
 from raycaster.sim.contact_sheet import write_contact_sheet
 from raycaster.sim.simulator import SYSTEM_BENCH, SimulationError, build_model
@@ -42,19 +43,25 @@ def write_animation(frames: list[Path], path: Path) -> None:
     first.save(path, save_all=True, append_images=others, duration=1000 // SHOWN_HZ, loop=0, lossless=True)
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """The command; returns its exit code.
-
-    Args:
-        argv: its arguments, those of the process by default.
-    """
+def command_parser() -> CommandParser:
+    """What the command takes."""
     parser = CommandParser("game", __doc__, "--frames 24")
     parser.add_argument("--script", type=Path, default=DEMO, help="the buttons of each frame (default: %(default)s)")
     parser.add_argument("--frames", type=int, default=FRAMES, help="of the script, at most (default: %(default)s)")
     add_build_option(parser)
     parser.add_argument("--output", type=Path, help="where frames and animation go (default: game/ in there)")
     add_configuration_options(parser)
-    arguments = parser.parse_args(argv)
+    add_keep_option(parser)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command; returns its exit code.
+
+    Args:
+        argv: its arguments, those of the process by default.
+    """
+    arguments = command_parser().parse_args(argv)
     if arguments.frames < 1:
         raise UserError(f"frames: at least 1, not {arguments.frames}")
     buttons = load(arguments.script)[: arguments.frames]
@@ -88,5 +95,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     shown = str(result["frames"]), str(result["shown"]), "0", f"{rate:,}", f"{speed:.2f}"
     table.add_row(configuration.name, *shown)
     console.print(table)
+    pixels = result["frames"] * configuration.screen_geometry.columns * configuration.screen_geometry.rows
+    figures = {"frames": result["frames"], "pixels": pixels, "wrong": 0, "frames_a_second": round(speed, 2)}
+    keep(arguments, figures, scope_of(configuration))
     console.print(f"{output / ANIMATION}, with each frame beside it, and {SHEET}", highlight=False)
     return 0

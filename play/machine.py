@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
-import hashlib
-import os
 import shutil
 import struct
 import subprocess
 import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,14 +20,12 @@ from raycaster.registers import address_bits
 from raycaster.rtl.system import scene_player
 from raycaster.scene import Scene
 from raycaster.sim.register_model import LiveScene, SceneFollower
-from raycaster.sim.simulator import BUILD, SimulationError, convert, find_tool, lock, stamped, write_stamp
+from raycaster.sim.simulator import BUILD, SimulationError, build_program, convert, lock
 
 TOP = "machine"
 BENCH, LOOP = (Path(__file__).with_name(f"{TOP}.{kind}") for kind in ("v", "cpp"))
 EVENT_WORDS = 6
 """Of 32 bits, that the loop writes for what happens in a clock."""
-
-TIMEOUT = 900
 
 
 @dataclass(frozen=True)
@@ -53,19 +50,19 @@ class Machine:
     """A running system; a context manager, which ends it.
 
     Args:
-        executable: of `build_machine`.
+        command: of `build_machine`.
         config: the design in it.
         program: for its processor, if it has one.
     """
 
-    def __init__(self, executable: Path, config: Configuration, program: Path | None = None):
+    def __init__(self, command: Sequence[str], config: Configuration, program: Path | None = None):
         self._screen, self._lost_bits = config.screen_geometry, CHANNEL_BITS - config.colour_bits
         self._scenes = SceneFollower(config)
         self._directory = tempfile.TemporaryDirectory(prefix="raycaster-")
         if program:
             shutil.copyfile(program, Path(self._directory.name) / PROGRAM_FILE)
         self._process = subprocess.Popen(
-            [executable.resolve()], cwd=self._directory.name, stdin=subprocess.PIPE, stdout=subprocess.PIPE
+            command, cwd=self._directory.name, stdin=subprocess.PIPE, stdout=subprocess.PIPE
         )
         self.frame(0)  # that in which it comes up, of which the monitor sees a part
 
@@ -112,53 +109,36 @@ class Machine:
         return data
 
 
-def build_machine(config: Configuration, scene: Scene | None = None, build: Path = BUILD) -> Path:
+def build_machine(config: Configuration, scene: Scene | None = None, build: Path = BUILD) -> list[str]:
     """Compile a system, or find it compiled.
 
     Args:
         config: the design.
         scene: what it shows, moved by buttons; None for a system with a processor instead.
-        build: the directory that holds `machine/`.
+        build: the directory that holds `machine/` and `model/`.
 
     Returns:
-        The executable, for `Machine`.
+        The command that runs it, for `Machine`.
 
     Raises:
         UserError: Verilator, or what it needs, is missing, or PicoRV32.
         SimulationError: it could not be compiled.
     """
-    tool = find_tool("verilator")
-    directory = build / "machine" / f"{config.name}-{'scene' if scene else 'processor'}"
-    with lock(directory):
-        files = write_system(config, scene, directory / "verilog") if scene else convert(config, build, system=True)
-        screen = config.screen_geometry
-        defines = (
-            f"-DVS_ACTIVE={int(screen.vertical.active_high)}",
-            f"-DCLOCKS_PER_BIT={0 if scene else clocks_per_bit(screen.clock_hz)}",
-        )
-        options = (
-            "-O3", "--x-assign", "fast", "-Wno-fatal", "-Wno-lint", "-Wno-style", f"-DSYSTEM={files[-1].stem}",
-            *(() if scene else ("-DSERIAL",)), f"-GBUTTONS={len(scene_player.BUTTONS if scene else BUTTON_NAMES)}",
-            f"-GCOLOUR_BITS={config.colour_bits}", f"-GADDRESS_BITS={address_bits(config.table)}",
-        )  # fmt: skip
-        digest = hashlib.sha256(repr((tool.version, options, defines)).encode())
-        for path in (*files, BENCH, LOOP):
-            digest.update(path.read_bytes())
-        executable = directory / "model" / f"V{TOP}"
-        if stamped(directory / "stamp.json", digest.hexdigest()) is None:
-            shutil.rmtree(executable.parent, ignore_errors=True)
-            executable.parent.mkdir(parents=True)
-            command = [
-                "verilator", "--cc", "--exe", "--build", "-j", "2", *options, "--top-module", TOP,
-                "--Mdir", executable.parent, "-CFLAGS", f"-O2 -std=gnu++20 {' '.join(defines)}", *files, BENCH, LOOP,
-            ]  # fmt: skip
-            done = subprocess.run(
-                [str(part.resolve()) if isinstance(part, Path) else part for part in command],
-                env=os.environ | tool.environment, capture_output=True, text=True, timeout=TIMEOUT, check=False,
-            )  # fmt: skip
-            if done.returncode:
-                log = directory / "model.log"
-                log.write_text(done.stdout + done.stderr)
-                raise SimulationError(f"{config.name} could not be compiled; the log is {log}")
-            write_stamp(directory / "stamp.json", digest.hexdigest(), [])
-    return executable
+    if scene:
+        directory = build / "machine" / config.name
+        with lock(directory):
+            files = write_system(config, scene, directory)
+    else:
+        files = convert(config, build, system=True)
+    screen = config.screen_geometry
+    flags = (
+        "-O3", "--x-assign", "fast", "-Wno-lint", "-Wno-style", f"-DSYSTEM={files[-1].stem}",
+        *(() if scene else ("-DSERIAL",)), f"-GBUTTONS={len(scene_player.BUTTONS if scene else BUTTON_NAMES)}",
+        f"-GCOLOUR_BITS={config.colour_bits}", f"-GADDRESS_BITS={address_bits(config.table)}",
+    )  # fmt: skip
+    defines = (
+        f"-DVS_ACTIVE={int(screen.vertical.active_high)}",
+        f"-DCLOCKS_PER_BIT={0 if scene else clocks_per_bit(screen.clock_hz)}",
+    )
+    name = f"{config.name}-{files[-1].stem}"
+    return build_program(name, TOP, [*files, BENCH], [LOOP], build=build, flags=flags, compiler=("-O2", *defines))

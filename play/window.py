@@ -25,6 +25,7 @@ from raycaster.options import (
     add_build_option,
     add_configuration_options,
     add_scene_argument,
+    command_line,
     given_options,
 )
 from raycaster.play.machine import Frame, Machine, build_machine
@@ -101,7 +102,9 @@ class Window:
             pygame.display.init()
             self._surface = pygame.display.set_mode((self._size[0], self._size[1] + BAR))
         except pygame.error:
-            raise UserError("there is no display to open a window on; make game writes an animation instead") from None
+            raise UserError(
+                f"there is no display to open a window on; {command_line('game')} writes an animation instead"
+            ) from None
         pygame.font.init()
         pygame.display.set_caption(title)
         self._font = pygame.font.Font(None, BAR - 6)
@@ -185,19 +188,24 @@ def loop(
     return count, count / (time.perf_counter() - started)
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    """The command.
-
-    Args:
-        argv: its arguments, those of the process by default.
-    """
+def command_parser() -> CommandParser:
+    """What the command takes."""
     parser = CommandParser("play", __doc__, "")
     add_scene_argument(parser, "walk through this scene instead of the game")
     parser.add_argument("--frames", type=int, help="end after so many (default: when the window is closed)")
     parser.add_argument("--screenshot", type=Path, metavar="PNG", help="write what the window showed last")
     add_build_option(parser)
     add_configuration_options(parser)
-    arguments = parser.parse_args(argv)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """The command.
+
+    Args:
+        argv: its arguments, those of the process by default.
+    """
+    arguments = command_parser().parse_args(argv)
     console = Console()
     options = given_options(arguments)
     if arguments.scene:
@@ -217,8 +225,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         for button, held in keys.items():
             console.print(f"{button}: {' or '.join(held)}", highlight=False)
         with console.status(f"building {config.name}"):
-            executable = build_machine(config, scene, arguments.build)
-        with Machine(executable, config, program) as machine:
+            command = build_machine(config, scene, arguments.build)
+        with Machine(command, config, program) as machine:
             count, rate = loop(machine, window, judge, config, say, arguments.frames)
         judge.finish()
         if arguments.screenshot:

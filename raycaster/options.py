@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import shlex
 import shutil
@@ -16,13 +17,19 @@ from pydantic.fields import FieldInfo
 
 from raycaster.configuration import OPTION_NAMES, Configuration
 from raycaster.errors import UserError
-from raycaster.scene import find_scene, packaged_scenes
+from raycaster.scene import find_scene
 
 BUILD = Path("build")
 """Where everything that is made goes, unless told otherwise."""
 
 SHORT_NAMES = {"sim": "simulator"}
 """Options by what make's variables call them, where that is another name."""
+
+USUAL = ("engine", "rows", "reflections", "screen")
+"""Of the configuration, what each command's help explains; `raycaster options` explains all."""
+
+FROM_MAKE = "RAYCASTER_FROM_MAKE"
+"""The environment variable by which the Makefile says that the user typed `make`."""
 
 
 class CommandParser(argparse.ArgumentParser):
@@ -39,10 +46,18 @@ class CommandParser(argparse.ArgumentParser):
         purpose = re.sub(r"^`raycaster [\w ]+`: |: `make [\w ]+`", "", doc.strip().splitlines()[0])
         super().__init__(
             prog=f"raycaster {name}",
-            usage=f"raycaster {name} [options], for example: raycaster {name} {example}".rstrip(),
+            usage=argparse.SUPPRESS,
             description=purpose,
-            formatter_class=lambda prog: argparse.HelpFormatter(prog, max_help_position=30, width=_help_width()),
+            add_help=False,
+            formatter_class=lambda prog: _Help(prog, max_help_position=24, width=_help_width()),
         )
+        self.add_argument("-h", "--help", action="help", help=argparse.SUPPRESS)
+        self.name = name
+        self.example = f"raycaster {name} {example}".rstrip()
+
+    def format_help(self) -> str:
+        """The example, what the command does, and its options."""
+        return f"{self.example}\n\n{super().format_help()}"
 
     def parse_args(self, args: Sequence[str] | None = None) -> argparse.Namespace:
         """What `argparse` makes of the words.
@@ -51,11 +66,13 @@ class CommandParser(argparse.ArgumentParser):
             UserError: one line that says which word is wrong.
         """
         words = sys.argv[1:] if args is None else args
-        return super().parse_intermixed_args([one for word in words for one in self._translated(str(word))])
+        arguments = super().parse_intermixed_args([one for word in words for one in self._translated(str(word))])
+        arguments.command_line = shlex.join([*self.prog.split(), *map(str, words)])
+        return arguments
 
     def error(self, message: str) -> NoReturn:
         """One line instead of argparse's usage."""
-        raise UserError(f"{message}; see {self.prog} --help")
+        raise UserError(f"{message}; see {_program()} {self.name} --help")
 
     def _translated(self, word: str) -> list[str]:
         """A variable of make's as an option; nothing where it is empty, or a switch that is off."""
@@ -70,21 +87,65 @@ class CommandParser(argparse.ArgumentParser):
         option = "--" + SHORT_NAMES.get(name, name).replace("_", "-")
         action = self._option_string_actions.get(option)
         if action is None:
-            raise UserError(f"{match[1]}: {self.prog} does not take it; see {self.prog} --help")
+            taker = f"make {self.name.split()[-1]}" if _from_make() else self.prog
+            raise UserError(f"{match[1]}: {taker} does not take it; see {_program()} {self.name} --help")
         if action.nargs == 0:
             return [option] if value != "0" else []
         return [option, value]
+
+
+class _Help(argparse.HelpFormatter):
+    """Help without those options of the configuration that are seldom asked for."""
+
+    def add_argument(self, action: argparse.Action) -> None:
+        if action.dest not in OPTION_NAMES or action.dest in USUAL:
+            super().add_argument(action)
 
 
 def _help_width() -> int:
     return min(120, shutil.get_terminal_size().columns)
 
 
+def _from_make() -> bool:
+    return bool(os.environ.get(FROM_MAKE))
+
+
+def _program() -> str:
+    """How the user calls the program, which make installs below `.venv`."""
+    return ".venv/bin/raycaster" if _from_make() else "raycaster"
+
+
+def command_line(name: str, scene: Path | str | None = None, options: Mapping[str, Any] | None = None) -> str:
+    """A command for the user to run next, in the form that they use: make's, or the program's.
+
+    Args:
+        name: of the subcommand.
+        scene: its scene.
+        options: by name, as in `fraction_bits`; a switch is True.
+    """
+    fields: dict[str, FieldInfo] = Configuration.__pydantic_fields__
+    given = {
+        option: int(value) if option in fields and isinstance(value, bool) and not _is_switch(fields[option]) else value
+        for option, value in (options or {}).items()
+    }
+    given = {option: value for option, value in given.items() if value is not False}
+    if _from_make():
+        words = [f"SCENE={shlex.quote(str(scene))}"] if scene else []
+        values = {option: int(value) if isinstance(value, bool) else value for option, value in given.items()}
+        words += [f"{option.upper()}={shlex.quote(str(value))}" for option, value in values.items()]
+        return " ".join(["make", name.rsplit(maxsplit=1)[-1], *words])
+    words = [shlex.quote(str(scene))] if scene else []
+    for option, value in given.items():
+        words.append("--" + SHORT_NAMES.get(option, option).replace("_", "-"))
+        words += [] if value is True else [shlex.quote(str(value))]
+    return " ".join(["raycaster", name, *words])
+
+
 def add_scene_argument(parser: argparse.ArgumentParser, what: str, *, many: bool = False, default: Any = None) -> None:
     """Add `scene`, or `scenes` for several: a file, or one of the packaged scenes by its name."""
     parser.add_argument(
         "scene", nargs="*" if many else "?", type=find_scene, default=default, metavar="SCENE",
-        help=f"{what}: a file, or {', '.join(packaged_scenes())}",
+        help=f"{what}: a file, or a name, such as boxes, that `raycaster scenes` lists",
     )  # fmt: skip
 
 
@@ -95,17 +156,23 @@ def add_build_option(parser: argparse.ArgumentParser) -> None:
 
 def add_configuration_options(parser: argparse.ArgumentParser) -> None:
     """Add `--units`, `--fraction-bits` and the others, each with the configuration's own description."""
-    group = parser.add_argument_group("configuration")
+    group = parser.add_argument_group("design", "more of it: raycaster options")
     fields: dict[str, FieldInfo] = Configuration.__pydantic_fields__
     for name in OPTION_NAMES:
         field = fields[name]
         option = "--" + name.replace("_", "-")
-        shown = "what suits the rest" if field.default is None else field.default
-        help_text = f"{field.description} (default: {shown})"
+        help_text = f"{field.description} (default: {shown_default(field)})"
         if _is_switch(field):
             group.add_argument(option, action="store_true", default=None, help=help_text)
         else:
-            group.add_argument(option, metavar=name.upper(), help=help_text)
+            group.add_argument(option, metavar="VALUE", help=help_text)
+
+
+def shown_default(field: FieldInfo) -> str:
+    """What an option is where it is not given."""
+    if field.default is None:
+        return "what suits the rest"
+    return str(int(field.default) if isinstance(field.default, bool) else field.default)
 
 
 def _is_switch(field: FieldInfo) -> bool:
@@ -131,12 +198,6 @@ def as_options(config: Configuration) -> list[str]:
                 continue
             words.append(str(int(value)) if isinstance(value, bool) else str(value))
     return words
-
-
-def as_make_variables(options: Mapping[str, Any]) -> list[str]:
-    """Options by field name, as `given_options` returns them, in the form in which make takes them."""
-    values = ((name, int(value) if isinstance(value, bool) else value) for name, value in options.items())
-    return [f"{name.upper()}={shlex.quote(str(value))}" for name, value in values]
 
 
 def run_command(main: Callable[[], int | None]) -> NoReturn:

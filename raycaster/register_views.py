@@ -52,14 +52,19 @@ def write_page(rectangles: int, directory: Path) -> Path:
     return directory / "index.html"
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+def command_parser() -> CommandParser:
+    """What the command takes."""
     parser = CommandParser("registers", __doc__, "")
     parser.add_argument("--output", type=Path, default=Path("build/registers"), help="the page (default: %(default)s)")
     parser.add_argument("--software", type=Path, default=SOFTWARE, help="the C headers (default: %(default)s)")
     default = Configuration().rectangles
     parser.add_argument("--rectangles", default=default, help="entries of the table (default: %(default)s)")
-    arguments = parser.parse_args(argv)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """The command."""
+    arguments = command_parser().parse_args(argv)
     rectangles = configure(rectangles=arguments.rectangles, allow_underrun=True).rectangles
     page = write_page(rectangles, arguments.output)
     arguments.software.mkdir(parents=True, exist_ok=True)

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import shutil
 import signal
@@ -13,6 +12,8 @@ import tempfile
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
+
+from filelock import FileLock
 
 from raycaster.errors import UserError, not_installed
 
@@ -78,8 +79,7 @@ def prepare_wasm(program: str) -> None:
     What it compiled is kept in a file that later runs map into memory; a second process that compiled at the same time
     would overwrite it under them, and they would crash.
     """
-    with (Path(tempfile.gettempdir()) / f"raycaster-{Path(program).name}.lock").open("w") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
+    with FileLock(Path(tempfile.gettempdir()) / f"raycaster-{Path(program).name}.lock"):
         run_program([program, "--version"], Path.cwd(), TIMEOUT)
 
 

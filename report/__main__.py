@@ -21,11 +21,12 @@ from raycaster.golden.catalogue import Case, catalogue
 from raycaster.golden.errors import DepthErrors, compare
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
+from raycaster.jobs import add_job_options, executors
 from raycaster.options import CommandParser
 from raycaster.report import conclusions, hardware, plots
 from raycaster.report.page import Section, write_csv, write_html, write_markdown
 from raycaster.report.points import CASE, UNITS, CellsPoint, HitsPoint, PicturePoint, Point, TimePoint, View, command
-from raycaster.report.sweep import Store, executor, run
+from raycaster.report.sweep import Store, run
 from raycaster.sim.simulator import SimulationError
 
 SCENES = Path("scenes")
@@ -413,20 +414,22 @@ def _growth(name: str) -> tuple[DepthErrors, ...]:
     return errors.depths
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """The command."""
+def command_parser() -> CommandParser:
+    """What the command takes."""
     parser = CommandParser("report", __doc__, "--quick")
     parser.add_argument("--output", type=Path, default=Path("build/report"), help="(default: %(default)s)")
     parser.add_argument("--quick", action="store_true", help="fewer points, in less than three minutes")
-    parser.add_argument(
-        "--scheduler", help="address of a Dask scheduler, such as tcp://host:8786 (default: processes here)"
-    )
-    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="at a time, here (default: %(default)s)")
-    arguments = parser.parse_args(argv)
+    add_job_options(parser, os.cpu_count() or 1)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command."""
+    arguments = command_parser().parse_args(argv)
     console = Console()
     arguments.output.mkdir(parents=True, exist_ok=True)
     try:
-        with executor(arguments.scheduler, arguments.jobs) as make_executor:
+        with executors(arguments.scheduler, arguments.jobs) as make_executor:
             sweeper = Sweeper(Store(arguments.output / "points"), make_executor, console)
             page = write_report(arguments.output, extent(arguments.quick), sweeper)
     except SimulationError as error:

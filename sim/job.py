@@ -29,7 +29,7 @@ class Job:
     """Instead of the scene's own."""
 
     progress: str = ""
-    """File that is to hold the number of visible lines, or of scenes, seen so far."""
+    """File that is to hold the number of visible lines seen so far."""
 
     seeds: tuple[int, ...] = ()
     """Of random scenes, for a bench that shows them."""

@@ -3,10 +3,8 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
-import shlex
 import shutil
 import sys
 import tempfile
@@ -31,9 +29,10 @@ from raycaster.options import (
     add_build_option,
     add_configuration_options,
     add_scene_argument,
-    as_make_variables,
+    command_line,
     given_options,
 )
+from raycaster.outcomes import add_keep_option, keep, scope_of
 from raycaster.scene import packaged_scenes
 from raycaster.sim.contact_sheet import write_contact_sheet
 from raycaster.sim.job import Job
@@ -160,7 +159,7 @@ def build_models(
     for configuration in configurations(runs):
         netlist = netlists.get(configuration.name)
         # A netlist keeps no names for the bench to look at.
-        given = {"verilog": netlist.files, "variant": "gates", "defines": {"NETLIST": 1}} if netlist else {}
+        given = {"verilog": netlist.files, "defines": {"NETLIST": 1}} if netlist else {}
         with console.status(f"building {configuration.name} with {simulator}"):
             started = time.perf_counter()
             model = build_model(configuration, simulator, waves=waves, build=build, **given)
@@ -246,12 +245,10 @@ def show_traces(outcomes: list[Outcome], options: Mapping[str, Any], simulator: 
         if outcome.result is None or not outcome.result["wrong_vs_golden"] or outcome.run.configuration.fixed:
             continue
         column, row = outcome.result["first_wrong_ray"]
-        words = ["make trace", f"SCENE={shlex.quote(str(outcome.run.path))}", f"PIXEL={column},{row}"]
-        words += as_make_variables(options)
-        words += [f"SIM={simulator}"] if simulator != SIMULATORS[0] else []
-        console.print(
-            f"to see where its first wrong pixel goes wrong: {' '.join(words)}", highlight=False, soft_wrap=True
-        )
+        asked = {"pixel": f"{column},{row}", **options}
+        asked |= {"sim": simulator} if simulator != SIMULATORS[0] else {}
+        command = command_line("trace", outcome.run.path, asked)
+        console.print(f"to see where its first wrong pixel goes wrong: {command}", highlight=False, soft_wrap=True)
 
 
 def _frames_per_second(configuration: Configuration, row_cycles: int) -> float:
@@ -280,8 +277,8 @@ def _cells(outcome: Outcome) -> list[str]:
     ]
 
 
-def parse_arguments(argv: Sequence[str] | None) -> argparse.Namespace:
-    """The command line."""
+def command_parser() -> CommandParser:
+    """What the command takes."""
     parser = CommandParser("sim", __doc__, "mirror_room --engine beam")
     add_scene_argument(parser, "what to show (all that come with it)", many=True)
     add_simulator_option(parser)
@@ -296,12 +293,13 @@ def parse_arguments(argv: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="scenes at a time (default: 2)")
     add_fix_option(parser)
     add_configuration_options(parser)
-    return parser.parse_args(argv)
+    add_keep_option(parser)
+    return parser
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns its exit code."""
-    arguments = parse_arguments(argv)
+    arguments = command_parser().parse_args(argv)
     # make hands its variables down in the environment, where cocotb would take them for its own.
     for name in ("WAVES", "GUI"):
         os.environ.pop(name, None)
@@ -325,6 +323,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         show_cells(netlists, console)
     show(outcomes, console, "through the netlist" if gates else None)
     show_pictures(outcomes, outputs / SHEET, console)
+    figures = [{"scene": one.run.path.stem, **one.result} for one in outcomes if one.result is not None]
+    scope = scope_of(runs[0].configuration) | {
+        "simulator": arguments.simulator,
+        "netlist": gates,
+        "reflections and rows": "of each scene",
+    }
+    keep(arguments, {"scenes": figures}, scope)
     if not gates:
         show_traces(outcomes, given_options(arguments), arguments.simulator, console)
     return int(any(outcome.failure for outcome in outcomes))

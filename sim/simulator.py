@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import fcntl
 import hashlib
 import importlib.metadata
 import importlib.util
@@ -15,6 +14,7 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,6 +22,7 @@ from pathlib import Path
 import cocotb
 from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import get_runner
+from filelock import FileLock
 
 import raycaster
 import raycaster.convert
@@ -30,11 +31,17 @@ from raycaster.configuration import Configuration
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, clocks_per_bit
 from raycaster.options import BUILD
-from raycaster.output import replaced
 from raycaster.registers import address_bits
 from raycaster.sim.job import Job
 
 SIMULATORS = ("verilator", "icarus")
+MODELS_VARIABLE = "RAYCASTER_MODELS"
+"""Names the directory that all models go to, whatever the build directory; what differs has another name there."""
+
+KEPT_DAYS = 7
+DIGITS = 12
+"""Of the digest in the name of a model."""
+
 HERE = Path(__file__).parent
 
 MINIMUM_VERILATOR = (5, 36)
@@ -71,8 +78,8 @@ class Tool:
 
     name: str
     version: str
-    environment: Mapping[str, str] = field(default_factory=dict)
-    """What must be set while building with it."""
+    environment: Mapping[str, str] = field(default_factory=dict, repr=False)
+    """What must be set while building with it; no part of what a model is known by, as its path is a shell's own."""
 
     @property
     def wave_format(self) -> str:
@@ -85,8 +92,6 @@ class Bench:
     """What a design is simulated in."""
 
     top: str
-    kind: str = ""
-    """Tells its models from those of the plain bench."""
 
     system: bool = False
     """Whether the design comes with a processor that runs a program."""
@@ -125,8 +130,8 @@ class Bench:
 
 
 MODULE_BENCH = Bench("bench")
-WINDOW_BENCH = Bench("bench", kind="window", window=True)
-SYSTEM_BENCH = Bench("system_bench", kind="system", system=True)
+WINDOW_BENCH = Bench("bench", window=True)
+SYSTEM_BENCH = Bench("system_bench", system=True)
 
 
 @dataclass(frozen=True)
@@ -217,8 +222,8 @@ def system_verilator() -> str | None:
     return version[0] if version and tuple(map(int, version.groups())) >= MINIMUM_VERILATOR else None
 
 
-def _output(*command: str) -> str:
-    return subprocess.run(command, capture_output=True, text=True, check=False).stdout
+def _output(*command: str, environment: Mapping[str, str] | None = None) -> str:
+    return subprocess.run(command, env=environment, capture_output=True, text=True, check=False).stdout
 
 
 def convert(configuration: Configuration, build: Path = BUILD, *, system: bool = False) -> list[Path]:
@@ -255,7 +260,6 @@ def build_model(
     build: Path = BUILD,
     verilog: Sequence[Path] | None = None,
     flags: Sequence[str] = VERILATOR_FLAGS,
-    variant: str = "",
     defines: Mapping[str, int] | None = None,
     bench: Bench = MODULE_BENCH,
 ) -> Model:
@@ -268,7 +272,6 @@ def build_model(
         build: the directory that holds `model/`.
         verilog: files to use instead of the converted ones, for instance broken on purpose.
         flags: for Verilator.
-        variant: names a model that differs by files or flags, so that it does not replace the plain one.
         defines: more macros than the bench's own.
         bench: what the design is simulated in.
 
@@ -285,24 +288,14 @@ def build_model(
     built_for_waves = waves or (bench.window and simulator == "verilator")
     wave_format = tool.wave_format if built_for_waves or bench.window else "fst"
     arguments = _build_arguments(simulator, wave_format if built_for_waves else None, flags)
-    digest = hashlib.sha256(
-        repr((tool.name, tool.version, cocotb.__version__, parameters, defines, arguments)).encode()
-    )
-    for source in sources:
-        digest.update(source.read_bytes())
-    parts = (configuration.name, bench.kind, simulator, variant, "waves" if waves else "")
-    directory = build / "model" / "-".join(filter(None, parts))
-    with lock(directory):
-        stamp = directory / "stamp.json"
-        fresh = stamped(stamp, digest.hexdigest()) is None
+    made_with = [tool, cocotb.__version__, parameters, defines, arguments, built_for_waves]
+    if any(flag.startswith("--coverage") for flag in arguments):
+        made_with.append([source.resolve() for source in sources])  # which the counts name
+    name = "-".join((configuration.name, bench.top, simulator))
+    with _made(models(build), name, sources, made_with) as (directory, fresh):
         if fresh:
-            shutil.rmtree(directory, ignore_errors=True)
-            directory.mkdir(parents=True)
             log = directory.with_suffix(".log")
-            with (
-                _shared_runtime(directory, (tool.version, arguments)) as more_flags,
-                _environment({**tool.environment, "MAKEFLAGS": tool.environment.get("MAKEFLAGS", "") + more_flags}),
-            ):
+            with _building(tool, models(build), arguments):
                 try:
                     get_runner(simulator).build(
                         sources=[source.resolve() for source in sources],
@@ -316,41 +309,172 @@ def build_model(
                         log_file=log,
                     )
                 except (RuntimeError, SystemExit):
-                    raise _build_failure(configuration, simulator, log) from None
-            write_stamp(stamp, digest.hexdigest(), [])
+                    raise _build_failure(configuration.name, simulator, log) from None
     return Model(configuration, simulator, directory, waves, fresh, bench, wave_format)
 
 
-@contextlib.contextmanager
-def _shared_runtime(directory: Path, made_with: object) -> Iterator[str]:
-    """Keep the compiled library of a Verilated model for those to come: it takes longer to compile than a small design.
+def build_program(
+    name: str,
+    top: str,
+    sources: Sequence[Path],
+    main: Sequence[Path] = (),
+    *,
+    simulator: str = "verilator",
+    build: Path = BUILD,
+    flags: Sequence[str] = (),
+    compiler: Sequence[str] = (),
+) -> list[str]:
+    """Build a simulation without cocotb, or find it built.
 
     Args:
-        directory: where the model is built meanwhile, one of `model/`.
-        made_with: all that the library depends on.
+        name: of the model, for people.
+        top: the top module; the model's class is `V` and this.
+        sources: its Verilog.
+        main: the C++ program that drives it, and what that includes; none for a bench that drives itself.
+        simulator: one of `SIMULATORS`; Icarus takes no program.
+        build: the directory that holds `model/`.
+        flags: for Verilator.
+        compiler: for the C++ compiler.
 
-    Yields:
-        More flags for make, with which it takes a library that is there already.
+    Returns:
+        The command that runs it.
+
+    Raises:
+        UserError: the simulator is missing.
+        SimulationError: it could not be built.
     """
-    store = directory.with_name(f"runtime-{hashlib.sha256(repr(made_with).encode()).hexdigest()[:8]}")
-    # The shell that links takes the pattern apart.
-    yield f" VM_GLOBAL_FAST= LOADLIBES=../{store.name}/*.o" if store.exists() else ""
-    if made := list(directory.glob("verilated*.o")):
-        with lock(store):
-            if not store.exists():
-                with replaced(store) as kept:
-                    for compiled in made:
-                        shutil.copy(compiled, kept)
+    tool = find_tool(simulator)
+    made_with = (tool, top, flags, compiler)
+    with _made(models(build), f"{name}-{simulator}", [*sources, *main], made_with) as (place, fresh):
+        directory = place.resolve()
+        executable = directory / top
+        if fresh:
+            files = [source.resolve() for source in sources]
+            if simulator == "icarus":
+                _call(tool, directory, "iverilog", "-g2005", "-s", top, "-o", executable, *files)
+            else:
+                _call(
+                    tool, directory, "verilator", "--cc", *(() if main else ("--main", "--timing")), "-Wno-fatal",
+                    "--prefix", f"V{top}", "--Mdir", ".", "--top-module", top, *flags, *files,
+                )  # fmt: skip
+                # As one text it compiles several times as fast as file by file, and the clock's two edges inline.
+                parts = [*sorted(path.name for path in directory.glob("*.cpp")), *(path.resolve() for path in main[:1])]
+                (directory / "all.cc").write_text("".join(f'#include "{part}"\n' for part in parts))
+                library, include = _runtime(tool, models(build), ())
+                _call(
+                    tool, directory, "g++", "-std=gnu++20", "-fcoroutines", "-pthread", *_DEFINITIONS, "-I.",
+                    f"-I{include}", f"-I{include / 'vltstd'}", *compiler, "all.cc", *sorted(library.glob("*.o")),
+                    "-o", executable,
+                )  # fmt: skip
+                _tidy(directory)
+    return ["vvp", "-n", str(executable)] if simulator == "icarus" else [str(executable)]
 
 
-def _build_failure(configuration: Configuration, simulator: str, log: Path) -> Exception:
+_DEFINITIONS = tuple(f"-DVM_{name}=0" for name in ("COVERAGE", "SC", "TRACE", "TRACE_FST", "TRACE_VCD", "TRACE_SAIF"))
+"""What Verilator's own makefile would define."""
+
+_FEATURES = ("--trace", "--coverage")
+"""How flags begin that change what Verilator's library has in it."""
+
+_RUNTIME = "module runtime; initial #1 $finish; endmodule\n"
+"""The least design that wants all of the library that others want."""
+
+
+def models(build: Path) -> Path:
+    """The directory of models: that of `MODELS_VARIABLE`, or the build directory's own."""
+    return Path(os.environ.get(MODELS_VARIABLE) or build / "model")
+
+
+@contextlib.contextmanager
+def _made(parent: Path, name: str, sources: Sequence[Path], made_with: object) -> Iterator[tuple[Path, bool]]:
+    """The directory of what is made of these sources in this way, and whether it is still to be made.
+
+    Others wait meanwhile; what was not used for `KEPT_DAYS` days goes when something new comes.
+    """
+    digest = hashlib.sha256(repr(made_with).encode())
+    for source in sources:
+        digest.update(source.name.encode() + source.read_bytes())
+    directory = parent / f"{name}-{digest.hexdigest()[:DIGITS]}"
+    with lock(directory):
+        mark = directory / "made"
+        fresh = not mark.exists()
+        if fresh:
+            shutil.rmtree(directory, ignore_errors=True)
+            directory.mkdir()
+            for other in parent.glob("*/made"):
+                with contextlib.suppress(FileNotFoundError):  # another process may have been first
+                    if time.time() - other.stat().st_mtime > KEPT_DAYS * 86400:
+                        shutil.rmtree(other.parent, ignore_errors=True)
+        yield directory, fresh
+        mark.touch()
+
+
+def _call(tool: Tool, directory: Path, *command: str | Path) -> None:
+    """A step of a build in its directory, whose log is beside it."""
+    log = directory.with_suffix(".log")
+    with log.open("w") as file:
+        done = subprocess.run(
+            [str(part) for part in command], cwd=directory, env=os.environ | dict(tool.environment),
+            stdout=file, stderr=file, check=False,
+        )  # fmt: skip
+    if done.returncode:
+        raise _build_failure(directory.name, tool.name, log)
+
+
+def _tidy(directory: Path) -> None:
+    """Leave what runs: the rest is ten times as large."""
+    for pattern in ("*.o", "*.a", "*.gch", "*.cpp", "*.cc", "*.d"):
+        for path in directory.glob(pattern):
+            path.unlink()
+
+
+@contextlib.contextmanager
+def _building(tool: Tool, parent: Path, arguments: Sequence[str]) -> Iterator[None]:
+    """Set what cocotb's runner builds with: it takes the environment of this process and no other."""
+    before = dict(os.environ)
+    environment = dict(tool.environment)
+    if tool.name == "verilator":
+        library, _ = _runtime(tool, parent, tuple(flag for flag in arguments if flag.startswith(_FEATURES)))
+        # The shell that links takes the pattern apart.
+        environment["MAKEFLAGS"] += f" VM_GLOBAL_FAST= LOADLIBES={library}/*.o"
+    os.environ.update(environment)
+    try:
+        yield
+    finally:
+        os.environ.clear()
+        os.environ.update(before)
+
+
+def _runtime(tool: Tool, parent: Path, features: Sequence[str]) -> tuple[Path, Path]:
+    """Verilator's library, compiled once for all models: it takes longer than a small design.
+
+    Returns:
+        The directory of its objects, and that of its headers.
+    """
+    with _made(parent, "runtime", (), (tool, features)) as (place, fresh):
+        directory = place.resolve()
+        if fresh:
+            (directory / "runtime.v").write_text(_RUNTIME)
+            _call(
+                tool, directory, "verilator", "--cc", "--build", "-j", "2", "--vpi", "--timing", *features, "-CFLAGS",
+                "-fcoroutines -std=gnu++20", "--Mdir", ".", "runtime.v",
+            )  # fmt: skip
+            for path in directory.glob("Vruntime*.o"):
+                path.unlink()
+        root = _output(
+            "verilator", "--getenv", "VERILATOR_ROOT", environment=os.environ | dict(tool.environment)
+        ).strip()
+    return directory, Path(root) / "include"
+
+
+def _build_failure(name: str, simulator: str, log: Path) -> Exception:
     """What to raise about a failed build."""
     header = re.search(r"fatal error: (\S+): No such file", log.read_text(errors="replace"))
     if header:
         return UserError(
             f"the C++ header {header[1]} is missing, which {simulator} needs; install what has it; the log is {log}"
         )
-    return SimulationError(f"{simulator} could not build {configuration.name}; its log is {log}")
+    return SimulationError(f"{simulator} could not build {name}; its log is {log}")
 
 
 def _build_arguments(simulator: str, wave_format: str | None, flags: Sequence[str]) -> list[str]:
@@ -442,22 +566,7 @@ def write_stamp(stamp: Path, digest: str, files: Sequence[str]) -> None:
     partial.replace(stamp)
 
 
-@contextlib.contextmanager
-def lock(directory: Path) -> Iterator[None]:
+def lock(directory: Path) -> FileLock:
     """Keep two commands from making the same directory at the same time."""
     directory.parent.mkdir(parents=True, exist_ok=True)
-    with directory.with_name(directory.name + ".lock").open("w") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        yield
-
-
-@contextlib.contextmanager
-def _environment(values: Mapping[str, str]) -> Iterator[None]:
-    """cocotb's runner takes the environment of this process and no other."""
-    before = dict(os.environ)
-    os.environ.update(values)
-    try:
-        yield
-    finally:
-        os.environ.clear()
-        os.environ.update(before)
+    return FileLock(directory.with_name(directory.name + ".lock"))

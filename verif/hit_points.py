@@ -23,7 +23,6 @@ def build_probed_model(configuration: Configuration, build: Path = BUILD) -> Mod
         build=build,
         verilog=[*convert(configuration, build), PROBE],
         flags=(*VERILATOR_FLAGS, f"+define+PROBED_UNITS={configuration.units}"),
-        variant="probed",
     )
 
 

@@ -23,9 +23,11 @@ from raycaster.convert.inside import port_signals
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.records import Record
-from raycaster.rtl.engine.ray_sequencer import EARLY_OUT_AT, ends_early
 
 Cycle = Mapping[str, int]
+
+EARLY_OUT_AT = 2
+"""Cycles from the start of a rectangle that no ray runs towards to its early out, which is its slot's last."""
 
 RECORD_VARIABLE = "RAYCASTER_RECORD"
 """Names a directory in which `Leaf.run_both` leaves a recording of each run, under its test's name."""
@@ -332,6 +334,16 @@ def step_names(config: Configuration) -> list[str]:
     return [name for name in vars(Steps()) if config.facts.divides or name not in ("load_divider", "store_quotient")]
 
 
+def slot_length(config: Configuration) -> int:
+    """Cycles from one rectangle to the next: one, or those of a quotient's 9 bits and its fraction's."""
+    return -(-(9 + config.fraction_bits) // config.divider_bits) if config.engine == "seed" else 1
+
+
+def ends_early(config: Configuration) -> bool:
+    """Whether a rectangle that no ray runs towards has a slot that is worth ending."""
+    return bool(config.culling) and slot_length(config) > EARLY_OUT_AT + 1
+
+
 def trace_cycles(
     config: Configuration,
     usable: Sequence[int],
@@ -352,7 +364,7 @@ def trace_cycles(
         behind: (bounce, index) of those that no ray runs towards.
         lost: the bounce after which no ray is alive.
     """
-    division = config.slot_cycles
+    division = slot_length(config)
     exact = config.engine == "exact"
     offered_after = 3 if exact else division + 4
     idle = {f"steps_{name}": 0 for name in step_names(config)}

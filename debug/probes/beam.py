@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where the beam engine has what golden knows of a ray: a pipeline through which each column passes.
+"""Where the beam engine's modules hand on what golden knows of a ray: a pipeline through which each column passes.
 
 A straight ray folds back into the room at each mirror, so what is compared is seen from the camera. When a column is
 where follows from the latencies that the hardware's own blocks declare.
@@ -11,16 +11,27 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.debug.probes.exact import fraction, hit
-from raycaster.debug.probes.ray import AXES, DUT, Event, Place, Probe, Ray, Read, Value, channels_of, fields
-from raycaster.debug.probes.units import (
+from raycaster.debug.probes.ray import (
+    AXES,
     COLOURS,
-    PINS,
+    DUT,
+    Description,
+    Event,
+    Place,
+    Probe,
+    Ray,
+    Read,
+    Value,
+    channels_of,
+    fields,
+)
+from raycaster.debug.probes.units import (
     RECT_FIELDS,
-    bus_signals,
-    camera,
     found,
     found_colour,
+    monitor_probes,
     pixel_channels,
+    scene_probes,
     seen_colour,
     shown_events,
     sorted_rect,
@@ -31,7 +42,7 @@ from raycaster.rtl.beam import beam_caster as beam
 from raycaster.rtl.beam import beam_pass
 from raycaster.rtl.beam import fold_tester as tester
 from raycaster.rtl.beam import nearest_of_two as contest
-from raycaster.rtl.common.records import Facet, Pixel, Point, Rect, Reflector, Walk, Winner, candidate_of, fold_of
+from raycaster.rtl.common.records import Facet, Rect, Reflector, Walk, Winner, candidate_of, fold_of
 from raycaster.rtl.common.widths import exact_slope_bits, index_bits, walk_bits
 
 RENDERER = f"{DUT}.beam_renderer_i"
@@ -47,9 +58,14 @@ BOUNDS = ("low_p", "high_p", "low_q", "high_q")
 SEEN = ("first", "second", "third")
 
 
-def straight(ray: Ray) -> tuple[int, ...]:
-    """The slope of the ray from the camera, which no mirror changes here."""
-    return ray.of_ray(0, "slopes")
+def products(ray: Ray, rectangle: int, slopes: Sequence[int]) -> tuple[int, int, list[int]]:
+    """For a slope from the camera: the way along p, the way along q, and the ways to the four bounds."""
+    axis, eye = int(ray.rectangles.axes[rectangle]), ray.scene.camera.position
+    p, q = EXTENT[axis]
+    away = distance(ray, rectangle)
+    bounds = (bound[rectangle] for side in (p, q) for bound in (ray.rectangles.low, ray.rectangles.high))
+    ends = [(int(bound[side]) - eye[side]) * slopes[axis] for side, bound in zip((p, p, q, q), bounds, strict=True)]
+    return away * slopes[p], away * slopes[q], ends
 
 
 def distance(ray: Ray, rectangle: int) -> int:
@@ -58,25 +74,10 @@ def distance(ray: Ray, rectangle: int) -> int:
     return position - ray.scene.camera.position[axis]
 
 
-def bounds_on(ray: Ray, rectangle: int, axis: int) -> tuple[int, int]:
-    """From the camera to a rectangle's bounds on an axis."""
-    eye = ray.scene.camera.position[axis]
-    return int(ray.rectangles.low[rectangle, axis]) - eye, int(ray.rectangles.high[rectangle, axis]) - eye
-
-
-def products(ray: Ray, rectangle: int, slopes: Sequence[int]) -> tuple[int, int, list[int]]:
-    """For a slope: the way along p, the way along q, and the ways to the four bounds."""
-    axis, _, _ = ray.plane(Place(0, rectangle))
-    p, q = EXTENT[axis]
-    away = distance(ray, rectangle)
-    ends = [bound * slopes[axis] for side in (p, q) for bound in bounds_on(ray, rectangle, side)]
-    return away * slopes[p], away * slopes[q], ends
-
-
 def setup_facet(ray: Ray, place: Place) -> Sequence[Value]:
     """What all columns of the row have in common."""
-    axis, _, _ = ray.plane(place)
-    _, way_q, _ = products(ray, place.rectangle, straight(ray))
+    _, way_q, _ = products(ray, place.rectangle, ray.of_ray(0, "slopes"))
+    axis = int(ray.rectangles.axes[place.rectangle])
     return 1, axis, distance(ray, place.rectangle), way_q, ray.colour(place.rectangle)
 
 
@@ -87,83 +88,32 @@ def setup_start(ray: Ray, place: Place) -> Sequence[Value]:
     return way_p, *ends
 
 
-def way(ray: Ray, place: Place) -> Sequence[Value]:
-    """The column's way along p."""
-    return (products(ray, place.rectangle, straight(ray))[0],)
+def walked(ray: Ray, place: Place) -> Sequence[Value]:
+    """The ways to the bounds of the column."""
+    return products(ray, place.rectangle, ray.of_ray(0, "slopes"))[2]
 
 
-def ways_to_bounds(ray: Ray, place: Place) -> Sequence[Value]:
-    """The column's ways to the bounds."""
-    return products(ray, place.rectangle, straight(ray))[2]
-
-
-def mirrored(ray: Ray, place: Place) -> Sequence[Value]:
+def mirrored(ray: Ray, place: Place) -> Sequence[Value] | None:
     """What mirrors add to a point, by axis: the way from the camera to its image."""
-    if not place.bounce or not ray.alive(place.bounce):
-        return 3 * (None,)
-    eye = ray.scene.camera.position
-    return [image - coordinate for image, coordinate in zip(ray.of_ray(place.bounce, "eyes"), eye, strict=True)]
+    eyes = zip(ray.of_ray(place.bounce, "eyes"), ray.scene.camera.position, strict=True)
+    return [image - coordinate for image, coordinate in eyes] if place.bounce else None
 
 
-def turned(ray: Ray, place: Place) -> Sequence[Value]:
+def turned(ray: Ray, place: Place) -> Sequence[Value] | None:
     """Along which axes the folded ray runs the other way; nothing where it does not run at all."""
-    if not place.bounce or not ray.alive(place.bounce):
-        return 3 * (None,)
-    slopes = zip(ray.of_ray(place.bounce, "slopes"), straight(ray), strict=True)
-    return [int(slope != before) if before else None for slope, before in slopes]
+    slopes = zip(ray.of_ray(place.bounce, "slopes"), ray.of_ray(0, "slopes"), strict=True)
+    return [int(slope != before) if before else None for slope, before in slopes] if place.bounce else None
 
 
-def last_mirror(ray: Ray, place: Place) -> Sequence[Value]:
+def last_mirror(ray: Ray, place: Place) -> Sequence[Value] | None:
     """The axis of the mirror that the ray left last, and how far away its plane is."""
-    if not place.bounce or not ray.alive(place.bounce):
-        return (None, None)
-    return surface(ray, Place(place.bounce - 1))
+    return met(ray, Place(place.bounce - 1)) if place.bounce else None
 
 
-def surface(ray: Ray, place: Place) -> Sequence[Value]:
+def met(ray: Ray, place: Place) -> Sequence[Value] | None:
     """The axis and the distance of what a ray has hit."""
     winner = ray.winner(place.bounce)
-    if winner < 0:
-        return (None, None)
-    return ray.plane(Place(0, winner))[0], distance(ray, winner)
-
-
-def folded(ray: Ray, place: Place) -> Sequence[Value]:
-    """Where the folded ray meets the plane on p and q, seen from the camera and times the slope along the axis."""
-    if not ray.alive(place.bounce) or not ray.of_rectangle(place, "denominators"):
-        return (None, None)
-    axis, _, _ = ray.plane(place)
-    divisor, points = ray.of_rectangle(place, "denominators"), ray.of_rectangle(place, "points")
-    sign = 1 if straight(ray)[axis] > 0 else -1
-    return [sign * (points[side] - ray.scene.camera.position[side] * divisor) for side in EXTENT[axis]]
-
-
-def fold_offsets(ray: Ray, place: Place) -> Sequence[Value]:
-    """What the fold adds to the ways, or to their complements where one of the two axes is turned."""
-    ends = folded(ray, place)
-    if not place.bounce or None in ends:
-        return (None, None)
-    axis, _, _ = ray.plane(place)
-    way_p, way_q, _ = products(ray, place.rectangle, straight(ray))
-    flips = turned(ray, place)
-    offsets = []
-    for side, end, along in zip(EXTENT[axis], ends, (way_p, way_q), strict=True):
-        if None in (flips[axis], flips[side]):
-            return (None, None)
-        offsets.append(end - (~along if flips[axis] != flips[side] else along))
-    return offsets
-
-
-def numerator(ray: Ray, place: Place) -> Sequence[Value]:
-    """How far the straight ray runs to the plane's image, without its sign."""
-    if not ray.alive(place.bounce) or not ray.of_rectangle(place, "denominators"):
-        return (None,)
-    return (abs(ray.of_rectangle(place, "numerators")),)
-
-
-def magnitudes(ray: Ray, place: Place) -> Sequence[Value]:
-    """The slopes along y and z without their signs."""
-    return [abs(slope) for slope in straight(ray)[1:]]
+    return (int(ray.rectangles.axes[winner]), distance(ray, winner)) if winner >= 0 else None
 
 
 def numbered(module: str, number: int, count: int) -> str:
@@ -175,11 +125,8 @@ def nearest_of(size: int) -> Read:
     """Reads which rectangle is the nearest of so many neighbours, or of all for 0, and whether there is one."""
 
     def read(ray: Ray, place: Place) -> Sequence[Value]:
-        if not ray.alive(place.bounce):
-            return (None, None)
         first = place.rectangle or 0
-        candidates = range(first, first + size) if size else range(len(ray.rectangles))
-        nearest = ray.nearest_of(place.bounce, candidates)
+        nearest = ray.nearest_of(place.bounce, range(first, first + size) if size else range(len(ray.rectangles)))
         return (1, nearest) if nearest >= 0 else (0, None)
 
     return read
@@ -187,12 +134,13 @@ def nearest_of(size: int) -> Read:
 
 def of_mirrors(passes: int, read: Read) -> Read:
     """Reads the same, but of no last pass, which leaves no mirror."""
-    return lambda ray, place: read(ray, place) if place.bounce < passes - 1 else 2 * (None,)
+    return lambda ray, place: read(ray, place) if place.bounce < passes - 1 else None
 
 
-class BeamProbes:
+class BeamProbes(Description):
     """The description; see `raycaster.debug.probes.ray.Description`."""
 
+    video = VIDEO
     tells: Mapping[str, tuple[str, str]] = {
         "column": ("the column is announced", f"{RENDERER}.scan_next_column"),
         "load": ("the rectangle is set up", f"{SETUP}.load"),
@@ -211,7 +159,6 @@ class BeamProbes:
         one = f"{CASTER}.{numbered('beam_pass', bounce, passes)}"
         delays = [number for number in range(passes) for _ in range(number + 1, passes)]
         late = max((i for i, number in enumerate(delays) if number == bounce), default=0)
-        rounds = {f"round_{turn}": self._contest(turn, rectangle) for turn in range(beam_pass.rounds(config))}
         return signal.format(
             beam=one,
             walker=f"{one}.{numbered('rect_walker', rectangle, count)}",
@@ -221,8 +168,7 @@ class BeamProbes:
             bounce=bounce,
             seen=SEEN[bounce],
             mirror="only" if bounce == 0 else "last",
-            **{f"fold_{name}": bits for name, bits in self._fold_bits(ray, rectangle).items()},
-            **rounds,
+            **{f"round_{turn}": self._contest(turn, rectangle) for turn in range(beam_pass.rounds(config))},
         )
 
     def _contest(self, turn: int, rectangle: int) -> str:
@@ -235,59 +181,11 @@ class BeamProbes:
         )
         return ".".join([*["nearest_of_i"] * (turn + 1), one])
 
-    def _fold_bits(self, ray: Ray, rectangle: int) -> dict[str, str]:
-        """Where in a fold is what a rectangle's ways along p and q get added."""
-        axis, fold = AXES[int(ray.rectangles.axes[rectangle])], fold_of(self.config)
-        return {side: "{}:{}".format(*fold.slice(f"{side}_{axis}")) for side in "pq"}
-
     def controls(self) -> Iterable[str]:
         """The signals that `events` reads."""
         names = ("start_line", "scan_next_column", "row_slope", "in_picture", "rects_fetch", "rects_index")
         video = (f"{VIDEO}.{name}" for name in ("x", "y", "pixel_end"))
         return [*(f"{RENDERER}.{name}" for name in names), f"{SETUP}.load", *video]
-
-    def groups(self, ray: Ray) -> dict[str, Sequence[str]]:
-        """For viewers: signals by group; of all rectangles that one which the pixel shows."""
-        place = Place(0, max(0, ray.winner(0)))
-        control = (
-            "progress_start_screen",
-            "scan_start_row",
-            "start_line",
-            "scan_next_column",
-            "row",
-            "row_slope:signed",
-            "in_picture",
-        )
-        unit = [
-            "{beam}.early_slope:signed",
-            "{tester}.facet_axis",
-            "{tester}.facet_distance:signed",
-            "{walker}.walk_way_p:signed",
-            *(f"{{walker}}.walk_{name}:signed" for name in BOUNDS),
-            *(f"{{tester}}.folded_{name}_1:signed" for name in "pq"),
-            *fields("{tester}", "hit", ("valid", "numerator", "denominator"), candidate_of(self.config)),
-            *(f"{{beam}}.nearest_{name}" for name in ("valid", "index")),
-        ]
-        return {
-            "control": [
-                "bench.clk",
-                *(f"{RENDERER}.{name}" for name in control),
-                f"{SETUP}.load",
-                f"{CASTER}.steps:hex",
-            ],
-            "ray": [self.named(name, place, ray) for name in unit],
-            "colours": [
-                *(f"{CASTER}.found_{number}" for number in range(3)),
-                *(f"{CASTER}.colour_{number}:hex" for number in range(3)),
-                *(f"{BLEND}.{name}:hex" for name in COLOURS),
-            ],
-            "video": [
-                *(f"{VIDEO}.{name}:signed" for name in "xy"),
-                *(f"{VIDEO}.{name}:hex" for name in PINS),
-                *(f"{VIDEO}.{name}" for name in ("vga_hs", "vga_vs", "vga_blank_n", "vga_clk")),
-            ],
-            "bus": bus_signals(),
-        }
 
     def expected(self, ray: Ray) -> Iterable[tuple[str, Place]]:
         """The events that golden knows must happen."""
@@ -341,87 +239,55 @@ class BeamProbes:
         """In the order in which values depend on each other."""
         config = self.config
         facet, walk, winner = Facet(walk_bits(config)), Walk(walk_bits(config)), Winner(index_bits(config))
-        last = beam_pass.rounds(config) - 1
+        last, passes = beam_pass.rounds(config) - 1, len(self.starts)
         candidate, fold, reflector = candidate_of(config), fold_of(config), Reflector()
         rounds = [
             Probe("nearest of some", fields("{beam}", f"{{round_{turn}}}", ("valid", "index"), candidate),
                 f"round {turn}", nearest_of(2 << turn), shown=False)
             for turn in range(last)
         ]  # fmt: skip
-        passes = len(self.starts)
         reflected = [
             Probe("turned by", fields("{fold}", "fold", [f"turn_{axis}" for axis in AXES], fold), "ray", mirrored,
                 signed=True),
             Probe("runs back", fields("{fold}", "fold", [f"back_{axis}" for axis in AXES], fold), "ray", turned),
-            Probe(
-                "last mirror", fields("{fold}", "fold", ("axis", "distance"), fold), "ray", last_mirror, signed=(1,),
-                shown=False,
-            ),
-            Probe(
-                "fold", ("{fold}.fold_word[{fold_p}]", "{fold}.fold_word[{fold_q}]"), "test", fold_offsets, signed=True,
-                shown=False,
-            ),
+            Probe("last mirror", fields("{fold}", "fold", ("axis", "distance"), fold), "ray", last_mirror, signed=(1,),
+                shown=False),
         ]  # fmt: skip
         kept = [
-            Probe(
-                "kept", fields("{kept}", "late", ("valid", "index"), winner), "kept", of_mirrors(passes, nearest_of(0)),
-                shown=False,
-            )
+            Probe("mirror", fields(CASTER, "{mirror}", ("axis", "distance"), reflector), "winner",
+                of_mirrors(passes, met), late=1, signed=(1,), shown=False),
+            Probe("kept", fields("{kept}", "late", ("valid", "index"), winner), "kept",
+                of_mirrors(passes, nearest_of(0)), shown=False),
         ]  # fmt: skip
         return [
-            Probe("camera", fields(f"{DUT}.camera_mem_i", "camera", AXES, Point()), "column", camera, shown=False),
-            Probe(
-                "background", (f"{DUT}.avalon_interface_i.picture_background",), "column",
-                lambda ray, place: (ray.colour(-1),), shown=False, colour=True,
-            ),
-            Probe(
-                "reflections", (f"{DUT}.avalon_interface_i.picture_reflections",), "column",
-                lambda ray, place: (ray.reflections,), shown=False,
-            ),
+            *scene_probes("column"),
             Probe("rectangle", fields(f"{DUT}.rect_mem_i", "rects_rect", RECT_FIELDS, Rect()), "fetch", sorted_rect,
                 late=2, shown=False),
             Probe("set up", fields(SETUP, "facet", facet.layout, facet), "load", setup_facet, signed=(2, 3),
                 shown=False),
             Probe("products of the first column", fields(SETUP, "start", walk.layout, walk), "load", setup_start,
                 signed=True, shown=False),
-            Probe("in the pipeline", (f"{CASTER}.steps",), "ray", lambda ray, place: (1,), decode=self._step,
-                shown=False),
-            Probe("slope along y", ("{beam}.early_slope",), "ray", lambda ray, place: straight(ray)[1:2],
+            Probe("in the pipeline", (f"{CASTER}.steps",), "ray", lambda ray, place: (1,), shown=False,
+                decode=lambda ray, place, steps: (steps >> (self.starts[place.bounce] - 1) & 1,)),
+            Probe("slope along y", ("{beam}.early_slope",), "ray", lambda ray, _: ray.of_ray(0, "slopes")[1:2],
                 signed=True),
             *(reflected if passes > 1 else []),
-            Probe("distance", ("{tester}.facet_distance",), "test",
-                lambda ray, place: (distance(ray, place.rectangle),), signed=True),
-            Probe("way p", ("{walker}.walk_way_p",), "test", way, signed=True),
-            Probe("bounds p, q", tuple(f"{{walker}}.walk_{name}" for name in BOUNDS), "test", ways_to_bounds, late=1,
+            Probe("way p", ("{walker}.walk_way_p",), "test",
+                lambda ray, place: products(ray, place.rectangle, ray.of_ray(0, "slopes"))[:1], signed=True),
+            Probe("bounds p, q", tuple(f"{{walker}}.walk_{name}" for name in BOUNDS), "test", walked, late=1,
                 signed=True),
-            Probe("folded way p, q", ("{tester}.folded_p_1", "{tester}.folded_q_1"), "test", folded, late=1,
-                signed=True),
-            Probe("slope along y, late", ("{beam}.late_slope",), "ray", lambda ray, place: straight(ray)[1:2], late=2,
-                signed=True, shown=False),
-            Probe("magnitudes", ("{beam}.slope_dy", "{beam}.slope_dz"), "ray",
-                magnitudes, late=2, shown=False),
-            Probe("numerator", ("{tester}.numerator_2",), "test", numerator, late=2),
             Probe("inside", fields("{tester}", "hit", ("valid",), candidate), "test", hit, late=tester.LATENCY),
             Probe("t", fields("{tester}", "hit", ("numerator", "denominator"), candidate), "test", fraction,
                 late=tester.LATENCY),
             *rounds,
             Probe("nearest", fields("{beam}", f"{{round_{last}}}", ("valid", "index"), candidate), "winner",
                 nearest_of(0)),
-            *([Probe("mirror", fields(CASTER, "{mirror}", ("axis", "distance"), reflector), "winner",
-                of_mirrors(passes, surface), late=1, signed=(1,), shown=False)] if passes > 1 else []),
             *(kept if passes > 1 else []),
             Probe("found", (f"{CASTER}.found_{{bounce}}",), "blend", found),
             Probe("its colour", (f"{CASTER}.colour_{{bounce}}",), "blend", found_colour, colour=True),
             Probe("colour seen", tuple(f"{BLEND}.{{seen}}_{name}" for name in COLOURS), "blend",
                 lambda ray, place: channels_of(seen_colour(ray, place)[0], CHANNEL_BITS), late=1),
-            Probe(
-                "pixel", tuple(f"{BLEND}.colour_mean_{number}_i.mean" for number in range(3)), "done", pixel_channels
-            ),
-            Probe("pixel to the monitor", fields(RENDERER, "shown", COLOURS, Pixel(config.colour_bits)), "shown",
+            Probe("pixel", tuple(f"{BLEND}.colour_mean_{number}_i.mean" for number in range(3)), "done",
                 pixel_channels),
-            Probe("pins", tuple(f"{VIDEO}.{name}" for name in PINS), "shown", pixel_channels, late=1),
+            *monitor_probes(RENDERER, "shown", VIDEO, config),
         ]  # fmt: skip
-
-    def _step(self, ray: Ray, place: Place, steps: int) -> Sequence[Value]:
-        """Whether the bit of a pass is set."""
-        return (steps >> (self.starts[place.bounce] - 1) & 1,)

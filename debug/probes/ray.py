@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -29,8 +29,14 @@ from raycaster.rtl.common.records import Record
 DUT = "bench.dut"
 AXES = "xyz"
 
+COLOURS = ("red", "green", "blue")
+PINS = ("vga_r", "vga_g", "vga_b")
+
 ENDS = ("blend", "done")
 """Events after which a ray has seen all that it will see."""
+
+OF_LOST_RAYS = (*ENDS, "shown")
+"""Events at which a ray counts that came after one which hit nothing."""
 
 Value = int | Fraction | str | None
 """What is held against what; None means nothing, and is like everything."""
@@ -57,8 +63,8 @@ class Event:
     place: Place
 
 
-Read = Callable[["Ray", Place], Sequence[Value]]
-"""Golden's values at a place; components in the order of the signals."""
+Read = Callable[["Ray", Place], Sequence[Value] | None]
+"""Golden's values at a place; components in the order of the signals. None where they all mean nothing."""
 
 
 @dataclass(frozen=True)
@@ -93,6 +99,10 @@ class Probe:
     shown: bool = True
     """Whether it has a place in the table even where it is right."""
 
+    def is_signed(self, number: int) -> bool:
+        """Whether that one of the signals is in two's complement."""
+        return self.signed is True or bool(self.signed and number in self.signed)
+
 
 @dataclass(frozen=True)
 class Reading:
@@ -125,28 +135,57 @@ class Reading:
         return self.probe.module or module_of(self.signal)
 
 
-class Description(Protocol):
+class Description:
     """What an engine's description offers."""
 
     probes: Sequence[Probe]
+    """In the order in which values depend on each other."""
+
     tells: Mapping[str, tuple[str, str]]
     """By kind of event, what it is called and which signal tells of it."""
 
+    video: str
+    """The video generator's instance."""
+
+    states: Sequence[str] = ()
+    """Signals that are no events and no values, but which a viewer shows."""
+
     def events(self, samples: Samples, ray: Ray) -> list[Event]:
         """What the hardware did for the pixel."""
+        raise NotImplementedError
 
     def expected(self, ray: Ray) -> Iterable[tuple[str, Place]]:
         """The events, by kind and place, that golden knows must happen."""
+        raise NotImplementedError
 
     def controls(self) -> Iterable[str]:
         """The signals that `events` reads."""
+        raise NotImplementedError
 
     def named(self, signal: str, place: Place, ray: Ray) -> str:
         """The whole name of a probe's signal at a place."""
+        return signal
 
     def groups(self, ray: Ray) -> Mapping[str, Sequence[str]]:
         """What a viewer shows, by the group's name: whole names, with `:signed` or `:hex` behind those that are not
-        unsigned numbers or single bits."""
+        unsigned numbers or single bits. Of all rectangles that one which the pixel shows."""
+        place, values = Place(0, max(0, ray.winner(0))), {}
+        for probe in self.probes:
+            for number, signal in enumerate(probe.signals):
+                kind = ":hex" if probe.colour else ":signed" if probe.is_signed(number) else ""
+                values.setdefault(self.named(signal, place, ray), kind)
+        video = {"x": ":signed", "y": ":signed", **dict.fromkeys(PINS, ":hex")}
+        video |= dict.fromkeys(("vga_hs", "vga_vs", "vga_blank_n", "vga_clk"), "")
+        video = {f"{self.video}.{name}": kind for name, kind in video.items()}
+        words = {"address": "", "read": "", "write": "", "writedata": ":hex", "byteenable": ":hex", "readdata": ":hex"}
+        bus = {f"{DUT}.avs_s0_{name}": kind for name, kind in words.items()}
+        bus |= {f"{DUT}.avs_s0_{name}": "" for name in ("readdatavalid", "waitrequest")} | {f"{DUT}.irq": ""}
+        control = dict.fromkeys(["bench.clk", *self.states, *self.controls()], "")
+        groups, told = {}, {}
+        for name, signals in {"video": video, "bus": bus, "control": control, "values": values}.items():
+            groups[name] = [signal + kind for signal, kind in signals.items() if signal not in told]
+            told |= signals
+        return {name: groups[name] for name in ("control", "values", "video", "bus")}
 
 
 class Ray:
@@ -231,15 +270,6 @@ class Ray:
         picture = shown(self.golden.colours[0].reshape(1, 1, 3), self.config)[0, 0]
         return packed(picture >> (CHANNEL_BITS - bits), bits)
 
-    def sums(self, bounce: int) -> list[int]:
-        """The weighted sum of each channel, up to a bounce's ray."""
-        totals = np.zeros(3, dtype=np.int64)
-        for number in range(bounce + 1):
-            weight = 2 if number == 0 and self.reflections == 2 else 1
-            colour = self.colour(self.winner(number))
-            totals += weight * np.array(channels_of(colour, CHANNEL_BITS))
-        return totals.tolist()
-
     def plane(self, place: Place) -> tuple[int, int, tuple[int, ...]]:
         """A rectangle's axis, its plane's coordinate, and its bounds as the hardware sorts them."""
         axis = int(self.rectangles.axes[place.rectangle])
@@ -255,21 +285,11 @@ class Ray:
 
     def true_hit(self, place: Place) -> tuple[Fraction, ...] | None:
         """Where a ray meets a rectangle's plane without rounding, or None where it runs along it or away from it."""
-        bounce = self.true.bounces[place.bounce]
-        divisor, ahead = int(bounce.denominators[place.rectangle, 0]), self.true_numerator(place)
-        if not divisor or not bounce.alive[0] or ahead * self.true_denominator(place) <= 0:
+        bounce, (axis, position, _) = self.true.bounces[place.bounce], self.plane(place)
+        ahead = (position - self.true_origin(place.bounce)[axis]) * int(bounce.slopes[0, axis])
+        if not bounce.alive[0] or ahead <= 0:
             return None
-        return self._true_point(bounce.points[place.rectangle, 0], divisor)
-
-    def true_numerator(self, place: Place) -> Fraction:
-        """From where the ray starts to the plane, without rounding."""
-        axis, position, _ = self.plane(place)
-        return position - self.true_origin(place.bounce)[axis]
-
-    def true_denominator(self, place: Place) -> int:
-        """The slope along the rectangle's axis."""
-        axis, _, _ = self.plane(place)
-        return int(self.true.bounces[place.bounce].slopes[0, axis])
+        return self._true_point(bounce.points[place.rectangle, 0], bounce.denominators[place.rectangle, 0])
 
     @staticmethod
     def _true_point(scaled: np.ndarray, divisor: int) -> tuple[Fraction, ...]:
@@ -335,9 +355,9 @@ def read(waves: Waves, description: Description, ray: Ray) -> list[Reading]:
     found, probes = [], description.probes
     for event in events:
         for probe in probes:
-            if probe.event != event.kind:
+            if probe.event != event.kind or not (ray.alive(event.place.bounce) or event.kind in OF_LOST_RAYS):
                 continue
-            golden = tuple(probe.golden(ray, event.place))
+            golden = tuple(probe.golden(ray, event.place) or ())
             if any(value is not None for value in golden):
                 names = tuple(description.named(signal, event.place, ray) for signal in probe.signals)
                 found.append((replace(probe, signals=names), event, golden))
@@ -369,9 +389,10 @@ def _reading(
     waves: Waves, samples: Samples, probe: Probe, event: Event, golden: tuple[Value, ...], ray: Ray
 ) -> Reading:
     cycle = event.cycle + probe.late
-    raw = [samples.values[name][cycle] for name in probe.signals]
-    for number in range(len(raw)) if probe.signed is True else probe.signed or ():
-        raw[number] = signed(raw[number], waves.width(probe.signals[number]))
+    raw = [
+        signed(samples.values[name][cycle], waves.width(name)) if probe.is_signed(i) else samples.values[name][cycle]
+        for i, name in enumerate(probe.signals)
+    ]
     found: tuple[Value, ...] = tuple(raw)
     if probe.decode:
         found = tuple(probe.decode(ray, event.place, *raw)) if None not in raw else len(golden) * (None,)

@@ -8,7 +8,10 @@ from collections.abc import Iterable, Sequence
 from raycaster.configuration import Configuration
 from raycaster.debug.probes.ray import (
     AXES,
+    COLOURS,
     DUT,
+    PINS,
+    Description,
     Event,
     Place,
     Probe,
@@ -25,13 +28,6 @@ RENDERER = f"{DUT}.ray_caster_renderer_i"
 RECT_FIELDS = ("axis", "position", "u_low", "u_high", "v_low", "v_high", "colour")
 SIGNS = ("dx", "dy", "dz")
 VIDEO = f"{RENDERER}.video_generator_i"
-COLOURS = ("red", "green", "blue")
-PINS = ("vga_r", "vga_g", "vga_b")
-
-
-def camera(ray: Ray, place: Place) -> Sequence[Value]:
-    """The camera's position."""
-    return ray.scene.camera.position
 
 
 def sorted_rect(ray: Ray, place: Place) -> Sequence[Value]:
@@ -40,37 +36,33 @@ def sorted_rect(ray: Ray, place: Place) -> Sequence[Value]:
     return axis, position, *bounds, ray.colour(place.rectangle)
 
 
+def surface(ray: Ray, rectangle: int) -> Sequence[Value] | None:
+    """A rectangle's axis, plane and colour; nothing for -1."""
+    if rectangle < 0:
+        return None
+    axis, position, _ = ray.plane(Place(0, rectangle))
+    return axis, position, ray.colour(rectangle)
+
+
 def slope_signs(ray: Ray, place: Place) -> Sequence[Value]:
-    """Which components of the slope are negative; nothing of a ray that is lost, or a component that is 0."""
-    if not ray.alive(place.bounce):
-        return 3 * (None,)
+    """Which components of the slope are negative; nothing of one that is 0."""
     return [None if slope == 0 else int(slope < 0) for slope in ray.of_ray(place.bounce, "slopes")]
 
 
-def slope_magnitudes(ray: Ray, place: Place) -> Sequence[Value]:
-    """The slope without its signs."""
-    return [abs(slope) for slope in ray.of_ray(0, "slopes")]
+def found(ray: Ray, place: Place) -> Sequence[Value] | None:
+    """Whether a ray has hit anything; nothing of one that is lost."""
+    return (int(ray.winner(place.bounce) >= 0),) if ray.alive(place.bounce) else None
+
+
+def found_colour(ray: Ray, place: Place) -> Sequence[Value] | None:
+    """The colour of what a ray has hit; nothing for a miss."""
+    winner = ray.winner(place.bounce)
+    return (ray.colour(winner),) if winner >= 0 else None
 
 
 def seen_colour(ray: Ray, place: Place) -> Sequence[Value]:
     """What a ray sees, background included."""
     return (ray.colour(ray.winner(place.bounce)),)
-
-
-def found(ray: Ray, place: Place) -> Sequence[Value]:
-    """Whether a ray has hit anything; nothing of one that is lost."""
-    return (int(ray.winner(place.bounce) >= 0) if ray.alive(place.bounce) else None,)
-
-
-def found_colour(ray: Ray, place: Place) -> Sequence[Value]:
-    """The colour of what a ray has hit; nothing for a miss."""
-    winner = ray.winner(place.bounce)
-    return (ray.colour(winner) if winner >= 0 else None,)
-
-
-def nearest_found(ray: Ray, place: Place) -> Sequence[Value]:
-    """Whether any rectangle up to this one is hit; nothing of a ray that is lost."""
-    return (int(ray.nearest(place) >= 0) if ray.alive(place.bounce) else None,)
 
 
 def pixel(ray: Ray, place: Place) -> Sequence[Value]:
@@ -83,16 +75,29 @@ def pixel_channels(ray: Ray, place: Place) -> Sequence[Value]:
     return channels_of(ray.pixel, ray.config.colour_bits)
 
 
-def video_signals(video: str) -> list[str]:
-    """What a viewer shows of a video generator."""
-    pins = (*(f"{name}:hex" for name in PINS), "vga_hs", "vga_vs", "vga_blank_n", "vga_clk")
-    return [f"{video}.{name}" for name in ("x:signed", "y:signed", "scan_next_column", *pins)]
+def hit_mask(ray: Ray, place: Place) -> Sequence[int]:
+    """The rectangles that the ray hits, a bit each: those that must be tried."""
+    return (sum(1 << i for i, hit in enumerate(ray.golden.bounces[place.bounce].hits[:, 0]) if hit),)
 
 
-def bus_signals() -> list[str]:
-    """What a viewer shows of the bus."""
-    words = ("address", "read", "write", "writedata:hex", "byteenable:hex", "readdata:hex", "readdatavalid")
-    return [*(f"{DUT}.avs_s0_{name}" for name in (*words, "waitrequest")), f"{DUT}.irq"]
+def scene_probes(event: str) -> list[Probe]:
+    """What the scene's registers say, from an event on."""
+    bus = f"{DUT}.avalon_interface_i.picture"
+    camera = fields(f"{DUT}.camera_mem_i", "camera", AXES, Point())
+    return [
+        Probe("camera", camera, event, lambda ray, _: ray.scene.camera.position, shown=False),
+        Probe("background", (f"{bus}_background",), event, lambda ray, _: (ray.colour(-1),), shown=False, colour=True),
+        Probe("reflections", (f"{bus}_reflections",), event, lambda ray, _: (ray.reflections,), shown=False),
+    ]
+
+
+def monitor_probes(renderer: str, port: str, video: str, config: Configuration) -> list[Probe]:
+    """The pixel's last steps."""
+    channels = fields(renderer, port, COLOURS, Pixel(config.colour_bits))
+    return [
+        Probe("pixel to the monitor", channels, "shown", pixel_channels),
+        Probe("pins", tuple(f"{video}.{name}" for name in PINS), "shown", pixel_channels, late=1),
+    ]
 
 
 def shown_events(samples: Samples, ray: Ray, video: str, after: int) -> list[Event]:
@@ -108,8 +113,10 @@ def shown_events(samples: Samples, ray: Ray, video: str, after: int) -> list[Eve
     return []
 
 
-class UnitProbes:
+class UnitProbes(Description):
     """The part of a description that does not depend on how a unit computes."""
+
+    video = VIDEO
 
     def __init__(self, config: Configuration, unit: int, control: str, unit_module: str):
         """Name everything.
@@ -121,14 +128,12 @@ class UnitProbes:
             unit_module: the name of the unit's module.
         """
         self.config = config
+        self.number = unit
         self.caster = f"{RENDERER}.ray_caster_i"
         self.control = f"{self.caster}.{control}"
         self.sequencer = f"{self.control}.ray_sequencer_i"
         self.unit = f"{self.caster}.{unit_name(unit_module, config, unit)}"
-        self.generator = f"{self.unit}.ray_generator_i"
-        self.combiner = f"{self.unit}.colour_combiner_i"
-        self.buffer = f"{RENDERER}.{unit_name('line_buffer', config, unit)}"
-        self.rects = f"{DUT}.rect_mem_i"
+        self.states = [f"{self.sequencer}.{name}" for name in ("state", "bounce")]
         steps = f"{self.sequencer}.steps"
         self.tells = {
             "start": ("the group starts", f"{steps}_screen_to_ray"),
@@ -140,52 +145,15 @@ class UnitProbes:
             "shown": ("the pixel is shown", f"{VIDEO}.y"),
         }
 
-    def named(self, signal: str, place: Place, ray: Ray) -> str:
-        """The whole name, which probes have already."""
-        return signal
-
-    def groups(self, ray: Ray) -> dict[str, Sequence[str]]:
-        """For viewers: signals by group."""
-        strobes = ("screen_to_ray", "initial_ray", "find_intersection", "add_colour", "store_ray", "reset_z_buf")
-        buffer = ("write", "write_address", "pixel_in:hex", "read_address", "pixel_out:hex")
-        return {
-            "control": [
-                "bench.clk",
-                *(f"{RENDERER}.scan_{name}" for name in ("start_screen", "start_row")),
-                *(f"{RENDERER}.place_{name}" for name in ("row", "column_offset")),
-                *(f"{RENDERER}.{name}" for name in ("reset_ray_caster", "enable", "done")),
-                *(f"{self.sequencer}.{name}" for name in ("state", "bounce", "rects_index")),
-                *(f"{self.sequencer}.steps_{name}" for name in strobes),
-                f"{self.control}.steps_write_z_buf",
-            ],
-            "ray unit": [
-                *fields(self.generator, "slope", SIGNS),
-                *self.unit_signals,
-                f"{self.combiner}.seen_word:hex",
-                f"{self.combiner}.pixel_word:hex",
-            ],
-            "line buffer": [f"{self.buffer}.{name}" for name in buffer],
-            "video": video_signals(VIDEO),
-            "bus": bus_signals(),
-        }
-
-    unit_signals: Sequence[str] = ()
-    """What of a unit a viewer shows beside its slope and its colours."""
-
     def controls(self) -> Iterable[str]:
         """The signals that `events` reads."""
         steps = ("screen_to_ray", "find_intersection", "add_colour", "store_ray")
         return [
-            f"{RENDERER}.place_row",
-            f"{RENDERER}.place_column_offset",
-            f"{self.sequencer}.done",
+            *(f"{RENDERER}.place_{name}" for name in ("row", "column_offset")),
+            *(f"{self.sequencer}.{name}" for name in ("done", "rects_fetch", "rects_index")),
             *(f"{self.sequencer}.steps_{name}" for name in steps),
             f"{self.control}.steps_write_z_buf",
-            f"{self.sequencer}.rects_fetch",
-            f"{self.sequencer}.rects_index",
-            f"{VIDEO}.x",
-            f"{VIDEO}.y",
-            f"{VIDEO}.pixel_end",
+            *(f"{VIDEO}.{name}" for name in ("x", "y", "pixel_end")),
         ]
 
     def expected(self, ray: Ray) -> Iterable[tuple[str, Place]]:
@@ -247,94 +215,41 @@ class UnitProbes:
 
     def first_probes(self) -> list[Probe]:
         """From the scene's memories to the primary ray."""
-        sorter = fields(f"{self.rects}.rect_sorter_i", "rect", RECT_FIELDS, Rect())
-        rect = fields(self.rects, "rects_rect", RECT_FIELDS, Rect())
-        signs = fields(self.generator, "initial_signs", SIGNS, Signs())
-        probes = [
-            Probe("camera", fields(f"{DUT}.camera_mem_i", "camera", AXES, Point()), "start", camera, shown=False),
-            Probe(
-                "background",
-                (f"{DUT}.avalon_interface_i.picture_background",),
-                "start",
-                lambda ray, place: (ray.colour(-1),),
-                shown=False,
-                colour=True,
-            ),
-            Probe(
-                "reflections",
-                (f"{DUT}.avalon_interface_i.picture_reflections",),
-                "start",
-                lambda ray, place: (ray.reflections,),
-                shown=False,
-            ),
-            Probe(
-                "usable rectangles",
-                (f"{self.rects}.rects_usable",),
-                "start",
-                lambda ray, place: ((1 << len(ray.rectangles)) - 1,),
-                shown=False,
-            ),
-            Probe("slope, magnitudes", fields(self.generator, "slope", SIGNS), "start", slope_magnitudes, late=1),
-            Probe("slope, signs", signs, "start", slope_signs, late=1),
-            Probe(
-                "comes from the camera",
-                (f"{self.sequencer}.steps_initial_ray",),
-                "ray",
-                lambda ray, place: (int(place.bounce == 0),),
-                late=1,
-                shown=False,
-            ),
-            Probe("rectangle, sorted", sorter, "fetch", sorted_rect, shown=False),
-            Probe("rectangle", rect, "fetch", sorted_rect, late=1, shown=False),
-        ]
-        if self.config.culling:
-            probes.append(
-                # For those that the scene has not got, the mask is don't care.
-                Probe(
-                    "rectangles that may be hit",
-                    (f"{self.sequencer}.wanted",),
-                    "start",
-                    _hit_mask,
-                    decode=lambda ray, place, wanted: (wanted & _hit_mask(ray, place)[0],),
-                    module="group_culler",
-                    shown=False,
-                )
-            )
-        return probes
+        rects, generator = f"{DUT}.rect_mem_i", f"{self.unit}.ray_generator_i"
+        culling = Probe(
+            # For those that the scene has not got, the mask is don't care.
+            "rectangles that may be hit", (f"{self.sequencer}.wanted",), "start", hit_mask,
+            decode=lambda ray, place, wanted: (wanted & hit_mask(ray, place)[0],), module="group_culler", shown=False,
+        )  # fmt: skip
+        return [
+            *scene_probes("start"),
+            Probe("usable rectangles", (f"{rects}.rects_usable",), "start",
+                lambda ray, _: ((1 << len(ray.rectangles)) - 1,), shown=False),
+            Probe("slope, magnitudes", fields(generator, "slope", SIGNS), "start",
+                lambda ray, _: [abs(slope) for slope in ray.of_ray(0, "slopes")], late=1),
+            Probe("slope, signs", fields(generator, "initial_signs", SIGNS, Signs()), "start", slope_signs, late=1),
+            Probe("comes from the camera", (f"{self.sequencer}.steps_initial_ray",), "ray",
+                lambda _, place: (int(place.bounce == 0),), late=1, shown=False),
+            Probe("rectangle, sorted", fields(f"{rects}.rect_sorter_i", "rect", RECT_FIELDS, Rect()), "fetch",
+                sorted_rect, shown=False),
+            Probe("rectangle", fields(rects, "rects_rect", RECT_FIELDS, Rect()), "fetch", sorted_rect, late=1,
+                shown=False),
+            *([culling] if self.config.culling else []),
+        ]  # fmt: skip
 
     def last_probes(self, kept_colour: str) -> list[Probe]:
         """From what a ray has found, of which the colour's signal is given, to the pins."""
-        channels = [f"{self.combiner}.colour_channel_{number}_i" for number in range(3)]
-        bits = self.config.colour_bits
-        unit_pixel = 3 * bits
-
-        def one_of(ray: Ray, place: Place, pixels: int) -> Sequence[Value]:
-            return ((pixels >> ray.unit * unit_pixel) & ((1 << unit_pixel) - 1),)
-
-        group = tuple(f"{RENDERER}.{name}" for name in ("read_offset", "read_unit"))
+        combiner, bits = f"{self.unit}.colour_combiner_i", 3 * self.config.colour_bits
+        buffer = f"{RENDERER}.{unit_name('line_buffer', self.config, self.number)}"
+        channels = tuple(f"{combiner}.colour_channel_{number}_i.blended" for number in range(3))
         return [
             Probe("found", (kept_colour.rpartition(".")[0] + ".found",), "blend", found),
             Probe("its colour", (kept_colour,), "blend", found_colour, colour=True),
-            Probe("colour seen", (f"{self.combiner}.seen_word",), "blend", seen_colour, colour=True),
-            Probe(
-                "sums of the channels",
-                tuple(f"{channel}.total" for channel in channels),
-                "blend",
-                lambda ray, place: ray.sums(place.bounce),
-                late=1,
-            ),
-            Probe("means of the channels", tuple(f"{channel}.blended" for channel in channels), "done", pixel_channels),
-            Probe("pixel", (f"{self.combiner}.pixel_word",), "done", pixel, colour=True),
-            Probe("pixel among all", (f"{self.caster}.pixels",), "done", pixel, decode=one_of, colour=True),
-            Probe("pixel to the line buffer", (f"{self.buffer}.pixel_in",), "done", pixel, colour=True),
-            Probe("place in the line buffer", group, "shown", lambda ray, place: (ray.offset, ray.unit), shown=False),
-            Probe("pixel from the line buffer", (f"{self.buffer}.pixel_out",), "shown", pixel, colour=True),
-            Probe("pixel to the monitor", fields(RENDERER, "pixel", COLOURS, Pixel(bits)), "shown", pixel_channels),
-            Probe("pins", tuple(f"{VIDEO}.{name}" for name in PINS), "shown", pixel_channels, late=1),
-        ]
-
-
-def _hit_mask(ray: Ray, place: Place) -> Sequence[int]:
-    """The rectangles that the ray hits, a bit each: those that must be tried."""
-    hits = ray.golden.bounces[place.bounce].hits[:, 0]
-    return (sum(1 << i for i, hit in enumerate(hits) if hit),)
+            Probe("colour seen", (f"{combiner}.seen_word",), "blend", seen_colour, colour=True),
+            Probe("means of the channels", channels, "done", pixel_channels),
+            Probe("pixel", (f"{combiner}.pixel_word",), "done", pixel, colour=True),
+            Probe("pixel among all", (f"{self.caster}.pixels",), "done", pixel, colour=True,
+                decode=lambda ray, _, pixels: (pixels >> ray.unit * bits & (1 << bits) - 1,)),
+            Probe("pixel from the line buffer", (f"{buffer}.pixel_out",), "shown", pixel, colour=True),
+            *monitor_probes(RENDERER, "pixel", VIDEO, self.config),
+        ]  # fmt: skip

@@ -39,10 +39,11 @@ def avalon_interface(
 ):  # fmt: skip
     """Avalon-MM agent: 32-bit words, a transfer a cycle, two cycles from an accepted read to its readdatavalid.
 
-    waitrequest is high in reset and in the cycle after it, and never else. Every accepted read is answered once, in
-    order. Writes pass through a register: they take effect in the cycle after they were accepted, before any read that
-    is accepted later is answered. camera_readback, rect_readback: the scene memories' words at bus.address, 32 bits, 0
-    where there is none. picture: driven, but only its run where the camera is fixed.
+    waitrequest follows the synchronous reset a cycle late, and is never high else: in the first cycle of a reset it is
+    still low, and what it accepts there is lost. Every other accepted read is answered once, in order. Writes pass
+    through a register: they take effect in the cycle after they were accepted, before any read that is accepted later
+    is answered. camera_readback, rect_readback: the scene memories' words at bus.address, 32 bits, 0 where there is
+    none. picture: driven, but only its run where the camera is fixed.
     """
     live = not (config.fixed and config.fixed.camera)
     registers = register_map(config.table)

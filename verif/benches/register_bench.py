@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-import random
+from random import Random
 
 import cocotb
 import numpy as np
@@ -14,6 +14,7 @@ from cocotb.triggers import ClockCycles
 from raycaster.registers import Register
 from raycaster.scene import Scene, load_scene
 from raycaster.sim.harness import Harness
+from raycaster.verif.seeds import seed
 
 ALL_ONES = 0xFFFF_FFFF
 
@@ -81,6 +82,7 @@ async def reads_back_what_was_written(bench: HierarchyObject) -> None:
     """Every writable field, byte by byte; bits that are in no field read 0."""
     harness = Harness(bench)
     bus = harness.bus
+    random = Random(seed())
     await harness.reset()
     expected = {}
     for register in _writable(harness):
@@ -108,6 +110,7 @@ async def unmapped_addresses(bench: HierarchyObject) -> None:
     """They read 0, and writing to them changes nothing anywhere."""
     harness = Harness(bench)
     bus = harness.bus
+    random = Random(seed())
     await harness.reset()
     expected = {register.address: random.getrandbits(32) & _mask(register) for register in _writable(harness)}
     for address, word in expected.items():
@@ -126,6 +129,7 @@ async def pipelined_reads(bench: HierarchyObject) -> None:
     """Reads in quick succession are each answered once, in order."""
     harness = Harness(bench)
     bus = harness.bus
+    random = Random(seed())
     await harness.reset()
     expected = {register.address: random.getrandbits(32) & _mask(register) for register in _writable(harness)}
     for address, word in expected.items():

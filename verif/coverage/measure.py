@@ -13,18 +13,20 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from raycaster.configuration import Configuration, configure
 from raycaster.errors import UserError
+from raycaster.jobs import run_jobs
 from raycaster.options import CommandParser
+from raycaster.outcomes import add_keep_option, keep, scope_of
 from raycaster.scene import find_scene, load_scene, packaged_scenes
 from raycaster.sim.job import Job
 from raycaster.sim.scenes import LOG_COLUMNS
@@ -40,7 +42,7 @@ from raycaster.sim.simulator import (
 from raycaster.verif.coverage.code import KINDS, Judgement, Point, describe, judge, load_explanations, read_counts
 from raycaster.verif.coverage.functional import POINTS, FunctionalCoverage
 from raycaster.verif.random_scenes import random_scene
-from raycaster.verif.soak.soak import soak
+from raycaster.verif.soak.soak import Share, soak
 
 # One design that every bench can run, so that nothing must be merged. At full size, for the counters to run through
 # their range. Not 32 units but 16, whose budget is 159 cycles a group: all 12 rectangles with two reflections take 202,
@@ -100,33 +102,25 @@ def run_all(
     """
     counts: Counter[Point] = Counter()
     failures = []
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console, transient=True) as bars, ThreadPoolExecutor(jobs) as pool:
-        bar = bars.add_task("benches", total=len(runs))
-        futures = {pool.submit(_run, model, run, output / run.name): run for run in runs}
-        for future in as_completed(futures):
-            try:
-                for point, count in future.result().items():
-                    counts[point] += count
-            except SimulationError as error:
-                failures.append(f"{futures[future].name}: {error}")
-            bars.advance(bar)
+    runner = partial(_run, model=model, output=output)
+    for found, failure in run_jobs("benches", runner, runs, partial(ProcessPoolExecutor, jobs), console):
+        counts.update(found)
+        failures += [failure] if failure else []
     return counts, failures
 
 
-def _run(model: Model, run: Run, directory: Path) -> Counter[Point]:
+def _run(run: Run, model: Model, output: Path) -> tuple[Counter[Point], str]:
+    """Its counts, and what it said if it failed."""
+    directory = (output / run.name).resolve()
     directory.mkdir(parents=True)
     scene = str(run.scene.resolve()) if run.scene else ""
-    job = Job(model.configuration, scene=scene, output=str(directory.resolve()), reflections=run.reflections)
-    counts_file = directory.resolve() / "coverage.dat"
-    run_bench(
-        model,
-        f"raycaster.{run.bench}",
-        job,
-        directory,
-        plusargs=[f"+verilator+coverage+file+{counts_file}"],
-    )
-    return read_counts(counts_file, leave_out=MODULE_BENCH.modules)
+    job = Job(model.configuration, scene=scene, output=str(directory), reflections=run.reflections)
+    counts_file = directory / "coverage.dat"
+    try:
+        run_bench(model, f"raycaster.{run.bench}", job, directory, plusargs=[f"+verilator+coverage+file+{counts_file}"])
+    except SimulationError as error:
+        return Counter(), f"{run.name}: {error}"
+    return read_counts(counts_file, leave_out=MODULE_BENCH.modules), ""
 
 
 def show_code(counts: Counter[Point], judgement: Judgement, console: Console) -> None:
@@ -210,6 +204,16 @@ def show_functional(functional: FunctionalCoverage, scenes: int, console: Consol
         console.print(f"not hit: {', '.join(hole)}", style="red")
 
 
+def command_parser() -> CommandParser:
+    """What the command takes."""
+    parser = CommandParser("verify coverage", __doc__, "--seeds 10")
+    parser.add_argument("--seeds", type=int, default=100, metavar="N", help="random scenes (default: %(default)s)")
+    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="simulations at a time (default: %(default)s)")
+    parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes")
+    add_keep_option(parser)
+    return parser
+
+
 def main(argv: list[str] | None = None) -> int:
     """The command.
 
@@ -219,11 +223,7 @@ def main(argv: list[str] | None = None) -> int:
     Returns:
         Its exit code: 1 for a hole without an explanation, an explanation without a hole, or a failed run.
     """
-    parser = CommandParser("verify coverage", __doc__, "--seeds 10")
-    parser.add_argument("--seeds", type=int, default=100, metavar="N", help="random scenes (default: %(default)s)")
-    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="simulations at a time (default: %(default)s)")
-    parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes")
-    arguments = parser.parse_args(argv)
+    arguments = command_parser().parse_args(argv)
     if arguments.seeds < 1 or arguments.jobs < 1:
         raise UserError("--seeds and --jobs must be at least 1")
     explanations = load_explanations()
@@ -235,13 +235,13 @@ def main(argv: list[str] | None = None) -> int:
     shutil.rmtree(output, ignore_errors=True)
     started = time.perf_counter()
 
-    counting = _build(DESIGN, console, arguments.build, FLAGS, "coverage")
+    counting = _build(DESIGN, console, arguments.build, FLAGS)
     runs = [*BENCHES, *(Run("sim.frame_bench", scene) for scene in scenes)]
     counts, failures = run_all(counting, runs, output / "runs", arguments.jobs, console)
     judgement = judge(counts, explanations)
 
-    plain = _build(SOAK_DESIGN, console, arguments.build)
-    results, complaints = soak(plain, range(arguments.seeds), output / "soak", arguments.jobs, console)
+    whole = Share(SOAK_DESIGN, "verilator", range(arguments.seeds), output / "soak", arguments.build, stiff=False)
+    results, complaints = soak(whole, console, partial(ProcessPoolExecutor, arguments.jobs))
     failures += complaints
     functional = FunctionalCoverage()
     with console.status("counting intersections"):
@@ -252,6 +252,12 @@ def main(argv: list[str] | None = None) -> int:
             scene = random_scene(result["seed"], SOAK_DESIGN.rectangles, SOAK_DESIGN.reflections)
             functional.add_scene(scene, SOAK_DESIGN, scene.reflections)
 
+    figures = {"scenes": len(scenes) + len(results)}
+    figures |= {name: _hits(counts, None, types) for name, types in KINDS.items()}
+    figures["bins"] = (len(functional.bins) - len(functional.holes), len(functional.bins))
+    figures["intersections"] = sum(functional.bins.values())
+    left_out = "code: the other engines; functional: culling, as golden's intersections are counted"
+    keep(arguments, figures, scope_of(DESIGN), left_out)
     export_code(counts, judgement, output / "code.json")
     functional.export(output / "functional")
     show_code(counts, judgement, console)
@@ -272,7 +278,6 @@ def _build(
     console: Console,
     build: Path,
     flags: Sequence[str] = VERILATOR_FLAGS,
-    variant: str = "",
 ) -> Model:
-    with console.status(f"building {configuration.name} {variant}"):
-        return build_model(configuration, build=build, flags=flags, variant=variant)
+    with console.status(f"building {configuration.name}"):
+        return build_model(configuration, build=build, flags=flags)

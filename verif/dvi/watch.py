@@ -6,7 +6,6 @@ Everything is held against the standard, and every pixel against golden.
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
 import subprocess
@@ -29,7 +28,7 @@ from raycaster.options import CommandParser, add_configuration_options, add_scen
 from raycaster.scene import find_scene
 from raycaster.screens import Screen
 from raycaster.sim.monitor import Line, VideoError, decode_frame
-from raycaster.sim.simulator import SimulationError, add_simulator_option, find_tool
+from raycaster.sim.simulator import SimulationError, add_simulator_option, build_program
 
 SYMBOL_BITS = 10
 HERE = Path(__file__).parent
@@ -54,7 +53,7 @@ def watch(
         sources: the board's Verilog, the design's included.
         screen: what the design shows it on.
         frames: how many.
-        directory: for the model and the recording.
+        directory: for the recording.
         simulator: one of `raycaster.sim.simulator.SIMULATORS`; only Icarus knows unknown bits.
         buttons: a bit for each of the board's that is held all the time, as its port `btn` has them.
         late_ns: added to the time that reset lasts.
@@ -95,27 +94,15 @@ def golden(design: Design, position: tuple[int, int, int] | None = None) -> np.n
 
 def _record(sources: Sequence[Path], directory: Path, simulator: str, arguments: Sequence[str]) -> np.ndarray:
     """What the board's DVI connector sends: bool (4, bits), blue, green, red and clock."""
-    tool = find_tool(simulator)
+    program = build_program(
+        f"{sources[-1].stem}-dvi", TOP, [*sources, MODELS, BENCH], simulator=simulator,
+        flags=("-O3", "--output-split", "20000"), compiler=("-O1",),
+    )  # fmt: skip
     directory.mkdir(parents=True, exist_ok=True)
-    files = [str(path.resolve()) for path in (*sources, MODELS, BENCH)]
-    if simulator == "icarus":
-        commands = ["iverilog", "-g2005", "-s", TOP, "-o", "board", *files], ["vvp", "-n", "board", *arguments]
-    else:
-        commands = (
-            [
-                "verilator", "--binary", "--timing", "-Wno-fatal", "-O3", "--top-module", TOP, "--output-split",
-                "20000", "-CFLAGS", "-fcoroutines -std=gnu++20 -O2", "-j", "2", "-Mdir", "model", *files,
-            ],
-            [f"model/V{TOP}", *arguments],
-        )  # fmt: skip
-    for stage, command in zip(("built", "run"), commands, strict=True):
-        done = subprocess.run(
-            command, cwd=directory, env=os.environ | dict(tool.environment), capture_output=True, text=True, check=False
-        )
-        if done.returncode:
-            (directory / "dvi.log").write_text(done.stdout + done.stderr)
-            raise SimulationError(f"the board could not be {stage}; the log is {directory / 'dvi.log'}")
-    shutil.rmtree(directory / "model", ignore_errors=True)
+    done = subprocess.run([*program, *arguments], cwd=directory, capture_output=True, text=True, check=False)
+    if done.returncode:
+        (directory / "dvi.log").write_text(done.stdout + done.stderr)
+        raise SimulationError(f"the board's simulation failed; its log is {directory / 'dvi.log'}")
     unsteady = re.search(r"^unsteady (\d+)$", done.stdout, re.MULTILINE)
     if unsteady is None or int(unsteady[1]):
         raise VideoError(f"{unsteady[1] if unsteady else 'all'} symbols change when they are taken")
@@ -221,8 +208,8 @@ def _line(bits: np.ndarray) -> Line:
     return Line("".join(map(str, bits[::-1].reshape(-1))), len(bits), 0)
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """The command; returns its exit code."""
+def command_parser() -> CommandParser:
+    """What the command takes."""
     parser = CommandParser("verify dvi", __doc__, "boxes")
     parser.add_argument("--board", default="ulx3s", help=f"one of {', '.join(BOARDS)} (default: %(default)s)")
     add_scene_argument(parser, "what to show (mirror_room)", default=find_scene("mirror_room"))
@@ -231,7 +218,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--output", type=Path, default=Path("build/dvi"), help="(default: %(default)s)")
     add_fix_option(parser)
     add_configuration_options(parser)
-    arguments = parser.parse_args(argv)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command; returns its exit code."""
+    arguments = command_parser().parse_args(argv)
     board = find_board(arguments.board)
     console = Console()
     design = design_of(arguments.scene, given_options(arguments), arguments.fix, console)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the exhaustive benches share: the reference division, the clock, and how they talk to exhaustive.py, which
+// What the exhaustive benches share: the reference division, the clock, and how they talk to run.py, which
 // compiles them with POSITION_BITS, SLOPE_BITS, FRACTION_BITS, STEPS (cycles of a division) and NEAREST (rounding).
 #pragma once
 #include <cstdint>
@@ -27,14 +27,6 @@ inline void clock(Vdut& dut) {
     dut.clk = 1;
     dut.eval();
     dut.clk = 0;
-}
-
-// One line now and then; the reader makes a progress bar of them.
-inline void progress(uint64_t done) {
-    if ((done & 0xfffff) == 0) {
-        std::printf("progress %llu\n", static_cast<unsigned long long>(done));
-        std::fflush(stdout);
-    }
 }
 
 [[noreturn]] inline void finish(uint64_t vectors, uint64_t valid) {

@@ -20,23 +20,23 @@ bits are the least: a division must take two cycles, and three bits a cycle are 
 
 from __future__ import annotations
 
-import os
 import re
 import shlex
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from functools import partial
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 from unittest import mock
 
 from rich.box import SIMPLE
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 import raycaster.configuration
@@ -47,12 +47,14 @@ from raycaster.configuration import COORDINATE_BITS, Configuration, configure
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.errors import UserError
+from raycaster.jobs import add_job_options, executors, run_jobs
 from raycaster.options import CommandParser
+from raycaster.outcomes import add_keep_option, keep
 from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
 from raycaster.rtl.seed.divider import divider
 from raycaster.rtl.seed.intersection_helper import intersection_helper
-from raycaster.sim.simulator import find_tool
+from raycaster.sim.simulator import build_program
 from raycaster.verif.seeds import seed
 
 SOURCES = Path(__file__).parent
@@ -60,16 +62,10 @@ INTERSECTIONS = 400_000_000
 """Random vectors of the intersection bench, over all of its configurations."""
 
 REDUCED_BITS = 5
-COMPILER = ("g++", "-std=gnu++20", "-pthread")
-# What Verilator's own makefile would define.
-DEFINITIONS = tuple(
-    f"-DVM_{name}=0" for name in ("COVERAGE", "SC", "TIMING", "TRACE", "TRACE_FST", "TRACE_VCD", "TRACE_SAIF")
-)
-RUNTIME = ("verilated.cpp", "verilated_threads.cpp")
 
 
 class BenchError(Exception):
-    """A bench that could not be built or did not end by itself; the text says what its tool said."""
+    """A bench that did not end by itself."""
 
 
 class Mismatch(Exception):
@@ -196,48 +192,28 @@ def _arguments(bench: Bench) -> tuple[Callable, dict[str, Any]]:
     }
 
 
-class Builder:
-    """Compiles benches, and what all of them link with once.
+def build_bench(bench: Bench, spoil: Callable[[str], str] = str) -> list[str]:
+    """Convert and compile.
 
     Args:
-        directory: scratch space.
+        bench: what.
+        spoil: applied to each Verilog text, to show that the bench would notice.
+
+    Returns:
+        The command that runs it.
+
+    Raises:
+        SimulationError: it could not be built.
     """
-
-    def __init__(self, directory: Path):
-        self._directory = directory
-        self._environment = {**os.environ, **find_tool("verilator").environment}
-        self._include = Path(self._call(directory, "verilator", "--getenv", "VERILATOR_ROOT").strip()) / "include"
-        self._runtime: list[Path] = []
-
-    def build(self, bench: Bench, spoil: Callable[[str], str] = str) -> Path:
-        """Convert and compile.
-
-        Args:
-            bench: what.
-            spoil: applied to each Verilog text, to show that the bench would notice.
-
-        Returns:
-            The executable.
-        """
-        directory = Path(tempfile.mkdtemp(dir=self._directory, prefix=bench.label))
-        model = directory / "model"
+    with tempfile.TemporaryDirectory(prefix="exhaustive-") as scratch:
         with _widths(bench):
             function, arguments = _arguments(bench)
             steps = bench.config.divider_steps
             with elaboration():
                 top = function(**arguments)
-            modules = convert_hierarchy(top, directory, "// {module}")
+            modules = convert_hierarchy(top, Path(scratch), "// {module}")
         for module in modules:
             module.path.write_text(spoil(module.path.read_text()))
-        files = [module.path.name for module in modules]
-        self._call(
-            directory, "verilator", "--cc", "-O3", "-Wno-fatal", "-Wno-WIDTH", "--prefix", "Vdut", "--Mdir", "model",
-            "--top-module", modules[-1].name, *files,
-        )  # fmt: skip
-        program = "divider" if bench.kind == "divider" else "intersection"
-        # As one text it compiles several times as fast as file by file, and the clock's two edges inline.
-        parts = [*sorted(path.name for path in model.glob("*.cpp")), SOURCES / f"{program}.cpp"]
-        (model / "all.cc").write_text("".join(f'#include "{part}"\n' for part in parts))
         widths = {
             "POSITION_BITS": bench.position_bits,
             "SLOPE_BITS": bench.slope_bits,
@@ -245,58 +221,37 @@ class Builder:
             "STEPS": steps,
             "NEAREST": int(bench.config.rounding == "nearest"),
         }
-        self._compile(
-            model, *(f"-D{name}={value}" for name, value in widths.items()), "-O3", "all.cc", *self._link(), "-o", "run"
-        )
-        return model / "run"
-
-    def _link(self) -> list[Path]:
-        if not self._runtime:
-            for source in RUNTIME:
-                target = self._directory / f"{source}.o"
-                self._compile(self._directory, "-O1", "-c", self._include / source, "-o", target)
-                self._runtime.append(target)
-        return self._runtime
-
-    def _compile(self, directory: Path, *arguments: str | Path) -> None:
-        includes = (f"-I{self._include}", f"-I{self._include / 'vltstd'}", f"-I{SOURCES}", "-I.")
-        self._call(directory, *COMPILER, *DEFINITIONS, *includes, *map(str, arguments))
-
-    def _call(self, directory: Path, *command: str) -> str:
-        done = subprocess.run(
-            command, cwd=directory, env=self._environment, capture_output=True, text=True, check=False
-        )
-        if done.returncode:
-            raise BenchError(f"{shlex.join(command)}: {done.stdout}{done.stderr}")
-        return done.stdout
+        program = "divider" if bench.kind == "divider" else "intersection"
+        return build_program(
+            bench.label, modules[-1].name, [module.path for module in modules],
+            [SOURCES / f"{program}.cpp", SOURCES / "common.h"], flags=("-O3", "-Wno-WIDTH", "--prefix", "Vdut"),
+            compiler=("-O3", f"-I{SOURCES}", *(f"-D{name}={value}" for name, value in widths.items())),
+        )  # fmt: skip
 
 
-def run(executable: Path, bench: Bench, number: int, report: Callable[[int], None]) -> Outcome:
+def run(command: Sequence[str], bench: Bench, number: int) -> Outcome:
     """Run a compiled bench to its end or first mismatch.
 
     Args:
-        executable: what `Builder.build` made.
+        command: what `build_bench` made.
         bench: of which.
         number: the seed.
-        report: told now and then how many vectors are done.
 
     Raises:
         Mismatch: the hardware was wrong.
         BenchError: the bench itself failed.
     """
     begin = time.monotonic()
-    with subprocess.Popen([executable, str(bench.vectors), str(number)], stdout=subprocess.PIPE, text=True) as process:
-        try:
-            for line in process.stdout:
-                if match := re.match(r"progress (\d+)", line):
-                    report(int(match[1]))
-                elif match := re.match(r"done (\d+) (\d+)", line):
-                    return Outcome(int(match[1]), int(match[2]), time.monotonic() - begin)
-                elif line.startswith("mismatch"):
-                    raise Mismatch(f"{bench.label}: {line.strip()}")
-        finally:
-            process.terminate()
-    raise BenchError(f"{bench.label}: ended without a result, code {process.returncode}")
+    done = subprocess.run([*command, str(bench.vectors), str(number)], stdout=subprocess.PIPE, text=True, check=False)
+    if match := re.search(r"^mismatch.*", done.stdout, re.M):
+        raise Mismatch(f"{bench.label}: {match[0]}")
+    if match := re.search(r"^done (\d+) (\d+)", done.stdout, re.M):
+        return Outcome(int(match[1]), int(match[2]), time.monotonic() - begin)
+    raise BenchError(f"{bench.label}: ended without a result, code {done.returncode}")
+
+
+def _check(bench: Bench, number: int) -> Outcome:
+    return run(build_bench(bench), bench, number)
 
 
 def show(outcomes: Mapping[Bench, Outcome], number: int, console: Console) -> None:
@@ -323,18 +278,8 @@ def show(outcomes: Mapping[Bench, Outcome], number: int, console: Console) -> No
     console.print(table)
 
 
-def main(argv: list[str] | None = None) -> int:
-    """The command.
-
-    Args:
-        argv: its arguments, those of the process by default.
-
-    Returns:
-        Its exit code: 1 for a mismatch.
-
-    Raises:
-        UserError: no such bench, or a tool is missing.
-    """
+def command_parser() -> CommandParser:
+    """What the command takes."""
     parser = CommandParser("verify exhaustive", __doc__, "--only divider")
     parser.add_argument(
         "--only", metavar="PREFIX", default="", help="only benches whose name begins so: divider, intersection-f4, ..."
@@ -349,8 +294,25 @@ def main(argv: list[str] | None = None) -> int:
         "--reduced-bits", type=int, choices=(4, 5), default=REDUCED_BITS,
         help="width of the reduced unit; 5 means up to 134 million vectors a configuration (default: %(default)s)",
     )  # fmt: skip
+    add_job_options(parser)
     parser.add_argument("--seed", type=int, default=seed(), help="(default: %(default)s)")
-    arguments = parser.parse_args(argv)
+    add_keep_option(parser)
+    return parser
+
+
+def main(argv: list[str] | None = None) -> int:
+    """The command.
+
+    Args:
+        argv: its arguments, those of the process by default.
+
+    Returns:
+        Its exit code: 1 for a mismatch.
+
+    Raises:
+        UserError: no such bench, or a tool is missing.
+    """
+    arguments = command_parser().parse_args(argv)
     if arguments.count < 1 or arguments.divisions < 0 or arguments.seed < 0:
         raise UserError("--count must be at least 1, --divisions and --seed at least 0")
     every = benches(arguments.count, arguments.divisions, arguments.reduced_bits)
@@ -363,25 +325,20 @@ def main(argv: list[str] | None = None) -> int:
         f"--divisions {arguments.divisions} --reduced-bits {arguments.reduced_bits} --seed {arguments.seed}"
     )
     console = Console()
-    outcomes: dict[Bench, Outcome] = {}
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with (
-        tempfile.TemporaryDirectory(prefix="exhaustive-") as scratch,
-        Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bars,
-    ):
-        builder = Builder(Path(scratch))
-        whole = bars.add_task("benches", total=len(chosen))
-        for bench in chosen:
-            bar = bars.add_task(bench.label, total=bench.total)
-            try:
-                outcomes[bench] = run(
-                    builder.build(bench), bench, arguments.seed, lambda done, bar=bar: bars.update(bar, completed=done)
-                )
-            except Mismatch as mismatch:
-                print(f"{mismatch}\nrepeat with: {repeat.format(label=bench.label)}", file=sys.stderr)
-                return 1
-            bars.remove_task(bar)
-            bars.advance(whole)
+    check = partial(_check, number=arguments.seed)
+    with executors(arguments.scheduler, arguments.jobs) as make_executor:
+        try:
+            found = run_jobs("benches", check, chosen, make_executor, console, label=attrgetter("label"))
+        except Mismatch as mismatch:
+            label = str(mismatch).partition(":")[0]
+            print(f"{mismatch}\nrepeat with: {repeat.format(label=label)}", file=sys.stderr)
+            return 1
+    outcomes = dict(zip(chosen, found, strict=True))
     show(outcomes, arguments.seed, console)
+    kinds = {bench.kind: {"vectors": 0, "valid": 0, "wrong": 0} for bench in outcomes}
+    for bench, outcome in outcomes.items():
+        kinds[bench.kind]["vectors"] += outcome.vectors
+        kinds[bench.kind]["valid"] += outcome.valid
+    keep(arguments, kinds, {"engine": "seed", "seed": arguments.seed})
     print(f"repeat with: {repeat.format(label=shlex.quote(arguments.only))}")
     return 0

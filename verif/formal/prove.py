@@ -3,39 +3,46 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from raycaster.errors import UserError
+from raycaster.jobs import add_job_options, executors, positive, run_jobs
 from raycaster.options import CommandParser
+from raycaster.outcomes import add_keep_option, keep
 from raycaster.tools import TIMEOUT
 from raycaster.verif.formal.properties import PROPERTIES
 from raycaster.verif.formal.prover import Property, Result, prove
 
+NAMES = list(dict.fromkeys(proof.name for proof in PROPERTIES))
+
+
+def command_parser() -> CommandParser:
+    """What the command takes."""
+    parser = CommandParser("verify prove", __doc__, "--small")
+    parser.add_argument("--property", action="append", metavar="NAME", help=f"one of {', '.join(NAMES)}; repeatable")
+    parser.add_argument("--small", action="store_true", help="the quick subset")
+    parser.add_argument("--list", action="store_true", help="list the properties and prove nothing")
+    parser.add_argument("--depth", type=positive, help="steps of base and induction (default: each property's own)")
+    parser.add_argument("--timeout", type=positive, default=TIMEOUT, help="seconds a run (default: %(default)s)")
+    add_job_options(parser)
+    parser.add_argument("--output", type=Path, default=Path("build/formal"), help="(default: %(default)s)")
+    add_keep_option(parser)
+    return parser
+
 
 def main(argv: Sequence[str] | None = None) -> int:
     """The command."""
-    names = list(dict.fromkeys(proof.name for proof in PROPERTIES))
-    parser = CommandParser("verify prove", __doc__, "--small")
-    parser.add_argument("--property", action="append", metavar="NAME", help=f"one of {', '.join(names)}; repeatable")
-    parser.add_argument("--small", action="store_true", help="the quick subset")
-    parser.add_argument("--list", action="store_true", help="list the properties and prove nothing")
-    parser.add_argument("--depth", type=_positive, help="steps of base and induction (default: each property's own)")
-    parser.add_argument("--timeout", type=_positive, default=TIMEOUT, help="seconds a run (default: %(default)s)")
-    parser.add_argument("--jobs", type=_positive, default=2, help="proofs at a time (default: %(default)s)")
-    parser.add_argument("--output", type=Path, default=Path("build/formal"), help="(default: %(default)s)")
-    arguments = parser.parse_args(argv)
+    arguments = command_parser().parse_args(argv)
     for name in arguments.property or []:
-        if name not in names:
-            raise UserError(f"--property: {name} is none of {', '.join(names)}")
+        if name not in NAMES:
+            raise UserError(f"--property: {name} is none of {', '.join(NAMES)}")
     proofs = [
         proof
         for proof in PROPERTIES
@@ -46,8 +53,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     if arguments.list:
         console.print(_list(proofs))
         return 0
-    results = _prove_all(proofs, arguments, console)
+    attempt = partial(_prove, output=arguments.output, depth=arguments.depth, timeout=arguments.timeout)
+    with executors(arguments.scheduler, arguments.jobs) as make_executor:
+        results = run_jobs("proofs", attempt, proofs, make_executor, console)
     console.print(_table(results))
+    figures = {"proved": sum(one.proved for one in results), "proofs": len(results)}
+    keep(arguments, figures, {"small": arguments.small}, left_out="all that no property names")
     failures = [result for result in results if not result.proved]
     for result in failures:
         console.print(
@@ -60,29 +71,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     return 1 if failures else 0
 
 
-def _positive(text: str) -> int:
-    value = int(text)
-    if value < 1:
-        raise ValueError
-    return value
-
-
-def _prove_all(proofs: list[Property], arguments: argparse.Namespace, console: Console) -> list[Result]:
-    columns = TextColumn("proving"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
-    with Progress(*columns, console=console, transient=True) as progress:
-        task = progress.add_task("", total=len(proofs))
-
-        def run(proof: Property) -> Result:
-            directory = arguments.output / f"{proof.name}-{proof.label}".replace(" ", "-")
-            try:
-                result = prove(proof, directory, depth=arguments.depth, timeout=arguments.timeout)
-            except UserError as error:
-                result = Result(proof, "not attempted", proof.induction, 0, detail=str(error))
-            progress.advance(task)
-            return result
-
-        with ThreadPoolExecutor(arguments.jobs) as pool:
-            return list(pool.map(run, proofs))
+def _prove(proof: Property, *, output: Path, depth: int | None, timeout: int) -> Result:
+    try:
+        directory = output / f"{proof.name}-{proof.label}".replace(" ", "-")
+        return prove(proof, directory, depth=depth, timeout=timeout)
+    except UserError as error:
+        return Result(proof, "not attempted", proof.induction, 0, detail=str(error))
 
 
 def _list(proofs: list[Property]) -> Table:

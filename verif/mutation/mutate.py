@@ -16,7 +16,6 @@ survives must be explained in mutation.toml, or it is an error; so is an explana
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import re
@@ -25,28 +24,30 @@ import subprocess
 import sys
 import time
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
 from rich.box import SIMPLE
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from raycaster import rtl
 from raycaster.errors import UserError
+from raycaster.jobs import add_job_options, executors, positive, run_jobs
 from raycaster.options import CommandParser
+from raycaster.outcomes import add_keep_option, keep
 from raycaster.sim import ensure_icarus
+from raycaster.sim.simulator import build_program
 from raycaster.tools import run_yosys
-from raycaster.verif.exhaustive.run import Builder
 from raycaster.verif.formal.prover import missing_tools
 from raycaster.verif.leaf import RECORD_VARIABLE, recording_name
 
 SOURCES = Path(__file__).parent
+RTL = Path(rtl.__file__).parent
 MUTANTS = 200
 SEED = 20150
 LEAST_CAUGHT = 0.95
@@ -187,21 +188,20 @@ class Recording:
         for name in self._files:
             shutil.copy(directory / name, work)
 
-    def run(self, count: int, seed: int, expectation: Expectation, builder: ReplayBuilder) -> Result:
+    def run(self, count: int, seed: int, expectation: Expectation) -> Result:
         """Plant faults, replay them, and let the solver look at the survivors.
 
         Args:
             count: how many faults at most.
             seed: chooses them.
             expectation: assumptions, invariants and explanations.
-            builder: compiles the netlist.
 
         Raises:
             MutationError: the replay fails without a fault, or an invariant does not hold.
         """
         begin = time.monotonic()
         mutants = self.plant(count, seed, expectation.look_into)
-        self._replay(mutants, builder)
+        self._replay(mutants)
         survivors = [mutant for mutant in mutants if mutant.outcome == "surviving"]
         if survivors:
             self._compare(survivors, expectation)
@@ -325,11 +325,17 @@ class Recording:
         # The label of a case has a place, and no extent.
         return line[start - 1 : end - 1 if first == last and start < end else None].strip()
 
-    def _replay(self, mutants: list[Mutant], builder: ReplayBuilder) -> None:
+    def _replay(self, mutants: list[Mutant]) -> None:
         width = max(mutant.selector for mutant in mutants).bit_length()
-        sources = [f"{self.module}_mutants.v", *self._files[:-1]]
-        executable = builder.compile(self._work, self._wrapper(width), sources, *self._words())
-        command = [executable, str(self._directory / "vectors.txt"), str(self._settled), str(len(mutants))]
+        (self._work / "replay.v").write_text(self._wrapper(width))
+        names = ["replay.v", f"{self.module}_mutants.v", *self._files[:-1]]
+        words = (f"-D{way}_WORDS={count}" for way, count in zip(("IN", "OUT"), self._words(), strict=True))
+        replay = build_program(
+            f"{self.module}-mutants", "replay", [self._work / name for name in names], [SOURCES / "replay.cpp"],
+            flags=("-O3", "--no-assert", "--x-assign", "unique", "--x-initial", "unique", "-Wno-lint", "-Wno-style"),
+            compiler=("-O1", *words),
+        )  # fmt: skip
+        command = [*replay, str(self._directory / "vectors.txt"), str(self._settled), str(len(mutants))]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         first, fault_free, *lines = done.stdout.splitlines() or ["", ""]
         if done.returncode or first != f"cycles {self._cycles}" or len(lines) != len(mutants):
@@ -394,46 +400,6 @@ def _read_masks(netlist: Mapping[str, Any]) -> dict[str, int]:
     }
 
 
-class ReplayBuilder(Builder):
-    """Compiles netlists with the program that replays a recording, and what all of them link with once.
-
-    Args:
-        directory: scratch space.
-    """
-
-    def __init__(self, directory: Path):
-        super().__init__(directory)
-        self._objects = [path.resolve() for path in self._link()]
-
-    def compile(self, directory: Path, wrapper: str, sources: list[str], words_in: int, words_out: int) -> Path:
-        """Compile.
-
-        Args:
-            directory: where the sources are, and where the model goes.
-            wrapper: module `replay`, which has all inputs as one vector and all outputs as another.
-            sources: names of the files that it needs.
-            words_in: 32-bit words of the inputs.
-            words_out: of the outputs.
-
-        Returns:
-            The executable.
-        """
-        (directory / "replay.v").write_text(wrapper)
-        self._call(
-            directory, "verilator", "--cc", "-O3", "--no-assert", "--x-assign", "unique", "--x-initial", "unique",
-            "-Wno-fatal", "-Wno-lint", "-Wno-style", "--prefix", "Vreplay", "--Mdir", "model", "--top-module", "replay",
-            "replay.v", *sources,
-        )  # fmt: skip
-        model = directory / "model"
-        parts = [*sorted(path.name for path in model.glob("*.cpp")), SOURCES / "replay.cpp"]
-        (model / "all.cc").write_text("".join(f'#include "{part}"\n' for part in parts))
-        self._compile(
-            model, f"-DIN_WORDS={words_in}", f"-DOUT_WORDS={words_out}", "-O1", "all.cc", *self._objects,
-            "-o", "replay",
-        )  # fmt: skip
-        return (model / "replay").resolve()
-
-
 def record(tests: Iterable[str], directory: Path, jobs: int) -> None:
     """Run leaf tests with recording switched on.
 
@@ -487,7 +453,7 @@ def _table(results: list[Result]) -> Table:
         table.add_column(heading, justify="right", no_wrap=True)
 
     def add(label: str, chosen: list[Result]) -> None:
-        counts = count_outcomes(mutant for result in chosen for mutant in result.mutants)
+        counts = _counts(chosen)
         total = sum(counts.values())
         table.add_row(
             label, str(total), *map(str, counts.values()), f"{counts['caught'] / max(total, 1):.1%}",
@@ -499,6 +465,10 @@ def _table(results: list[Result]) -> Table:
     table.add_section()
     add("[bold]all", results)
     return table
+
+
+def _counts(results: list[Result]) -> dict[str, int]:
+    return count_outcomes(mutant for result in results for mutant in result.mutants)
 
 
 def complaints(results: list[Result], known: Mapping[str, Expectation]) -> list[str]:
@@ -521,36 +491,30 @@ def complaints(results: list[Result], known: Mapping[str, Expectation]) -> list[
     return found + [f"needed by no mutant: {text}" for text in stale(results, known)]
 
 
-def _positive(text: str) -> int:
-    value = int(text)
-    if value < 1:
-        raise ValueError
-    return value
+def _call(run: Callable[[], Result]) -> Result:
+    return run()
 
 
-def _run_all(
-    tests: Mapping[str, str], arguments: argparse.Namespace, known: Mapping[str, Expectation], console: Console
-) -> list[Result]:
-    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
-        recordings = arguments.build / "recordings"
-        task = progress.add_task("recording the leaf tests", total=None)
-        record(tests, recordings, arguments.jobs)
-        progress.update(task, description="replaying mutants", total=len(tests), completed=0)
+def _run(test: str, *, module: str, build: Path, mutants: int, seed: int, expectation: Expectation) -> Result:
+    name = recording_name(test.partition("::")[2])
+    recording = Recording(build / "recordings" / name, build / "work" / name)
+    if recording.module != module:
+        raise MutationError(f"{test} is no test of {module}, but of {recording.module}")
+    return recording.run(mutants, seed, expectation)
 
-        builder = ReplayBuilder(arguments.build)
 
-        def run(test: str) -> Result:
-            name = recording_name(test.partition("::")[2])
-            recording = Recording(recordings / name, arguments.build / "work" / name)
-            if recording.module != tests[test]:
-                raise MutationError(f"{test} is no test of {tests[test]}, but of {recording.module}")
-            result = recording.run(arguments.mutants, arguments.seed, known[recording.module], builder)
-            progress.advance(task)
-            return result
-
-        with ThreadPoolExecutor(arguments.jobs) as pool:
-            return list(pool.map(run, tests))
+def command_parser() -> CommandParser:
+    """What the command takes."""
+    parser = CommandParser("verify mutate", __doc__, "--module divider")
+    parser.add_argument("--module", action="append", metavar="NAME", help="only this one; repeatable")
+    parser.add_argument(
+        "--mutants", type=positive, default=MUTANTS, help="of each recording, at most (default: %(default)s)"
+    )
+    parser.add_argument("--seed", type=positive, default=SEED, help="chooses the faults (default: %(default)s)")
+    add_job_options(parser)
+    parser.add_argument("--build", type=Path, default=Path("build/mutation"), help="(default: %(default)s)")
+    add_keep_option(parser)
+    return parser
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -565,15 +529,7 @@ def main(argv: list[str] | None = None) -> int:
     Raises:
         UserError: no such module, or a tool is missing.
     """
-    parser = CommandParser("verify mutate", __doc__, "--module divider")
-    parser.add_argument("--module", action="append", metavar="NAME", help="only this one; repeatable")
-    parser.add_argument(
-        "--mutants", type=_positive, default=MUTANTS, help="of each recording, at most (default: %(default)s)"
-    )
-    parser.add_argument("--seed", type=_positive, default=SEED, help="chooses the faults (default: %(default)s)")
-    parser.add_argument("--jobs", type=_positive, default=2, help="recordings at a time (default: %(default)s)")
-    parser.add_argument("--build", type=Path, default=Path("build/mutation"), help="(default: %(default)s)")
-    arguments = parser.parse_args(argv)
+    arguments = command_parser().parse_args(argv)
     arguments.build = arguments.build.resolve()  # tools run in the folders below it
     ensure_icarus.main()
     if missing := missing_tools():
@@ -587,9 +543,26 @@ def main(argv: list[str] | None = None) -> int:
 
     # A table of this many columns is read from a log as well as on a screen.
     console = Console(width=None if sys.stdout.isatty() else 150)
-    results = _run_all(tests, arguments, known, console)
+    with console.status("recording the leaf tests"):
+        record(tests, arguments.build / "recordings", arguments.jobs)
+    runs = [
+        partial(
+            _run, test, module=module, build=arguments.build, mutants=arguments.mutants, seed=arguments.seed,
+            expectation=known[module],
+        )
+        for test, module in tests.items()
+    ]  # fmt: skip
+    with executors(arguments.scheduler, arguments.jobs) as make_executor:
+        results = run_jobs("recordings", _call, runs, make_executor, console)
     (arguments.build / "results.json").write_text(json.dumps([asdict(result) for result in results], indent=2) + "\n")
     console.print(_table(results))
+    unused = sorted({path.stem for path in RTL.rglob("*.py") if "@block" in path.read_text()} - set(known))
+    by_module = {module: [one for one in results if one.module == module] for module in known}
+    shares = {module: share_caught(_counts(of_module)) for module, of_module in by_module.items()}
+    worst = min(shares, key=shares.get)
+    figures = {"modules": len(known), "recordings": len(results), **_counts(results)}
+    figures |= {"caught_of_the_rest": share_caught(_counts(results)), "worst": worst, "worst_caught": shares[worst]}
+    keep(arguments, figures, {"mutants_a_recording": arguments.mutants, "seed": arguments.seed}, ", ".join(unused))
     # Another choice of faults need not have the survivors that are explained.
     usual = (arguments.mutants, arguments.seed) == (MUTANTS, SEED)
     found = complaints(results, known if usual else {})

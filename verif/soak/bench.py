@@ -26,7 +26,7 @@ async def soak(bench: HierarchyObject) -> None:
     await harness.reset()
     failed, cases = [], catalogue()
     with (output / "results.jsonl").open("w") as results:
-        for number, seed in enumerate(job.seeds):
+        for seed in job.seeds:
             if job.stiff:
                 scene = cases[seed].scene
             else:
@@ -38,7 +38,6 @@ async def soak(bench: HierarchyObject) -> None:
                 (output / f"{seed}-shrunk.toml").write_text(dump_scene(await shrink(harness, scene)))
             results.write(json.dumps(result) + "\n")
             results.flush()
-            harness.write_progress(number + 1)
     status = await harness.bus.read("status")
     assert not status["underrun"], "a row was not complete in time"
     assert not failed, f"wrong pixels in the scenes of seeds {failed}"

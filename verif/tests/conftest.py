@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 from collections.abc import Callable
@@ -13,7 +14,7 @@ import pytest
 from raycaster.configuration import Configuration
 from raycaster.options import run_command
 from raycaster.sim.job import Job
-from raycaster.sim.simulator import build_model, run_bench
+from raycaster.sim.simulator import MODELS_VARIABLE, build_model, run_bench
 
 ROOT = Path(__file__).parents[2]
 BUILD = ROOT / "build"
@@ -22,6 +23,28 @@ BUILD = ROOT / "build"
 SMALL_SCENE = Path(__file__).with_name("small.toml")
 
 Bench = Callable[..., Path]
+
+# One store for all tests, for the commands that they run, and for both workers: what one has built all have.
+os.environ.setdefault(MODELS_VARIABLE, str(BUILD / "model"))
+
+SLOW = Path(__file__).with_name("slow.txt")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Mark what `slow.txt` names, and refuse a line of it that is about no test of the files that were collected."""
+    lines = [line for line in SLOW.read_text().splitlines() if not line.startswith("#")]
+    names = {item: item.nodeid.rpartition("verif/tests/")[2] for item in items}
+    for item, name in names.items():
+        said = [line for line in lines if name.startswith(line.lstrip("!"))]
+        if said and not said[-1].startswith("!"):
+            item.add_marker("slow")
+    if not any("::" in argument for argument in config.args):
+        files = {name.partition("::")[0] for name in names.values()}
+        for line in lines:
+            of_it = line.lstrip("!")
+            if of_it.partition("::")[0] in files and not any(name.startswith(of_it) for name in names.values()):
+                raise pytest.UsageError(f"{SLOW.name}: no test begins with {of_it}")
 
 
 @pytest.fixture
@@ -47,9 +70,7 @@ def bench(output: Path) -> Bench:
         seeds: tuple[int, ...] = (),
         plusargs: tuple[str, ...] = (),
     ) -> Path:
-        # A broken model is a test's own: another worker would replace it.
-        variant = f"broken-{output.name}" if verilog else ""
-        model = build_model(configuration, simulator, build=BUILD, verilog=verilog, variant=variant)
+        model = build_model(configuration, simulator, build=BUILD, verilog=verilog)
         job = Job(
             configuration, scene=str(scene), output=str(output), reflections=configuration.reflections, seeds=seeds
         )

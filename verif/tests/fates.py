@@ -14,12 +14,12 @@ from raycaster.rtl.common.interfaces import GroupFate, Picture, Rects, Steps
 from raycaster.rtl.common.records import Rect, Surface
 from raycaster.rtl.common.widths import bit, unsigned
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
-from raycaster.verif.leaf import Leaf, TraceCycle
+from raycaster.verif.leaf import Leaf, TraceCycle, slot_length
 
 
 def control_leaf(function: Callable, config: Configuration, directory: Path) -> Leaf:
     """Of ray_control, exact_control, or the ray_sequencer in either."""
-    write_at = config.divider_steps + 3 if config.facts.divides else 2
+    write_at = slot_length(config) + 3 if config.facts.divides else 2
     arguments = {"offered": Rect if config.facts.divides else Surface}
     if function is ray_sequencer:
         arguments = {"in_flight": lambda: unsigned(write_at + 1), "early_out": bit}
@@ -35,7 +35,7 @@ def control_leaf(function: Callable, config: Configuration, directory: Path) -> 
             "fate": GroupFate(config),
             **{name: make() for name, make in arguments.items()},
             "done": bit(),
-            **({"slot_cycles": config.slot_cycles} if function is ray_sequencer else {}),
+            **({"slot_cycles": slot_length(config)} if function is ray_sequencer else {}),
             "config": config,
         },
         directory,
@@ -72,11 +72,17 @@ def mask_of(indices: Sequence[int]) -> int:
     return sum(1 << index for index in indices)
 
 
+def margin_of(config: Configuration) -> int:
+    """How far outside a rectangle's bounds a primary ray may pass that hits it: a rounded coordinate is off by less
+    than one."""
+    return 1 if config.engine == "seed" else 0
+
+
 def may_hit_mask(config: Configuration, table: Rectangles, camera, row: int, offset: int) -> int:
     """The culler's rule, for the rays at a group's ends: a bit for each rectangle that is enabled and has a plane."""
     first = [int(d) for d in primary_slopes(config.screen_geometry)[row, offset * config.units]]
     ends = [first, [first[0], first[1] + config.units, first[2]]]
-    margin = config.facts.margin
+    margin = margin_of(config)
     mask = 0
     for index in map(int, np.flatnonzero(table.visible)):
         axis = int(table.axes[index])

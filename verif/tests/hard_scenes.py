@@ -11,14 +11,19 @@ from raycaster.configuration import CHANNEL_BITS, WORLD_SIZE, Configuration
 from raycaster.golden import exact, seed_engine
 from raycaster.golden.random_world import random_camera, random_rectangles
 from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.verif.seeds import repeat
 
 
-def rectangles_in_view(random: np.random.Generator, camera: np.ndarray, slopes: np.ndarray, count: int) -> Rectangles:
-    """Small rectangles where some ray passes, so that rays see this one or that one."""
+def rectangles_in_view(
+    random: np.random.Generator, camera: np.ndarray, slopes: np.ndarray, count: int, axis: int | None = None
+) -> Rectangles:
+    """Small rectangles where some ray passes, so that rays see this one or that one; the first on an axis."""
     targets = camera + slopes[random.integers(len(slopes), size=count)] * random.uniform(0, 3.5, (count, 1))
     size = random.choice([0, 3, 40, 400], (count, 2, 3)) * np.array([-1, 1]).reshape(1, 2, 1)
     corners = np.clip(targets[:, None, :] + size, 0, WORLD_SIZE - 1).astype(np.int64)
     flat = random.integers(3, size=count)
+    if axis is not None:
+        flat[0] = axis
     corners[np.arange(count), 1, flat] = corners[np.arange(count), 0, flat]
     return Rectangles(corners, random.integers(256, size=(count, 3)).astype(np.uint8), random.random(count) < 0.9)
 
@@ -30,6 +35,25 @@ def scene_of(random: np.random.Generator, slopes: np.ndarray, count: int) -> tup
         return random_camera(random, table), table
     camera = random.integers(WORLD_SIZE, size=3) // [2, 1, 1]
     return camera, rectangles_in_view(random, camera, slopes, count)
+
+
+def mirrored_on(random: np.random.Generator, table: Rectangles, camera, slope, mirrors: int) -> Rectangles:
+    """The table with some rectangles across the ray's way, each where the one before it would send the ray."""
+    corners, enabled = table.corners.copy(), table.enabled.copy()
+    place, way = np.array(camera, dtype=float), np.array(slope, dtype=float)
+    for index in random.permutation(len(table))[:mirrors]:
+        moving = np.flatnonzero(way)
+        # As far as it is to the world's end.
+        most = min((np.where(way > 0, WORLD_SIZE - 1, 0) - place)[moving] / way[moving])
+        axis = int(random.choice(moving))
+        plane = round(place[axis] + way[axis] * most * random.uniform(0.1, 1))
+        place = place + way * (plane - place[axis]) / way[axis]
+        around = random.choice([3, 40, 400], (2, 3)) * np.array([[-1], [1]])
+        corners[index] = np.clip(np.rint(place) + around, 0, WORLD_SIZE - 1)
+        corners[index, :, axis] = plane
+        enabled[index] = True
+        way[axis] = -way[axis]
+    return Rectangles(corners, table.colours, enabled)
 
 
 def edged(random: np.random.Generator, config: Configuration, golden, table: Rectangles) -> Rectangles:
@@ -85,15 +109,17 @@ def traced_scene(random: np.random.Generator, config: Configuration, slopes: np.
         camera, table = scene_of(random, slopes, config.rectangles)
         background = random.integers(256, size=3)
         reflections = config.reflections if rich else int(random.integers(config.reflections + 1))
+        if rich and random.random() < 0.7:
+            table = mirrored_on(random, table, camera, slopes[0], reflections + 1)
         trace = tracer(config, camera=camera, background=background, slopes=slopes, reflections=reflections)
         golden = trace(table)
-        if rich and all(winner[0] >= 0 for winner in golden.winners):
+        if rich and not all(winner[0] >= 0 for winner in golden.winners):
+            continue
+        if rich:
             table = edged(random, config, golden, table)
             golden = trace(table)
-            break
-        if not rich:
-            break
-    return camera, table, background, reflections, golden
+        return camera, table, background, reflections, golden
+    raise AssertionError(f"no ray of these meets a mirror {config.reflections} times; {repeat()}")
 
 
 def pixel_word(config: Configuration, colour) -> int:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib.metadata
 import importlib.util
 import json
 import re
@@ -18,19 +19,21 @@ from pathlib import Path
 import pytest
 from conftest import BUILD, ROOT
 
+from raycaster import outcomes
 from raycaster.configuration import configure
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.inside import find_block, look_inside
-from raycaster.docs import blocks, commands, facts, results, timing
+from raycaster.docs import blocks, commands, drawings, facts, pages, results, tables, timing
 from raycaster.docs.commands import commands_of, outside_make
 from raycaster.errors import UserError
+from raycaster.options import CommandParser
 from raycaster.rtl.system.ports import module_ports
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
 from raycaster.sim.simulator import convert
 from raycaster.verif import rtl_lint
 
-PAGES = sorted((ROOT / "docs").glob("*.md"))
-
+NOMINAL = {"74.0 MHz", "74.25 MHz"}
+"""Frequencies that are set, not measured."""
 
 COMMANDS = commands_of(commands.PAGES)
 QUICK = ("make verilog ENGINE=exact RECTANGLES=20", "make registers")
@@ -75,7 +78,7 @@ def test_command(command: str):
         assert shutil.which(Path(words[0]).name, path=sysconfig.get_path("scripts")), f"{words[0]} is not installed"
         assert all((ROOT / word).is_file() for word in words if word.endswith(".py"))
     for line in lines:
-        if found := re.match(r"\S*(?:python3? -m raycaster\.cli|raycaster) (.*)", line):
+        if found := re.match(r"(?:RAYCASTER_FROM_MAKE=1 )?\S*(?:python3? -m raycaster\.cli|raycaster) (.*)", line):
             assert accepts(tuple(shlex.split(found[1]))) == ""
 
 
@@ -288,10 +291,81 @@ def test_table():
     assert facts.table(["a", "b"], [["x", 1234], ["y", 5]]) == "| a | b |\n| --- | ---: |\n| x | 1,234 |\n| y | 5 |"
 
 
-def test_facts():
-    """Each has its place on a page."""
-    text = "".join(page.read_text() for page in PAGES)
-    assert {name for name in facts.facts() if f"{{{{ {name} }}}}" not in text} == set()
+@pytest.fixture(scope="module")
+def values():
+    """All that is made, by its name in the pages' markers."""
+    return facts.facts() | tables.tables()
+
+
+def test_all_that_is_made_has_its_place_on_a_page(values):
+    text = "".join(page.read_text() for page in pages.PAGES)
+    assert {name for name in values if f"<!--{name}-->" not in text} == set()
+
+
+@pytest.mark.parametrize("page", pages.PAGES, ids=lambda page: page.name)
+def test_the_page_has_what_was_measured(page: Path, values):
+    """What stands between its markers is what is made; what is typed there is noticed."""
+    text = page.read_text()
+    assert pages.rendered(text, values, page.name) == text, "raycaster results --render writes it"
+    if made := [found for found in pages.MADE.finditer(text) if found[2].strip()]:
+        middle = (made[0].start(2) + made[0].end(2)) // 2
+        assert pages.rendered(text[:middle] + "7" + text[middle:], values, page.name) == text
+
+
+@pytest.mark.parametrize("page", pages.PAGES, ids=lambda page: page.name)
+def test_no_measured_number_is_typed(page: Path):
+    """Long counts, clocks and shares stand between markers, or in commands and examples."""
+    typed = re.sub(r"^```.*?^```$", "", pages.MADE.sub("", page.read_text()), flags=re.MULTILINE | re.DOTALL)
+    found = re.findall(r"\d,\d{3}\b|\d+\.\d+ (?:MHz|ms|%)", typed)
+    assert set(found) <= NOMINAL
+
+
+@pytest.mark.parametrize("page", pages.PAGES, ids=lambda page: page.name)
+def test_a_forge_shows_the_page(page: Path):
+    """Nothing in it waits for Sphinx; its pictures and pages are there; no marker makes a line a block of HTML."""
+    text = re.sub(r"^```(?!\{).*?^```$", "", page.read_text(), flags=re.MULTILINE | re.DOTALL)
+    assert "{{" not in text
+    assert not re.search(r"^```\{", text, re.MULTILINE)
+    for target in re.findall(r"\]\((?!https?:|#)([^)#]+)", text):
+        assert (page.parent / target).exists(), target
+    assert not re.search(r"^<!--\w*-->.|^<!--/-->.", text, re.MULTILINE)
+
+
+def test_a_marker_that_nothing_is_made_for():
+    with pytest.raises(UserError, match=r"page: nothing is none of what is made; there are a, b"):
+        pages.rendered("<!--nothing-->0<!--/-->", {"a": "1", "b": "2"}, "page")
+
+
+def test_figures_that_are_missing():
+    with pytest.raises(UserError, match=r"nothing\.json: cannot be read: .*; a command with --keep"):
+        tables.outcome("nothing")
+
+
+def test_figures_are_kept(tmp_path: Path, monkeypatch):
+    """With the command that was given, the design and the day; without `--keep`, nothing is written."""
+    monkeypatch.chdir(tmp_path)
+    parser = CommandParser("area", "Cells.", "")
+    outcomes.add_keep_option(parser)
+    scope = outcomes.scope_of(configure(engine="exact", culling=True))
+    outcomes.keep(parser.parse_args([]), {"cells": 3}, scope)
+    assert not list(tmp_path.iterdir())
+    outcomes.keep(parser.parse_args(["--keep", "results/one.json"]), {"cells": 3}, scope, left_out="clocks")
+    kept = json.loads((tmp_path / "results" / "one.json").read_text())
+    assert kept["command"] == "raycaster area --keep results/one.json"
+    assert kept["figures"] == {"cells": 3}
+    assert (kept["scope"]["engine"], kept["scope"]["culling"], kept["scope"]["left_out"]) == ("exact", True, "clocks")
+    assert kept["tools"]["myhdl"] == importlib.metadata.version("myhdl")
+    assert re.fullmatch(r"\d{4}-\d\d-\d\d", kept["date"])
+
+
+def test_the_diagrams_are_of_the_design_as_it_is():
+    """Those that are kept say what is drawn now; where it stands is left to the fonts of who draws."""
+    there = {path.stem: path.read_text() for path in drawings.DIAGRAMS.glob("*.svg")}
+    now = drawings.drawn()
+    assert there.keys() == now.keys()
+    for name, svg in now.items():
+        assert drawings.words(there[name]) == drawings.words(svg) != [], f"{name}: make docs draws it"
+    assert drawings.words(now["exact"].replace("exact_control", "other")) != drawings.words(now["exact"])
 
 
 def test_pages(tmp_path: Path):
@@ -304,8 +378,10 @@ def test_pages(tmp_path: Path):
     assert done.returncode == 0, done.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["site"]
     text = "".join(path.read_text() for path in output.glob("*.html"))
-    assert {page.with_suffix(".html").name for page in PAGES} <= {path.name for path in output.iterdir()}
-    assert "{{" not in text, "a fact that was not filled in"
+    written = {page.with_suffix(".html").name for page in pages.PAGES if page.parent == pages.HERE}
+    assert written | {"library.html"} <= {path.name for path in output.iterdir()}
+    assert "raycaster.golden.exact.trace" in text, "the library's reference"
+    assert "The RayCaster authors" in text
     drawings = {f"{drawing.name}.svg" for drawing in (*blocks.DRAWINGS, *timing.DIAGRAMS)}
     assert {path.name for path in output.glob("_images/*.svg")} == drawings, "each drawing is on a page"
     assert (output / "register_map" / "index.html").is_file()
@@ -318,7 +394,7 @@ def test_pages_with_a_fault(tmp_path: Path):
     script = (
         "from pathlib import Path; from raycaster.docs import __main__ as docs; "
         "from raycaster.options import run_command; "
-        "docs.HERE = Path('docs'); docs.blocks.DRAWINGS = (); run_command(docs.main)"
+        "docs.HERE = Path('docs'); docs.draw_all = list; run_command(docs.main)"
     )
     done = subprocess.run(
         [sys.executable, "-c", script, "--keep-timing"], cwd=tmp_path, capture_output=True, text=True, check=False
@@ -329,20 +405,9 @@ def test_pages_with_a_fault(tmp_path: Path):
     assert [path.name for path in (tmp_path / "build").iterdir()] == []
 
 
-def test_the_readme_has_what_was_measured():
-    """Its table is that of `results/`, and a number that is typed into it is noticed."""
-    readme, measured = results.README.read_text(), json.loads(results.RESULTS.read_text())
-    assert results.rendered(readme, measured) == readme
-    count = f"{measured['designs'][0]['luts']:,}"
-    assert readme.count(count) == 1
-    assert results.rendered(readme.replace(count, "1"), measured) == readme
-    with pytest.raises(UserError, match="has no line"):
-        results.rendered("no table", measured)
-
-
 def test_the_measured_designs_drew_what_they_had_to():
-    measured = json.loads(results.RESULTS.read_text())
-    assert [design["options"] for design in measured["designs"]] == list(map(dict, results.DESIGNS))
-    for design in measured["designs"]:
+    designs = tables.outcome("engines")["figures"]["designs"]
+    assert [design["options"] for design in designs] == list(map(dict, results.DESIGNS))
+    for design in designs:
         assert design["wrong_vs_golden"] == 0
         assert (design["wrong_vs_exact"] > 0) == (design["options"]["engine"] == "seed")

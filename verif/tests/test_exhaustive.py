@@ -7,32 +7,27 @@ import pytest
 
 from raycaster.errors import UserError
 from raycaster.verif.exhaustive import run as exhaustive
-from raycaster.verif.exhaustive.run import Bench, Builder, Mismatch, benches, main, run
+from raycaster.verif.exhaustive.run import Bench, Mismatch, benches, build_bench, main, run
 from raycaster.verif.seeds import repeat, seed
 
 VECTORS = 200_000
 BENCHES = {bench.label: bench for bench in benches(24 * VECTORS, VECTORS, 4)}
 
 
-@pytest.fixture(scope="module")
-def builder(tmp_path_factory) -> Builder:
-    return Builder(tmp_path_factory.mktemp("exhaustive"))
-
-
-def run_briefly(builder: Builder, bench: Bench, spoil=str) -> exhaustive.Outcome:
-    return run(builder.build(bench, spoil), bench, seed(), lambda _: None)
+def run_briefly(bench: Bench, spoil=str) -> exhaustive.Outcome:
+    return run(build_bench(bench, spoil), bench, seed())
 
 
 @pytest.mark.parametrize("label", ["divider-f0t-d1", "divider-f0n-d2", "intersection-f0t-d3", "intersection-f8n-d2"])
-def test_a_part_of_the_vectors(label, builder):
-    outcome = run_briefly(builder, BENCHES[label])
+def test_a_part_of_the_vectors(label):
+    outcome = run_briefly(BENCHES[label])
     assert outcome.vectors == VECTORS, repeat()
     assert VECTORS // 5 < outcome.valid < VECTORS, "quotients were to overflow, and not to"
 
 
-def test_every_operand_of_a_narrow_unit(builder):
+def test_every_operand_of_a_narrow_unit():
     bench = BENCHES["reduced-w3-f1n-d3"]
-    outcome = run_briefly(builder, bench)
+    outcome = run_briefly(bench)
     assert outcome.vectors == bench.total == 1 << (3 * 4 + 2 * 4)
     assert outcome.valid > bench.total // 8
 
@@ -55,7 +50,7 @@ def test_every_division_is_in_the_full_run():
         ("reduced-w4-f0t-d2", r"backward = a - quotient", r"backward = a + quotient"),
     ],
 )
-def test_what_is_spoilt_is_caught(label, before, after, builder):
+def test_what_is_spoilt_is_caught(label, before, after):
     spoilt = []
 
     def spoil(text: str) -> str:
@@ -64,7 +59,7 @@ def test_what_is_spoilt_is_caught(label, before, after, builder):
         return text
 
     with pytest.raises(Mismatch, match=r"mismatch .*hardware .*expected"):
-        run_briefly(builder, BENCHES[label], spoil)
+        run_briefly(BENCHES[label], spoil)
     assert sum(spoilt) == 1, "the text was to be changed in one place"
 
 
@@ -76,9 +71,9 @@ def test_the_command_reports(capsys):
 
 
 def test_the_command_fails_at_a_mismatch(monkeypatch, capsys):
-    build = Builder.build
+    # Workers are forked, and have it too.
     monkeypatch.setattr(
-        Builder, "build", lambda self, bench: build(self, bench, lambda text: text.replace("difference < 0", "1"))
+        exhaustive, "build_bench", lambda bench: build_bench(bench, lambda text: text.replace("difference < 0", "1"))
     )
     assert main(["--only", "divider-f0t-d3", "--divisions", str(VECTORS), "--seed", "7"]) == 1
     complaint = capsys.readouterr().err

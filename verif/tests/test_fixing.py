@@ -406,7 +406,7 @@ def test_a_choice_for_another_scene_is_refused(tmp_path, monkeypatch):
     scene = tmp_path / "scene.toml"
     scene.write_text(SMALL_SCENE.read_text())
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(UserError, match=r"nothing was chosen for .*; run make fit"):
+    with pytest.raises(UserError, match=r"nothing was chosen for .*; run raycaster fit"):
         design_of(scene, {}, FIT, Console(quiet=True))
     keep_choice(scene, {"engine": "exact", "screen": "tiny"}, "rects")
     design = design_of(scene, {}, FIT, Console(quiet=True))

@@ -762,8 +762,8 @@ def race(random: np.random.Generator, config: Configuration, slopes) -> tuple[np
         table = Rectangles(corners, table.colours, np.ones(count, dtype=bool))
         traced = exact.trace(table, camera, (0, 0, 0), slopes[column : column + 1], ends, keep=True)
         if traced.bounces[-1].hits.sum() >= min(1 if by_mirror else 2, count):
-            break
-    return camera, table, column
+            return camera, table, column
+    raise AssertionError(f"no ray has two rectangles, or one by a mirror, after {ends} reflections; {repeat()}")
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ Python's integers, and golden, whose hits are all among them."""
 
 import numpy as np
 import pytest
-from fates import may_hit_mask
+from fates import margin_of, may_hit_mask
 
 from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
 from raycaster.golden import exact, seed_engine
@@ -209,7 +209,7 @@ def test_group_tester(config, tmp_path):
     leaf = leaf_of_tester(config, tmp_path)
     random = np.random.default_rng(seed())
     slopes = primary_slopes(config.screen_geometry)
-    margin, rows = config.facts.margin, config.screen_geometry.rows
+    margin, rows = margin_of(config), config.screen_geometry.rows
     stimulus, expected = [], {}
     for (camera, drawn), _ in zip(scenes(random, config), range(3000 // config.rectangles), strict=False):
         row = int(random.choice([0, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))

@@ -33,7 +33,8 @@ from raycaster.rtl.system.reset_release import HOLD_CYCLES
 from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import Camera, Rectangle, Scene
 from raycaster.screens import BEAM_SCREENS, SCREENS, Screen, Span
-from raycaster.verif.leaf import Leaf, TraceCycle, reset_signal, sorted_rect, trace_cycles
+from raycaster.sim.register_model import RegisterFile, Request
+from raycaster.verif.leaf import Leaf, TraceCycle, reset_signal, slot_length, sorted_rect, trace_cycles
 from raycaster.verif.seeds import repeat, seed
 
 AXES = "xyz"
@@ -324,7 +325,7 @@ def remembered(config: Configuration, cycles: list[TraceCycle], usable: list[int
         blends = blends + 1 if cycle.steps["steps_add_colour"] else 0
         indices.append(held)
     # A slot of one cycle is over in that of done.
-    return [*indices, queue[blends - 1], queue[blends - (config.slot_cycles > 1)]]
+    return [*indices, queue[blends - 1], queue[blends - (slot_length(config) > 1)]]
 
 
 @pytest.mark.parametrize(
@@ -575,10 +576,12 @@ def scene_in_view(random: np.random.Generator, config: Configuration, axis: int)
     are another picture from a camera one unit away along it."""
     slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
     anything = random.random() < 0.2
-    for _ in range(300):
+    for _ in range(2000):
         camera = random.integers(WORLD_SIZE, size=3) // [random.choice([1, 2]), 1, 1]
-        table = rectangles_in_view(random, camera, slopes, config.rectangles)
-        table = Rectangles(table.corners, table.colours, random.random(config.rectangles) < 0.7)
+        table = rectangles_in_view(random, camera, slopes, config.rectangles, None if anything else axis)
+        enabled = random.random(config.rectangles) < 0.7
+        enabled[0] |= not anything
+        table = Rectangles(table.corners, table.colours, enabled)
         background = random.integers(256, size=3)
         reflections = int(random.integers(config.reflections + 1))
         trace = tracer(config, background=background, reflections=reflections)
@@ -590,8 +593,8 @@ def scene_in_view(random: np.random.Generator, config: Configuration, axis: int)
         if anything or (
             len(np.unique(words)) > 1 and axis in table.axes[table.visible] and not np.array_equal(moved, words)
         ):
-            break
-    return camera, table, background, reflections, words
+            return camera, table, background, reflections, words
+    raise AssertionError(f"no scene shows where its camera is along {AXES[axis]}; {repeat()}")
 
 
 @pytest.mark.parametrize(
@@ -676,6 +679,24 @@ class Bus:
         self.write("control", run=run, commit=1, reflections=reflections)
 
 
+def check_bus(config: Configuration, stimulus: list[dict[str, int]], outputs: list[dict[str, int]]) -> int:
+    """Hold the bus against the registers' model in every cycle; returns how many reads were answered."""
+    model, inputs, answers = RegisterFile(config), {}, 0
+    for cycle, (given, output) in enumerate(zip(stimulus, outputs, strict=True)):
+        inputs |= given
+        if cycle >= 2:
+            expected = {"avs_s0_waitrequest": model.agent.waiting, "avs_s0_readdatavalid": model.agent.answer[0]}
+            assert {name: output[name] for name in expected} == expected, (cycle, repeat())
+            if output["avs_s0_readdatavalid"]:
+                model.check_answer(output["avs_s0_readdata"])
+                answers += 1
+        reads, writes = inputs["avs_s0_read"], inputs["avs_s0_write"]
+        word = inputs["avs_s0_writedata"] if writes else None
+        request = Request(inputs.get("avs_s0_address", 0), word, inputs.get("avs_s0_byteenable", 0))
+        model.clock(bool(inputs["reset"]), request if reads or writes else None)
+    return answers
+
+
 @pytest.mark.parametrize(
     "config",
     [
@@ -703,8 +724,10 @@ def test_ray_caster_module(config, tmp_path):
             table = rectangles_in_view(random, camera, slopes, config.rectangles)
             background = random.integers(256, size=3)
             colours = engines.trace(config, table, camera, background, slopes, config.reflections).colours
-            if len(np.unique(colours, axis=0)) > config.rectangles:
+            if len(np.unique(colours, axis=0)) > min(config.rectangles, 3):
                 break
+        else:
+            raise AssertionError(f"no scene shows more than {min(config.rectangles, 3)} colours; {repeat()}")
         pictures.append(golden_words(config, colours))
         bus.write_scene(camera, background, config.reflections, table)
         # To the cycle after the next StartScreen.
@@ -722,8 +745,8 @@ def test_ray_caster_module(config, tmp_path):
     for number, (frame, picture) in enumerate(zip(frames, pictures, strict=True)):
         assert np.array_equal(frame, doubled(config, picture)), f"frame {number}; {repeat()}"
     answers = {}
+    assert check_bus(config, bus.stimulus, outputs) == len(bus.reads)
     for name, cycle in bus.reads.items():
-        assert outputs[cycle]["avs_s0_readdatavalid"]
         answers[name] = bus.registers[name].unpack(outputs[cycle]["avs_s0_readdata"])
     assert answers["status"] == {"busy": 0, "underrun": 0, "bad_rectangle": 0, "frame": 2}
     assert answers["cycles"]["group"] <= config.group_cycles
@@ -773,7 +796,9 @@ def test_ray_caster_module_scenes(config, tmp_path):
         traffic(start + 1)
     bus.wait(screen.frame_cycles)
     leaf = Leaf(ray_caster_module, lambda: {**module_ports(config), "config": config}, tmp_path)
-    frames = monitored(leaf.run_both(bus.stimulus, settled=2)[2:], config)
+    outputs = leaf.run_both(bus.stimulus, settled=2)
+    assert check_bus(config, bus.stimulus, outputs) > 1000
+    frames = monitored(outputs[2:], config)
     assert len(frames) == len(pictures)
     for number, (frame, picture) in enumerate(zip(frames, pictures, strict=True)):
         assert np.array_equal(frame, doubled(config, picture)), f"frame {number}; {repeat()}"
@@ -802,6 +827,8 @@ def test_ray_caster_system(tmp_path):
         # Most of what is random looks the same from everywhere.
         if len({picture.tobytes() for picture in pictures}) > frames // 2:
             break
+    else:
+        raise AssertionError(f"no walk shows another picture in most frames; {repeat()}")
     scene = Scene(
         reflections=config.reflections,
         background=tuple(map(int, background)),

@@ -23,7 +23,7 @@ from raycaster.rtl.common.widths import (
     unit_bits,
     unsigned,
 )
-from raycaster.rtl.engine.ray_sequencer import EARLY_OUT_AT, ends_early, ray_sequencer
+from raycaster.rtl.engine.ray_sequencer import ray_sequencer
 from raycaster.rtl.engine.rect_sequencer import rect_sequencer
 from raycaster.rtl.exact.exact_control import exact_control
 from raycaster.rtl.exact.exact_unit import exact_unit
@@ -31,7 +31,7 @@ from raycaster.rtl.exact.eye_register import eye_register
 from raycaster.rtl.exact.nearest_hit import nearest_hit
 from raycaster.rtl.exact.rect_tester import rect_tester
 from raycaster.rtl.seed.ray_control import ray_control
-from raycaster.verif.leaf import Leaf, TraceCycle, sorted_rect, trace_cycles
+from raycaster.verif.leaf import EARLY_OUT_AT, Leaf, TraceCycle, ends_early, slot_length, sorted_rect, trace_cycles
 from raycaster.verif.seeds import repeat, seed
 
 AXES = "xyz"
@@ -420,7 +420,7 @@ def seed_config(**options) -> Configuration:
     ids=lambda value: value.name if isinstance(value, Configuration) else value.__name__,
 )
 def test_controls(function, config, tmp_path):
-    write_at = 2 if config.engine == "exact" else config.divider_steps + 3
+    write_at = 2 if config.engine == "exact" else slot_length(config) + 3
     leaf = control_leaf(function, config, tmp_path)
     random = np.random.default_rng(seed())
     count = config.rectangles

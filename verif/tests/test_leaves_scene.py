@@ -360,5 +360,6 @@ def test_avalon_interface(config, tmp_path):
     outputs = leaf.run_both(stimulus, settled=1)
     for cycle, (inputs, output) in enumerate(zip(stimulus, outputs, strict=True)):
         if cycle:
+            assert output["avs_s0_waitrequest"] == stimulus[cycle - 1]["reset"], (cycle, repeat())
             assert output == agent.outputs(inputs), (cycle, repeat())
         agent.clock(inputs)

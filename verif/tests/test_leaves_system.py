@@ -16,12 +16,18 @@ from raycaster.registers import address_bits, register_map
 from raycaster.rtl.common.interfaces import AvalonPort
 from raycaster.rtl.common.synchroniser import synchroniser
 from raycaster.rtl.common.widths import bit, unsigned
-from raycaster.rtl.system.camera_axis import STEP, camera_axis
-from raycaster.rtl.system.reset_release import HOLD_CYCLES, reset_release
+from raycaster.rtl.system.camera_axis import camera_axis
+from raycaster.rtl.system.reset_release import reset_release
 from raycaster.rtl.system.scene_player import BUTTONS, scene_player
 from raycaster.scene import load_scene
 from raycaster.verif.leaf import Leaf, reset_signal
 from raycaster.verif.seeds import repeat, seed
+
+STEP = 3
+"""World units that a button moves the camera by in a frame."""
+
+HOLD_CYCLES = 16
+"""Cycles that reset lasts once its cause is over."""
 
 
 def stepped(position: int, more: int, less: int) -> int:

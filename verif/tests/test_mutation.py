@@ -26,7 +26,6 @@ from raycaster.verif.mutation.mutate import (
     Mutant,
     MutationError,
     Recording,
-    ReplayBuilder,
     Result,
     complaints,
     count_outcomes,
@@ -39,11 +38,6 @@ pytestmark = pytest.mark.skipif(bool(missing_tools()), reason=f"not installed: {
 
 WIDTH, COUNT = 3, 2
 MUTANTS = 30
-
-
-@pytest.fixture(scope="module")
-def builder(tmp_path_factory) -> ReplayBuilder:
-    return ReplayBuilder(tmp_path_factory.mktemp("replay"))
 
 
 @pytest.fixture
@@ -73,29 +67,29 @@ def outcomes(result: Result) -> dict[str, int]:
     return count_outcomes(result.mutants)
 
 
-def test_every_operand_catches_every_fault(recorded, builder):
+def test_every_operand_catches_every_fault(recorded):
     contract = Expectation((), assumptions={"remainder < divisor": "the division's invariant"})
-    result = recorded(range(1 << WIDTH)).run(MUTANTS, 1, contract, builder)
+    result = recorded(range(1 << WIDTH)).run(MUTANTS, 1, contract)
     counts = outcomes(result)
     assert sum(counts.values()) == MUTANTS
     assert counts["surviving"] == counts["explained"] == 0, [str(mutant) for mutant in result.mutants]
     assert share_caught(counts) == 1.0
 
 
-def test_one_operand_leaves_survivors(recorded, builder):
-    result = recorded([0]).run(MUTANTS, 1, Expectation(()), builder)
+def test_one_operand_leaves_survivors(recorded):
+    result = recorded([0]).run(MUTANTS, 1, Expectation(()))
     survivors = [mutant for mutant in result.mutants if mutant.outcome == "surviving"]
     assert survivors
     assert share_caught(outcomes(result)) < 1
     assert any("remainder" in mutant.at for mutant in survivors), [str(mutant) for mutant in survivors]
 
 
-def test_a_recording_that_does_not_fit_is_an_error(recorded, builder):
+def test_a_recording_that_does_not_fit_is_an_error(recorded):
     def wrong(cycle):
         return {**cycle, "next_digits": cycle["next_digits"] ^ 1}
 
     with pytest.raises(MutationError, match="without any fault"):
-        recorded([0], wrong).run(MUTANTS, 1, Expectation(()), builder)
+        recorded([0], wrong).run(MUTANTS, 1, Expectation(()))
 
 
 def word_recording(tmp_path, cycles: int) -> Recording:
@@ -128,9 +122,9 @@ def word_recording(tmp_path, cycles: int) -> Recording:
         (Expectation((), assumptions={"no_such == 1": ""}), "no_such"),
     ],
 )
-def test_a_contract_that_does_not_hold_is_an_error(expectation, complaint, tmp_path, builder):
+def test_a_contract_that_does_not_hold_is_an_error(expectation, complaint, tmp_path):
     with pytest.raises(UserError, match=complaint):
-        word_recording(tmp_path, 2).run(MUTANTS, 1, expectation, builder)
+        word_recording(tmp_path, 2).run(MUTANTS, 1, expectation)
 
 
 # The reader hands the word on to a block that reads bit 6, reads bits 1 and 2 itself, and keeps bit 4 where nothing
@@ -151,7 +145,7 @@ endmodule""",
 }
 
 
-def test_bits_that_a_submodule_does_not_read_have_no_faults(tmp_path, builder):
+def test_bits_that_a_submodule_does_not_read_have_no_faults(tmp_path):
     directory = tmp_path / "recording"
     directory.mkdir()
     for name, text in READERS.items():
@@ -165,7 +159,7 @@ def test_bits_that_a_submodule_does_not_read_have_no_faults(tmp_path, builder):
     }  # fmt: skip
     (directory / "leaf.json").write_text(json.dumps(description))
     recording = Recording(directory, tmp_path / "work")
-    result = recording.run(1000, 1, Expectation(()), builder)
+    result = recording.run(1000, 1, Expectation(()))
     assert [mutant.selector for mutant in result.mutants] == list(range(1, len(result.mutants) + 1))
     planted = {mutant.port for mutant in result.mutants if mutant.kind == "reader_i" and mutant.port.startswith("word")}
     assert planted == {f"word[{place}]" for place in (0, 1, 2, 6)}
@@ -177,10 +171,10 @@ def test_bits_that_a_submodule_does_not_read_have_no_faults(tmp_path, builder):
     assert len(Recording(directory, tmp_path / "few").plant(40, 1)) == 40
 
 
-def test_explanations(tmp_path, builder):
+def test_explanations(tmp_path):
     needed, stale = Explanation("anything"), Explanation("nothing", kind="none")
     expectation = Expectation((), explained=(stale, needed))
-    result = word_recording(tmp_path, 2).run(MUTANTS, 1, expectation, builder)
+    result = word_recording(tmp_path, 2).run(MUTANTS, 1, expectation)
     counts = outcomes(result)
     assert counts["explained"] and not counts["surviving"]
     assert share_caught(counts) < LEAST_CAUGHT, "what is only explained was not caught"

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 import subprocess
 from itertools import pairwise
 from pathlib import Path
 
 import pytest
 from conftest import ROOT
+from tcl import run_tcl
 
 from raycaster.configuration import Configuration, configure
 from raycaster.convert.hierarchy import Port
@@ -112,14 +112,6 @@ AVALON_ROLES = {
 Call = list[str]
 
 
-def run_tcl(directory: Path, commands: dict[str, str], script: str) -> subprocess.CompletedProcess[str]:
-    """Run a script in a directory, in which the commands stand for Platform Designer's."""
-    if not shutil.which("tclsh"):
-        pytest.skip("no tclsh here: Debian's package tcl")
-    (directory / "main.tcl").write_text(stand_ins(commands) + script)
-    return subprocess.run(["tclsh", "main.tcl"], cwd=directory, capture_output=True, text=True, check=False)
-
-
 def calls_of(done: subprocess.CompletedProcess[str]) -> list[Call]:
     """What a script called, in order: the command and its arguments, of which each is what it may be."""
     assert (done.returncode, done.stderr) == (0, "")
@@ -136,7 +128,7 @@ def calls_of(done: subprocess.CompletedProcess[str]) -> list[Call]:
 
 def tcl(directory: Path) -> list[Call]:
     """What the component in a directory calls."""
-    return calls_of(run_tcl(directory, COMMANDS, f"source {COMPONENT}\n"))
+    return calls_of(run_tcl(directory, stand_ins(COMMANDS) + f"source {COMPONENT}\n"))
 
 
 def declared_ports(calls: list[Call]) -> dict[str, tuple[str, int]]:
@@ -324,7 +316,7 @@ def own_ends(config: Configuration) -> dict[str, str]:
 
 def run_system(directory: Path, settings: str, script: str) -> subprocess.CompletedProcess[str]:
     (directory / NIOS_SYSTEM.name).write_text(script)
-    return run_tcl(directory, SYSTEM_COMMANDS, f"{settings}\nsource {NIOS_SYSTEM.name}\n")
+    return run_tcl(directory, stand_ins(SYSTEM_COMMANDS) + f"{settings}\nsource {NIOS_SYSTEM.name}\n")
 
 
 def check_system(directory: Path, processor: str, script: str) -> None:

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import sysconfig
 import tomllib
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -96,6 +97,23 @@ def test_each_file_is_in_the_package():
     wanted = {path.relative_to(ROOT).as_posix().replace("/", ".") for path in folders}
     wanted -= {"verif.tests", "raycaster"}
     assert set(tool["packages"]) == {"raycaster"} | {f"raycaster.{name}" for name in wanted}
+
+
+def test_the_wheel_has_every_file(tmp_path: Path):
+    """What a folder's code reads from beside it is in the wheel, and so is every module; the tests are not."""
+    tracked = subprocess.run(["git", "ls-files", *MAY_IMPORT], cwd=ROOT, capture_output=True, text=True, check=True)
+    wanted = {name for name in tracked.stdout.split() if not name.startswith("verif/tests/")}
+    for name in wanted | {"pyproject.toml", "README.md", "LICENSE"}:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_bytes((ROOT / name).read_bytes())
+    (tmp_path / "verif" / "tests").mkdir()
+    (tmp_path / "verif" / "tests" / "data.toml").touch()
+    command = [sys.executable, "-c", "import setuptools; setuptools.setup()", "-q", "bdist_wheel", "-d", "wheel"]
+    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
+    [wheel] = (tmp_path / "wheel").glob("*.whl")
+    with zipfile.ZipFile(wheel) as archive:
+        names = {name for name in archive.namelist() if ".dist-info/" not in name}
+    assert names == {name if name.startswith("raycaster/") else f"raycaster/{name}" for name in wanted}
 
 
 def test_hooks_of_config(tmp_path: Path):

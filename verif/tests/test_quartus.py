@@ -17,6 +17,7 @@ from typing import Any
 
 import pytest
 from conftest import SMALL_SCENE
+from tcl import run_tcl
 
 from raycaster.configuration import Configuration, configure
 from raycaster.convert.take_home import WAIVERS
@@ -238,14 +239,12 @@ source [lindex $argv 0]
 
 @every_board
 def test_constraints_are_tcl_of_these_ports(name, tmp_path):
-    if not shutil.which("tclsh"):
-        pytest.skip("tclsh is not installed")
     board = find_board(name)
     directory = tmp_path / "project"
     write(board, directory)
-    (tmp_path / "stand_in.tcl").write_text(TCL)
-    said = run(tmp_path, "tclsh", "stand_in.tcl", str(directory / f"{TOP}.sdc"))
-    named = [line.split() for line in said.splitlines()]
+    done = run_tcl(tmp_path, TCL, str(directory / f"{TOP}.sdc"))
+    assert (done.returncode, done.stderr) == (0, "")
+    named = [line.split() for line in done.stdout.splitlines()]
     bits = {bit for kind, _, bit in assignments(settings(directory)) if kind == "LOCATION"}
     met = set()
     for pattern in (value for kind, value in named if kind == "get_ports"):

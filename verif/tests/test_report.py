@@ -12,7 +12,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -37,12 +37,13 @@ from raycaster.golden.errors import compare
 from raycaster.golden.random_world import random_camera, random_rectangles, random_slopes
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
+from raycaster.jobs import executors
 from raycaster.options import add_configuration_options, as_options, given_options
 from raycaster.report import __main__ as report
 from raycaster.report import conclusions, hardware
 from raycaster.report.page import Section, write_html, write_markdown
 from raycaster.report.points import CASE, UNITS, CellsPoint, HitsPoint, PicturePoint, View, command
-from raycaster.report.sweep import Store, executor, run
+from raycaster.report.sweep import Store, run
 from raycaster.scene import find_scene
 from raycaster.screens import SCREENS
 from raycaster.verif.seeds import repeat, seed
@@ -254,6 +255,15 @@ class Task:
         return len(list(Path(self.directory).glob(f"mark-{self.number}-*")))
 
 
+def wait_for(happened: Callable[[], bool], process: subprocess.Popen) -> None:
+    """Until a process that runs has done something, a minute at most."""
+    deadline = time.monotonic() + 60
+    while not happened():
+        assert process.poll() is None, "it has ended"
+        assert time.monotonic() < deadline, "it has not happened in a minute"
+        time.sleep(0.01)
+
+
 def sweep_slowly(directory: str) -> None:
     """What `test_a_sweep_killed_half_way_loses_nothing` runs and kills."""
     points = [Task(directory, number, seconds=0.2) for number in range(20)]
@@ -264,9 +274,7 @@ def test_a_sweep_killed_half_way_loses_nothing(tmp_path):
     code = f"import test_report; test_report.sweep_slowly({str(tmp_path)!r})"
     process = subprocess.Popen([sys.executable, "-c", code], cwd=Path(__file__).parent, start_new_session=True)
     store = tmp_path / "store"
-    while len(list(store.glob("task-*.json"))) < 6:
-        assert process.poll() is None
-        time.sleep(0.01)
+    wait_for(lambda: len(list(store.glob("task-*.json"))) >= 6, process)
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()
     kept = {json.loads(path.read_text())["command"].split()[-1] for path in store.glob("task-*.json")}
@@ -295,7 +303,7 @@ class AlwaysDeadly(Task):
 
 
 def test_a_point_that_always_kills_is_named(tmp_path):
-    with pytest.raises(UserError, match=r"^workers died 3 times on 1 points, task 5 among them$"):
+    with pytest.raises(UserError, match=r"^workers died 3 times on 1 jobs, task 5 among them$"):
         run("", [AlwaysDeadly(str(tmp_path), 5)], Store(tmp_path / "store"), lambda: ProcessPoolExecutor(1), QUIET)
 
 
@@ -347,9 +355,7 @@ def cluster(directory: Path) -> Iterator[tuple[str, list[subprocess.Popen]]]:
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environment, "cwd": directory}
     processes = [subprocess.Popen([*base, "scheduler", "--host", "127.0.0.1", "--port", "0", *common], **quiet)]
     try:
-        while not file.exists():
-            assert processes[0].poll() is None
-            time.sleep(0.05)
+        wait_for(file.exists, processes[0])
         worker = [*base, "worker", "--nthreads", "1", "--no-nanny", "--host", "127.0.0.1", *common]
         processes += [subprocess.Popen(worker, **quiet) for _ in range(2)]
         yield json.loads(file.read_text())["address"], processes[1:]
@@ -361,7 +367,7 @@ def cluster(directory: Path) -> Iterator[tuple[str, list[subprocess.Popen]]]:
 
 def test_a_dask_cluster_whose_worker_is_killed(tmp_path):
     directory = str(tmp_path)
-    with cluster(tmp_path) as (address, workers), executor(address, 1) as make_executor:
+    with cluster(tmp_path) as (address, workers), executors(address, 1) as make_executor:
         with Client(address) as client:
             client.wait_for_workers(2, timeout=60)
         points = [Task(directory, number, deadly=number == 2, seconds=0.05) for number in range(12)]

@@ -92,7 +92,7 @@ def test_a_wrong_pixel_fails(build, scenes):
     assert "pixels are wrong" in ran.stdout
     assert str(build / "sim" / "small" / "sim.log") in ran.stdout
     assert str(build / "sim" / "small" / "diff.png") in ran.stdout
-    command = f"make trace SCENE={SMALL_SCENE} PIXEL=0,0 UNITS=8 RECTANGLES=3 SCREEN=tiny SIM=icarus"
+    command = f"raycaster trace {SMALL_SCENE} --pixel 0,0 --units 8 --rectangles 3 --screen tiny --simulator icarus"
     assert command in ran.stdout
 
 

@@ -6,15 +6,31 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from conftest import BUILD
 
 from raycaster.configuration import configure
 from raycaster.sim import ensure_icarus, simulator
-from raycaster.sim.simulator import SimulationError, build_model, convert, system_verilator
+from raycaster.sim.simulator import (
+    MODELS_VARIABLE,
+    VERILATOR_FLAGS,
+    SimulationError,
+    Tool,
+    build_model,
+    convert,
+    system_verilator,
+)
 
 TINY = configure(screen="tiny")
+
+
+@pytest.fixture
+def own_models(monkeypatch):
+    """Models go to the build directory that is asked for."""
+    monkeypatch.delenv(MODELS_VARIABLE)
 
 
 def _program(directory: Path, name: str, text: str = "exit 1") -> None:
@@ -66,7 +82,7 @@ def test_converts_once(tmp_path):
     assert [path.stat().st_mtime_ns for path in files] == before
 
 
-def test_builds_once(tmp_path):
+def test_builds_once(tmp_path, own_models):
     """The second build finds the first; a changed source, or no stamp, builds anew."""
     files = convert(TINY, tmp_path)
 
@@ -79,18 +95,45 @@ def test_builds_once(tmp_path):
         file.write("// changed\n")
     assert build()
     assert not build()
-    (stamp,) = tmp_path.glob("model/*-icarus/stamp.json")
-    stamp.unlink()
+    for mark in tmp_path.glob("model/*-icarus-*/made"):
+        mark.unlink()
     assert build()
 
 
 def test_models_share_a_library(tmp_path):
-    """What Verilator's models have in common is compiled with the first; another compiler flag is another library."""
-    first, second = (build_model(TINY, build=tmp_path, variant=variant) for variant in ("first", "second"))
-    assert (first.directory / "verilated_vpi.o").exists()
-    assert list(second.directory.glob("verilated*.o")) == []
-    assert (second.directory / "bench").exists()
-    assert len(list(tmp_path.glob("model/runtime-*/verilated_vpi.o"))) == 1
+    """What Verilator's models have in common is compiled once; another compiler flag needs no other library."""
+    for flags in (VERILATOR_FLAGS, (*VERILATOR_FLAGS, "-CFLAGS", "-O0")):
+        directory = build_model(TINY, build=BUILD, flags=flags).directory
+        assert (directory / "bench").exists()
+        assert list(directory.glob("verilated*.o")) == []
+    libraries = [path.parent for path in (BUILD / "model").glob("runtime-*/verilated_vpi.o")]
+    assert len([path for path in libraries if not list(path.glob("verilated_*_c.o"))]) == 1
+
+
+def test_another_shell_finds_the_model(tmp_path, own_models, monkeypatch):
+    """Whatever else is on its path."""
+    assert build_model(TINY, "icarus", build=tmp_path).fresh
+    tool = simulator.find_tool("icarus")
+    elsewhere = replace(tool, environment={"PATH": f"/nowhere:{os.environ['PATH']}"})
+    monkeypatch.setattr(simulator, "find_tool", lambda name: elsewhere)
+    assert not build_model(TINY, "icarus", build=tmp_path).fresh
+
+
+def test_what_is_not_used_goes(tmp_path, own_models):
+    """A week after its last use, when something new is built; a model that is found is in use."""
+
+    def build(**options) -> Path:
+        return build_model(
+            configure(screen="tiny", units=4, rectangles=1, **options), "icarus", build=tmp_path
+        ).directory
+
+    found, forgotten = build(), build(reflections=0)
+    for directory in (found, forgotten):
+        os.utime(directory / "made", (0, 0))
+    assert build() == found
+    build(reflections=2)
+    assert found.exists()
+    assert not forgotten.exists()
 
 
 def test_failed_build_does_not_count(tmp_path):
@@ -99,13 +142,13 @@ def test_failed_build_does_not_count(tmp_path):
     broken.write_text("module ray_caster_module (input clk;\n")
     for _ in range(2):
         with pytest.raises(SimulationError, match=r"icarus could not build .*; its log is .*\.log"):
-            build_model(TINY, "icarus", build=tmp_path, verilog=[broken], variant="broken")
+            build_model(TINY, "icarus", build=tmp_path, verilog=[broken])
 
 
-def test_environment_is_left_alone(tmp_path, monkeypatch):
+def test_environment_is_left_alone(tmp_path):
     """What a tool needs is set for its build only."""
     before = dict(os.environ)
-    with simulator._environment({"MAKEFLAGS": "-x"}):
+    with simulator._building(Tool("icarus", "11", {"MAKEFLAGS": "-x"}), tmp_path, ()):
         assert os.environ["MAKEFLAGS"] == "-x"
     assert dict(os.environ) == before
 

@@ -69,7 +69,7 @@ def test_a_wrong_scene_shrinks(tmp_path):
         copy.write_text(source.read_text().replace("(u_0 > u_1)", "(u_0 <= u_1)"))
         files.append(copy)
     assert any("(u_0 <= u_1)" in file.read_text() for file in files)
-    model = build_model(SMALL, "icarus", build=BUILD, verilog=files, variant="broken")
+    model = build_model(SMALL, "icarus", build=BUILD, verilog=files)
     seeds = (0, 1, 5)
     with pytest.raises(SimulationError, match="wrong pixels in the scenes of seeds"):
         run_bench(model, "raycaster.verif.soak.bench", Job(SMALL, output=str(tmp_path), seeds=seeds), tmp_path)

@@ -92,7 +92,7 @@ def test_a_fault_is_noticed(module, right, wrong, complaint, output, tmp_path):
     text = broken.read_text()
     assert text.count(right) == 1, f"{module}.v has {text.count(right)} places for this fault"
     broken.write_text(text.replace(right, wrong))
-    model = build_model(configuration, "icarus", build=tmp_path, verilog=files, variant="broken", bench=SYSTEM_BENCH)
+    model = build_model(configuration, "icarus", build=tmp_path, verilog=files, bench=SYSTEM_BENCH)
     with pytest.raises(SimulationError, match=complaint):
         play(model, program, [0, 0, 0], output / "play")
 

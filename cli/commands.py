@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: MIT
+"""What `raycaster` can do, and where each command is.
+
+Only the standard library is needed, so that `make help` can run this file before anything is installed.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Command:
+    """A subcommand: the module whose `main` it is, which is only loaded where it is called, and what it does.
+
+    `extra` is the extra of pyproject.toml that it needs.
+    """
+
+    module: str
+    purpose: str
+    extra: str = ""
+
+
+COMMANDS: Mapping[str, Command] = {
+    "sim": Command("raycaster.sim.scenes", "draw scenes with the hardware and check every pixel"),
+    "scenes": Command("raycaster.cli.scenes", "list the packaged scenes"),
+    "options": Command("raycaster.cli.design_options", "list the options of a design, such as --engine"),
+    "play": Command("raycaster.play.window", "play the game, or walk through a scene, in a window", "play"),
+    "game": Command("raycaster.play.game", "run a recorded game and check every frame", "play"),
+    "trace": Command("raycaster.debug.trace", "follow one pixel through the hardware"),
+    "wave": Command("raycaster.debug.wave", "write the waveform of some rows"),
+    "verilog": Command("raycaster.fpga.verilog", "write the hardware as Verilog"),
+    "fit": Command("raycaster.fpga.fit", "find the smallest hardware for a scene", "fpga"),
+    "area": Command("raycaster.fpga.area", "count the cells of a design", "fpga"),
+    "bitstream": Command("raycaster.fpga.bitstream", "make a bitstream for the ULX3S board", "fpga"),
+    "quartus": Command("raycaster.fpga.quartus", "write a Quartus project for an Intel board"),
+    "registers": Command("raycaster.register_views", "write the register map as a C header and a page"),
+    "report": Command("raycaster.report.__main__", "compare error, run time and size of designs", "report"),
+    "docs": Command("raycaster.docs.__main__", "build the manual", "docs"),
+    "results": Command("raycaster.docs.results", "measure the engines, and write the tables of the pages", "docs"),
+    "commands": Command("raycaster.docs.commands", "run every command that the manual names"),
+    "completion": Command("raycaster.cli.completion", "print the completions for bash, zsh or tcsh"),
+    "verify all": Command("raycaster.verif.everything", "run all tests, those included that take long", "test"),
+    "verify soak": Command("raycaster.verif.soak.soak", "compare random scenes at full size"),
+    "verify prove": Command("raycaster.verif.formal.prove", "prove properties of the Verilog", "formal"),
+    "verify mutate": Command("raycaster.verif.mutation.mutate", "plant faults and see whether tests notice", "formal"),
+    "verify exhaustive": Command("raycaster.verif.exhaustive.run", "check the arithmetic with every operand"),
+    "verify coverage": Command("raycaster.verif.coverage.measure", "measure code and functional coverage", "coverage"),
+    "verify dvi": Command("raycaster.verif.dvi.watch", "decode and compare a board's video output"),
+}
+
+
+def overview(*, from_make: bool = False) -> str:
+    """All commands, a line each, on one screen; those of `verify` share one.
+
+    Args:
+        from_make: in the form in which make takes them.
+    """
+    checks = [name.removeprefix("verify ") for name in COMMANDS if name.startswith("verify ")]
+    lines = [(name, command.purpose) for name, command in COMMANDS.items() if not name.startswith("verify ")]
+    if from_make:
+        head = "make sim SCENE=mirror_room ENGINE=beam      (arguments are NAME=value)"
+        lines += [
+            (", ".join("verify-all" if check == "all" else check for check in checks), ""),
+            ("test, lint", "run the tests but those that take long; check the sources"),
+            ("clean", "remove what was made; PYTHON3= is the Python to install with"),
+        ]
+    else:
+        head = "raycaster sim mirror_room      raycaster COMMAND --help explains a command"
+        lines.append(("verify", ", ".join(checks)))
+    return "\n".join([head, "", *(f"  {name:<11} {purpose}".rstrip() for name, purpose in lines)])
+
+
+def verify_overview() -> str:
+    """The commands of `verify`."""
+    lines = [f"  {name:<18} {each.purpose}" for name, each in COMMANDS.items() if name.startswith("verify ")]
+    return "\n".join(["raycaster verify soak --seeds 10", "", *lines])
+
+
+if __name__ == "__main__":
+    sys.stdout.write(overview(from_make=True) + "\n")

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: MIT
+"""`raycaster options`: the options of a design, which most commands take."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from pydantic.fields import FieldInfo
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+
+from raycaster.configuration import OPTION_NAMES, Configuration
+from raycaster.options import CommandParser, shown_default
+
+
+def command_parser() -> CommandParser:
+    """What the command takes."""
+    return CommandParser("options", __doc__, "")
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """The command."""
+    command_parser().parse_args(argv)
+    fields: dict[str, FieldInfo] = Configuration.__pydantic_fields__
+    table = Table("option", "what it is", "default", box=SIMPLE_HEAD, pad_edge=False)
+    for name in OPTION_NAMES:
+        table.add_row("--" + name.replace("_", "-"), fields[name].description, shown_default(fields[name]))
+    Console(highlight=False).print(table)

@@ -1,0 +1,290 @@
+# SPDX-License-Identifier: MIT
+"""The tables of measured figures, made of `results/*.json`, in Markdown; below each, when and how it was measured."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from raycaster.configuration import configure
+from raycaster.docs.facts import table
+from raycaster.errors import UserError
+
+RESULTS = Path(__file__).parents[1] / "results"
+
+Outcome = Mapping[str, Any]
+
+
+def outcome(name: str) -> Outcome:
+    """What `raycaster.outcomes.keep` wrote.
+
+    Raises:
+        UserError: it cannot be read.
+    """
+    path = RESULTS / f"{name}.json"
+    try:
+        return json.loads(path.read_text())
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read: {error.strerror}; a command with --keep {path} writes it") from None
+
+
+def measured(*names: str) -> str:
+    """When, with what and by which command."""
+    lines = []
+    for name in names:
+        kept = outcome(name)
+        left_out = f"; not measured: {kept['scope']['left_out']}" if kept["scope"].get("left_out") else ""
+        command = kept["command"].partition(" --keep")[0].strip()
+        lines.append(f"`{command}`, {kept['date']}, commit {kept['commit']}{left_out}")
+    return f"Measured: {'; '.join(lines)}."
+
+
+def _with_source(body: str, *names: str) -> str:
+    return f"{body}\n\n{measured(*names)}"
+
+
+def _options(design: Mapping[str, Any]) -> str:
+    return f"`{' '.join(f'{name.upper()}={value}' for name, value in design.items())}`"
+
+
+def engines() -> str:
+    """The README's table, and the line that says what it is of."""
+    kept = outcome("engines")
+    figures = kept["figures"]
+    rows = [
+        [
+            _options(row["options"]), f"{row['columns']} x {row['rows']}",
+            f"{row['wrong_vs_exact']:,} of {row['pixels']:,}", row["luts"], row["registers"], row["multipliers"],
+            f"{row['clock_mhz']:g} MHz",
+        ]
+        for row in figures["designs"]
+    ]  # fmt: skip
+    headings = ["engine", "rays a frame", "wrong pixels", "LUT4", "registers", "multipliers", "clock it needs"]
+    unlike = sum(row["wrong_vs_golden"] for row in figures["designs"])
+    note = (
+        f"Wrong pixels: those that differ from exact arithmetic, in {figures['scenes']} scenes. From the model of the "
+        f"same engine, {unlike} pixels differ. Cells: of an ECP5, as Yosys counts them, before placing. Each design "
+        f"holds {kept['scope']['rectangles']} rectangles; the seed engine has culling, the others do not."
+    )
+    return _with_source(f"{table(headings, rows)}\n\n{note}", "engines")
+
+
+def work() -> str:
+    """Units and cycles of the designs of the README's table, from their configurations."""
+    rows = []
+    for row in outcome("engines")["figures"]["designs"]:
+        config = configure(**row["options"])
+        rays = config.screen_geometry.columns * config.screen_geometry.rows
+        rows.append([_options(row["options"]), f"{rays:,}", config.units, config.group_cycles,
+                     f"{config.units / config.group_cycles:.3f}"])  # fmt: skip
+    return table(
+        ["engine", "pixels computed a frame", "units", "cycles for a pixel of each unit", "pixels a clock"], rows
+    )
+
+
+def scenes() -> str:
+    """The seed engine's default design, scene by scene, without culling and with it."""
+    without = {row["scene"]: row for row in outcome("sim-seed-without-culling")["figures"]["scenes"]}
+    rows = []
+    for row in outcome("sim-seed")["figures"]["scenes"]:
+        slow = without[row["scene"]]["frame_cycles"]
+        rows.append(
+            [
+                row["scene"], row["reflections"], row["pixels"], row["wrong_vs_golden"],
+                f"{row['wrong_vs_exact']:,} ({row['wrong_vs_exact'] / row['pixels']:.2%})", row["worst_row_cycles"],
+                row["worst_group_cycles"], slow, row["frame_cycles"], f"{row['frame_cycles'] / slow:.0%}",
+            ]
+        )  # fmt: skip
+    headings = [
+        "scene", "reflections", "pixels", "unlike the model", "unlike exact arithmetic", "slowest row", "slowest group",
+        "frame, `CULLING=0`", "frame", "share",
+    ]  # fmt: skip
+    return _with_source(table(headings, rows), "sim-seed", "sim-seed-without-culling")
+
+
+FAMILIES = {
+    "ecp5": ("ECP5", "LUT4", ""),
+    "cycloneive": ("Cyclone IV E", "logic elements", " of 9 bits"),
+    "cyclonev": ("Cyclone V", "ALMs at least", " of 9 bits"),
+}
+
+
+def families() -> str:
+    """The seed engine's default design in three families of chips."""
+    found = outcome("area")["figures"]["families"]
+    rows = []
+    for name, (title, element, kind) in FAMILIES.items():
+        whole = found[name]["units"]["32"]
+        rows.append(
+            [
+                title, f"{whole['elements']:,} {element}", found[name]["shared"]["elements"],
+                found[name]["unit"]["elements"], whole["registers"], f"{whole['multipliers']}{kind}",
+            ]
+        )  # fmt: skip
+    return _with_source(table(["family", "logic", "shared", "one unit", "registers", "multipliers"], rows), "area")
+
+
+ROUTED = ("seed", "exact", "beam-320x240", "beam-640x480", "beam-1280x720")
+CELLS = ("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD")
+
+
+def _clock(figures: Mapping[str, Any], name: str) -> str:
+    reached, required = figures["clocks"][name]
+    return f"{reached:.2f} of {required:g} MHz{', **missed**' if name in figures['missed'] else ''}"
+
+
+def routed() -> str:
+    """Designs placed and routed for the ULX3S."""
+    rows = []
+    for name in ROUTED:
+        kept = outcome(f"bitstream-{name}")
+        figures = kept["figures"]
+        counts = [f"{used:,} of {there:,}" for used, there in (figures["cells"][cell] for cell in CELLS)]
+        command = kept["command"].removeprefix("raycaster bitstream").partition(" --keep")[0].strip()
+        rows.append(
+            [f"`{command}`" if command else "default", *counts, _clock(figures, "clk"), _clock(figures, "shift_clk"),
+             f"{kept['date']}, {kept['commit']}"]
+        )  # fmt: skip
+    return table(["`raycaster bitstream`", *CELLS, "system clock", "shift clock", "measured at"], rows)
+
+
+def routed_again() -> str:
+    """What another seed of the placement reaches."""
+    figures = outcome("bitstream-beam-1280x720-seed-2")["figures"]
+    return f"{figures['clocks']['shift_clk'][0]} MHz with `SEED={figures['seed']}`"
+
+
+def link_short() -> str:
+    """How far the link's clock is from what 1280x720 needs."""
+    reached, required = outcome("bitstream-beam-1280x720")["figures"]["clocks"]["shift_clk"]
+    return f"{reached} MHz of {required:g} MHz"
+
+
+def game_board() -> str:
+    """The game on the ULX3S."""
+    figures = outcome("bitstream-game")["figures"]
+    (comb, there), (multipliers, blocks) = figures["cells"]["TRELLIS_COMB"], figures["cells"]["MULT18X18D"]
+    cells = f"{comb:,} of {there:,} TRELLIS_COMB and {multipliers} of {blocks} multipliers"
+    return f"{cells}, at {_clock(figures, 'clk')}"
+
+
+def one_scene() -> str:
+    """Cells of designs with a scene built in."""
+    rows = []
+    for scene, designs in outcome("fit")["figures"].items():
+        luts = {(one["engine"], one["scope"]): one["luts"] for one in designs}
+        cells = []
+        for engine in ("seed", "exact", "beam"):
+            general = luts[engine, "general"]
+            cells += [general]
+            cells += [f"{luts[engine, scope]:,} ({luts[engine, scope] / general:.0%})" for scope in ("rects", "all")]
+        rows.append([scene, *cells])
+    headings = [
+        word
+        for engine in ("seed", "exact", "beam")
+        for word in (engine, f"{engine} `FIX=rects`", f"{engine} `FIX=all`")
+    ]
+    return _with_source(table(["scene", *headings], rows), "fit")
+
+
+def error_and_time() -> str:
+    """What the report found of some designs with one reflection."""
+    rows = [
+        [one["design"], one["luts_predicted"], f"{one['frame_ms']:.2f} ms", f"{one['wrong_share']:.4%}"]
+        for one in outcome("report")["figures"]["designs"]
+    ]
+    headings = ["design", "LUT4, predicted", "time of a frame", "wrong pixels, mean over the scenes"]
+    return _with_source(table(headings, rows), "report")
+
+
+def _pixels(*names: str) -> str:
+    figures = [outcome(name)["figures"] for name in names]
+    scenes, pixels, wrong = (sum(one[key] for one in figures) for key in ("scenes", "pixels", "wrong_vs_golden"))
+    return f"{scenes:,} scenes, {pixels:,} pixels, {wrong} wrong"
+
+
+def _shown(name: str) -> str:
+    rows = outcome(name)["figures"]["scenes"]
+    return f"{sum(row['pixels'] for row in rows):,} pixels, {sum(row['wrong_vs_golden'] for row in rows)} wrong"
+
+
+def _vectors(kind: str) -> str:
+    found = outcome("exhaustive")["figures"][kind]
+    return f"{found['vectors']:,} operands, {found['wrong']} wrong"
+
+
+def _mutants() -> str:
+    found = outcome("mutate")["figures"]
+    every = sum(found[kind] for kind in ("caught", "equivalent", "contract", "explained", "surviving"))
+    return (
+        f"{every:,} faults in {found['modules']} modules: {found['caught']:,} caught, "
+        f"{found['equivalent'] + found['contract']} change nothing (proved), {found['explained']} explained; "
+        f"{found['caught_of_the_rest']:.1%} of those that change something are caught, {found['worst_caught']:.1%} in "
+        "the worst module"
+    )
+
+
+def _code() -> str:
+    found = outcome("coverage")["figures"]
+    return ", ".join(f"{kind} {found[kind][0]:,} of {found[kind][1]:,}" for kind in ("lines", "conditions", "toggles"))
+
+
+def _bins() -> str:
+    found = outcome("coverage")["figures"]
+    (hit, there), rays, shown = found["bins"], found["intersections"], found["scenes"]
+    return f"{hit} of {there} bins, {rays:,} intersections, {shown} scenes"
+
+
+def _proofs() -> str:
+    found = outcome("prove-small")["figures"]
+    return f"{found['proved']} of {found['proofs']} proved"
+
+
+def checks() -> str:
+    """What the long commands found, each with its scope."""
+    of_seed, before, of_exact, of_beam = "seed, culling", "seed, before culling", "exact, no culling", "beam"
+    game = outcome("game")["figures"]
+    report = outcome("report")["figures"]
+    lines: Sequence[tuple[str, str, str, tuple[str, ...]]] = (
+        ("every scene, full size", of_seed, _shown("sim-seed"), ("sim-seed",)),
+        ("random scenes, full size", before, _pixels("soak-seed"), ("soak-seed",)),
+        ("random and stiff scenes, full size", of_exact, _pixels("soak-exact", "soak-exact-stiff"),
+         ("soak-exact", "soak-exact-stiff")),
+        ("random and stiff scenes, 640x480", of_beam, _pixels("soak-beam", "soak-beam-stiff"),
+         ("soak-beam", "soak-beam-stiff")),
+        ("every scene built in, full size", of_exact, _shown("sim-exact-fixed"), ("sim-exact-fixed",)),
+        ("every scene through the ECP5 netlist, tiny, 16 units", before, _shown("sim-netlist"), ("sim-netlist",)),
+        ("the recorded game, full RTL", of_beam, f"{game['frames']} frames, {game['pixels']:,} pixels, {game['wrong']} "
+         "wrong", ("game",)),
+        ("divider: every dividend that can occur over every divisor", "seed", _vectors("divider"), ("exhaustive",)),
+        ("intersection: random and corner operands, full width", "seed", _vectors("intersection"), ("exhaustive",)),
+        ("intersection: every operand, reduced width", "seed", _vectors("reduced"), ("exhaustive",)),
+        ("hit points of the stiff cases, every ray", "seed, no culling", f"{report['stiff_cases']} cases, "
+         f"{report['unlike_golden']} unlike the model, {report['over_bound']} over their bound", ("report",)),
+        ("proofs, the quick subset", "as the table below says", _proofs(), ("prove-small",)),
+        ("faults planted in modules", "the modules' leaf tests", _mutants(), ("mutate",)),
+        ("code coverage", of_seed, _code(), ("coverage",)),
+        ("functional coverage", "seed, no culling", _bins(), ("coverage",)),
+    )  # fmt: skip
+    rows = []
+    for what, scope, figure, names in lines:
+        kept = [outcome(name) for name in names]
+        commands = "<br>".join(f"`{one['command'].partition(' --keep')[0].strip()}`" for one in kept)
+        rows.append([what, scope, figure, commands, f"{kept[0]['date']}, {kept[0]['commit']}"])
+    return table(["what", "engine", "found", "command", "measured at"], rows)
+
+
+def not_mutated() -> str:
+    """The modules that no fault is planted in."""
+    return ", ".join(f"`{name}`" for name in outcome("mutate")["scope"]["left_out"].split(", "))
+
+
+def tables() -> dict[str, str]:
+    """All of them, by the names that pages use."""
+    made = (
+        engines, work, scenes, families, routed, routed_again, link_short, game_board, one_scene, error_and_time,
+        checks, not_mutated,
+    )  # fmt: skip
+    return {each.__name__: each() for each in made}

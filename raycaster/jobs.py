@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: MIT
+"""Independent jobs with a progress bar: over processes here, or over the workers of a Dask cluster."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from typing import TypeVar
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from raycaster.errors import UserError, not_installed
+
+ATTEMPTS = 3
+"""Times that a job is tried whose worker died."""
+
+J = TypeVar("J")
+R = TypeVar("R")
+
+
+def positive(text: str) -> int:
+    """An option's number, 1 or more."""
+    value = int(text)
+    if value < 1:
+        raise ValueError
+    return value
+
+
+def add_job_options(parser: argparse.ArgumentParser, jobs: int = 2) -> None:
+    """Add `--jobs` and `--scheduler`, which are `executors`'s arguments."""
+    help_of_jobs = "at a time, here (default: %(default)s)"
+    parser.add_argument("--jobs", type=positive, default=jobs, metavar="N", help=help_of_jobs)
+    parser.add_argument(
+        "--scheduler", metavar="ADDRESS",
+        help="of a Dask scheduler, such as tcp://host:8786, whose workers see this directory (default: processes here)",
+    )  # fmt: skip
+
+
+@contextmanager
+def executors(scheduler: str | None, jobs: int) -> Iterator[Callable[[], Executor]]:
+    """Something that makes executors: of processes here, or of a Dask cluster's workers.
+
+    Args:
+        scheduler: address of the cluster's scheduler, such as tcp://host:8786; None for processes here.
+        jobs: how many of these.
+
+    Raises:
+        UserError: Dask is missing, or no scheduler answers there.
+    """
+    if scheduler is None:
+        yield lambda: ProcessPoolExecutor(jobs)
+        return
+    try:
+        from distributed import Client  # noqa: PLC0415 - wanted only where a cluster is
+    except ImportError:
+        raise UserError(not_installed("Dask", "report")) from None
+    try:
+        client = Client(scheduler, timeout=10)
+    except (OSError, ValueError) as error:
+        raise UserError(f"scheduler: no Dask scheduler answers at {scheduler}: {error}") from None
+    with client:
+        yield lambda: client.get_executor(pure=False, retries=ATTEMPTS)
+
+
+def run_jobs(
+    what: str,
+    function: Callable[[J], R],
+    jobs: Sequence[J],
+    make_executor: Callable[[], Executor],
+    console: Console,
+    *,
+    finished: Callable[[J, R], object] = lambda job, result: None,
+    before: int = 0,
+    label: Callable[[J], str] = str,
+) -> list[R]:
+    """The function of each job, in the order of the jobs.
+
+    Args:
+        what: the jobs are, for the progress bar.
+        function: which a worker must be able to import, as its argument and result must be able to travel.
+        jobs: its arguments.
+        make_executor: as `executors` yields it.
+        console: for the progress bar.
+        finished: told of each result, here, as soon as it is there.
+        before: jobs that were done before, which the bar counts.
+        label: what a job is called where its workers die.
+
+    Raises:
+        UserError: workers died on the same jobs `ATTEMPTS` times.
+    """
+    results: dict[int, R] = {}
+    columns = TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn()
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task("", total=before + len(jobs), completed=before)
+        for _ in range(ATTEMPTS):
+            missing = [place for place in range(len(jobs)) if place not in results]
+            if not missing:
+                break
+            with make_executor() as pool:
+                futures = {pool.submit(function, jobs[place]): place for place in missing}
+                try:
+                    for future in as_completed(futures):
+                        place = futures[future]
+                        try:
+                            results[place] = future.result()
+                        except BrokenExecutor:
+                            continue  # a worker died, and took the others' work with it: once more
+                        finished(jobs[place], results[place])
+                        progress.advance(task)
+                except BaseException:
+                    # What did not start yet shall not keep one from the error, or from the prompt.
+                    for future in futures:
+                        future.cancel()
+                    raise
+    if missing := [job for place, job in enumerate(jobs) if place not in results]:
+        raise UserError(f"workers died {ATTEMPTS} times on {len(missing)} jobs, {label(missing[0])} among them")
+    return [results[place] for place in range(len(jobs))]

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: MIT
+"""Worlds and settings for tests of what holds for anything: Hypothesis draws, and shrinks what fails."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import hypothesis
+import numpy as np
+from hypothesis import strategies as st
+
+from raycaster.configuration import WORLD_SIZE
+from raycaster.golden.random_world import EXTREMES
+from raycaster.golden.world import Rectangles
+from raycaster.verif.seeds import seed
+
+
+def examples(count: int) -> Callable:
+    """A test of so many examples, drawn from the seed that all random tests have."""
+    settings = hypothesis.settings(max_examples=count, deadline=None, database=None, print_blob=True)
+    return lambda test: hypothesis.seed(seed())(settings(test))
+
+
+class World(NamedTuple):
+    """A table, and rays from one camera; as `raycaster.golden.exact.trace` takes them."""
+
+    rectangles: Rectangles
+    camera: np.ndarray
+    slopes: np.ndarray
+
+
+@st.composite
+def worlds(draw: st.DrawFn, lowest: int = 0, highest: int = WORLD_SIZE - 1) -> World:
+    """Few rectangles and few rays, with coordinates in a range."""
+    inside = [one for one in (*EXTREMES, lowest, highest) if lowest <= one <= highest]
+    # Few different ones, so that planes, edges and the camera are often in line.
+    pool = draw(st.lists(st.sampled_from(inside) | st.integers(lowest, highest), min_size=2, max_size=4))
+    coordinate = st.sampled_from(pool)
+    point = st.tuples(coordinate, coordinate, coordinate)
+    rectangle = st.tuples(point, point, st.integers(0, 2), st.booleans() | st.just(True))
+    drawn = draw(st.lists(rectangle, min_size=1, max_size=5))
+    # Some stand in one place, for ties.
+    drawn += draw(st.lists(st.sampled_from(drawn), max_size=3))
+    corners = np.array([(first, second) for first, second, *_ in drawn], dtype=np.int64)
+    for pair, (_, _, axis, _) in zip(corners, drawn, strict=True):
+        pair[1, axis] = pair[0, axis]
+    colours = np.arange(1, len(drawn) + 1).repeat(3).reshape(-1, 3).astype(np.uint8)
+    enabled = np.array([on for *_, on in drawn])
+    along_x = st.sampled_from([-200, -100, -1, 1, 100, 200])
+    across = st.sampled_from([-100, 0, 0, 1, 100]) | st.integers(-200, 200)
+    slopes = draw(st.lists(st.tuples(along_x, across, across), min_size=1, max_size=8))
+    return World(Rectangles(corners, colours, enabled), np.array(draw(point)), np.array(slopes))
+
+
+ENGINE_OPTIONS = {
+    "seed": {
+        "fraction_bits": st.integers(0, 8),
+        "rounding": st.sampled_from(["truncate", "nearest"]),
+        "divider_bits": st.sampled_from(["auto", 1, 2, 3]),
+        "units": st.sampled_from([1, 2, 4, 8, 16, 32, 64]),
+        "culling": st.booleans(),
+        "screen": st.sampled_from(["vga", "tiny"]),
+    },
+    "exact": {
+        "units": st.sampled_from([1, 2, 4, 8, 16, 32, 64]),
+        "culling": st.booleans(),
+        "screen": st.sampled_from(["vga", "tiny"]),
+    },
+    "beam": {"scale": st.sampled_from([1, 2, 4]), "screen": st.sampled_from(["vga", "tiny", "play"])},
+}
+ANY_OPTIONS = {
+    "rectangles": st.integers(1, 32),
+    "reflections": st.integers(0, 2),
+    "rows": st.sampled_from([240, 200, 180, 48]),
+    "colour_bits": st.integers(1, 8),
+}
+ODD = {
+    "engine": "none", "units": 7, "rectangles": 33, "reflections": -1, "rows": 100, "scale": 6, "fraction_bits": 9,
+    "rounding": "up", "divider_bits": 4, "colour_bits": "x", "screen": "cinema", "culling": 2, "colour": 8,
+}  # fmt: skip
+"""Of each option something that no engine takes, and one that is none."""
+
+
+@st.composite
+def options(draw: st.DrawFn, odd: bool = False) -> dict[str, Any]:
+    """A configuration's options, most of which go together; now and then with an odd one."""
+    engine = draw(st.sampled_from(list(ENGINE_OPTIONS)))
+    chosen = draw(st.fixed_dictionaries({}, optional=ENGINE_OPTIONS[engine] | ANY_OPTIONS))
+    chosen |= {"engine": engine, "allow_underrun": draw(st.booleans())}
+    if odd and draw(st.integers(0, 3)) == 0:
+        name = draw(st.sampled_from(list(ODD)))
+        chosen[name] = ODD[name]
+    return chosen

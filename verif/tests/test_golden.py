@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: MIT
+"""What holds for the golden models in every world: the definition in fractions, and what must make no difference."""
+
+from __future__ import annotations
+
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from generated import World, examples, worlds
+from hypothesis import given
+from hypothesis import strategies as st
+from test_exact import colour_by_definition, follow_by_definition
+
+from raycaster.configuration import WORLD_SIZE
+from raycaster.golden import exact, seed_engine
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import Rectangles
+from raycaster.screens import BEAM_SCREENS
+
+BACKGROUND = (7, 80, 201)
+MIRRORS = st.integers(0, 2)
+MODELS = {
+    "exact": exact.trace,
+    "seed-truncate": seed_engine.trace,
+    "seed-nearest": partial(seed_engine.trace, fraction_bits=3, rounding="nearest"),
+}
+of_each = pytest.mark.parametrize("trace", MODELS.values(), ids=list(MODELS))
+
+
+def moved(table: Rectangles, corners: np.ndarray) -> Rectangles:
+    """The same rectangles elsewhere."""
+    return Rectangles(corners, table.colours, table.enabled)
+
+
+def assert_equal(one, other) -> None:
+    """All rays meet the same rectangles, and have the same colours."""
+    assert np.array_equal(np.array(one.winners), np.array(other.winners))
+    assert np.array_equal(one.colours, other.colours)
+
+
+@examples(100)
+@given(worlds(), st.integers(0, 4))
+def test_exact_traces_as_fractions_do(world, reflections):
+    table, camera, slopes = world
+    traced = exact.trace(table, camera, BACKGROUND, slopes, reflections)
+    for ray, slope in enumerate(slopes.tolist()):
+        path = follow_by_definition(table.corners.tolist(), table.enabled.tolist(), camera.tolist(), slope, reflections)
+        winners = [winner for _, winner in path]
+        assert [int(winner[ray]) for winner in traced.winners] == winners
+        if reflections <= 2:
+            expected = colour_by_definition(table.colours.tolist(), winners)
+            assert traced.colours[ray].tolist() == list(expected)
+
+
+@of_each
+@examples(40)
+@given(worlds(100, 400), st.tuples(*3 * (st.integers(-100, 111),)), MIRRORS)
+def test_where_the_world_begins_makes_no_difference(trace, world, way, reflections):
+    table, camera, slopes = world
+    there = trace(moved(table, table.corners + way), camera + way, BACKGROUND, slopes, reflections)
+    assert_equal(trace(table, camera, BACKGROUND, slopes, reflections), there)
+
+
+@of_each
+@examples(40)
+@given(worlds(), MIRRORS)
+def test_left_is_as_right(trace, world, reflections):
+    table, camera, slopes = world
+    other_way, last = np.array([1, -1, 1]), np.array([0, WORLD_SIZE - 1, 0])
+    mirrored = World(moved(table, table.corners * other_way + last), camera * other_way + last, slopes * other_way)
+    there = trace(mirrored.rectangles, mirrored.camera, BACKGROUND, mirrored.slopes, reflections)
+    assert_equal(trace(table, camera, BACKGROUND, slopes, reflections), there)
+
+
+@pytest.mark.parametrize("place", BEAM_SCREENS, ids=str)
+@examples(10)
+@given(worlds(), st.data(), MIRRORS)
+def test_a_finer_picture_has_the_coarse_one_in_it(place, world, data, reflections):
+    """The pixel (s row, s column) at scale s is the pixel (row, column) at scale 1."""
+    screen = BEAM_SCREENS[place]
+    scales = [scale for scale in range(1, screen.doubling + 1) if screen.doubling % scale == 0]
+    row = data.draw(st.integers(0, screen.rows - 1), label="row")
+    rows = [
+        exact.trace(
+            world.rectangles, world.camera, BACKGROUND,
+            primary_slopes(screen.scaled(scale))[scale * row, ::scale], reflections,
+        )
+        for scale in scales
+    ]  # fmt: skip
+    for coarse, fine in pairwise(rows):
+        assert_equal(coarse, fine)
