@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from pydantic.fields import FieldInfo
 from systemrdl.node import FieldNode, Node, RegNode
@@ -12,10 +13,13 @@ from raycaster.configuration import GROUP_OVERHEAD, OPTION_NAMES, Configuration,
 from raycaster.docs.timing import CONFIGURATION, DIAGRAMS, kept, measured
 from raycaster.engines import ENGINES
 from raycaster.registers import compile_registers
-from raycaster.rtl.beam import fold_tester, nearest_of_two, ray_fold
+from raycaster.rtl.beam import fold_tester, hit_cells, nearest_of_two, ray_fold
 from raycaster.rtl.beam.beam_caster import beam_latency, pass_latency
 from raycaster.rtl.beam.beam_pass import rounds
-from raycaster.rtl.engine import colour_blend, rect_setup
+from raycaster.rtl.beam.line_starter import start_cycles
+from raycaster.rtl.common.widths import exact_slope_bits
+from raycaster.rtl.engine import rect_setup
+from raycaster.rtl.engine.colour_blend import blend_latency
 from raycaster.rtl.exact.exact_control import WRITE_AT
 
 ACCESS = {"r": "read", "rw": "read, write", "woclr": "read, write 1 to clear", "woset": "read, write 1 to set"}
@@ -78,9 +82,11 @@ def beam_screens() -> str:
         config = configure(engine="beam", rows=rows_of_rays, scale=scale)
         screen = config.screen_geometry
         size = f"{screen.columns}x{screen.rows}"
-        setup = rect_setup.LATENCY + config.rectangles
-        rows.append([size, f"{screen.clock_hz / 1e6:g} MHz", beam_latency(config), setup, screen.horizontal.blank])
-    return table(["rays", "clock", "cycles from a column to its colour", "to set up a row", "blanking before it"], rows)
+        turned = replace(config, turn=True)
+        setup = [f"{start_cycles(one)}" for one in (config, turned)]
+        rows.append([size, f"{screen.clock_hz / 1e6:g} MHz", beam_latency(config), *setup, screen.horizontal.blank])
+    head = ["rays", "clock", "cycles from a column to its colour", "to set up a row", "with a turned camera"]
+    return table([*head, "blanking before it"], rows)
 
 
 def beam_latencies() -> str:
@@ -91,7 +97,8 @@ def beam_latencies() -> str:
         ["`nearest_of_two`", f"a round; {config.rectangles} rectangles take {rounds(config)}", nearest_of_two.LATENCY],
         ["`ray_fold`", "how the ray folds at its mirror", ray_fold.LATENCY],
         ["", "all of it, from a ray to its reflection", pass_latency(config)],
-        ["`colour_blend`", "the pixel's colour", colour_blend.LATENCY],
+        ["`colour_blend`", "the pixel's colour", blend_latency(config)],
+        ["`hit_cells`", "with patterns, in which of its cells the nearest rectangle is hit", hit_cells.LATENCY],
     ]
     return table(["block", "what it does", "cycles"], rows)
 
@@ -151,6 +158,8 @@ def facts() -> dict[str, str]:
         "overhead": str(GROUP_OVERHEAD),
         "verdict": str(WRITE_AT + 1),
         "exact_latency": str(ENGINES["exact"].result_latency),
+        "turned_slope_bits": str(exact_slope_bits(configure(engine="exact", turn=True))),
+        "pattern_latency": str(ENGINES["exact"].pattern_latency),
         "group": str(default.group_cycles),
         "budget": str(default.group_budget),
         "row": f"{default.screen_geometry.row_cycles:,}",

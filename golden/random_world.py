@@ -3,10 +3,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import permutations
+
 import numpy as np
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.golden.world import Rectangles
+from raycaster.scene import BASIS_SCALE, CELLS, PATTERNS, Basis, Camera
 from raycaster.screens import VIEW_DISTANCE
 
 EXTREMES = (0, 1, 255, 256, 510, 511)
@@ -60,3 +64,55 @@ def random_slopes(rng: np.random.Generator, rays: int) -> np.ndarray:
     slopes = np.where(rng.random((rays, 1)) < 0.5, primary, steep)
     slopes[:, 1:][rng.random((rays, 2)) < 0.1] = 0
     return slopes
+
+
+def random_grid(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """A room, and what is in it, on a grid, so that rays on diagonals run into corners.
+
+    Args:
+        rng: the source.
+        count: of rectangles, 6 or more.
+
+    Returns:
+        Corners, int64 (count, 2, 3), of rectangles with a plane, and a camera, int64 (3,), on the grid too; half of
+        them are on a diagonal of the room.
+    """
+    low, high = rng.integers(0, 5, 3), rng.integers(8, 16, 3)
+    corners = np.concatenate([np.tile([low, high], (6, 1, 1)), rng.integers(low, high + 1, (count - 6, 2, 3))])
+    flat = np.concatenate([[0, 0, 1, 1, 2, 2], rng.integers(3, size=count - 6)])
+    index = np.arange(count)
+    corners[index, index % 2, flat] = corners[index, 1 - index % 2, flat]
+    place = rng.integers(low, high) if rng.random() < 0.5 else low + rng.integers(1, 4)
+    return 32 * rng.permutation(corners), 32 * place
+
+
+def random_looks(rng: np.random.Generator, rectangles: Rectangles) -> Rectangles:
+    """The same rectangles with every mirror and every pattern among them, most often half and plain."""
+    count = len(rectangles)
+    return replace(
+        rectangles,
+        mirrors=np.where(rng.random(count) < 0.4, 2, rng.integers(5, size=count)),
+        kinds=np.where(rng.random(count) < 0.4, 0, rng.integers(len(PATTERNS), size=count)),
+        cells=rng.choice(CELLS, count),
+        colours_2=rng.integers(256, size=(count, 3)).astype(np.uint8),
+    )
+
+
+def random_basis(rng: np.random.Generator) -> Basis:
+    """Forward, right and up of a camera, the kinds of which are equally frequent: turned by any angles, by whole right
+    angles, along axes with any signs and lengths, and anything that the registers hold."""
+    kind = rng.integers(4)
+    if kind == 0:
+        yaw, pitch, roll = rng.uniform(-180, 180, 3).tolist()
+        return Camera(position=(0, 0, 0), yaw=yaw, pitch=pitch, roll=roll).basis
+    if kind == 1:
+        yaw, pitch, roll = (90.0 * rng.integers(-2, 3, 3)).tolist()
+        return Camera(position=(0, 0, 0), yaw=yaw, pitch=pitch, roll=roll).basis
+    low, high = -2 * BASIS_SCALE, 2 * BASIS_SCALE
+    if kind == 2:
+        order = rng.choice(list(permutations(range(3))))
+        vectors = np.eye(3, dtype=np.int64)[order] * rng.choice([low, -BASIS_SCALE, 1, BASIS_SCALE, high - 1], (3, 1))
+    else:
+        extremes = rng.choice([low, -1, 0, 1, high - 1], (3, 3))
+        vectors = np.where(rng.random((3, 3)) < 0.5, extremes, rng.integers(low, high, (3, 3)))
+    return tuple(tuple(vector) for vector in vectors.tolist())

@@ -5,18 +5,24 @@ from __future__ import annotations
 
 import numpy as np
 
+from raycaster.scene import UNTURNED, Basis
 from raycaster.screens import Screen
 
 
-def primary_slopes(screen: Screen) -> np.ndarray:
+def primary_slopes(screen: Screen, basis: Basis = UNTURNED) -> np.ndarray:
     """Slopes of the ray through every pixel, as the image contract has them.
 
+    Args:
+        screen: what is looked through.
+        basis: forward, right and up of the camera, times 256. Of one that is not turned the slopes are not times 256,
+            as only ratios of their components count.
+
     Returns:
-        int64 (rows, columns, 3): (view distance, column - centre column, horizon row - row), in world units
-        times the screen's scale.
+        int64 (rows, columns, 3): view distance * forward + (column - centre column) * right + (horizon row - row) * up,
+        in world units times the screen's scale.
     """
     slopes = np.empty((screen.rows, screen.columns, 3), dtype=np.int64)
     slopes[..., 0] = screen.view_distance
     slopes[..., 1] = np.arange(screen.columns) - screen.centre_column
     slopes[..., 2] = screen.horizon_row - np.arange(screen.rows)[:, None]
-    return slopes
+    return slopes if basis == UNTURNED else slopes @ np.array(basis, dtype=np.int64)

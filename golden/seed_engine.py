@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from raycaster.configuration import COORDINATE_BITS
-from raycaster.golden.colour import blend
+from raycaster.golden.colour import blend, hit_colours
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.scene import Scene
@@ -36,13 +36,13 @@ class Bounce:
     """
 
     origins: np.ndarray
-    """int64 (rays, 3): the camera, or the last hit point as stored; the camera still for rays that hit nothing."""
+    """int64 (rays, 3): the camera, or the last hit point as stored, where a ray that has ended stays."""
 
     slopes: np.ndarray
     """int64 (rays, 3): slopes of the rays, with the reflections so far."""
 
     alive: np.ndarray
-    """bool (rays,): has hit something at every bounce before."""
+    """bool (rays,): has hit something that mirrors at every bounce before."""
 
     numerators: np.ndarray
     """int64 (rectangles, rays): n = plane - origin along the rectangle's axis, signed."""
@@ -63,7 +63,7 @@ class Bounce:
     """int64 (rectangles, rays): |point - origin| along x; means something where hit."""
 
     hits: np.ndarray
-    """bool (rectangles, rays): both coordinates are valid and within the bounds."""
+    """bool (rectangles, rays): the ray is alive, and both coordinates are valid and within the bounds."""
 
     winners: np.ndarray
     """int64 (rays,): index of the nearest rectangle hit, -1 for none."""
@@ -77,7 +77,11 @@ class Trace:
     """uint8 (rays, 3)."""
 
     winners: tuple[np.ndarray, ...]
-    """For the primary ray and each reflection, int64 (rays,): index of the rectangle hit, -1 for none."""
+    """For the primary ray and each reflection, int64 (rays,): index of the rectangle hit, -1 for none and after what
+    does not mirror."""
+
+    seen: tuple[np.ndarray, ...]
+    """For the primary ray and each reflection, uint8 (rays, 3): the colour of what was hit, the background for none."""
 
     points: tuple[np.ndarray, ...]
     """For the primary ray and each reflection, int64 (rays, 3): where it hit, in units of 2^-F; for a miss, where it
@@ -167,7 +171,12 @@ def render(
 
     Returns:
         uint8 (rows, columns, 3).
+
+    Raises:
+        ValueError: the camera is turned.
     """
+    if scene.camera.turned:
+        raise ValueError("depth is measured along x; the camera cannot turn")
     slopes = primary_slopes(screen)
     traced = trace(
         Rectangles.of_scene(scene),
@@ -207,27 +216,30 @@ def trace(
     slope = np.array(np.asarray(slopes).T, dtype=np.int64, order="C")
     origin = np.array(np.broadcast_to(np.asarray(camera), slope.T.shape).T, dtype=np.int64, order="C") << fraction_bits
     alive = np.ones(slope.shape[1], dtype=bool)
-    winners, points, bounces = [], [], []
+    winners, seen, points, bounces = [], [], [], []
     for _ in range(reflections + 1):
         bounce = _empty_bounce(rectangles, origin, slope, alive) if keep else None
         winner, origin = _nearest(
-            rectangles, origin, slope, fraction_bits=fraction_bits, rounding=rounding, bounce=bounce
+            rectangles, origin, slope, alive, fraction_bits=fraction_bits, rounding=rounding, bounce=bounce
         )
         winners.append(winner)
         points.append(origin.T)
+        seen.append(hit_colours(rectangles, background, winner, points[-1], 1 << fraction_bits))
         if bounce:
             bounce.winners[:] = winner
             bounces.append(bounce)
-        alive = winner >= 0
+        alive = (winner >= 0) & (rectangles.mirrors[winner] > 0)
         for axis in range(3):
             slope[axis, alive & (rectangles.axes[winner] == axis)] *= -1
-    return Trace(blend(rectangles.colours, background, winners), tuple(winners), tuple(points), tuple(bounces))
+    colours = blend(seen, [rectangles.mirrors[winner] for winner in winners])
+    return Trace(colours, tuple(winners), tuple(seen), tuple(points), tuple(bounces))
 
 
 def _nearest(
     rectangles: Rectangles,
     origin: np.ndarray,
     slope: np.ndarray,
+    alive: np.ndarray,
     *,
     fraction_bits: int,
     rounding: Rounding,
@@ -235,7 +247,7 @@ def _nearest(
 ) -> tuple[np.ndarray, np.ndarray]:
     """The nearest rectangle and the point where it is hit; arrays are ([3,] rays).
 
-    For a miss, -1 and the origin itself: with its slope unchanged too, the ray goes on missing.
+    For a miss, and a ray that is not alive, -1 and the origin itself.
     """
     winner = np.full(origin.shape[1], -1, dtype=np.int64)
     best_depth = np.full(origin.shape[1], 1 << (COORDINATE_BITS + fraction_bits), dtype=np.int64)
@@ -246,7 +258,7 @@ def _nearest(
         low, high = rectangles.low[index] << fraction_bits, rectangles.high[index] << fraction_bits
         plane = low[axis]
         point[axis] = plane
-        hit = np.ones(len(winner), dtype=bool)
+        hit = alive.copy()
         validities = []
         for u in OTHER_AXES[axis]:
             point[u], valid = intersect(origin[u], slope[u], plane, origin[axis], slope[axis], fraction_bits, rounding)

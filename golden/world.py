@@ -27,6 +27,30 @@ class Rectangles:
     enabled: np.ndarray
     """bool (rectangles,)."""
 
+    mirrors: np.ndarray = None
+    """int64 (rectangles,): how much each mirrors, in quarters 0..4; 2 everywhere where it is not given."""
+
+    kinds: np.ndarray = None
+    """int64 (rectangles,): the patterns, 0 plain, 1 checker, 2 rows, 3 columns; plain where it is not given."""
+
+    cells: np.ndarray = None
+    """int64 (rectangles,): sizes of the patterns' cells, in world units, powers of two; 32 where it is not given."""
+
+    colours_2: np.ndarray = None
+    """uint8 (rectangles, 3): colours of every other cell; black where it is not given."""
+
+    def __post_init__(self):
+        count = len(self.enabled)
+        defaults = {
+            "mirrors": np.full(count, 2),
+            "kinds": np.zeros(count, dtype=np.int64),
+            "cells": np.full(count, 32),
+            "colours_2": np.zeros((count, 3), dtype=np.uint8),
+        }
+        for name, default in defaults.items():
+            if getattr(self, name) is None:
+                object.__setattr__(self, name, default)
+
     @classmethod
     def of_scene(cls, scene: Scene) -> Rectangles:
         """The scene's rectangles in the file's order, all enabled."""
@@ -34,6 +58,10 @@ class Rectangles:
             corners=np.array([rectangle.corners for rectangle in scene.rect], dtype=np.int64),
             colours=np.array([rectangle.colour for rectangle in scene.rect], dtype=np.uint8),
             enabled=np.ones(len(scene.rect), dtype=bool),
+            mirrors=np.array([rectangle.quarters for rectangle in scene.rect], dtype=np.int64),
+            kinds=np.array([rectangle.kind for rectangle in scene.rect], dtype=np.int64),
+            cells=np.array([rectangle.cell for rectangle in scene.rect], dtype=np.int64),
+            colours_2=np.array([rectangle.colour2 or (0, 0, 0) for rectangle in scene.rect], dtype=np.uint8),
         )
 
     def __len__(self) -> int:

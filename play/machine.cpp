@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
-// A system in a loop without a test bench: reads which buttons are held, runs to the next vertical sync, and writes how
-// many clocks that took, the pixels that were shown, what happened on the ray tracer's bus, and what the serial port said;
-// over and over.
+// A design in a loop without a test bench: reads which buttons are held and what a driver would write, runs to the next
+// vertical sync, and writes how many clocks that took, the pixels that were shown, what happened on the ray tracer's bus,
+// and what the serial port said; over and over.
 //
-// In: 32 bits, the buttons. Out: 32 bits each of clocks, clocks in which a picture was computed, pixels, events and
+// In: 32 bits each of the buttons and how many writes there are; word address and word of each write, which are written
+// as fast as they are taken. Out: 32 bits each of clocks, clocks in which a picture was computed, pixels, events and
 // characters; red, green and blue of each pixel; the events; the characters. VS_ACTIVE: level of VS in its pulse;
 // CLOCKS_PER_BIT: of the serial port, 0 where there is none.
 
 #include <cstdint>
 #include <cstdio>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,11 @@ static const int RESET_CLOCKS = 8;
 // A StartScreen, a write, or both in a clock.
 struct Event {
     uint32_t clock, start_screen, written, address, writedata, byteenable;
+};
+
+// What a driver writes.
+struct Write {
+    uint32_t address, word;
 };
 
 // The receiving half: samples a byte in the middle of its bits.
@@ -58,15 +65,30 @@ int main(int argc, char **argv) {
 #if CLOCKS_PER_BIT
     SerialPort serial;
 #endif
+    std::deque<Write> writes;
     top.ready = 0;
-    uint32_t buttons = 0;
-    for (uint64_t clocks = 0; fread(&buttons, sizeof buttons, 1, stdin) == 1;) {
-        top.buttons = buttons;
+    uint32_t heads[2];
+    for (uint64_t clocks = 0; fread(heads, sizeof heads, 1, stdin) == 1;) {
+        top.buttons = heads[0];
+        for (uint32_t count = heads[1]; count > 0; count--) {
+            Write write;
+            if (fread(&write, sizeof write, 1, stdin) != 1) return 1;
+            writes.push_back(write);
+        }
         pixels.clear();
         events.clear();
         uint32_t taken = 0, busy = 0;
         for (bool sync = false; !sync; taken++, clocks++) {
             if (clocks == RESET_CLOCKS) top.ready = 1;
+#if !CLOCKS_PER_BIT
+            top.host_write = !writes.empty();
+            if (!writes.empty()) {
+                top.host_address = writes.front().address;
+                top.host_writedata = writes.front().word;
+            }
+            top.eval();
+            if (top.written) writes.pop_front();
+#endif
             busy += top.busy;
             if (top.start_screen || top.written)
                 events.push_back({static_cast<uint32_t>(clocks), top.start_screen, top.written, top.address,

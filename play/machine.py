@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A whole system in Verilator, as fast as it goes: buttons in, frames out."""
+"""A design in Verilator, as fast as it goes: buttons or a driver's writes in, frames out."""
 
 from __future__ import annotations
 
@@ -14,13 +14,10 @@ from pathlib import Path
 import numpy as np
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
-from raycaster.convert.write import write_system
 from raycaster.memory_map import BUTTON_NAMES, PROGRAM_FILE, clocks_per_bit
 from raycaster.registers import address_bits
-from raycaster.rtl.system import scene_player
-from raycaster.scene import Scene
 from raycaster.sim.register_model import LiveScene, SceneFollower
-from raycaster.sim.simulator import BUILD, SimulationError, build_program, convert, lock
+from raycaster.sim.simulator import BUILD, SimulationError, build_program, convert
 
 TOP = "machine"
 BENCH, LOOP = (Path(__file__).with_name(f"{TOP}.{kind}") for kind in ("v", "cpp"))
@@ -47,7 +44,7 @@ class Frame:
 
 
 class Machine:
-    """A running system; a context manager, which ends it.
+    """A running design; a context manager, which ends it.
 
     Args:
         command: of `build_machine`.
@@ -75,16 +72,18 @@ class Machine:
         self._process.stdout.close()
         self._directory.cleanup()
 
-    def frame(self, buttons: int) -> Frame:
+    def frame(self, buttons: int = 0, writes: Sequence[tuple[int, int]] = ()) -> Frame:
         """Run to the next vertical sync.
 
         Args:
-            buttons: those held, a bit each.
+            buttons: of a system with a processor, those held, a bit each.
+            writes: word addresses and words that a driver writes one after the other, from now on; without a processor.
 
         Raises:
             SimulationError: the simulation ended.
         """
-        self._process.stdin.write(struct.pack("<I", buttons))
+        words = [buttons, len(writes), *(word for write in writes for word in write)]
+        self._process.stdin.write(struct.pack(f"<{len(words)}I", *words))
         self._process.stdin.flush()
         clocks, busy, count, events, characters = struct.unpack("<5I", self._read(20))
         pixels = np.frombuffer(self._read(3 * count), dtype=np.uint8) << self._lost_bits
@@ -109,13 +108,13 @@ class Machine:
         return data
 
 
-def build_machine(config: Configuration, scene: Scene | None = None, build: Path = BUILD) -> list[str]:
-    """Compile a system, or find it compiled.
+def build_machine(config: Configuration, build: Path = BUILD, *, processor: bool) -> list[str]:
+    """Compile a design, or find it compiled.
 
     Args:
         config: the design.
-        scene: what it shows, moved by buttons; None for a system with a processor instead.
-        build: the directory that holds `machine/` and `model/`.
+        build: the directory that holds `model/`.
+        processor: whether a program drives it, or whoever calls `Machine.frame`.
 
     Returns:
         The command that runs it, for `Machine`.
@@ -124,21 +123,16 @@ def build_machine(config: Configuration, scene: Scene | None = None, build: Path
         UserError: Verilator, or what it needs, is missing, or PicoRV32.
         SimulationError: it could not be compiled.
     """
-    if scene:
-        directory = build / "machine" / config.name
-        with lock(directory):
-            files = write_system(config, scene, directory)
-    else:
-        files = convert(config, build, system=True)
+    files = convert(config, build, system=processor)
     screen = config.screen_geometry
     flags = (
-        "-O3", "--x-assign", "fast", "-Wno-lint", "-Wno-style", f"-DSYSTEM={files[-1].stem}",
-        *(() if scene else ("-DSERIAL",)), f"-GBUTTONS={len(scene_player.BUTTONS if scene else BUTTON_NAMES)}",
+        "-O3", "--x-assign", "fast", "-Wno-lint", "-Wno-style",
+        *((f"-DSYSTEM={files[-1].stem}",) if processor else ()), f"-GBUTTONS={len(BUTTON_NAMES)}",
         f"-GCOLOUR_BITS={config.colour_bits}", f"-GADDRESS_BITS={address_bits(config.table)}",
     )  # fmt: skip
     defines = (
         f"-DVS_ACTIVE={int(screen.vertical.active_high)}",
-        f"-DCLOCKS_PER_BIT={0 if scene else clocks_per_bit(screen.clock_hz)}",
+        f"-DCLOCKS_PER_BIT={clocks_per_bit(screen.clock_hz) if processor else 0}",
     )
-    name = f"{config.name}-{files[-1].stem}"
+    name = f"{config.name}-{'processor' if processor else 'driven'}"
     return build_program(name, TOP, [*files, BENCH], [LOOP], build=build, flags=flags, compiler=("-O2", *defines))

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A whole system for a loop in C++, with what happens on the ray tracer's bus brought out.
+// What is played, for a loop in C++, with what happens on the ray tracer's bus brought out: a system with a processor,
+// or the ray tracer alone, whose bus the loop drives.
 //
-// SYSTEM: the system's module. SERIAL: defined where it has a serial port.
+// SYSTEM: the system's module, where there is a processor.
 
 module machine #(
     parameter BUTTONS = 5,
@@ -10,7 +11,10 @@ module machine #(
 ) (
     input  wire                    clk,
     input  wire                    ready,
-    input  wire [BUTTONS-1:0]      buttons,
+    input  wire [BUTTONS-1:0]      buttons,         // of a system
+    input  wire                    host_write,      // of the ray tracer alone, held until it is taken
+    input  wire [ADDRESS_BITS-1:0] host_address,
+    input  wire [31:0]             host_writedata,
     output wire                    uart_tx,
     output wire [COLOUR_BITS-1:0]  vga_r,
     output wire [COLOUR_BITS-1:0]  vga_g,
@@ -26,15 +30,17 @@ module machine #(
     output wire [31:0]             writedata
 );
 
-wire vga_hs, vga_sync_n;
+wire vga_hs, vga_sync_n, reset;
+
+`ifdef SYSTEM
+`define MODULE system.ray_caster_module_i
+assign reset = system.reset;
 
 `SYSTEM system (
     .clk(clk),
     .ready(ready),
     .buttons(buttons),
-`ifdef SERIAL
     .uart_tx(uart_tx),
-`endif
     .vga_r(vga_r),
     .vga_g(vga_g),
     .vga_b(vga_b),
@@ -44,17 +50,39 @@ wire vga_hs, vga_sync_n;
     .vga_sync_n(vga_sync_n),
     .vga_clk(vga_clk)
 );
-
-`ifndef SERIAL
+`else
+`define MODULE ray_caster_module_i
+assign reset = !ready;
 assign uart_tx = 1'b1;
+
+ray_caster_module ray_caster_module_i (
+    .clk(clk),
+    .reset(reset),
+    .avs_s0_address(host_address),
+    .avs_s0_read(1'b0),
+    .avs_s0_write(host_write),
+    .avs_s0_writedata(host_writedata),
+    .avs_s0_byteenable(4'b1111),
+    .avs_s0_readdata(),
+    .avs_s0_readdatavalid(),
+    .avs_s0_waitrequest(),
+    .irq(),
+    .vga_r(vga_r),
+    .vga_g(vga_g),
+    .vga_b(vga_b),
+    .vga_hs(vga_hs),
+    .vga_vs(vga_vs),
+    .vga_blank_n(vga_blank_n),
+    .vga_sync_n(vga_sync_n),
+    .vga_clk(vga_clk)
+);
 `endif
 
-assign busy = system.ray_caster_module_i.progress_busy;
-assign start_screen = system.ray_caster_module_i.progress_start_screen && !system.reset;
-assign written =
-    system.ray_caster_module_i.avs_s0_write && !system.ray_caster_module_i.avs_s0_waitrequest && !system.reset;
-assign address = system.ray_caster_module_i.avs_s0_address;
-assign byteenable = system.ray_caster_module_i.avs_s0_byteenable;
-assign writedata = system.ray_caster_module_i.avs_s0_writedata;
+assign busy = `MODULE.progress_busy;
+assign start_screen = `MODULE.progress_start_screen && !reset;
+assign written = `MODULE.avs_s0_write && !`MODULE.avs_s0_waitrequest && !reset;
+assign address = `MODULE.avs_s0_address;
+assign byteenable = `MODULE.avs_s0_byteenable;
+assign writedata = `MODULE.avs_s0_writedata;
 
 endmodule

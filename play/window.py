@@ -16,6 +16,7 @@ from rich.console import Console
 
 from raycaster.configuration import Configuration, configure
 from raycaster.design import design_for
+from raycaster.engines import ENGINES
 from raycaster.errors import UserError, not_installed
 from raycaster.golden import exact
 from raycaster.golden.picture import count_wrong, shown
@@ -30,14 +31,14 @@ from raycaster.options import (
 )
 from raycaster.play.machine import Frame, Machine, build_machine
 from raycaster.play.system import FASTEST
-from raycaster.rtl.system import scene_player
+from raycaster.play.walk import TURNS, WALKS, Walker
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware
 
 GAME_KEYS = {"left": ("left", "a"), "right": ("right", "d"), "up": ("up", "w"), "down": ("down", "s")}
 GAME_KEYS |= {"fire": ("space", "return")}
-SCENE_KEYS = {"forward": ("w",), "back": ("s",), "left": ("left", "a"), "right": ("right", "d")}
-SCENE_KEYS |= {"up": ("up",), "down": ("down",)}
+WALK_KEYS = {"forward": ("w",), "back": ("s",), "left": ("a",), "right": ("d",), "rise": ("e",), "sink": ("q",)}
+TURN_KEYS = {"turn left": ("left",), "turn right": ("right",), "look up": ("up",), "look down": ("down",)}
 """By button, the names of the keys that hold it."""
 
 LEAST_WIDTH = 960
@@ -81,8 +82,9 @@ class Judge:
     def _count(self, frame: Frame) -> int:
         scene = frame.scene
         perfect = exact.picture(
-            self._config.screen_geometry, scene.rectangles, scene.camera, scene.background, scene.reflections
-        )
+            self._config.screen_geometry, scene.rectangles, scene.camera, scene.background, scene.reflections,
+            basis=scene.basis,
+        )  # fmt: skip
         return count_wrong(frame.picture, shown(perfect, self._config))
 
 
@@ -110,10 +112,12 @@ class Window:
         self._font = pygame.font.Font(None, BAR - 6)
         self._keys = {pygame.key.key_code(key): buttons.index(button) for button, held in keys.items() for key in held}
         self._held: set[int] = set()
+        self._drag = 0, 0
 
     def held(self) -> int | None:
         """The buttons that are held, a bit each; None where the window is to close."""
         pygame = self._pygame
+        self._drag = 0, 0
         for event in pygame.event.get():
             if event.type == pygame.QUIT or (event.type == pygame.KEYDOWN and event.key == pygame.K_ESCAPE):
                 return None
@@ -121,7 +125,14 @@ class Window:
                 self._held.add(event.key)
             elif event.type == pygame.KEYUP:
                 self._held.discard(event.key)
+            elif event.type == pygame.MOUSEMOTION and event.buttons[0]:
+                self._drag = self._drag[0] + event.rel[0], self._drag[1] + event.rel[1]
         return sum({1 << self._keys[key] for key in self._held})
+
+    @property
+    def drag(self) -> tuple[int, int]:
+        """Pixels to the right and down by which the mouse was dragged before `held` was last asked."""
+        return self._drag
 
     def show(self, picture: np.ndarray, text: str) -> None:
         """Draw a frame."""
@@ -151,7 +162,7 @@ def _pygame():
 
 
 def loop(
-    machine: Machine,
+    play: Callable[[int], Frame],
     window: Window,
     judge: Judge,
     config: Configuration,
@@ -161,7 +172,7 @@ def loop(
     """Show frame after frame.
 
     Args:
-        machine: what draws.
+        play: draws a frame while these buttons are held.
         window: what shows.
         judge: looks at pictures on the way.
         config: the design.
@@ -174,7 +185,7 @@ def loop(
     started, count, rate = time.perf_counter(), 0, 0.0
     while (frames is None or count < frames) and (held := window.held()) is not None:
         before = time.perf_counter()
-        frame = machine.frame(held)
+        frame = play(held)
         say(frame.text)
         judge.look(frame)
         took = time.perf_counter() - before
@@ -186,6 +197,17 @@ def loop(
         window.show(frame.picture, "    ".join(parts))
         count += 1
     return count, count / (time.perf_counter() - started)
+
+
+def walk_through(machine: Machine, walker: Walker, window: Window) -> Callable[[int], Frame]:
+    """Load a walker's scene, and return what moves it for a frame while these buttons are held."""
+    machine.frame(writes=walker.load())
+
+    def play(held: int) -> Frame:
+        walker.move([name for bit, name in enumerate(WALKS + TURNS) if held >> bit & 1], window.drag)
+        return machine.frame(writes=walker.writes())
+
+    return play
 
 
 def command_parser() -> CommandParser:
@@ -208,12 +230,15 @@ def main(argv: Sequence[str] | None = None) -> None:
     arguments = command_parser().parse_args(argv)
     console = Console()
     options = given_options(arguments)
+    engine = ENGINES.get(options.get("engine", FASTEST["engine"]))
+    defaults = FASTEST | ({"turn": True} if engine and engine.turns else {})
     if arguments.scene:
-        design = design_for(arguments.scene, options, FASTEST)
-        config, scene, program = design.configuration, design.shown, None
-        keys, names = SCENE_KEYS, scene_player.BUTTONS
+        design = design_for(arguments.scene, options, defaults)
+        config, program, walker = design.configuration, None, Walker(design.shown, design.configuration)
+        keys = WALK_KEYS | (TURN_KEYS if config.turn else {})
+        names: Sequence[str] = WALKS + TURNS
     else:
-        config, scene = configure(**FASTEST | options), None
+        config, walker = configure(**defaults | options), None
         program = build_firmware((arguments.build / "firmware").absolute()).words
         keys, names = GAME_KEYS, BUTTON_NAMES
 
@@ -224,10 +249,13 @@ def main(argv: Sequence[str] | None = None) -> None:
     try:
         for button, held in keys.items():
             console.print(f"{button}: {' or '.join(held)}", highlight=False)
+        if walker and config.turn:
+            console.print("turn and look: drag with the mouse too", highlight=False)
         with console.status(f"building {config.name}"):
-            command = build_machine(config, scene, arguments.build)
+            command = build_machine(config, arguments.build, processor=walker is None)
         with Machine(command, config, program) as machine:
-            count, rate = loop(machine, window, judge, config, say, arguments.frames)
+            play = walk_through(machine, walker, window) if walker else machine.frame
+            count, rate = loop(play, window, judge, config, say, arguments.frames)
         judge.finish()
         if arguments.screenshot:
             window.save(arguments.screenshot)

@@ -73,6 +73,15 @@ class Configuration:
     culling: bool | None = Field(
         None, description="give up early what no ray of a group can hit, 1 or 0: 1 of the seed engine's general design"
     )
+    turn: bool | None = Field(
+        None, description="a camera that turns, 1 or 0 (exact and beam): 1 where the scene's does"
+    )
+    materials: bool | None = Field(
+        None, description="rectangles that mirror more or less than half, 1 or 0: 1 where the scene has them"
+    )
+    patterns: bool | None = Field(
+        None, description="rectangles with a pattern of two colours, 1 or 0: 1 where the scene has them"
+    )
     fixed: FixedScene | None = Field(None, description="what of a scene is built in")
 
     @model_validator(mode="after")
@@ -86,6 +95,7 @@ class Configuration:
         if not self.facts.divides:
             self._refuse_quotients()
         self._choose_culling()
+        self._choose_looks()
         if self.units is None:
             self._choose_units()
         elif not self.facts.line_buffered and self.units != 1:
@@ -143,6 +153,16 @@ class Configuration:
         elif self.culling and self.fixed is not None:
             raise ValueError("culling: is for scenes that change; leave it out, or what is fixed")
 
+    def _choose_looks(self) -> None:
+        """What no scene asks for is left out."""
+        for name in ("turn", "materials", "patterns"):
+            object.__setattr__(self, name, bool(getattr(self, name)))
+        if self.turn and not self.facts.turns:
+            raise ValueError(
+                f"turn: the {self.engine} engine measures depth along x, so its camera cannot turn; "
+                "choose ENGINE=exact or ENGINE=beam"
+            )
+
     def _choose_units(self) -> None:
         """The seed's 32; one beam; otherwise as few as meet the row budget."""
         if not self.facts.line_buffered:
@@ -190,6 +210,11 @@ class Configuration:
             )
 
     @property
+    def looks(self) -> tuple[str, ...]:
+        """Of turn, materials and patterns, those that it has."""
+        return tuple(name for name in ("turn", "materials", "patterns") if getattr(self, name))
+
+    @property
     def table(self) -> int:
         """Entries of the rectangle table that software writes: none where the rectangles are fixed."""
         return 0 if self.fixed else self.rectangles
@@ -232,11 +257,16 @@ class Configuration:
     def _slot_cycles(self, divider_bits: int) -> int:
         return -(-self.quotient_bits // divider_bits) if self.facts.divides else self.facts.slot_cycles
 
+    @property
+    def pass_latency(self) -> int:
+        """Cycles from the end of a pass's last slot to the first cycle of the next pass."""
+        return self.facts.result_latency + (self.facts.pattern_latency if self.patterns else 0)
+
     def _group_cycles(self, divider_bits: int) -> int:
         if not self.facts.line_buffered:
             return 1
         slots = sum(mask.bit_count() for mask in self.passes) * self._slot_cycles(divider_bits)
-        return slots + len(self.passes) * self.facts.result_latency + GROUP_OVERHEAD
+        return slots + len(self.passes) * self.pass_latency + GROUP_OVERHEAD
 
     @property
     def group_cycles(self) -> int:
@@ -260,9 +290,10 @@ class Configuration:
         fixed = f"-{self.fixed.name}" if self.fixed else ""
         # Only what is not the default is told.
         culling = "" if self.fixed or self.culling == self.facts.divides else f"-k{int(self.culling)}"
+        looks = "".join(f"-{name}" for name in self.looks)
         return (
             f"{self.engine}-{self.screen}{self.rows}{scale}-u{self.units}-r{self.rectangles}-m{self.reflections}"
-            f"{quotients}-c{self.colour_bits}{culling}{fixed}"
+            f"{quotients}-c{self.colour_bits}{culling}{looks}{fixed}"
         )
 
 

@@ -9,8 +9,16 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.configuration import Configuration, configure
+from raycaster.engines import ENGINES
 from raycaster.errors import UserError
-from raycaster.scene import Scene, load_scene
+from raycaster.scene import Scene, load_scene, packaged_scenes
+
+NEEDED_FOR = {
+    "turn": "a camera that turns",
+    "materials": "rectangles that mirror more or less than half",
+    "patterns": "rectangles with patterns",
+}
+"""What an option of a configuration gives to a scene."""
 
 
 @dataclass(frozen=True)
@@ -43,8 +51,23 @@ class ProcessorDesign:
     configuration: Configuration
 
 
+def packaged_for(options: Mapping[str, Any]) -> list[Path]:
+    """The packaged scenes that hardware with these options shows: those that need nothing which it lacks."""
+    lacking = {name for name in NEEDED_FOR if str(options.get(name)) in ("0", "False")}
+    engine = ENGINES.get(options.get("engine"))
+    if engine and not engine.turns:
+        lacking.add("turn")
+    return [
+        path
+        for path in packaged_scenes().values()
+        if not any(needed and name in lacking for name, needed in load_scene(path).needs.items())
+    ]
+
+
 def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, Any] | None = None) -> Design:
-    """Read a scene and choose its hardware: rows and reflections are the scene's unless they are given.
+    """Read a scene and choose its hardware: what is not given of rows, reflections and looks is the scene's.
+
+    A camera that is turned chooses the exact engine, where no engine is given.
 
     Args:
         path: the scene file.
@@ -61,7 +84,11 @@ def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, An
             raise UserError(f"{path}: rows: 180 rows need the beam engine; give ENGINE=beam, or ROWS=240 or 200")
         chosen["rows"] = scene.rows
     chosen.setdefault("reflections", scene.reflections)
-    configuration = configure(**chosen)
+    if scene.camera.turned:
+        chosen.setdefault("engine", "exact")
+    configuration = configure(**dict.fromkeys(scene.lacks(()), True) | chosen)
+    if lacking := scene.lacks(configuration.looks):
+        raise UserError(f"{path}: the scene needs {NEEDED_FOR[lacking[0]]}; leave {lacking[0].upper()} out")
     load_scene(path, configuration.rectangles)  # refuses more rectangles than that
     # Those of the hardware where they were asked for; a default design may have more than the scene needs.
     reflections = configuration.reflections if "reflections" in options else scene.reflections

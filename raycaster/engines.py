@@ -19,7 +19,9 @@ class Engine:
         screens: those that it can fill, by name and rows.
         slot_cycles: from one rectangle to the next; 0: all at once; None: as long as a division takes.
         result_latency: cycles from the end of a pass's last slot to the first cycle of the next pass.
+        pattern_latency: cycles that a pass takes more where rectangles have patterns.
         rect_latency: cycles from `fetch` to the rectangle.
+        turns: whether its camera turns; the seed's depth is measured along x.
         margin: how far outside a rectangle's bounds a primary ray may pass that hits it, in world units: a rounded
             coordinate is off by less than one.
         renderer: the block that fills the screen, as room and name in `raycaster.rtl`.
@@ -31,8 +33,10 @@ class Engine:
     screens: Mapping[tuple[str, int], Screen]
     slot_cycles: int | None
     result_latency: int
+    pattern_latency: int
     rect_latency: int
     margin: int
+    turns: bool
     renderer: str
     control: str | None = None
     unit: str | None = None
@@ -53,17 +57,18 @@ ENGINES: Mapping[str, Engine] = {
     for engine in (
         # Slope and plane latched, product, divider loaded, hit point, depth compared, ray stored.
         Engine(
-            "seed", 0, SCREENS, slot_cycles=None, result_latency=6, rect_latency=1, margin=1,
-            renderer="video.ray_caster_renderer", control="seed.ray_control", unit="seed.ray_unit",
+            "seed", 0, SCREENS, slot_cycles=None, result_latency=6, pattern_latency=0, rect_latency=1, margin=1,
+            turns=False, renderer="video.ray_caster_renderer", control="seed.ray_control", unit="seed.ray_unit",
         ),
-        # Two more stages of the test after the first, which the slot is, depth compared, ray stored.
+        # Two more stages of the test after the first, which the slot is, depth compared, ray stored. The cells of u and
+        # of v: dividend, three cycles of two bits each; in the last the ray is stored.
         Engine(
-            "exact", 1, SCREENS, slot_cycles=1, result_latency=4, rect_latency=1, margin=0,
-            renderer="video.ray_caster_renderer", control="exact.exact_control", unit="exact.exact_unit",
+            "exact", 1, SCREENS, slot_cycles=1, result_latency=4, pattern_latency=6, rect_latency=1, margin=0,
+            turns=True, renderer="video.ray_caster_renderer", control="exact.exact_control", unit="exact.exact_unit",
         ),
         Engine(
-            "beam", 2, BEAM_SCREENS, slot_cycles=0, result_latency=0, rect_latency=2, margin=0,
-            renderer="beam.beam_renderer",
+            "beam", 2, BEAM_SCREENS, slot_cycles=0, result_latency=0, pattern_latency=0, rect_latency=2, margin=0,
+            turns=True, renderer="beam.beam_renderer",
         ),
     )
 }  # fmt: skip

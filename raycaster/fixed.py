@@ -21,6 +21,14 @@ class FixedRectangle:
     colour: int
     """24 bits, red above green above blue."""
 
+    mirror: int = 2
+    """In quarters, 0..4."""
+
+    kind: int = 0
+    cell: int = 2
+    colour_2: int = 0
+    """With the pattern's kind and its cell's size as registers have them."""
+
 
 @dataclass(frozen=True)
 class FixedScene:
@@ -31,12 +39,22 @@ class FixedScene:
         passes: for the primary ray and each reflection, which of them it may meet: bit i for rectangle i.
         camera: x, y, z, or None where it is live.
         background: 24 bits, or None where it is live; it goes with the camera.
+        basis: forward, right and up of the fixed camera, times 256.
     """
 
     rectangles: tuple[FixedRectangle, ...]
     passes: tuple[int, ...]
     camera: tuple[int, int, int] | None = None
     background: int | None = None
+    basis: tuple[tuple[int, int, int], tuple[int, int, int], tuple[int, int, int]] = (
+        (256, 0, 0), (0, 256, 0), (0, 0, 256),
+    )  # fmt: skip
+
+    @property
+    def camera_fields(self) -> dict[str, int]:
+        """The fixed camera's position and basis, as its record names them."""
+        vectors = zip(("", "forward_", "right_", "up_"), (self.camera, *self.basis), strict=True)
+        return {f"{name}{axis}": part for name, vector in vectors for axis, part in zip("xyz", vector, strict=True)}
 
     @property
     def scope(self) -> str:

@@ -5,46 +5,63 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from raycaster.configuration import Configuration
 from raycaster.registers import register_map
-from raycaster.scene import Rectangle, Scene
+from raycaster.scene import Basis, Rectangle, Scene
 
 
-def rectangle_fields(index: int, rectangle: Rectangle) -> Iterator[tuple[str, dict[str, int]]]:
+def rectangle_fields(index: int, rectangle: Rectangle, config: Configuration) -> Iterator[tuple[str, dict[str, int]]]:
     """The registers of an enabled rectangle and their fields, the one that enables it last."""
     for corner, position in enumerate(rectangle.corners):
         yield f"rectangle[{index}].corner_{corner}", dict(zip("xyz", position, strict=True))
+    if config.patterns:
+        red, green, blue = rectangle.colour2 or (0, 0, 0)
+        pattern = {"kind": rectangle.kind, "cell": rectangle.cell_code}
+        yield f"rectangle[{index}].pattern", {"red": red, "green": green, "blue": blue, **pattern}
     red, green, blue = rectangle.colour
-    yield f"rectangle[{index}].surface", {"enable": 1, "red": red, "green": green, "blue": blue}
+    look = {"red": red, "green": green, "blue": blue, "mirror": rectangle.quarters}
+    yield f"rectangle[{index}].surface", {"enable": 1, **look}
 
 
-def scene_fields(scene: Scene, rectangles: int) -> Iterator[tuple[str, dict[str, int]]]:
+def basis_fields(basis: Basis) -> Iterator[tuple[str, dict[str, int]]]:
+    """The registers of a camera's basis and their fields."""
+    registers = register_map(1)
+    for name, vector in zip(("forward", "right", "up"), basis, strict=True):
+        widths = (field.width for field in registers[name].fields.values())
+        parts = (part % (1 << width) for part, width in zip(vector, widths, strict=True))
+        yield name, dict(zip("xyz", parts, strict=True))
+
+
+def scene_fields(scene: Scene, config: Configuration) -> Iterator[tuple[str, dict[str, int]]]:
     """The registers of a whole scene and their fields; entries of the table that it leaves are disabled.
 
     Args:
-        scene: at most `rectangles` rectangles.
-        rectangles: entries of the hardware's table; 0 where its rectangles are fixed, which takes those of any scene.
+        scene: at most as many rectangles as the table has entries; fixed ones are not written.
+        config: the design; what it has not got is not written.
     """
     red, green, blue = scene.background
     yield "background", {"red": red, "green": green, "blue": blue}
     yield "camera", dict(zip("xyz", scene.camera.position, strict=True))
-    for index, rectangle in enumerate(scene.rect if rectangles else ()):
-        yield from rectangle_fields(index, rectangle)
-    for index in range(len(scene.rect), rectangles):
+    if config.turn:
+        yield from basis_fields(scene.camera.basis)
+    for index, rectangle in enumerate(scene.rect if config.table else ()):
+        yield from rectangle_fields(index, rectangle, config)
+    for index in range(len(scene.rect), config.table):
         yield f"rectangle[{index}].surface", {"enable": 0}
 
 
-def scene_words(scene: Scene, rectangles: int, reflections: int | None = None) -> list[tuple[int, int]]:
+def scene_words(scene: Scene, config: Configuration, reflections: int | None = None) -> list[tuple[int, int]]:
     """Word addresses and words that load a scene and start it: the last one commits.
 
     Args:
         scene: as for `scene_fields`.
-        rectangles: as for `scene_fields`.
+        config: as for `scene_fields`.
         reflections: instead of the scene's own.
     """
-    registers = register_map(rectangles)
+    registers = register_map(config.table)
     bounces = scene.reflections if reflections is None else reflections
     start = ("control", {"run": 1, "commit": 1, "reflections": bounces})
     return [
         (registers[name].address, registers[name].pack(**fields))
-        for name, fields in (*scene_fields(scene, rectangles), start)
+        for name, fields in (*scene_fields(scene, config), start)
     ]

@@ -5,17 +5,30 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import math
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, ValidationError
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, ValidationError, model_validator
 from pydantic_core import ErrorDetails
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.errors import UserError
+
+BASIS_SCALE = 256
+"""A whole vector of a camera's basis."""
+
+UNTURNED = ((BASIS_SCALE, 0, 0), (0, BASIS_SCALE, 0), (0, 0, BASIS_SCALE))
+"""Forward, right and up of a camera that is not turned."""
+
+PATTERNS = ("plain", "checker", "rows", "columns")
+"""In the order of the registers' codes."""
+
+CELLS = (8, 16, 32, 64, 128, 256)
+"""Sizes of a pattern's cells, in world units, in the order of the registers' codes."""
 
 
 class SceneError(UserError):
@@ -39,6 +52,22 @@ def _items(count: int | None, expected: str) -> BeforeValidator:
         return value
 
     return BeforeValidator(check)
+
+
+def _choice(choices: Sequence[object], expected: str) -> BeforeValidator:
+    def check(value: object) -> object:
+        # A bool is a number to Python, but not to TOML.
+        if isinstance(value, bool) or value not in choices:
+            raise ValueError(expected)
+        return value
+
+    return BeforeValidator(check)
+
+
+def _degrees(value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= 360:
+        raise ValueError("must be an angle in degrees, -360..360")
+    return float(value)
 
 
 def _check_rows(value: object) -> object:
@@ -72,22 +101,80 @@ Channel = Annotated[int, _whole(0, 255)]
 Colour = Annotated[tuple[Channel, Channel, Channel], BeforeValidator(_parse_colour)]
 
 
+Angle = Annotated[float, BeforeValidator(_degrees)]
+Mirror = Annotated[float, _choice((0, 0.25, 0.5, 0.75, 1), "must be 0, 0.25, 0.5, 0.75 or 1")]
+Pattern = Annotated[
+    Literal["plain", "checker", "rows", "columns"],
+    _choice(PATTERNS, 'must be "plain", "checker", "rows" or "columns"'),
+]
+CellSize = Annotated[int, _choice(CELLS, "must be 8, 16, 32, 64, 128 or 256")]
+Basis = tuple[tuple[int, int, int], tuple[int, int, int], tuple[int, int, int]]
+
+
 class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class Camera(_Strict):
-    """Where all rays start; the view is along x."""
+    """Where all rays start, and how the view is turned, in degrees: not at all, it is along x with z upwards.
+
+    yaw above 0 turns from x towards y, pitch looks up, roll lifts the right side; rolled first, yawed last.
+    """
 
     position: Point
+    yaw: Angle = 0.0
+    pitch: Angle = 0.0
+    roll: Angle = 0.0
+
+    @property
+    def basis(self) -> Basis:
+        """Forward, right and up, each the x, y, z of its vector, times 256 and rounded: what the registers hold."""
+        angles = (math.radians(angle) for angle in (self.yaw, self.pitch, self.roll))
+        (cy, sy), (cp, sp), (cr, sr) = ((math.cos(angle), math.sin(angle)) for angle in angles)
+        forward = cy * cp, sy * cp, sp
+        right = -sy * cr - cy * sp * sr, cy * cr - sy * sp * sr, cp * sr
+        up = sy * sr - cy * sp * cr, -cy * sr - sy * sp * cr, cp * cr
+        return tuple(tuple(round(part * BASIS_SCALE) for part in vector) for vector in (forward, right, up))
+
+    @property
+    def turned(self) -> bool:
+        """Whether the view is along anything but x, or not upright."""
+        return self.basis != UNTURNED
 
 
 class Rectangle(_Strict):
-    """A mirror between two opposite corners, parallel to one of the planes x = 0, y = 0, z = 0."""
+    """A rectangle between two opposite corners, parallel to one of the planes x = 0, y = 0, z = 0."""
 
     corners: Corners
     colour: Colour
     name: str = ""
+    mirror: Mirror = 0.5
+    pattern: Pattern = "plain"
+    colour2: Colour | None = None
+    cell: CellSize = 32
+
+    @model_validator(mode="after")
+    def _check_pattern(self) -> Rectangle:
+        if self.pattern != "plain" and self.colour2 is None:
+            raise ValueError(f"a pattern has a second colour; give colour2 beside {self.pattern}")
+        if self.pattern == "plain" and self.colour2 is not None:
+            raise ValueError('colour2 is for a pattern; give pattern = "checker", "rows" or "columns"')
+        return self
+
+    @property
+    def quarters(self) -> int:
+        """How much it mirrors, in quarters: 0..4."""
+        return int(4 * self.mirror)
+
+    @property
+    def kind(self) -> int:
+        """The pattern as registers have it: an index of `PATTERNS`."""
+        return PATTERNS.index(self.pattern)
+
+    @property
+    def cell_code(self) -> int:
+        """The cell's size as registers have it: log2, less three."""
+        return CELLS.index(self.cell)
 
     @property
     def axis(self) -> int:
@@ -105,6 +192,19 @@ class Scene(_Strict):
     background: Colour = (0, 0, 0)
     camera: Camera
     rect: Annotated[tuple[Rectangle, ...], _items(None, "must be one or more tables, each headed [[rect]]")]
+
+    @property
+    def needs(self) -> dict[str, bool]:
+        """By option of a configuration, what of turn, materials and patterns its picture needs."""
+        return {
+            "turn": self.camera.turned,
+            "materials": any(rectangle.mirror != Rectangle.model_fields["mirror"].default for rectangle in self.rect),
+            "patterns": any(rectangle.pattern != "plain" for rectangle in self.rect),
+        }
+
+    def lacks(self, looks: Collection[str]) -> list[str]:
+        """What its picture needs beside these of turn, materials and patterns."""
+        return [name for name, is_needed in self.needs.items() if is_needed and name not in looks]
 
 
 def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
@@ -139,11 +239,12 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
     return scene
 
 
-def packaged_scenes() -> dict[str, Path]:
-    """The scenes that come with it, by name."""
+def packaged_scenes(*, plain: bool = False) -> dict[str, Path]:
+    """The scenes that come with it, by name; plain: only those that need nothing which a design may lack."""
     spec = importlib.util.find_spec("raycaster.scenes")
     folders = map(Path, spec.submodule_search_locations)
-    return {path.stem: path for folder in folders for path in sorted(folder.glob("*.toml"))}
+    paths = [path for folder in folders for path in sorted(folder.glob("*.toml"))]
+    return {path.stem: path for path in paths if not (plain and any(load_scene(path).needs.values()))}
 
 
 def find_scene(name: str) -> Path:
@@ -174,6 +275,11 @@ def dump_scene(scene: Scene) -> str:
         f"background = {colour(scene.background)}",
         "[camera]",
         f"position = {list(scene.camera.position)}",
+        *(
+            f"{name} = {getattr(scene.camera, name)}"
+            for name in ("yaw", "pitch", "roll")
+            if getattr(scene.camera, name)
+        ),
     ]
     for rectangle in scene.rect:
         lines.append("[[rect]]")
@@ -181,6 +287,12 @@ def dump_scene(scene: Scene) -> str:
             lines.append(f"name = {json.dumps(rectangle.name)}")
         lines.append(f"corners = {[list(corner) for corner in rectangle.corners]}")
         lines.append(f"colour = {colour(rectangle.colour)}")
+        if rectangle.mirror != Rectangle.model_fields["mirror"].default:
+            lines.append(f"mirror = {rectangle.mirror}")
+        if rectangle.pattern != "plain":
+            lines.append(f'pattern = "{rectangle.pattern}"')
+            lines.append(f"colour2 = {colour(rectangle.colour2)}")
+            lines.append(f"cell = {rectangle.cell}")
     return "\n".join(lines) + "\n"
 
 

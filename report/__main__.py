@@ -27,6 +27,7 @@ from raycaster.report import conclusions, hardware, plots
 from raycaster.report.page import Section, write_csv, write_html, write_markdown
 from raycaster.report.points import CASE, UNITS, CellsPoint, HitsPoint, PicturePoint, Point, TimePoint, View, command
 from raycaster.report.sweep import Store, run
+from raycaster.scene import load_scene
 from raycaster.sim.simulator import SimulationError
 
 SCENES = Path("scenes")
@@ -150,7 +151,9 @@ def write_report(directory: Path, what: Extent, sweep: Sweeper) -> Path:
         UserError: there are no scenes here, or a tool is missing.
         SimulationError: the hardware departs from golden.
     """
-    scenes = [View.of(str(path)) for path in sorted(SCENES.glob("*.toml"))]
+    # All designs that are compared show the same scenes.
+    paths = [path for path in sorted(SCENES.glob("*.toml")) if not any(load_scene(path).needs.values())]
+    scenes = [View.of(str(path)) for path in paths]
     if not scenes:
         raise UserError(f"{SCENES}: has no scene files; run this in the project's directory")
     of_scenes = [

@@ -10,9 +10,9 @@ from cocotb.triggers import NextTimeStep, ReadOnly, RisingEdge, Timer
 from cocotb_bus.drivers.avalon import AvalonMaster
 
 from raycaster.configuration import Configuration
-from raycaster.program import rectangle_fields, scene_fields
+from raycaster.program import basis_fields, rectangle_fields, scene_fields
 from raycaster.registers import Register, register_map
-from raycaster.scene import Rectangle, Scene
+from raycaster.scene import Basis, Rectangle, Scene
 
 MAX_WAIT = 4
 """Clocks that waitrequest may last."""
@@ -26,7 +26,7 @@ class AvalonBus:
 
     def __init__(self, bench: HierarchyObject, configuration: Configuration):
         self.registers: dict[str, Register] = register_map(configuration.table)
-        self._rectangles = configuration.table
+        self._configuration = configuration
         self._clock = bench.clk
         self._master = AvalonMaster(bench, "avs_s0", bench.clk)
         self._signals = self._master.bus
@@ -100,17 +100,19 @@ class AvalonBus:
             answers.append(int(self._signals.readdata.value))
         return bool(int(self._signals.waitrequest.value))
 
-    async def write_camera(self, position: Sequence[int]) -> None:
-        """Write the camera's x, y, z to the shadow."""
+    async def write_camera(self, position: Sequence[int], basis: Basis | None = None) -> None:
+        """Write the camera's x, y, z to the shadow, and forward, right and up where they are given."""
         await self.write("camera", **dict(zip("xyz", position, strict=True)))
+        if basis:
+            await self._write_all(basis_fields(basis))
 
     async def write_rectangle(self, index: int, rectangle: Rectangle) -> None:
         """Write an enabled rectangle to the shadow."""
-        await self._write_all(rectangle_fields(index, rectangle))
+        await self._write_all(rectangle_fields(index, rectangle, self._configuration))
 
     async def load_scene(self, scene: Scene) -> None:
         """Write background, camera and rectangles to the shadow, and disable the entries that the scene leaves."""
-        await self._write_all(scene_fields(scene, self._rectangles))
+        await self._write_all(scene_fields(scene, self._configuration))
 
     async def _write_all(self, writes: Iterable[tuple[str, dict[str, int]]]) -> None:
         for name, fields in writes:

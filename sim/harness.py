@@ -46,8 +46,11 @@ class Viewer:
         if scene is None or not scene.run:
             return self.shown(np.zeros((self.screen.rows, self.screen.columns, 3), dtype=np.uint8))
         return self.shown(
-            engines.picture(self.configuration, scene.rectangles, scene.camera, scene.background, scene.reflections)
-        )
+            engines.picture(
+                self.configuration, scene.rectangles, scene.camera, scene.background, scene.reflections,
+                basis=scene.basis,
+            )
+        )  # fmt: skip
 
     def expect_picture(self, seen: np.ndarray, expected: np.ndarray, what: str) -> None:
         """Check every visible pixel.

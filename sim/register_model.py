@@ -10,23 +10,25 @@ import numpy as np
 
 from raycaster.configuration import Configuration
 from raycaster.golden.world import Rectangles
-from raycaster.registers import register_map
+from raycaster.registers import Register, register_map
+from raycaster.scene import UNTURNED, Basis
 
 AXES = "xyz"
 COLOURS = ("red", "green", "blue")
+VECTORS = ("forward", "right", "up")
 EVERY_LANE = 0b1111
 
 
 class Word:
     """What software writes, what waits, and what is shown."""
 
-    def __init__(self, implemented: int):
-        self.implemented = implemented
+    def __init__(self, implemented: int, first: int = 0):
+        self.implemented, self.first = implemented, first
         self.reset()
 
     def reset(self) -> None:
         """Nothing is written, nothing is shown."""
-        self.shadow = self.pending = self.live = 0
+        self.shadow = self.pending = self.live = self.first
 
     def clock(self, bus: dict[str, int], selected: bool) -> None:
         """An edge of the clock, with what the bus within the design says before it."""
@@ -40,33 +42,48 @@ class Word:
 
 
 class Table:
-    """The rectangle table, three words a slot."""
+    """The rectangle table, four words a slot; without patterns three."""
 
-    def __init__(self, rectangles: int):
-        registers = register_map(rectangles)
-        self._point, self._surface = (registers[f"rectangle[0].{name}"] for name in ("corner_0", "surface"))
+    def __init__(self, config: Configuration):
+        registers = register_map(config.rectangles)
+        first = {name: registers[f"rectangle[0].{name}"] for name in ("corner_0", "corner_1", "surface", "pattern")}
+        self._point, self._surface, self._pattern = (first[name] for name in ("corner_0", "surface", "pattern"))
+        kept = {name: register.implemented for name, register in first.items()}
+        if not config.materials:
+            kept["surface"] &= ~self._surface.fields["mirror"].mask
+        if not config.patterns:
+            del kept["pattern"]
+        self.names = tuple(kept)
         self.words = {
-            registers[f"rectangle[{index}].{name}"].address: Word(registers[f"rectangle[{index}].{name}"].implemented)
-            for index in range(rectangles)
-            for name in ("corner_0", "corner_1", "surface")
+            registers[f"rectangle[{index}].{name}"].address: Word(implemented)
+            for index in range(config.rectangles)
+            for name, implemented in kept.items()
         }
-        self._rectangles = rectangles
+        self._config = config
 
     def slot(self, index: int) -> list[Word]:
-        """A rectangle's corners and surface."""
+        """A rectangle's words, in the order of `names`."""
         first = self._point.address + 4 * index
-        return [self.words[first + offset] for offset in range(3)]
+        return [self.words[first + offset] for offset in range(len(self.names))]
 
     def rectangles(self, stage: str) -> Rectangles:
         """What a stage, `"shadow"` or `"live"`, says."""
-        corners, colours, enabled = [], [], []
-        for index in range(self._rectangles):
-            corner_0, corner_1, surface = (getattr(word, stage) for word in self.slot(index))
+        corners, colours, enabled, mirrors, kinds, cells, colours_2 = ([] for _ in range(7))
+        for index in range(self._config.rectangles):
+            corner_0, corner_1, surface, *pattern = (getattr(word, stage) for word in self.slot(index))
             corners.append([[self._point.unpack(corner)[axis] for axis in AXES] for corner in (corner_0, corner_1)])
             fields = self._surface.unpack(surface)
             colours.append([fields[channel] for channel in COLOURS])
             enabled.append(bool(fields["enable"]))
-        return Rectangles(np.array(corners), np.array(colours, dtype=np.uint8), np.array(enabled))
+            mirrors.append(min(fields["mirror"], 4) if self._config.materials else 2)
+            fields = self._pattern.unpack(pattern[0] if pattern else 0)
+            kinds.append(fields["kind"])
+            cells.append(8 << fields["cell"])
+            colours_2.append([fields[channel] for channel in COLOURS])
+        return Rectangles(
+            np.array(corners), np.array(colours, dtype=np.uint8), np.array(enabled), np.array(mirrors),
+            np.array(kinds), np.array(cells), np.array(colours_2, dtype=np.uint8),
+        )  # fmt: skip
 
     def clock(self, inputs: dict[str, int]) -> None:
         """An edge of the clock, with reset and the bus within the design before it."""
@@ -78,6 +95,43 @@ class Table:
                 word.clock(inputs, inputs["bus_address"] == address)
         elif word := self.words.get(inputs["bus_address"]):
             word.clock(inputs, True)
+
+
+def camera_registers(config: Configuration) -> dict[str, Register]:
+    """Those of a design's camera, by name."""
+    names = ("camera", *(VECTORS if config.turn else ()))
+    return {name: register_map(config.rectangles)[name] for name in names}
+
+
+class CameraWords(dict[str, Word]):
+    """Those of a design's camera, by register."""
+
+    def __init__(self, config: Configuration):
+        self._registers = camera_registers(config)
+        super().__init__(
+            {name: Word(register.implemented, register.reset) for name, register in self._registers.items()}
+        )
+
+    @property
+    def by_address(self) -> dict[int, Word]:
+        """The same by their addresses."""
+        return {self._registers[name].address: word for name, word in self.items()}
+
+    @property
+    def position(self) -> tuple[int, ...]:
+        """The live one."""
+        return self._vector("camera")
+
+    @property
+    def basis(self) -> Basis:
+        """The live one: forward, right and up."""
+        if len(self) == 1:
+            return UNTURNED
+        return tuple(tuple((part ^ 1 << 9) - (1 << 9) for part in self._vector(name)) for name in VECTORS)
+
+    def _vector(self, name: str) -> tuple[int, ...]:
+        fields = self._registers[name].unpack(self[name].live)
+        return tuple(fields[axis] for axis in AXES)
 
 
 class Agent:
@@ -102,6 +156,9 @@ class Agent:
                 "scale": config.scale,
                 "colour_bits": config.colour_bits,
                 "culling": int(config.culling),
+                "turn": int(config.turn),
+                "materials": int(config.materials),
+                "patterns": int(config.patterns),
             },
             "size": {
                 "units": config.units, "rectangles": config.rectangles, "rows": config.rows,
@@ -141,7 +198,7 @@ class Agent:
         words = {
             "control": self.control.shadow | self.registers["control"].pack(commit=int(self.commit)),
             "background": self.background.shadow,
-            "camera": inputs["camera_readback"],
+            **dict.fromkeys(camera_registers(self.config), inputs["camera_readback"]),
         }
         return words.get(name, inputs["rect_readback"])
 
@@ -227,20 +284,21 @@ class LiveScene:
 
     background: tuple[int, ...]
     camera: tuple[int, ...]
+    basis: Basis
     rectangles: Rectangles
 
 
-def read_live(config: Configuration, control: Word, background: Word, camera: Word, table: Table) -> LiveScene:
+def read_live(config: Configuration, control: Word, background: Word, camera: CameraWords, table: Table) -> LiveScene:
     """What live words say."""
     registers = register_map(config.rectangles)
     controls = registers["control"].unpack(control.live)
     colours = registers["background"].unpack(background.live)
-    place = registers["camera"].unpack(camera.live)
     return LiveScene(
         run=bool(controls["run"]),
         reflections=min(controls["reflections"], config.reflections),
         background=tuple(colours[colour] for colour in COLOURS),
-        camera=tuple(place[axis] for axis in AXES),
+        camera=camera.position,
+        basis=camera.basis,
         rectangles=table.rectangles("live"),
     )
 
@@ -255,12 +313,11 @@ class SceneFollower:
     def __init__(self, config: Configuration):
         self._config = config
         registers = register_map(config.rectangles)
-        self._control, self._background, self._camera = (
-            Word(registers[name].implemented) for name in ("control", "background", "camera")
-        )
-        self._table = Table(config.rectangles)
-        kept = zip(("control", "background", "camera"), (self._control, self._background, self._camera), strict=True)
-        self._words = {registers[name].address: word for name, word in kept} | self._table.words
+        self._control, self._background = (Word(registers[name].implemented) for name in ("control", "background"))
+        self._camera, self._table = CameraWords(config), Table(config)
+        kept = {"control": self._control, "background": self._background}
+        self._words = {registers[name].address: word for name, word in kept.items()}
+        self._words |= self._camera.by_address | self._table.words
         self._commit = registers["control"].fields["commit"].mask
         self._control_address = registers["control"].address
         self._commits: list[tuple[int, dict[int, int]]] = []
@@ -295,9 +352,8 @@ class RegisterFile:
     def __init__(self, config: Configuration):
         self.config = config
         self.agent = Agent(config)
-        self.table = Table(config.rectangles)
-        self.camera = Word(self.agent.registers["camera"].implemented)
-        self.camera_address = self.agent.registers["camera"].address
+        self.table = Table(config)
+        self.camera = CameraWords(config)
         screen = config.screen_geometry
         lines = screen.vertical.blank - screen.doubling
         self.start_screen_clock = lines * screen.horizontal.total * screen.clocks_per_pixel
@@ -324,12 +380,13 @@ class RegisterFile:
         agent, bus = self.agent, self.agent.bus
         start_screen = int(self.clocks == self.start_screen_clock)
         word = self.table.words.get(bus["bus_address"])
+        camera_word = self.camera.by_address.get(bus["bus_address"])
         inputs = {
             **bus,
             "reset": int(reset),
             "bus_go_live": start_screen,
             "progress_start_screen": start_screen,
-            "camera_readback": self.camera.shadow,
+            "camera_readback": camera_word.shadow if camera_word else 0,
             "rect_readback": word.shadow if word else 0,
             "bad_rectangle": 0,
             "progress_busy": 0,
@@ -349,10 +406,12 @@ class RegisterFile:
             self._least_cycles = (0, 0)
         taken = request is not None and not agent.waiting and not reset
         self.table.clock(inputs)
-        self.camera.clock(inputs, bus["bus_address"] == self.camera_address)
+        for address, word in self.camera.by_address.items():
+            word.clock(inputs, bus["bus_address"] == address)
         agent.clock(inputs)
         if reset:
-            self.camera.reset()
+            for word in self.camera.values():
+                word.reset()
             self.clocks, self.live, self._least_cycles = 0, None, (0, 0)
             return False
         if start_screen:

@@ -21,7 +21,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from raycaster.configuration import Configuration
-from raycaster.design import Design
+from raycaster.design import Design, packaged_for
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.options import (
@@ -303,11 +303,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     # make hands its variables down in the environment, where cocotb would take them for its own.
     for name in ("WAVES", "GUI"):
         os.environ.pop(name, None)
-    paths = arguments.scene or list(packaged_scenes().values())
     gates = arguments.gates
+    options = given_options(arguments)
+    # A netlist is made of one small design, which has no more than it must.
+    paths = arguments.scene or (list(packaged_scenes(plain=True).values()) if gates else packaged_for(options))
     # Into a file or a pipe rich would print as if on 80 columns, which the table does not fit.
     console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
-    runs = plan_runs(paths, given_options(arguments), GATES_OPTIONS if gates else {}, arguments.fix, console)
+    runs = plan_runs(paths, options, GATES_OPTIONS if gates else {}, arguments.fix, console)
     find_tool(arguments.simulator)
     if gates:
         find_yosys()
@@ -331,5 +333,5 @@ def main(argv: Sequence[str] | None = None) -> int:
     }
     keep(arguments, {"scenes": figures}, scope)
     if not gates:
-        show_traces(outcomes, given_options(arguments), arguments.simulator, console)
+        show_traces(outcomes, options, arguments.simulator, console)
     return int(any(outcome.failure for outcome in outcomes))

@@ -7,7 +7,7 @@
 
 #include "raycaster_regs.h"
 
-typedef ray_caster__rectangle__stride10_t entry_t;
+typedef ray_caster__rectangle_t entry_t;
 
 #define READ(device, name) RAYCASTER_READ((device)->base, offsetof(ray_caster_t, name))
 #define WRITE(device, name, word) RAYCASTER_WRITE((device)->base, offsetof(ray_caster_t, name), word)
@@ -24,6 +24,65 @@ typedef ray_caster__rectangle__stride10_t entry_t;
 #define PUT_COLOUR(colour, place) \
     (PUT((colour).red, place##__RED) | PUT((colour).green, place##__GREEN) | PUT((colour).blue, place##__BLUE))
 
+#define HALF_MIRROR 2
+#define MOST_MIRROR 4
+#define LEAST_CELL_LOG 3
+
+// Sines of whole degrees, 0 to 90, times 2^30: as exact as the nearest 256ths of their products of three need.
+#define SINE_BITS 30
+static const int32_t sines[91] = {
+    0, 18739379, 37473049, 56195305, 74900443, 93582766, 112236583, 130856211,
+    149435979, 167970228, 186453311, 204879599, 223243478, 241539355, 259761657, 277904834,
+    295963357, 313931728, 331804471, 349576144, 367241333, 384794656, 402230767, 419544355,
+    436730145, 453782903, 470697435, 487468587, 504091252, 520560366, 536870912, 553017922,
+    568996477, 584801711, 600428808, 615873009, 631129609, 646193961, 661061475, 675727625,
+    690187940, 704438018, 718473518, 732290163, 745883746, 759250125, 772385229, 785285058,
+    797945680, 810363241, 822533958, 834454122, 846120104, 857528349, 868675383, 879557810,
+    890172315, 900515665, 910584710, 920376381, 929887697, 939115760, 948057759, 956710970,
+    965072759, 973140576, 980911966, 988384560, 995556083, 1002424350, 1008987269, 1015242840,
+    1021189159, 1026824413, 1032146887, 1037154959, 1041847103, 1046221891, 1050277989, 1054014162,
+    1057429273, 1060522280, 1063292242, 1065738315, 1067859754, 1069655912, 1071126243, 1072270298,
+    1073087729, 1073578288, 1073741824,
+};
+
+static int32_t sine(int degrees) {
+    degrees %= 360;
+    degrees = degrees < 0 ? degrees + 360 : degrees;
+    if (degrees > 180) {
+        return -sine(degrees - 180);
+    }
+    return sines[degrees > 90 ? 180 - degrees : degrees];
+}
+
+// A sum of products of two sines, rounded to the nearest, halves up, and with `bits` fraction bits left.
+static int32_t rounded(int64_t products, int bits) {
+    const int lost = 2 * SINE_BITS - bits;
+    // What is shifted is not negative, for which C leaves it open.
+    const uint64_t offset = (uint64_t)1 << 62;
+    return (int32_t)((int64_t)((offset + (uint64_t)products + ((uint64_t)1 << (lost - 1))) >> lost) -
+                     (int64_t)(offset >> lost));
+}
+
+static int32_t product(int32_t a, int32_t b) {
+    return rounded((int64_t)a * b, SINE_BITS);
+}
+
+static int16_t part(int64_t products) {
+    return (int16_t)rounded(products, 8);
+}
+
+static bool is_basis_vector(struct raycaster_vector vector) {
+    const int most = MOST(FORWARD__X) / 2;
+    return vector.x >= -most - 1 && vector.x <= most && vector.y >= -most - 1 && vector.y <= most &&
+           vector.z >= -most - 1 && vector.z <= most;
+}
+
+static uint32_t vector_word(struct raycaster_vector vector) {
+    return PUT((uint32_t)vector.x & MOST(FORWARD__X), FORWARD__X) |
+           PUT((uint32_t)vector.y & MOST(FORWARD__Y), FORWARD__Y) |
+           PUT((uint32_t)vector.z & MOST(FORWARD__Z), FORWARD__Z);
+}
+
 static bool is_in_world(struct raycaster_point point) {
     return point.x <= MOST(CAMERA__X) && point.y <= MOST(CAMERA__Y) && point.z <= MOST(CAMERA__Z);
 }
@@ -39,6 +98,11 @@ static enum raycaster_error check_index(const struct raycaster *device, unsigned
 static void change_control(const struct raycaster *device, uint32_t mask, uint32_t bits) {
     const uint32_t word = READ(device, control) & ~(mask | RAY_CASTER__CONTROL__COMMIT_bm);
     WRITE(device, control, word | bits);
+}
+
+static void change_surface(const struct raycaster *device, unsigned index, uint32_t mask, uint32_t bits) {
+    const uint32_t surface = RAYCASTER_READ(device->base, ENTRY(index, surface));
+    RAYCASTER_WRITE(device->base, ENTRY(index, surface), (surface & ~mask) | bits);
 }
 
 const char *raycaster_error_text(enum raycaster_error error) {
@@ -67,6 +131,10 @@ const char *raycaster_error_text(enum raycaster_error error) {
         return "a row was not complete in time";
     case RAYCASTER_BAD_RECTANGLE:
         return "an enabled rectangle without a plane was committed";
+    case RAYCASTER_NOT_IN_HARDWARE:
+        return "the hardware was generated without it";
+    case RAYCASTER_NO_SUCH_LOOK:
+        return "no such mirror, pattern or size of cells";
     }
     return "unknown error";
 }
@@ -95,6 +163,9 @@ enum raycaster_error raycaster_probe(struct raycaster *device, volatile uint32_t
     device->divider_bits = GET(engine, ENGINE__DIVIDER_BITS);
     device->colour_bits = GET(engine, ENGINE__COLOUR_BITS);
     device->nearest = GET(engine, ENGINE__NEAREST) != 0;
+    device->turn = GET(engine, ENGINE__TURN) != 0;
+    device->materials = GET(engine, ENGINE__MATERIALS) != 0;
+    device->patterns = GET(engine, ENGINE__PATTERNS) != 0;
     return RAYCASTER_OK;
 }
 
@@ -113,9 +184,53 @@ enum raycaster_error raycaster_set_rectangle(
     }
     RAYCASTER_WRITE(device->base, ENTRY(index, corner_0), PUT_POINT(corner_0, RECTANGLE__CORNER));
     RAYCASTER_WRITE(device->base, ENTRY(index, corner_1), PUT_POINT(corner_1, RECTANGLE__CORNER));
+    if (device->patterns) {
+        RAYCASTER_WRITE(device->base, ENTRY(index, pattern), PUT(RAYCASTER_PLAIN, RECTANGLE__PATTERN__KIND));
+    }
     RAYCASTER_WRITE(
         device->base, ENTRY(index, surface),
-        PUT_COLOUR(colour, RECTANGLE__SURFACE) | RAY_CASTER__RECTANGLE__SURFACE__ENABLE_bm);
+        PUT_COLOUR(colour, RECTANGLE__SURFACE) | PUT(HALF_MIRROR, RECTANGLE__SURFACE__MIRROR) |
+            RAY_CASTER__RECTANGLE__SURFACE__ENABLE_bm);
+    return RAYCASTER_OK;
+}
+
+enum raycaster_error raycaster_set_mirror(const struct raycaster *device, unsigned index, unsigned quarters) {
+    const enum raycaster_error error = check_index(device, index);
+    if (error != RAYCASTER_OK) {
+        return error;
+    }
+    if (quarters > MOST_MIRROR) {
+        return RAYCASTER_NO_SUCH_LOOK;
+    }
+    if (!device->materials) {
+        return RAYCASTER_NOT_IN_HARDWARE;
+    }
+    change_surface(
+        device, index, RAY_CASTER__RECTANGLE__SURFACE__MIRROR_bm, PUT(quarters, RECTANGLE__SURFACE__MIRROR));
+    return RAYCASTER_OK;
+}
+
+enum raycaster_error raycaster_set_pattern(
+    const struct raycaster *device, unsigned index, enum raycaster_pattern pattern, unsigned cell,
+    struct raycaster_colour colour) {
+    const enum raycaster_error error = check_index(device, index);
+    if (error != RAYCASTER_OK) {
+        return error;
+    }
+    unsigned code = 0;
+    while (cell > 1u << (LEAST_CELL_LOG + code) && code < 5) {
+        code++;
+    }
+    if (cell != 1u << (LEAST_CELL_LOG + code) || (unsigned)pattern > RAYCASTER_COLUMNS) {
+        return RAYCASTER_NO_SUCH_LOOK;
+    }
+    if (!device->patterns) {
+        return RAYCASTER_NOT_IN_HARDWARE;
+    }
+    RAYCASTER_WRITE(
+        device->base, ENTRY(index, pattern),
+        PUT_COLOUR(colour, RECTANGLE__PATTERN) | PUT(pattern, RECTANGLE__PATTERN__KIND) |
+            PUT(code, RECTANGLE__PATTERN__CELL));
     return RAYCASTER_OK;
 }
 
@@ -124,10 +239,7 @@ enum raycaster_error raycaster_enable_rectangle(const struct raycaster *device, 
     if (error != RAYCASTER_OK) {
         return error;
     }
-    const uint32_t surface = RAYCASTER_READ(device->base, ENTRY(index, surface));
-    RAYCASTER_WRITE(
-        device->base, ENTRY(index, surface),
-        (surface & ~RAY_CASTER__RECTANGLE__SURFACE__ENABLE_bm) | PUT(enable, RECTANGLE__SURFACE__ENABLE));
+    change_surface(device, index, RAY_CASTER__RECTANGLE__SURFACE__ENABLE_bm, PUT(enable, RECTANGLE__SURFACE__ENABLE));
     return RAYCASTER_OK;
 }
 
@@ -139,6 +251,42 @@ enum raycaster_error raycaster_set_camera(const struct raycaster *device, struct
         return RAYCASTER_OUTSIDE_WORLD;
     }
     WRITE(device, camera, PUT_POINT(position, CAMERA));
+    return RAYCASTER_OK;
+}
+
+struct raycaster_basis raycaster_turned(int yaw, int pitch, int roll) {
+    // Reduced before 90 is added, which could overflow.
+    yaw %= 360;
+    pitch %= 360;
+    roll %= 360;
+    const int32_t sy = sine(yaw), cy = sine(yaw + 90);
+    const int32_t sp = sine(pitch), cp = sine(pitch + 90);
+    const int32_t sr = sine(roll), cr = sine(roll + 90);
+    const int64_t one = (int64_t)1 << SINE_BITS;
+    return (struct raycaster_basis){
+        .forward = {part((int64_t)cy * cp), part((int64_t)sy * cp), part(sp * one)},
+        .right =
+            {part(-(int64_t)sy * cr - (int64_t)product(cy, sp) * sr),
+             part((int64_t)cy * cr - (int64_t)product(sy, sp) * sr), part((int64_t)cp * sr)},
+        .up =
+            {part((int64_t)sy * sr - (int64_t)product(cy, sp) * cr),
+             part(-(int64_t)cy * sr - (int64_t)product(sy, sp) * cr), part((int64_t)cp * cr)},
+    };
+}
+
+enum raycaster_error raycaster_set_basis(const struct raycaster *device, const struct raycaster_basis *basis) {
+    if (device->built_in == RAYCASTER_SCENE_BUILT_IN) {
+        return RAYCASTER_FIXED;
+    }
+    if (!is_basis_vector(basis->forward) || !is_basis_vector(basis->right) || !is_basis_vector(basis->up)) {
+        return RAYCASTER_OUTSIDE_WORLD;
+    }
+    if (!device->turn) {
+        return RAYCASTER_NOT_IN_HARDWARE;
+    }
+    WRITE(device, forward, vector_word(basis->forward));
+    WRITE(device, right, vector_word(basis->right));
+    WRITE(device, up, vector_word(basis->up));
     return RAYCASTER_OK;
 }
 

@@ -40,7 +40,9 @@ enum raycaster_error {
     RAYCASTER_STILL_COMMITTING,
     RAYCASTER_NO_FRAME,
     RAYCASTER_UNDERRUN,
-    RAYCASTER_BAD_RECTANGLE
+    RAYCASTER_BAD_RECTANGLE,
+    RAYCASTER_NOT_IN_HARDWARE,
+    RAYCASTER_NO_SUCH_LOOK
 };
 
 enum raycaster_engine { RAYCASTER_SEED, RAYCASTER_EXACT, RAYCASTER_BEAM };
@@ -63,7 +65,10 @@ struct raycaster {
     uint8_t fraction_bits;
     uint8_t divider_bits;
     uint8_t colour_bits;
-    bool nearest; // rounds its quotients to nearest
+    bool nearest;   // rounds its quotients to nearest
+    bool turn;      // its camera turns
+    bool materials; // its rectangles have mirrors of their own
+    bool patterns;  // its rectangles have patterns
 };
 
 // A place in the world, each coordinate 0 to 511: x is depth, y is side to side, z is height.
@@ -78,6 +83,22 @@ struct raycaster_colour {
     uint8_t green;
     uint8_t blue;
 };
+
+// Where a camera looks, and how its picture lies: vectors times 256, each component -512 to 511.
+struct raycaster_vector {
+    int16_t x;
+    int16_t y;
+    int16_t z;
+};
+
+struct raycaster_basis {
+    struct raycaster_vector forward;
+    struct raycaster_vector right;
+    struct raycaster_vector up;
+};
+
+// What has the second colour: every other cell, row of cells or column of cells.
+enum raycaster_pattern { RAYCASTER_PLAIN, RAYCASTER_CHECKER, RAYCASTER_ROWS, RAYCASTER_COLUMNS };
 
 struct raycaster_status {
     uint16_t frame; // frames since reset, modulo 65536
@@ -98,15 +119,30 @@ const char *raycaster_error_text(enum raycaster_error error);
 // Fill in `device` from the registers at `base`. RAYCASTER_NOT_FOUND, RAYCASTER_OTHER_VERSION: it must not be used.
 enum raycaster_error raycaster_probe(struct raycaster *device, volatile uint32_t *base);
 
-// Set an entry of the table, from two opposite corners that share a coordinate, and enable it.
+// Set an entry of the table, from two opposite corners that share a coordinate, and enable it; plain, and half a mirror.
 enum raycaster_error raycaster_set_rectangle(
     const struct raycaster *device, unsigned index, struct raycaster_point corner_0, struct raycaster_point corner_1,
     struct raycaster_colour colour);
 
-// Show an entry of the table or leave it out; its corners and colour stay.
+// How much of an entry that was set is a mirror, in quarters: 0 (matte) to 4. RAYCASTER_NOT_IN_HARDWARE: all are 2.
+enum raycaster_error raycaster_set_mirror(const struct raycaster *device, unsigned index, unsigned quarters);
+
+// The pattern of an entry that was set; its cells are 8, 16, .. or 256 wide. RAYCASTER_NOT_IN_HARDWARE: all are plain.
+enum raycaster_error raycaster_set_pattern(
+    const struct raycaster *device, unsigned index, enum raycaster_pattern pattern, unsigned cell,
+    struct raycaster_colour colour);
+
+// Show an entry of the table or leave it out; all else of it stays.
 enum raycaster_error raycaster_enable_rectangle(const struct raycaster *device, unsigned index, bool enable);
 
 enum raycaster_error raycaster_set_camera(const struct raycaster *device, struct raycaster_point position);
+
+// The basis of a camera that is turned by whole degrees, of any size: yaw > 0 from x towards y, pitch > 0 upwards, roll
+// > 0 lifts its right side; rolled first, yawed last. No angle: along x, upright.
+struct raycaster_basis raycaster_turned(int yaw, int pitch, int roll);
+
+// Turn the camera. RAYCASTER_NOT_IN_HARDWARE: it looks along x. RAYCASTER_OUTSIDE_WORLD: a component is too large.
+enum raycaster_error raycaster_set_basis(const struct raycaster *device, const struct raycaster_basis *basis);
 
 enum raycaster_error raycaster_set_background(const struct raycaster *device, struct raycaster_colour colour);
 

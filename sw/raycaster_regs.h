@@ -20,7 +20,7 @@ extern "C" {
 #define RAY_CASTER__VERSION__MINOR_bm 0xffff
 #define RAY_CASTER__VERSION__MINOR_bp 0
 #define RAY_CASTER__VERSION__MINOR_bw 16
-#define RAY_CASTER__VERSION__MINOR_reset 0x3
+#define RAY_CASTER__VERSION__MINOR_reset 0x4
 #define RAY_CASTER__VERSION__MAJOR_bm 0xffff0000
 #define RAY_CASTER__VERSION__MAJOR_bp 16
 #define RAY_CASTER__VERSION__MAJOR_bw 16
@@ -36,6 +36,15 @@ extern "C" {
 #define RAY_CASTER__ENGINE__NEAREST_bm 0x100
 #define RAY_CASTER__ENGINE__NEAREST_bp 8
 #define RAY_CASTER__ENGINE__NEAREST_bw 1
+#define RAY_CASTER__ENGINE__TURN_bm 0x200
+#define RAY_CASTER__ENGINE__TURN_bp 9
+#define RAY_CASTER__ENGINE__TURN_bw 1
+#define RAY_CASTER__ENGINE__MATERIALS_bm 0x400
+#define RAY_CASTER__ENGINE__MATERIALS_bp 10
+#define RAY_CASTER__ENGINE__MATERIALS_bw 1
+#define RAY_CASTER__ENGINE__PATTERNS_bm 0x800
+#define RAY_CASTER__ENGINE__PATTERNS_bp 11
+#define RAY_CASTER__ENGINE__PATTERNS_bw 1
 #define RAY_CASTER__ENGINE__DIVIDER_BITS_bm 0x3000
 #define RAY_CASTER__ENGINE__DIVIDER_BITS_bp 12
 #define RAY_CASTER__ENGINE__DIVIDER_BITS_bw 2
@@ -148,6 +157,48 @@ extern "C" {
 #define RAY_CASTER__CAMERA__Z_bw 9
 #define RAY_CASTER__CAMERA__Z_reset 0x0
 
+// reg - ray_caster::forward
+#define RAY_CASTER__FORWARD__X_bm 0x3ff
+#define RAY_CASTER__FORWARD__X_bp 0
+#define RAY_CASTER__FORWARD__X_bw 10
+#define RAY_CASTER__FORWARD__X_reset 0x100
+#define RAY_CASTER__FORWARD__Y_bm 0xffc00
+#define RAY_CASTER__FORWARD__Y_bp 10
+#define RAY_CASTER__FORWARD__Y_bw 10
+#define RAY_CASTER__FORWARD__Y_reset 0x0
+#define RAY_CASTER__FORWARD__Z_bm 0x3ff00000
+#define RAY_CASTER__FORWARD__Z_bp 20
+#define RAY_CASTER__FORWARD__Z_bw 10
+#define RAY_CASTER__FORWARD__Z_reset 0x0
+
+// reg - ray_caster::right
+#define RAY_CASTER__RIGHT__X_bm 0x3ff
+#define RAY_CASTER__RIGHT__X_bp 0
+#define RAY_CASTER__RIGHT__X_bw 10
+#define RAY_CASTER__RIGHT__X_reset 0x0
+#define RAY_CASTER__RIGHT__Y_bm 0xffc00
+#define RAY_CASTER__RIGHT__Y_bp 10
+#define RAY_CASTER__RIGHT__Y_bw 10
+#define RAY_CASTER__RIGHT__Y_reset 0x100
+#define RAY_CASTER__RIGHT__Z_bm 0x3ff00000
+#define RAY_CASTER__RIGHT__Z_bp 20
+#define RAY_CASTER__RIGHT__Z_bw 10
+#define RAY_CASTER__RIGHT__Z_reset 0x0
+
+// reg - ray_caster::up
+#define RAY_CASTER__UP__X_bm 0x3ff
+#define RAY_CASTER__UP__X_bp 0
+#define RAY_CASTER__UP__X_bw 10
+#define RAY_CASTER__UP__X_reset 0x0
+#define RAY_CASTER__UP__Y_bm 0xffc00
+#define RAY_CASTER__UP__Y_bp 10
+#define RAY_CASTER__UP__Y_bw 10
+#define RAY_CASTER__UP__Y_reset 0x0
+#define RAY_CASTER__UP__Z_bm 0x3ff00000
+#define RAY_CASTER__UP__Z_bp 20
+#define RAY_CASTER__UP__Z_bw 10
+#define RAY_CASTER__UP__Z_reset 0x100
+
 // reg - ray_caster::rectangle::corner
 #define RAY_CASTER__RECTANGLE__CORNER__X_bm 0x1ff
 #define RAY_CASTER__RECTANGLE__CORNER__X_bp 0
@@ -175,18 +226,44 @@ extern "C" {
 #define RAY_CASTER__RECTANGLE__SURFACE__RED_bp 16
 #define RAY_CASTER__RECTANGLE__SURFACE__RED_bw 8
 #define RAY_CASTER__RECTANGLE__SURFACE__RED_reset 0x0
+#define RAY_CASTER__RECTANGLE__SURFACE__MIRROR_bm 0x7000000
+#define RAY_CASTER__RECTANGLE__SURFACE__MIRROR_bp 24
+#define RAY_CASTER__RECTANGLE__SURFACE__MIRROR_bw 3
+#define RAY_CASTER__RECTANGLE__SURFACE__MIRROR_reset 0x0
 #define RAY_CASTER__RECTANGLE__SURFACE__ENABLE_bm 0x80000000
 #define RAY_CASTER__RECTANGLE__SURFACE__ENABLE_bp 31
 #define RAY_CASTER__RECTANGLE__SURFACE__ENABLE_bw 1
 #define RAY_CASTER__RECTANGLE__SURFACE__ENABLE_reset 0x0
+
+// reg - ray_caster::rectangle::pattern
+#define RAY_CASTER__RECTANGLE__PATTERN__BLUE_bm 0xff
+#define RAY_CASTER__RECTANGLE__PATTERN__BLUE_bp 0
+#define RAY_CASTER__RECTANGLE__PATTERN__BLUE_bw 8
+#define RAY_CASTER__RECTANGLE__PATTERN__BLUE_reset 0x0
+#define RAY_CASTER__RECTANGLE__PATTERN__GREEN_bm 0xff00
+#define RAY_CASTER__RECTANGLE__PATTERN__GREEN_bp 8
+#define RAY_CASTER__RECTANGLE__PATTERN__GREEN_bw 8
+#define RAY_CASTER__RECTANGLE__PATTERN__GREEN_reset 0x0
+#define RAY_CASTER__RECTANGLE__PATTERN__RED_bm 0xff0000
+#define RAY_CASTER__RECTANGLE__PATTERN__RED_bp 16
+#define RAY_CASTER__RECTANGLE__PATTERN__RED_bw 8
+#define RAY_CASTER__RECTANGLE__PATTERN__RED_reset 0x0
+#define RAY_CASTER__RECTANGLE__PATTERN__KIND_bm 0x3000000
+#define RAY_CASTER__RECTANGLE__PATTERN__KIND_bp 24
+#define RAY_CASTER__RECTANGLE__PATTERN__KIND_bw 2
+#define RAY_CASTER__RECTANGLE__PATTERN__KIND_reset 0x0
+#define RAY_CASTER__RECTANGLE__PATTERN__CELL_bm 0x70000000
+#define RAY_CASTER__RECTANGLE__PATTERN__CELL_bp 28
+#define RAY_CASTER__RECTANGLE__PATTERN__CELL_bw 3
+#define RAY_CASTER__RECTANGLE__PATTERN__CELL_reset 0x0
 
 // regfile - ray_caster::rectangle
 typedef struct __attribute__ ((__packed__)) {
     uint32_t corner_0;
     uint32_t corner_1;
     uint32_t surface;
-    uint8_t RESERVED_c_f[0x4];
-} ray_caster__rectangle__stride10_t;
+    uint32_t pattern;
+} ray_caster__rectangle_t;
 
 // addrmap - ray_caster
 typedef struct __attribute__ ((__packed__)) {
@@ -201,8 +278,11 @@ typedef struct __attribute__ ((__packed__)) {
     uint32_t irq_pending;
     uint32_t background;
     uint32_t camera;
-    uint8_t RESERVED_2c_3f[0x14];
-    ray_caster__rectangle__stride10_t rectangle[12];
+    uint32_t forward;
+    uint32_t right;
+    uint32_t up;
+    uint8_t RESERVED_38_3f[0x8];
+    ray_caster__rectangle_t rectangle[12];
 } ray_caster_t;
 
 

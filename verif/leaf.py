@@ -16,7 +16,7 @@ from typing import Any
 
 from myhdl import ResetSignal, Simulation, StopSimulation, block, delay, instance
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import Module, Port, convert_hierarchy
 from raycaster.convert.inside import port_signals
@@ -289,8 +289,11 @@ def reset_signal() -> ResetSignal:
     return ResetSignal(0, active=1, isasync=False)
 
 
-def sorted_rect(rectangles: Rectangles, index: int, prefix: str) -> dict[str, int]:
-    """What `rect_sorter` must make of a rectangle: values for the ports of a `Rect` that is called `prefix`."""
+def sorted_rect(rectangles: Rectangles, index: int, prefix: str, config: Configuration | None = None) -> dict[str, int]:
+    """What `rect_sorter` must make of a rectangle: values for the ports of a `Rect` that is called `prefix`.
+
+    With a configuration those of its looks too.
+    """
     axis = int(rectangles.axes[index])
     u, v = OTHER_AXES[axis]
     low, high = rectangles.low[index], rectangles.high[index]
@@ -303,6 +306,12 @@ def sorted_rect(rectangles: Rectangles, index: int, prefix: str) -> dict[str, in
         "v_high": high[v],
         "colour": int.from_bytes(bytes(rectangles.colours[index])),
     }
+    if config and config.materials:
+        fields["mirror"] = rectangles.mirrors[index]
+    if config and config.patterns:
+        fields["kind"] = rectangles.kinds[index] if rectangles.cells[index] < WORLD_SIZE else 0
+        fields["cell"] = int(rectangles.cells[index]).bit_length() - 4
+        fields["colour_2"] = int.from_bytes(bytes(rectangles.colours_2[index]))
     return {f"{prefix}_{name}": int(value) for name, value in fields.items()}
 
 
@@ -331,7 +340,11 @@ class TraceCycle:
 
 def step_names(config: Configuration) -> list[str]:
     """The attributes of `Steps` that a line-buffered engine's control drives."""
-    return [name for name in vars(Steps()) if config.facts.divides or name not in ("load_divider", "store_quotient")]
+    return [
+        name
+        for name in vars(Steps())
+        if config.facts.divides or config.patterns or name not in ("load_divider", "store_quotient")
+    ]
 
 
 def slot_length(config: Configuration) -> int:
@@ -381,7 +394,8 @@ def trace_cycles(
         offered = [start + offered_after for start, ended in zip(starts, early, strict=False) if not ended]
         # Where there is nothing to trace, a pass only looks for it and adds the background; a lost ray adds at once.
         traced = lost is None or bounce <= lost
-        length = 2 + max([starts[-1], *offered]) if traced else 1
+        patterns = config.facts.pattern_latency if config.patterns else 0
+        length = 2 + max([starts[-1], *(end + patterns for end in offered)]) if traced else 1
         first = len(cycles)
         cycles += [TraceCycle(idle | {"steps_initial_ray": int(bounce == 0)}, bounce) for _ in range(length)]
         strobe(-1, "add_colour", "reset_z_buf", *(["store_ray"] if bounce < reflections else []))
@@ -392,6 +406,10 @@ def trace_cycles(
             if exact:
                 strobe(start + 3, "write_z_buf")
                 cycles[start].current = cycles[start + 3].offered = index
+                if config.patterns:
+                    strobe(start + 4, "load_divider")
+                if config.patterns and place == starts[-2]:
+                    strobe(start + 7, "store_quotient")
                 continue
             cycles[start + 1].towards = int((bounce, index) not in behind)
             strobe(start + 2, "load_divider")

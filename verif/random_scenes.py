@@ -3,14 +3,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 
 from raycaster.configuration import WORLD_SIZE
-from raycaster.golden.random_world import EXTREMES, ROOM, random_camera, random_rectangles
+from raycaster.golden.random_world import (
+    EXTREMES,
+    ROOM,
+    random_camera,
+    random_grid,
+    random_looks,
+    random_rectangles,
+)
 from raycaster.golden.world import Rectangles
-from raycaster.scene import Camera, Rectangle, Scene
+from raycaster.scene import PATTERNS, Camera, Rectangle, Scene
 
-STYLES = ("room", "boxes", "slits", "degenerate", "extreme")
+STYLES = ("room", "boxes", "slits", "degenerate", "extreme", "corners")
 
 
 def style_of(seed: int) -> str:
@@ -18,34 +27,60 @@ def style_of(seed: int) -> str:
     return STYLES[seed % len(STYLES)]
 
 
-def random_scene(seed: int, rectangles: int, reflections: int) -> Scene:
+def random_scene(seed: int, rectangles: int, reflections: int, looks: Collection[str] = ()) -> Scene:
     """The scene of a seed; its title says the seed and the style.
 
     Args:
         seed: equal seeds make equal scenes.
         rectangles: at most so many, 1 or more.
         reflections: at most so many.
+        looks: of turn, materials and patterns, those that it may have; the rest of it is the same without them.
     """
     rng = np.random.default_rng(seed)
     style = style_of(seed)
-    corners = _corners(rng, style, rectangles)
+    corners, camera = _corners(rng, style, rectangles)
     table = Rectangles(corners, rng.integers(256, size=(len(corners), 3)).astype(np.uint8), np.ones(len(corners), bool))
     colours = table.colours.tolist()
+    bounces, background = int(rng.integers(reflections + 1)), tuple(rng.integers(256, size=3).tolist())
+    if camera is None:
+        camera = random_camera(rng, table)
+    angles = _angles(rng) if "turn" in looks else {}
+    table = random_looks(rng, table)
     return Scene(
         title=f"{style} of seed {seed}",
-        reflections=int(rng.integers(reflections + 1)),
-        background=tuple(rng.integers(256, size=3).tolist()),
-        camera=Camera(position=tuple(random_camera(rng, table).tolist())),
+        reflections=bounces,
+        background=background,
+        camera=Camera(position=tuple(camera.tolist()), **angles),
         rect=tuple(
-            Rectangle(corners=tuple(map(tuple, pair)), colour=tuple(colour))
-            for pair, colour in zip(corners.tolist(), colours, strict=True)
+            Rectangle(corners=tuple(map(tuple, pair)), colour=tuple(colour), **_look(table, index, looks))
+            for index, (pair, colour) in enumerate(zip(corners.tolist(), colours, strict=True))
         ),
     )
 
 
-def _corners(rng: np.random.Generator, style: str, count: int) -> np.ndarray:
-    """int64 (rectangles, 2, 3), each with a plane."""
-    if style == "degenerate":
+def _angles(rng: np.random.Generator) -> dict[str, float]:
+    """Any, or steps of 15 degrees, whole right angles among them."""
+    some = rng.uniform(-180, 180, 3) if rng.random() < 0.5 else 15.0 * rng.integers(-12, 13, 3)
+    return dict(zip(("yaw", "pitch", "roll"), np.where(rng.random(3) < 0.2, 0, some).tolist(), strict=True))
+
+
+def _look(table: Rectangles, index: int, looks: Collection[str]) -> dict[str, object]:
+    """What of a rectangle's look a scene file says."""
+    look: dict[str, object] = {}
+    if "materials" in looks:
+        look["mirror"] = int(table.mirrors[index]) / 4
+    if "patterns" in looks and table.kinds[index]:
+        look |= {"pattern": PATTERNS[table.kinds[index]], "cell": int(table.cells[index])}
+        look["colour2"] = tuple(table.colours_2[index].tolist())
+    return look
+
+
+def _corners(rng: np.random.Generator, style: str, count: int) -> tuple[np.ndarray, np.ndarray | None]:
+    """int64 (rectangles, 2, 3), each with a plane, and the camera, int64 (3,), where it matters."""
+    camera = None
+    if style == "corners":
+        corners, camera = random_grid(rng, max(count, len(ROOM)))
+    elif style == "degenerate":
         # A room of its own takes six rectangles, and one to see in it.
         table = random_rectangles(rng, count, closed=None if count > len(ROOM) else False)
         corners = table.corners[table.visible]
@@ -61,7 +96,7 @@ def _corners(rng: np.random.Generator, style: str, count: int) -> np.ndarray:
     else:
         inside = _flatten(rng, rng.integers(WORLD_SIZE, size=(count, 2, 3)))
         corners = np.concatenate([np.array(ROOM), inside])[:count]
-    return rng.permutation(corners)[:count] if len(corners) else np.zeros((1, 2, 3), np.int64)
+    return rng.permutation(corners)[:count] if len(corners) else np.zeros((1, 2, 3), np.int64), camera
 
 
 def _flatten(rng: np.random.Generator, corners: np.ndarray) -> np.ndarray:

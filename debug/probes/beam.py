@@ -42,8 +42,8 @@ from raycaster.rtl.beam import beam_caster as beam
 from raycaster.rtl.beam import beam_pass
 from raycaster.rtl.beam import fold_tester as tester
 from raycaster.rtl.beam import nearest_of_two as contest
-from raycaster.rtl.common.records import Facet, Rect, Reflector, Walk, Winner, candidate_of, fold_of
-from raycaster.rtl.common.widths import exact_slope_bits, index_bits, walk_bits
+from raycaster.rtl.common.records import Facet, Look, Rect, Reflector, Walk, Winner, candidate_of, fold_of
+from raycaster.rtl.common.widths import factor_bits, index_bits, walk_bits
 
 RENDERER = f"{DUT}.beam_renderer_i"
 CASTER = f"{RENDERER}.beam_caster_i"
@@ -197,7 +197,7 @@ class BeamProbes(Description):
     def events(self, samples: Samples, ray: Ray) -> list[Event]:
         """What the hardware did for the pixel, in the first line that shows it."""
         values, screen = samples.values, ray.config.screen_geometry
-        bits = exact_slope_bits(self.config) + 1
+        bits = factor_bits(self.config)
         line, passed, column = 0, 0, None
         for cycle in range(len(samples.times_ns)):
             if values[f"{RENDERER}.start_line"][cycle]:
@@ -260,7 +260,7 @@ class BeamProbes(Description):
                 of_mirrors(passes, nearest_of(0)), shown=False),
         ]  # fmt: skip
         return [
-            *scene_probes("column"),
+            *scene_probes("column", self.config),
             Probe("rectangle", fields(f"{DUT}.rect_mem_i", "rects_rect", RECT_FIELDS, Rect()), "fetch", sorted_rect,
                 late=2, shown=False),
             Probe("set up", fields(SETUP, "facet", facet.layout, facet), "load", setup_facet, signed=(2, 3),
@@ -269,7 +269,7 @@ class BeamProbes(Description):
                 signed=True, shown=False),
             Probe("in the pipeline", (f"{CASTER}.steps",), "ray", lambda ray, place: (1,), shown=False,
                 decode=lambda ray, place, steps: (steps >> (self.starts[place.bounce] - 1) & 1,)),
-            Probe("slope along y", ("{beam}.early_slope",), "ray", lambda ray, _: ray.of_ray(0, "slopes")[1:2],
+            Probe("slope along y", ("{beam}.straight_y",), "ray", lambda ray, _: ray.of_ray(0, "slopes")[1:2],
                 signed=True),
             *(reflected if passes > 1 else []),
             Probe("way p", ("{walker}.walk_way_p",), "test",
@@ -284,7 +284,8 @@ class BeamProbes(Description):
                 nearest_of(0)),
             *(kept if passes > 1 else []),
             Probe("found", (f"{CASTER}.found_{{bounce}}",), "blend", found),
-            Probe("its colour", (f"{CASTER}.colour_{{bounce}}",), "blend", found_colour, colour=True),
+            Probe("its colour", fields(CASTER, "look_{bounce}", ("colour",), Look()), "blend", found_colour,
+                colour=True),
             Probe("colour seen", tuple(f"{BLEND}.{{seen}}_{name}" for name in COLOURS), "blend",
                 lambda ray, place: channels_of(seen_colour(ray, place)[0], CHANNEL_BITS), late=1),
             Probe("pixel", tuple(f"{BLEND}.colour_mean_{number}_i.mean" for number in range(3)), "done",

@@ -9,17 +9,18 @@ from raycaster.configuration import Configuration
 from raycaster.debug.probes.ray import AXES, Event, Place, Probe, Ray, Value, fields
 from raycaster.debug.probes.units import SIGNS, UnitProbes, slope_signs, surface
 from raycaster.debug.waves import Samples
-from raycaster.rtl.common.records import Mirror, Signs, Surface
+from raycaster.rtl.common.records import Signs, mirror_of, surface_of
 
 SURFACE = ("axis", "position", "colour")
 
 
 def mirror(ray: Ray, place: Place) -> Sequence[Value]:
-    """Whether the ray has left a mirror, and that one's axis and plane."""
+    """Whether the ray has left a mirror, and that one's axis and distance from the eye."""
     if place.bounce == 0:
         return 0, None, None
-    axis, position, _ = ray.plane(Place(place.bounce, ray.winner(place.bounce - 1)))
-    return 1, axis, position
+    left = Place(place.bounce - 1, ray.winner(place.bounce - 1))
+    axis, _, _ = ray.plane(left)
+    return 1, axis, ray.of_rectangle(left, "numerators")
 
 
 def hit(ray: Ray, place: Place) -> Sequence[Value]:
@@ -55,17 +56,17 @@ class ExactProbes(UnitProbes):
     def probes(self) -> list[Probe]:
         """In the order in which values depend on each other."""
         memory, tester, keeper = (f"{self.unit}.{name}_i" for name in ("eye_register", "rect_tester", "nearest_hit"))
-        kept = fields(keeper, "found_surface", SURFACE, Surface())
+        kept = fields(keeper, "found_surface", SURFACE, surface_of(self.config))
         t = tuple(f"{tester}.{name}" for name in ("numerator", "denominator"))
-        nearest_t = tuple(f"{keeper}.nearest_{name}" for name in ("numerator", "denominator"))
+        nearest_t = tuple(f"{keeper}.found_{name}" for name in ("distance", "slope"))
         return [
             *self.first_probes(),
             Probe("eye", fields(memory, "eye", AXES), "ray", lambda ray, place: ray.of_ray(place.bounce, "eyes"),
                 late=1, signed=True),
             Probe("signs", fields(memory, "signs", SIGNS, Signs()), "ray", slope_signs, late=1),
-            Probe("mirror", fields(memory, "mirror", ("active", "axis", "position"), Mirror()), "ray", mirror, late=1,
-                shown=False),
-            Probe("offered", fields(self.control, "offered", SURFACE, Surface()), "write",
+            Probe("mirror", fields(memory, "mirror", ("active", "axis", "distance"), mirror_of(self.config)), "ray",
+                mirror, late=1, shown=False),
+            Probe("offered", fields(self.control, "offered", SURFACE, surface_of(self.config)), "write",
                 lambda ray, place: surface(ray, place.rectangle), shown=False),
             Probe("inside", (f"{tester}.hit",), "write", hit),
             Probe("t", t, "write", fraction),

@@ -25,6 +25,7 @@ from raycaster.golden.picture import shown
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.common.records import Record
+from raycaster.scene import BASIS_SCALE, UNTURNED
 
 DUT = "bench.dut"
 AXES = "xyz"
@@ -205,7 +206,11 @@ class Ray:
             )
         self.row, self.column = row, column
         self.rectangles = Rectangles.of_scene(self.scene)
-        slopes = primary_slopes(screen)[row, column][None]
+        basis = self.scene.camera.basis
+        slopes = primary_slopes(screen, basis)[row, column][None]
+        if self.config.turn and basis == UNTURNED:
+            # Golden's are the shorter ones then; the hardware's are as long as of any other basis.
+            slopes = slopes * BASIS_SCALE
         arguments = self.rectangles, self.scene.camera.position, self.scene.background, slopes, design.reflections
         self.true = exact.trace(*arguments, keep=True)
         self.golden: seed_engine.Trace | exact.Trace = self.true

@@ -22,7 +22,7 @@ from raycaster.debug.probes.ray import (
     unit_name,
 )
 from raycaster.debug.waves import Samples, signed
-from raycaster.rtl.common.records import Pixel, Point, Rect, Signs
+from raycaster.rtl.common.records import Pixel, Signs, camera_of, rect_of
 
 RENDERER = f"{DUT}.ray_caster_renderer_i"
 RECT_FIELDS = ("axis", "position", "u_low", "u_high", "v_low", "v_high", "colour")
@@ -61,8 +61,10 @@ def found_colour(ray: Ray, place: Place) -> Sequence[Value] | None:
 
 
 def seen_colour(ray: Ray, place: Place) -> Sequence[Value]:
-    """What a ray sees, background included."""
-    return (ray.colour(ray.winner(place.bounce)),)
+    """What a ray sees, background included; nothing of a ray after a surface that does not mirror."""
+    if ray.config.materials and not ray.alive(place.bounce):
+        return None
+    return (int.from_bytes(bytes(ray.golden.seen[place.bounce][0])),)
 
 
 def pixel(ray: Ray, place: Place) -> Sequence[Value]:
@@ -80,10 +82,10 @@ def hit_mask(ray: Ray, place: Place) -> Sequence[int]:
     return (sum(1 << i for i, hit in enumerate(ray.golden.bounces[place.bounce].hits[:, 0]) if hit),)
 
 
-def scene_probes(event: str) -> list[Probe]:
+def scene_probes(event: str, config: Configuration) -> list[Probe]:
     """What the scene's registers say, from an event on."""
     bus = f"{DUT}.avalon_interface_i.picture"
-    camera = fields(f"{DUT}.camera_mem_i", "camera", AXES, Point())
+    camera = fields(f"{DUT}.camera_mem_i", "camera", AXES, camera_of(config))
     return [
         Probe("camera", camera, event, lambda ray, _: ray.scene.camera.position, shown=False),
         Probe("background", (f"{bus}_background",), event, lambda ray, _: (ray.colour(-1),), shown=False, colour=True),
@@ -133,6 +135,7 @@ class UnitProbes(Description):
         self.control = f"{self.caster}.{control}"
         self.sequencer = f"{self.control}.ray_sequencer_i"
         self.unit = f"{self.caster}.{unit_name(unit_module, config, unit)}"
+        self.generator = "turned_generator" if config.turn else "ray_generator"
         self.states = [f"{self.sequencer}.{name}" for name in ("state", "bounce")]
         steps = f"{self.sequencer}.steps"
         self.tells = {
@@ -215,14 +218,15 @@ class UnitProbes(Description):
 
     def first_probes(self) -> list[Probe]:
         """From the scene's memories to the primary ray."""
-        rects, generator = f"{DUT}.rect_mem_i", f"{self.unit}.ray_generator_i"
+        rects, generator = f"{DUT}.rect_mem_i", f"{self.unit}.{self.generator}_i"
+        layout = rect_of(self.config)
         culling = Probe(
             # For those that the scene has not got, the mask is don't care.
             "rectangles that may be hit", (f"{self.sequencer}.wanted",), "start", hit_mask,
             decode=lambda ray, place, wanted: (wanted & hit_mask(ray, place)[0],), module="group_culler", shown=False,
         )  # fmt: skip
         return [
-            *scene_probes("start"),
+            *scene_probes("start", self.config),
             Probe("usable rectangles", (f"{rects}.rects_usable",), "start",
                 lambda ray, _: ((1 << len(ray.rectangles)) - 1,), shown=False),
             Probe("slope, magnitudes", fields(generator, "slope", SIGNS), "start",
@@ -230,9 +234,9 @@ class UnitProbes(Description):
             Probe("slope, signs", fields(generator, "initial_signs", SIGNS, Signs()), "start", slope_signs, late=1),
             Probe("comes from the camera", (f"{self.sequencer}.steps_initial_ray",), "ray",
                 lambda _, place: (int(place.bounce == 0),), late=1, shown=False),
-            Probe("rectangle, sorted", fields(f"{rects}.rect_sorter_i", "rect", RECT_FIELDS, Rect()), "fetch",
+            Probe("rectangle, sorted", fields(f"{rects}.rect_sorter_i", "rect", RECT_FIELDS, layout), "fetch",
                 sorted_rect, shown=False),
-            Probe("rectangle", fields(rects, "rects_rect", RECT_FIELDS, Rect()), "fetch", sorted_rect, late=1,
+            Probe("rectangle", fields(rects, "rects_rect", RECT_FIELDS, layout), "fetch", sorted_rect, late=1,
                 shown=False),
             *([culling] if self.config.culling else []),
         ]  # fmt: skip
@@ -241,7 +245,8 @@ class UnitProbes(Description):
         """From what a ray has found, of which the colour's signal is given, to the pins."""
         combiner, bits = f"{self.unit}.colour_combiner_i", 3 * self.config.colour_bits
         buffer = f"{RENDERER}.{unit_name('line_buffer', self.config, self.number)}"
-        channels = tuple(f"{combiner}.colour_channel_{number}_i.blended" for number in range(3))
+        channel = "colour_sum" if self.config.materials else "colour_channel"
+        channels = tuple(f"{combiner}.{channel}_{number}_i.blended" for number in range(3))
         return [
             Probe("found", (kept_colour.rpartition(".")[0] + ".found",), "blend", found),
             Probe("its colour", (kept_colour,), "blend", found_colour, colour=True),

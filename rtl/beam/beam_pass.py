@@ -3,7 +3,7 @@
 
 from collections.abc import Sequence
 
-from myhdl import always_comb, block, concat, instances
+from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.beam import fold_tester as tester
@@ -11,12 +11,12 @@ from raycaster.rtl.beam import nearest_of_two as contest
 from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.nearest_of import nearest_of
 from raycaster.rtl.beam.rect_walker import rect_walker
-from raycaster.rtl.beam.slope_walker import slope_walker
+from raycaster.rtl.beam.slope_walker import ray_slope, slope_walker
 from raycaster.rtl.common.interfaces import Slope
 from raycaster.rtl.common.magnitude import magnitude
-from raycaster.rtl.common.records import Facet, Walk, candidate_of
+from raycaster.rtl.common.records import Signs, candidate_of, facet_of, growth_of, walk_of
 from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import DISTANCE_BITS, exact_slope_bits, index_bits, side_by_side, signed, walk_bits
+from raycaster.rtl.common.widths import exact_slope_bits, index_bits, side_by_side
 
 
 def rounds(config: Configuration) -> int:
@@ -32,43 +32,58 @@ def winner_latency(config: Configuration) -> int:
 
 @block
 def beam_pass(
-    clk, start_line, load, step, step_bounds, step_slope, start, row_slope, facets, growths, fold, winner,
+    clk, start_line, load, step, step_bounds, start, aim, facets, growths, fold, nearest, winner,
     tested: Sequence[int], config: Configuration,
 ):  # fmt: skip
-    """A column at each step; winner follows winner_latency cycles later.
+    """A column at each step; winner follows winner_latency cycles later, and nearest, the Candidate, or None for none.
 
     facets, growths: each rectangle's `Facet`, and what a column adds to its `Walk`, side by side, the first in the
-    lowest bits; load: a bit for each, high where start is its own. step_bounds, step_slope: step one and two cycles
-    later, for what is read then. fold: the ray's; tested: numbers of the rectangles that it may meet. start_line,
-    row_slope: as in `beam_caster`.
+    lowest bits; load: a bit for each, high where start is its own, or None where the camera turns and start_line loads
+    all. step_bounds: step a cycle later, for what is read then. fold: the ray's; tested: numbers of the rectangles that
+    it may meet. start_line, aim: as in `slope_walker`.
     """
-    slope_bits, product_bits, view_distance = (
-        exact_slope_bits(config), walk_bits(config), config.screen_geometry.view_distance
-    )  # fmt: skip
-    early_slope, late_slope, slope = signed(slope_bits + 1), signed(slope_bits + 1), Slope(slope_bits)
-    seen = [Facet(product_bits).cut(facets, i) for i in tested]
-    grown = [Walk(DISTANCE_BITS).cut(growths, i) for i in tested]
-    walks, hits = [Walk(product_bits) for _ in tested], [candidate_of(config) for _ in tested]
+    slope_bits = exact_slope_bits(config)
+    straight, signs = ray_slope(aim, config), Signs()
+    size, size_1, size_2 = Slope(slope_bits), Slope(slope_bits), Slope(slope_bits)
+    seen = [facet_of(config).cut(facets, i) for i in tested]
+    grown = [growth_of(config).cut(growths, i) for i in tested]
+    walks, hits = [walk_of(config) for _ in tested], [candidate_of(config) for _ in tested]
 
     walkers = [
-        rect_walker(clk, load=load(i + 1, i), step_way=step, step_bounds=step_bounds, start=start,
-            growth=growth, walk=walk)
+        rect_walker(clk, load=start_line if config.turn else load(i + 1, i), step_way=step, step_bounds=step_bounds,
+            start=start, growth=growth, walk=walk)
         for i, growth, walk in zip(tested, grown, walks, strict=True)
     ]  # fmt: skip
-    early = slope_walker(clk, start_line, step, early_slope, config)
-    late = slope_walker(clk, start_line, step_slope, late_slope, config)
-    magnitudes = magnitude(late_slope, slope.dy), magnitude(row_slope, slope.dz)
+    walker = slope_walker(clk, start_line, step, aim=aim, slope=straight, config=config)
+    magnitudes = [
+        magnitude(value, result)
+        for value, result in ((straight.x, size.dx), (straight.y, size.dy), (straight.z, size.dz))
+    ]
+
+    @always_comb
+    def look_ahead():
+        signs.word.next = concat(straight.x[slope_bits], straight.y[slope_bits], straight.z[slope_bits])
+
+    @always(clk.posedge)
+    def follow():
+        size_1.dx.next = size.dx
+        size_1.dy.next = size.dy
+        size_1.dz.next = size.dz
+        size_2.dx.next = size_1.dx
+        size_2.dy.next = size_1.dy
+        size_2.dz.next = size_1.dz
+
     testers = [
-        fold_tester(clk, facet=facet, walk=walk, column_slope=early_slope, row_slope=row_slope, slope=slope, fold=fold,
-            index=tied(i, index_bits(config)), hit=hit, view_distance=view_distance)
+        fold_tester(clk, facet=facet, walk=walk, signs=signs, slope=size_2, fold=fold,
+            index=tied(i, index_bits(config)), hit=hit)
         for i, facet, walk, hit in zip(tested, seen, walks, hits, strict=True)
     ]  # fmt: skip
-    all_hits, nearest = side_by_side([hit.word for hit in hits]), candidate_of(config)
-    contests = nearest_of(clk, all_hits, nearest, rounds(config))
+    all_hits = side_by_side([hit.word for hit in hits])
+    best = candidate_of(config) if nearest is None else nearest
+    contests = nearest_of(clk, all_hits, best, rounds(config))
 
-    # How near it is does not matter any more.
     @always_comb
     def announce():
-        winner.word.next = concat(nearest.valid, nearest.index)
+        winner.word.next = concat(best.valid, best.at_mirror, best.index)
 
     return instances()

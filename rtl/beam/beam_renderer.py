@@ -3,12 +3,33 @@
 
 from myhdl import always_comb, always_seq, block, instances
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import Configuration, ConfigurationError
 from raycaster.rtl.beam.beam_caster import beam_caster, beam_latency
+from raycaster.rtl.beam.line_starter import start_cycles
 from raycaster.rtl.common.interfaces import Scan
 from raycaster.rtl.common.records import Pixel
-from raycaster.rtl.common.widths import CYCLE_BITS, bit, bits_for, exact_slope_bits, row_bits, signed, unsigned
+from raycaster.rtl.common.widths import CYCLE_BITS, bit, bits_for, factor_bits, row_bits, signed, unsigned
 from raycaster.rtl.video.video_generator import video_generator
+
+
+def blanking_left(config: Configuration) -> int:
+    """Cycles of a line's blanking that are left when its first column starts; negative where it comes too late."""
+    horizontal = config.screen_geometry.horizontal
+    # The horizontal sync is seen a pixel after its turn, and the columns start before theirs.
+    return horizontal.blank - horizontal.front - beam_latency(config) - 1 - start_cycles(config)
+
+
+def check_blanking(config: Configuration) -> None:
+    """Refuse a design that cannot set up a line while the monitor is in its blanking.
+
+    Raises:
+        ConfigurationError: it cannot.
+    """
+    if (left := blanking_left(config)) < 0:
+        raise ConfigurationError(
+            f"rectangles: with {config.rectangles} of them, {config.reflections} reflections and a camera that turns, "
+            f"the beam engine is {-left} cycles short of a line's blanking on this screen; take fewer, or TURN=0"
+        )
 
 
 @block
@@ -19,6 +40,7 @@ def beam_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
     stays low. The video generator announces each column beam_latency cycles before its pixel is due. row_cycles: cycles
     since the line's first column, with the present one; group_cycles: a pixel's, which is 1.
     """
+    check_blanking(config)
     screen = config.screen_geometry
     rows, horizon_row, hs_active = screen.rows, screen.horizon_row, screen.horizontal.active_high
     last_repeat = screen.doubling - 1
@@ -30,7 +52,7 @@ def beam_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
     first_row, first_line, in_picture, drawing = bit(), bit(), bit(), bit()
     row = unsigned(row_bits(config))
     lines_left = unsigned(bits_for(last_repeat + 1))
-    row_slope = signed(exact_slope_bits(config) + 1)
+    row_slope = signed(factor_bits(config))
 
     video = video_generator(clk, reset, scan, shown, vga=vga, screen=screen, lead=beam_latency(config))
     caster = beam_caster(

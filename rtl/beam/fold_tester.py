@@ -10,21 +10,23 @@ LATENCY = 3
 
 
 @block
-def fold_tester(clk, facet, walk, column_slope, row_slope, slope, fold, index, hit, view_distance: int):
+def fold_tester(clk, facet, walk, signs, slope, fold, index, hit):
     """A ray a clock, as ray_fold folds it; hit, of the rectangle index, follows LATENCY cycles later.
 
     Along p the folded ray meets the plane at W = +-n D[p] + fold.p, over D[a]: between the two bounds it hits,
-    whichever of them D[a] and the mirrors make the lesser. Beyond its last mirror it must be strictly, on the side that
-    it runs to: on another axis W is compared with the mirror's border, on the same axis the planes' distances are.
+    whichever of them D[a] and the mirrors make the lesser. It must be beyond its last mirror, on the side that it runs
+    to: on another axis W is compared with the mirror's border, on the same axis the planes' distances are. Right at the
+    mirror it hits what is on an axis that it has met no mirror on in that point.
 
-    In the ray's cycle are read walk.way_p, the fold, and column_slope and row_slope, which are D[y] and D[z]; in the
-    next the bounds; and in the one after that slope, their magnitudes. view_distance: D[x]. Widths are the ports'.
+    In the ray's cycle are read walk's ways, the fold, and signs, which are those of D; in the next the bounds; and in
+    the one after that slope, the magnitudes of D. Widths are the ports'.
     """
+    along_q = walk.way_q if "way_q" in walk.layout else facet.way_q
     numerator_bits, slope_bits = len(hit.numerator), len(slope.dy)
     sum_bits, product_bits, turn_bits = len(fold.p_x), len(walk.way_p), len(fold.turn_x)
 
     back, turned, flip_p, flip_q = bit(), bit(), bit(), bit()
-    mirror_on_a, mirror_on_p, mirror_on_q = bit(), bit(), bit()
+    mirror_on_a, mirror_on_p, mirror_on_q, met = bit(), bit(), bit(), bit()
     offset_p, offset_q = signed(sum_bits), signed(sum_bits)
     border = signed(product_bits)
     turn = signed(turn_bits)
@@ -37,13 +39,15 @@ def fold_tester(clk, facet, walk, column_slope, row_slope, slope, fold, index, h
     folded_p_1, folded_q_1 = signed(sum_bits), signed(sum_bits)
     distance_1 = signed(turn_bits + 1)
     border_1 = signed(product_bits)
-    beyond_plane_1, clip_p_1, clip_q_1, rising_1 = bit(), bit(), bit(), bit()
+    beyond_plane_1, clip_p_1, clip_q_1, rising_1, met_1 = bit(), bit(), bit(), bit(), bit()
     clipped = signed(sum_bits)
     numerator = unsigned(turn_bits)
 
     under_low_p, at_low_p, over_high_p, at_high_p = bit(), bit(), bit(), bit()
     under_low_q, at_low_q, over_high_q, at_high_q = bit(), bit(), bit(), bit()
-    beyond = bit()
+    before_border, at_border = bit(), bit()
+    beyond_plane_2, before_border_2, at_border_2, clips_2, rising_2, met_2 = (bit() for _ in range(6))
+    beyond, at_mirror = bit(), bit()
     numerator_2 = unsigned(numerator_bits)
     inside_p, inside_q, valid = bit(), bit(), bit()
     e = unsigned(slope_bits)
@@ -52,8 +56,9 @@ def fold_tester(clk, facet, walk, column_slope, row_slope, slope, fold, index, h
     @always_comb
     def choose_fold():
         if facet.axis == 0:
-            back.next = False
+            back.next = signs.dx
             turned.next = fold.back_x
+            met.next = fold.met_x
             flip_p.next = fold.back_x != fold.back_y
             flip_q.next = fold.back_x != fold.back_z
             offset_p.next = fold.p_x
@@ -61,8 +66,9 @@ def fold_tester(clk, facet, walk, column_slope, row_slope, slope, fold, index, h
             border.next = fold.border_x
             turn.next = fold.turn_x
         elif facet.axis == 1:
-            back.next = column_slope < 0
+            back.next = signs.dy
             turned.next = fold.back_y
+            met.next = fold.met_y
             flip_p.next = fold.back_y != fold.back_x
             flip_q.next = fold.back_y != fold.back_z
             offset_p.next = fold.p_y
@@ -70,8 +76,9 @@ def fold_tester(clk, facet, walk, column_slope, row_slope, slope, fold, index, h
             border.next = fold.border_y
             turn.next = fold.turn_y
         else:
-            back.next = row_slope < 0
+            back.next = signs.dz
             turned.next = fold.back_z
+            met.next = fold.met_z
             flip_p.next = fold.back_z != fold.back_y
             flip_q.next = fold.back_z != fold.back_x
             offset_p.next = fold.p_z
@@ -104,11 +111,11 @@ def fold_tester(clk, facet, walk, column_slope, row_slope, slope, fold, index, h
     @always_comb
     def turn_ways():
         way_p.next = walk.way_p
-        way_q.next = facet.way_q
+        way_q.next = along_q
         if flip_p:
             way_p.next = ~walk.way_p
         if flip_q:
-            way_q.next = ~facet.way_q
+            way_q.next = ~along_q
 
     @always_comb
     def fold_ways():
@@ -126,12 +133,18 @@ def fold_tester(clk, facet, walk, column_slope, row_slope, slope, fold, index, h
         clip_p_1.next = mirror_on_p
         clip_q_1.next = mirror_on_q
         rising_1.next = fold.mirror_back == back
+        met_1.next = met
 
     @always_comb
     def choose_clipped():
         clipped.next = folded_p_1
         if clip_q_1:
             clipped.next = folded_q_1
+
+    @always_comb
+    def compare_border():
+        before_border.next = clipped < border_1
+        at_border.next = clipped == border_1
 
     # |n|. While a row is loaded it may overflow, and is don't care.
     @always_comb
@@ -154,13 +167,24 @@ def fold_tester(clk, facet, walk, column_slope, row_slope, slope, fold, index, h
         at_low_q.next = folded_q_1 == walk.low_q
         over_high_q.next = folded_q_1 > walk.high_q
         at_high_q.next = folded_q_1 == walk.high_q
-        beyond.next = beyond_plane_1
-        if clip_p_1 or clip_q_1:
-            if rising_1:
-                beyond.next = clipped > border_1
-            else:
-                beyond.next = clipped < border_1
+        beyond_plane_2.next = beyond_plane_1
+        before_border_2.next = before_border
+        at_border_2.next = at_border
+        clips_2.next = clip_p_1 or clip_q_1
+        rising_2.next = rising_1
+        met_2.next = met_1
         numerator_2.next = numerator[numerator_bits:]
+
+    @always_comb
+    def leave_mirror():
+        beyond.next = beyond_plane_2
+        at_mirror.next = False
+        if clips_2:
+            at_mirror.next = at_border_2
+            if at_border_2:
+                beyond.next = not met_2
+            else:
+                beyond.next = before_border_2 != rising_2
 
     # Where D[a] is negative the bounds have changed places.
     @always_comb
@@ -176,7 +200,7 @@ def fold_tester(clk, facet, walk, column_slope, row_slope, slope, fold, index, h
     @always_comb
     def choose_slope():
         if facet.axis == 0:
-            e.next = view_distance
+            e.next = slope.dx
         elif facet.axis == 1:
             e.next = slope.dy
         else:
@@ -186,8 +210,16 @@ def fold_tester(clk, facet, walk, column_slope, row_slope, slope, fold, index, h
     def conclude():
         valid.next = facet.usable and beyond and inside_p and inside_q and (e != 0)
 
-    @always(clk.posedge)
-    def stage_3():
-        hit.word.next = concat(valid, numerator_2, e, index)
+    if "cell" in hit.layout:
+
+        @always(clk.posedge)
+        def stage_3():
+            hit.word.next = concat(valid, at_mirror, numerator_2, e, facet.axis, facet.cell, index)
+
+    else:
+
+        @always(clk.posedge)
+        def stage_3():
+            hit.word.next = concat(valid, at_mirror, numerator_2, e, index)
 
     return instances()

@@ -6,7 +6,6 @@ from myhdl import block, instances
 from raycaster.rtl.beam import nearest_of_two as contest
 from raycaster.rtl.beam.nearest_of_two import nearest_of_two
 from raycaster.rtl.beam.winner_delay import winner_delay
-from raycaster.rtl.common.records import Candidate
 from raycaster.rtl.common.widths import side_by_side
 
 
@@ -17,9 +16,8 @@ def nearest_of(clk, candidates, nearest, rounds: int):
     candidates: at most 2^rounds, side by side, the first in the lowest bits. Neighbours meet in the first round, and
     their winners in the others; the last of an odd number is unopposed, and so is a single one.
     """
-    widths = len(nearest.numerator), len(nearest.denominator), len(nearest.index)
-    ones = [Candidate(*widths).cut(candidates, i) for i in range(len(candidates) // len(nearest.word))]
-    winners = [nearest] if rounds == 1 else [Candidate(*widths) for _ in ones[::2]]
+    ones = [nearest.twin().cut(candidates, i) for i in range(len(candidates) // len(nearest.word))]
+    winners = [nearest] if rounds == 1 else [nearest.twin() for _ in ones[::2]]
     contests = [
         nearest_of_two(clk, *pair, winner)
         if len(pair) == 2

@@ -3,7 +3,6 @@
 
 from myhdl import always, always_comb, block, instances
 
-from raycaster.rtl.common.records import Candidate
 from raycaster.rtl.common.widths import bit, unsigned
 
 LATENCY = 2
@@ -16,9 +15,9 @@ def nearest_of_two(clk, first, second, nearest):
     t = numerator / denominator is nearer than another where numerator * other denominator < other numerator *
     denominator.
     """
-    widths = len(first.numerator), len(first.denominator), len(first.index)
-    first_product, second_product = (unsigned(widths[0] + widths[1]) for _ in range(2))
-    first_1, second_1 = Candidate(*widths), Candidate(*widths)
+    product_bits = len(first.numerator) + len(first.denominator)
+    first_product, second_product = unsigned(product_bits), unsigned(product_bits)
+    first_1, second_1 = first.twin(), first.twin()
     take_second = bit()
 
     @always(clk.posedge)

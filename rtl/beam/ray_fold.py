@@ -10,7 +10,7 @@ LATENCY = 3
 
 
 @block
-def ray_fold(clk, earlier, last, column_slope, row_slope, fold, view_distance: int):
+def ray_fold(clk, earlier, last, slope, fold):
     """A ray a clock; the fold follows LATENCY cycles later.
 
     A mirror leaves the ray straight and turns the room behind it (Heckbert and Hanrahan 1984 mirror the eye in the same
@@ -19,8 +19,7 @@ def ray_fold(clk, earlier, last, column_slope, row_slope, fold, view_distance: i
     is then met where X[a] - E[a] = +-(n - T[a]), and there the ray's component p, times D[a], is +-n D[p] + C, with
     C = T[p] D[a] -+ T[a] D[p]: the same for all rectangles on the axis, so no rectangle needs a multiplier.
 
-    earlier, last: Reflectors, last.active being 1; column_slope, row_slope: D[y] and D[z]; view_distance: D[x]. Widths
-    are the ports'.
+    earlier, last: Reflectors, last.active being 1; slope: D, a `Direction`. Widths are the ports'.
     """
     part_bits, product_bits = len(fold.p_x), len(fold.border_x)
     distance_bits, turn_bits = len(last.distance), len(fold.turn_x)
@@ -31,7 +30,8 @@ def ray_fold(clk, earlier, last, column_slope, row_slope, fold, view_distance: i
     apart_kept = signed(distance_bits)
 
     turn_x, turn_y, turn_z = (signed(turn_bits) for _ in range(3))
-    back_x, back_y, back_z, column_back, row_back = (bit() for _ in range(5))
+    back_x, back_y, back_z, x_back, y_back, z_back = (bit() for _ in range(6))
+    met_x, met_y, met_z = (bit() for _ in range(3))
     axis_1 = unsigned(AXIS_BITS)
     distance_1 = signed(distance_bits)
 
@@ -39,6 +39,7 @@ def ray_fold(clk, earlier, last, column_slope, row_slope, fold, view_distance: i
     border_x, border_y, border_z = (signed(product_bits) for _ in range(3))
     turn_x_2, turn_y_2, turn_z_2 = (signed(turn_bits) for _ in range(3))
     back_x_2, back_y_2, back_z_2, mirror_back_2 = (bit() for _ in range(4))
+    met_x_2, met_y_2, met_z_2 = (bit() for _ in range(3))
     axis_2 = unsigned(AXIS_BITS)
     distance_2 = signed(distance_bits)
 
@@ -70,9 +71,12 @@ def ray_fold(clk, earlier, last, column_slope, row_slope, fold, view_distance: i
         if again:
             last_turn.next = apart_doubled
 
-    # T, and which components of the folded ray run back.
+    # T, which components of the folded ray run back, and the axes of all mirrors in the point that it leaves.
     @always(clk.posedge)
     def stage_1():
+        met_x.next = (last.axis == 0) or (last.at_mirror and (earlier.axis == 0))
+        met_y.next = (last.axis == 1) or (last.at_mirror and (earlier.axis == 1))
+        met_z.next = (last.axis == 2) or (last.at_mirror and (earlier.axis == 2))
         turn_x.next = 0
         turn_y.next = 0
         turn_z.next = 0
@@ -102,37 +106,41 @@ def ray_fold(clk, earlier, last, column_slope, row_slope, fold, view_distance: i
 
     @always(clk.posedge)
     def stage_2():
-        x_by_y.next = turn_x * column_slope
-        x_by_z.next = turn_x * row_slope
-        y_by_x.next = turn_y * view_distance
-        y_by_z.next = turn_y * row_slope
-        z_by_x.next = turn_z * view_distance
-        z_by_y.next = turn_z * column_slope
-        border_x.next = distance_1 * view_distance
-        border_y.next = distance_1 * column_slope
-        border_z.next = distance_1 * row_slope
+        x_by_y.next = turn_x * slope.y
+        x_by_z.next = turn_x * slope.z
+        y_by_x.next = turn_y * slope.x
+        y_by_z.next = turn_y * slope.z
+        z_by_x.next = turn_z * slope.x
+        z_by_y.next = turn_z * slope.y
+        border_x.next = distance_1 * slope.x
+        border_y.next = distance_1 * slope.y
+        border_z.next = distance_1 * slope.z
         turn_x_2.next = turn_x
         turn_y_2.next = turn_y
         turn_z_2.next = turn_z
         back_x_2.next = back_x
         back_y_2.next = back_y
         back_z_2.next = back_z
+        met_x_2.next = met_x
+        met_y_2.next = met_y
+        met_z_2.next = met_z
         axis_2.next = axis_1
         distance_2.next = distance_1
 
     @always_comb
     def look_ahead():
-        column_back.next = column_slope < 0
-        row_back.next = row_slope < 0
+        x_back.next = slope.x < 0
+        y_back.next = slope.y < 0
+        z_back.next = slope.z < 0
 
     @always(clk.posedge)
     def leave_mirror():
         if axis_1 == 0:
-            mirror_back_2.next = back_x
+            mirror_back_2.next = back_x != x_back
         elif axis_1 == 1:
-            mirror_back_2.next = back_y != column_back
+            mirror_back_2.next = back_y != y_back
         else:
-            mirror_back_2.next = back_z != row_back
+            mirror_back_2.next = back_z != z_back
 
     # C for planes whose two components run alike.
     @always_comb
@@ -177,7 +185,7 @@ def ray_fold(clk, earlier, last, column_slope, row_slope, fold, view_distance: i
     @always(clk.posedge)
     def stage_3():
         fold.word.next = concat(
-            True, back_x_2, back_y_2, back_z_2, mirror_back_2, turn_x_2, turn_y_2, turn_z_2,
+            True, met_x_2, met_y_2, met_z_2, mirror_back_2, back_x_2, back_y_2, back_z_2, turn_x_2, turn_y_2, turn_z_2,
             p_x, p_y, p_z, q_x, q_y, q_z, border_x, border_y, border_z, axis_2, distance_2,
         )  # fmt: skip
 

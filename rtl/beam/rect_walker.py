@@ -11,7 +11,7 @@ def rect_walker(clk, load, step_way, step_bounds, start, growth, walk):
     """walk is start after load, and grows by growth after each step of its own.
 
     Integers at their full width do not drift, so every column's products are exact (forward differences). fold_tester
-    reads the way and the bounds in different cycles, so they have steps of their own. walk, start: of the same widths.
+    reads the ways and the bounds in different cycles, so they have steps of their own. walk, start: of the same widths.
     """
     product_bits = len(walk.way_p)
     way_p, low_p, high_p, low_q, high_q = (signed(product_bits) for _ in range(5))
@@ -31,11 +31,29 @@ def rect_walker(clk, load, step_way, step_bounds, start, growth, walk):
             low_q.next = walk.low_q + growth.low_q
             high_q.next = walk.high_q + growth.high_q
 
-    @always(clk.posedge)
-    def advance():
-        if load:
-            walk.word.next = start.word
-        else:
-            walk.word.next = concat(way_p[product_bits:], low_p, high_p, low_q, high_q)
+    if "way_q" in walk.layout:
+        way_q = signed(product_bits)
+
+        @always_comb
+        def grow_q():
+            way_q.next = walk.way_q
+            if step_way:
+                way_q.next = walk.way_q + growth.way_q
+
+        @always(clk.posedge)
+        def advance():
+            if load:
+                walk.word.next = start.word
+            else:
+                walk.word.next = concat(way_p[product_bits:], way_q, low_p, high_p, low_q, high_q)
+
+    else:
+
+        @always(clk.posedge)
+        def advance():
+            if load:
+                walk.word.next = start.word
+            else:
+                walk.word.next = concat(way_p[product_bits:], low_p, high_p, low_q, high_q)
 
     return instances()

@@ -1,21 +1,48 @@
 # SPDX-License-Identifier: MIT
-"""The component of the slope that the column changes."""
+"""A ray's slope from column to column."""
 
 from myhdl import always, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.rtl.common.interfaces import Direction
+from raycaster.rtl.common.widths import exact_slope_bits
+
+
+def ray_slope(aim: Direction, config: Configuration) -> Direction:
+    """What a `slope_walker` walks: of a camera that does not turn, the column changes one component."""
+    slope = Direction(exact_slope_bits(config) + 1)
+    if not config.turn:
+        slope.x, slope.z = aim.x, aim.z
+    return slope
 
 
 @block
-def slope_walker(clk, start_line, step, column_slope, config: Configuration):
-    """column_slope: D[y] = column - centre, two's complement, of the first column after start_line; step: the next."""
-    first_slope = -config.screen_geometry.centre_column
+def slope_walker(clk, start_line, step, aim, slope, config: Configuration):
+    """slope: D, of the first column after start_line; step: of the next.
 
-    @always(clk.posedge)
-    def advance():
-        if start_line:
-            column_slope.next = first_slope
-        elif step:
-            column_slope.next = column_slope + 1
+    aim: D of the first column, where the camera does not turn; only D[y] changes. Otherwise what a step adds to what is
+    0 after start_line.
+    """
+    if config.turn:
+
+        @always(clk.posedge)
+        def advance():
+            if start_line:
+                slope.x.next = 0
+                slope.y.next = 0
+                slope.z.next = 0
+            elif step:
+                slope.x.next = slope.x + aim.x
+                slope.y.next = slope.y + aim.y
+                slope.z.next = slope.z + aim.z
+
+    else:
+
+        @always(clk.posedge)
+        def advance():
+            if start_line:
+                slope.y.next = aim.y
+            elif step:
+                slope.y.next = slope.y + 1
 
     return instances()

@@ -24,6 +24,9 @@ def engine_word(config: Configuration) -> int:
         colour_bits=config.colour_bits,
         fixed=FIXED_CODES[config.fixed.scope] if config.fixed else 0,
         culling=int(config.culling),
+        turn=int(config.turn),
+        materials=int(config.materials),
+        patterns=int(config.patterns),
     )
 
 
@@ -83,6 +86,7 @@ def avalon_interface(
     frame = unsigned(frame_bits)
     sticky_underrun, sticky_bad = bit(), bit()
     slowest_row, slowest_group = unsigned(CYCLE_BITS), unsigned(CYCLE_BITS)
+    at_camera = bit()
     irq_enable, irq_pending = bit(), bit()
 
     control_memory = scene_word(
@@ -123,6 +127,22 @@ def avalon_interface(
     def decode():
         select_control.next = bus.address == control_address
         written_ones.next = bus.data & bus.mask
+
+    if config.turn:
+        up_address = tied(registers["up"].address, len(bus.address))
+
+        # The camera's registers follow one another.
+        @always_comb
+        def find_camera():
+            at_camera.next = bus.address >= camera_address
+            if bus.address > up_address:
+                at_camera.next = False
+
+    else:
+
+        @always_comb
+        def find_camera():
+            at_camera.next = bus.address == camera_address
 
     # The shadow is copied in the cycle after the write that asked for it, which is then part of it.
     @always_seq(clk.posedge, reset=reset)
@@ -200,7 +220,7 @@ def avalon_interface(
             read_data.next[irq_bit] = irq_pending
         elif bus.address == background_address:
             read_data.next = background_word
-        elif bus.address == camera_address:
+        elif at_camera:
             read_data.next = camera_readback
 
     @always_seq(clk.posedge, reset=reset)

@@ -2,7 +2,7 @@
 """Ports that belong together. As a port `vga`, the attribute `hs` becomes the Verilog port `vga_hs`."""
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.records import Rect
+from raycaster.rtl.common.records import rect_of
 from raycaster.rtl.common.widths import (
     CYCLE_BITS,
     LANES,
@@ -96,6 +96,13 @@ class Slope(Interface):
         self.dx, self.dy, self.dz = (unsigned(bits) for _ in range(3))
 
 
+class Direction(Interface):
+    """A slope, or what is added to one, in two's complement."""
+
+    def __init__(self, bits: int):
+        self.x, self.y, self.z = (signed(bits) for _ in range(3))
+
+
 class Steps(Interface):
     """The control signals that operate all ray units in step.
 
@@ -112,7 +119,7 @@ class Steps(Interface):
 
 
 class RayFate(Interface):
-    """What a unit's ray may still meet. alive: it has hit something since reset_z_buf, and at every bounce before.
+    """What a unit's ray may still meet. alive: what it has hit since reset_z_buf, and at every bounce before, mirrors.
 
     towards, where a control ends rectangles early: it has at every bounce before, and runs towards the plane that
     find_intersection started on in the cycle before.
@@ -160,7 +167,7 @@ class Rects(Interface):
         self.usable = unsigned(config.rectangles)
         self.index = unsigned(index_bits(config))
         self.fetch = bit()
-        self.rect = Rect()
+        self.rect = rect_of(config)
 
 
 class ProcessorBus(Interface):

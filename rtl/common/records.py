@@ -12,7 +12,11 @@ from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, Configuration
 from raycaster.rtl.common.ties import Signed, Tied, initial
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
+    BASIS_BITS,
+    CELL_BITS,
     DISTANCE_BITS,
+    KIND_BITS,
+    MIRROR_BITS,
     RGB_BITS,
     TURN_BITS,
     WIDE_BITS,
@@ -82,6 +86,12 @@ class Record:
             width -= bits
             setattr(self, name, Field(self.word, name, width, bits))
 
+    def twin(self) -> Self:
+        """Another of its kind."""
+        other = object.__new__(type(self))
+        Record.__init__(other, self.layout)
+        return other
+
     def pack(self, values: Mapping[str, int]) -> int:
         """The word in which fields have these values, those that are not named 0; each is cut to its width."""
         word = 0
@@ -114,6 +124,19 @@ class Point(Record):
 
     def __init__(self):
         super().__init__(dict.fromkeys("xyz", COORDINATE_BITS))
+
+
+class Camera(Record):
+    """Where all rays start, a `Point`, and with a camera that turns its basis: forward, right and up, times 256."""
+
+    def __init__(self, turn: bool = False):
+        basis = (f"{vector}_{axis}" for vector in ("forward", "right", "up") for axis in "xyz")
+        super().__init__(Point().layout | (dict.fromkeys(basis, Signed(BASIS_BITS)) if turn else {}))
+
+
+def camera_of(config: Configuration) -> Camera:
+    """One of a design's."""
+    return Camera(config.turn)
 
 
 class Origin(Record):
@@ -151,26 +174,57 @@ class Pixel(Record):
         super().__init__(dict.fromkeys(("red", "green", "blue"), colour_bits))
 
 
+class Look(Record):
+    """How a rectangle looks.
+
+    With materials, mirror: how much it mirrors, in quarters, 0..4. With patterns, kind: 0 plain, 1 checker, 2 rows,
+    3 columns; cell: log2 of a cell's size in world units, less three; colour_2: of every other cell.
+    """
+
+    def __init__(self, materials: bool = False, patterns: bool = False):
+        super().__init__(look_fields(materials, patterns))
+
+
+def look_fields(materials: bool, patterns: bool) -> dict[str, int]:
+    """The widths of a `Look`."""
+    return (
+        {"colour": RGB_BITS}
+        | ({"mirror": MIRROR_BITS} if materials else {})
+        | ({"kind": KIND_BITS, "cell": CELL_BITS, "colour_2": RGB_BITS} if patterns else {})
+    )
+
+
 class Surface(Record):
-    """What a ray that hits a rectangle must know of it: the plane's axis (0, 1, 2 for x, y, z) and coordinate."""
+    """What a ray that hits a rectangle must know of it: the plane's axis (0, 1, 2 for x, y, z), coordinate, `Look`."""
 
-    def __init__(self):
-        super().__init__(surface_fields(COORDINATE_BITS))
+    def __init__(self, materials: bool = False, patterns: bool = False):
+        super().__init__(surface_fields(COORDINATE_BITS, materials, patterns))
 
 
-def surface_fields(coordinate_bits: int) -> dict[str, int]:
+def surface_fields(coordinate_bits: int, materials: bool = False, patterns: bool = False) -> dict[str, int]:
     """The widths of a `Surface`, with which a `Rect` begins too."""
-    return {"axis": AXIS_BITS, "position": coordinate_bits, "colour": RGB_BITS}
+    return {"axis": AXIS_BITS, "position": coordinate_bits} | look_fields(materials, patterns)
+
+
+def surface_of(config: Configuration) -> Surface:
+    """One of a design's."""
+    return Surface(config.materials, config.patterns)
 
 
 class Rect(Record):
     """A rectangle: its surface, and inclusive bounds on the two other axes, u before v in the order x, y, z."""
 
-    def __init__(self, coordinate_bits: int = COORDINATE_BITS):
+    def __init__(self, coordinate_bits: int = COORDINATE_BITS, materials: bool = False, patterns: bool = False):
         bounds = dict.fromkeys(("u_low", "u_high", "v_low", "v_high"), coordinate_bits)
-        super().__init__(surface_fields(coordinate_bits) | bounds)
+        super().__init__(surface_fields(coordinate_bits, materials, patterns) | bounds)
         below = sum(bounds.values())
         self.surface = Field(self.word, "surface", below, len(self.word) - below)
+        self.look = Field(self.word, "look", below, sum(look_fields(materials, patterns).values()))
+
+
+def rect_of(config: Configuration) -> Rect:
+    """One of a design's."""
+    return Rect(materials=config.materials, patterns=config.patterns)
 
 
 class WideRect(Record):
@@ -182,61 +236,103 @@ class WideRect(Record):
 
 
 class Mirror(Record):
-    """What a reflected ray left last, if `active`: the axis and the coordinate of the mirror's plane."""
+    """What a reflected ray left last, if `active`: the axis of the mirror's plane, and its distance from the eye.
 
-    def __init__(self, coordinate_bits: int = COORDINATE_BITS):
-        super().__init__({"active": 1, "axis": AXIS_BITS, "position": coordinate_bits})
+    With corners, met_x, met_y, met_z: the axes of all mirrors that it met in that very point.
+    """
+
+    def __init__(self, distance_bits: int, corners: bool = False):
+        met = dict.fromkeys(("met_x", "met_y", "met_z"), 1) if corners else {}
+        super().__init__({"active": 1, "axis": AXIS_BITS, "distance": distance_bits} | met)
+
+
+def mirror_of(config: Configuration) -> Mirror:
+    """One of a design's: before a second reflection there is one mirror, and its axis is the only one met."""
+    return Mirror(eye_bits(config) - 1, corners=config.reflections > 1)
 
 
 class Facet(Record):
     """A rectangle as one row's rays from the camera see it, of which q is an axis beside the plane's: see `Walk`.
 
-    distance: n = k - E[a] from the camera to its plane; way_q: n D[q], the same for all columns. usable: it may be hit.
+    usable: it may be hit; distance: n = k - E[a] from the camera to its plane. Unless the camera turns, way_q: n D[q],
+    the same for all columns. Then its `Look`, in the lowest bits.
     """
 
-    def __init__(self, way_bits: int, distance_bits: int = DISTANCE_BITS):
-        super().__init__(
-            {
-                "usable": 1,
-                "axis": AXIS_BITS,
-                "distance": Signed(distance_bits),
-                "way_q": Signed(way_bits),
-                "colour": RGB_BITS,
-            }
-        )
+    def __init__(
+        self,
+        way_bits: int,
+        distance_bits: int = DISTANCE_BITS,
+        *,
+        turn: bool = False,
+        materials: bool = False,
+        patterns: bool = False,
+    ):
+        seen = {"usable": 1, "axis": AXIS_BITS, "distance": Signed(distance_bits)}
+        way = {} if turn else {"way_q": Signed(way_bits)}
+        super().__init__(seen | way | look_fields(materials, patterns))
+
+
+def facet_of(config: Configuration) -> Facet:
+    """One of a design's."""
+    return Facet(walk_bits(config), turn=config.turn, materials=config.materials, patterns=config.patterns)
 
 
 class Walk(Record):
     """What cross-multiplication compares, and the column changes: n D[p], and (bound - E) D[a] for the four bounds.
 
-    Of the two axes beside the plane's, p is y, which the column changes, unless the plane is on y; then it is x. q is
-    the other.
+    Of the two axes beside the plane's, p is y, which the column of a camera that is not turned changes, unless the
+    plane is on y; then it is x. q is the other; n D[q] changes where the camera turns.
     """
 
-    def __init__(self, bits: int):
-        super().__init__(dict.fromkeys(("way_p", "low_p", "high_p", "low_q", "high_q"), Signed(bits)))
+    def __init__(self, bits: int, turn: bool = False):
+        ways = ("way_p", "way_q") if turn else ("way_p",)
+        super().__init__(dict.fromkeys((*ways, "low_p", "high_p", "low_q", "high_q"), Signed(bits)))
+
+
+def walk_of(config: Configuration) -> Walk:
+    """One of a design's."""
+    return Walk(walk_bits(config), config.turn)
+
+
+def growth_of(config: Configuration) -> Walk:
+    """What a column adds to it: of a camera that turns products too, and otherwise distances."""
+    return walk_of(config) if config.turn else Walk(DISTANCE_BITS)
 
 
 class Reflector(Record):
-    """A mirror that a ray left, if `active`: its axis, and the distance from the camera to its plane."""
+    """A mirror that a ray left, if `active`: its axis, and the distance from the camera to its plane.
+
+    at_mirror: the ray met it in the very point in which it met the mirror before it.
+    """
 
     def __init__(self, distance_bits: int = DISTANCE_BITS):
-        super().__init__({"active": 1, "axis": AXIS_BITS, "distance": Signed(distance_bits)})
+        super().__init__({"active": 1, "at_mirror": 1, "axis": AXIS_BITS, "distance": Signed(distance_bits)})
+
+
+class Turn(Record):
+    """Where an image of the room is. back_x, back_y, back_z: a ray runs the other way there; turn_x, turn_y, turn_z: T,
+    what is added to a point there."""
+
+    def __init__(self, turn_bits: int = TURN_BITS):
+        super().__init__(
+            dict.fromkeys(("back_x", "back_y", "back_z"), 1)
+            | dict.fromkeys(("turn_x", "turn_y", "turn_z"), Signed(turn_bits))
+        )
 
 
 class Fold(Record):
     """How a straight ray through all mirrors so far folds back into the room; see `ray_fold`.
 
-    active: there was a mirror; back_x, back_y, back_z: the folded ray runs the other way there; turn_x ...: T, what is
-    added to it there; p_x ..., q_x ...: for a rectangle on the axis, what is added to its way along p, and q (see
-    `Walk`), one more where that is complemented; border_x ...: n D of the last mirror's n; axis, distance: of the last
-    mirror; mirror_back: the folded ray runs down from it.
+    active: there was a mirror; met_x, met_y, met_z: a mirror on that axis was met in the point that the ray left last;
+    mirror_back: the folded ray runs down from it; back_x ... turn_z: the room's `Turn`; p_x ..., q_x ...: for a
+    rectangle on the axis, what is added to its way along p, and q (see `Walk`), one more where that is complemented;
+    border_x ...: n D of the last mirror's n; axis, distance: of the last mirror.
     """
 
     def __init__(self, product_bits: int, walk_width: int, turn_bits: int = TURN_BITS, distance: int = DISTANCE_BITS):
         super().__init__(
-            dict.fromkeys(("active", "back_x", "back_y", "back_z", "mirror_back"), 1)
-            | dict.fromkeys(("turn_x", "turn_y", "turn_z"), Signed(turn_bits))
+            dict.fromkeys(("active", "met_x", "met_y", "met_z", "mirror_back"), 1)
+            | Turn(turn_bits).layout
             | dict.fromkeys(("p_x", "p_y", "p_z", "q_x", "q_y", "q_z"), Signed(product_bits))
             | dict.fromkeys(("border_x", "border_y", "border_z"), Signed(walk_width))
             | {"axis": AXIS_BITS, "distance": Signed(distance)}
@@ -249,21 +345,47 @@ def fold_of(config: Configuration) -> Fold:
 
 
 class Candidate(Record):
-    """A hit, if `valid`, at t = numerator / denominator, on the rectangle `index`."""
+    """A hit, if `valid`, at t = numerator / denominator, on the rectangle `index`.
 
-    def __init__(self, numerator_bits: int, denominator_bits: int, index_width: int):
-        super().__init__(
-            {"valid": 1, "numerator": numerator_bits, "denominator": denominator_bits, "index": index_width}
-        )
+    at_mirror: in the plane of the mirror that the ray left last, which is another one. With patterns, axis, cell: the
+    rectangle's.
+    """
+
+    def __init__(self, numerator_bits: int, denominator_bits: int, index_width: int, patterns: bool = False):
+        cell = {"axis": AXIS_BITS, "cell": CELL_BITS} if patterns else {}
+        hit = {"valid": 1, "at_mirror": 1, "numerator": numerator_bits, "denominator": denominator_bits}
+        super().__init__({**hit, **cell, "index": index_width})
 
 
 def candidate_of(config: Configuration) -> Candidate:
     """One of a design's widths."""
-    return Candidate(eye_bits(config) - 1, exact_slope_bits(config), index_bits(config))
+    return Candidate(eye_bits(config) - 1, exact_slope_bits(config), index_bits(config), config.patterns)
 
 
 class Winner(Record):
-    """The rectangle that a ray sees, if `valid`."""
+    """The rectangle that a ray sees, if `valid`; at_mirror: as in `Candidate`."""
 
     def __init__(self, index_width: int):
-        super().__init__({"valid": 1, "index": index_width})
+        super().__init__({"valid": 1, "at_mirror": 1, "index": index_width})
+
+
+def winner_of(config: Configuration) -> Winner:
+    """One of a design's widths."""
+    return Winner(index_bits(config))
+
+
+class CellDivision(Record):
+    """A division after the steps down to a place: what is left of the dividend, the divisor, and of which cell it is.
+
+    cell: as in `Look`; odd: the quotient's bit of a cell's worth, once it is known.
+    """
+
+    def __init__(self, divisor_bits: int, place: int):
+        super().__init__({"rest": divisor_bits + place, "divisor": divisor_bits, "cell": CELL_BITS, "odd": 1})
+
+
+class Sight(Record):
+    """The rectangle that a ray sees, if `valid`, and where: odd_u, odd_v as `pattern_colour` reads them."""
+
+    def __init__(self, index_width: int):
+        super().__init__({"valid": 1, "odd_u": 1, "odd_v": 1, "index": index_width})

@@ -21,6 +21,19 @@ AXIS_BITS = 2
 RGB_BITS = 3 * CHANNEL_BITS
 """A whole colour; `colour_bits` of a configuration is a channel of the VGA output."""
 
+BASIS_BITS = 10
+"""A component of the turned camera's basis, times 256, with the sign."""
+
+MIRROR_BITS = 3
+"""How much a rectangle mirrors, in quarters: 0..4."""
+
+KIND_BITS = 2
+CELL_BITS = 3
+"""Of a pattern: its kind, and log2 of a cell's size in world units, less three."""
+
+SMALLEST_CELL_BITS = 3
+"""log2 of the smallest cell's size in world units."""
+
 WORD_BITS = 32
 LANES = 4
 """Bytes of a word, each of which has an enable of its own."""
@@ -44,11 +57,21 @@ def product_bits(config: Configuration) -> int:
     return SLOPE_BITS + position_bits(config)
 
 
-def steepest_slope(config: Configuration) -> int:
-    """The largest magnitude of a slope's component on the screen."""
+def slope_factors(config: Configuration) -> tuple[int, int, int]:
+    """The view distance, and the most columns and rows from the centre: a slope along the camera's own axes."""
     screen = config.screen_geometry
-    down = screen.rows - 1 - screen.horizon_row
-    return max(screen.view_distance, screen.centre_column, screen.horizon_row, down)
+    return screen.view_distance, screen.centre_column, max(screen.horizon_row, screen.rows - 1 - screen.horizon_row)
+
+
+def factor_bits(config: Configuration) -> int:
+    """The greatest of them, with the sign."""
+    return max(slope_factors(config)).bit_length() + 1
+
+
+def steepest_slope(config: Configuration) -> int:
+    """The largest magnitude of a slope's component on the screen, for any basis that the registers can hold."""
+    factors = slope_factors(config)
+    return sum(factors) << (BASIS_BITS - 1) if config.turn else max(factors)
 
 
 def exact_slope_bits(config: Configuration) -> int:
@@ -83,6 +106,11 @@ def fold_bits(config: Configuration) -> int:
     """
     offsets = min(config.reflections, 2) << (TURN_BITS - 1)
     return ((WORLD_SIZE - 1 + offsets) * steepest_slope(config)).bit_length() + 1
+
+
+def share_bits(config: Configuration) -> int:
+    """How much a ray's colour weighs in its pixel, in units of 4 ** -reflections: each mirror splits into quarters."""
+    return 2 * config.reflections + 1
 
 
 def unit_bits(config: Configuration) -> int:

@@ -4,8 +4,9 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.interfaces import Place, Rects
+from raycaster.rtl.common.interfaces import Direction, Place, Rects
 from raycaster.rtl.common.records import Facet, Walk, WideRect
+from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import WIDE_BITS, bit, exact_slope_bits, signed, unsigned, walk_bits, wide_walk_bits
 from raycaster.rtl.cull.group_tester import group_tester
 from raycaster.rtl.cull.rect_copy import rect_copy
@@ -41,6 +42,8 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
     next_place = Place(config)
     first_column = unsigned(config.screen_geometry.columns.bit_length())
     column_slope, row_slope = signed(slope_bits), signed(slope_bits)
+    slope = Direction(slope_bits)
+    slope.x, slope.y, slope.z = tied(config.screen_geometry.view_distance, slope.x), column_slope, row_slope
     swept, all_tested, predicted = bit(), bit(), bit()
 
     copy = Rects(config)
@@ -50,8 +53,8 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
 
     copies = rect_copy(clk, rects=rects, copy=copy, margin=config.facts.margin, config=config)
     sweep = rect_setup(
-        clk, reset_ray_caster, start_line=start_sweep, rects=copy, camera=camera, column_slope=column_slope,
-        row_slope=row_slope, load=load, facet=facet, growth=growth, start=start, config=config,
+        clk, reset_ray_caster, start_line=start_sweep, rects=copy, camera=camera, slope=slope, load=load,
+        facet=facet, growth=growth, start=start, config=config,
     )  # fmt: skip
     tester = group_tester(
         clk, load=load, facet=facet, growth=growth, start=start, column_slope=column_slope, row_slope=row_slope,

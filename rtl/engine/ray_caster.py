@@ -5,8 +5,8 @@ from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.interfaces import GroupFate, RayFate, Steps
-from raycaster.rtl.common.records import Pixel, Rect, Surface
-from raycaster.rtl.common.ties import tied
+from raycaster.rtl.common.records import Pixel, rect_of, surface_of
+from raycaster.rtl.common.ties import tied, unconnected
 from raycaster.rtl.common.widths import side_by_side, unit_bits
 from raycaster.rtl.cull.group_culler import group_culler
 from raycaster.rtl.engine.engines import block_named
@@ -22,16 +22,23 @@ def ray_caster(clk, reset_ray_caster, enable, place, camera, picture, rects, don
     """
     control, unit = block_named(config.facts.control), block_named(config.facts.unit)
     steps = Steps()
-    offered = Rect() if config.facts.divides else Surface()
+    offered = rect_of(config) if config.facts.divides else surface_of(config)
     unit_pixels = [Pixel(config.colour_bits) for _ in range(config.units)]
     fates = [RayFate() for _ in range(config.units)]
     together = side_by_side([pixel.word for pixel in unit_pixels])
     alive = side_by_side([fate.alive for fate in fates])
     towards = side_by_side([fate.towards for fate in fates])
+    if config.materials and not config.facts.divides:
+        steps.initial_ray = unconnected(1)  # a unit that shares colours out asks for the last ray alone
     fate = GroupFate(config)
-    if not config.culling:
+    # The prediction is for slopes of which the column changes y alone.
+    predicts = config.culling and not config.turn
+    if not predicts:
         fate.may_hit = tied((1 << config.rectangles) - 1, fate.may_hit)
-        fate.any_towards, fate.any_alive = tied(1, fate.any_towards), tied(1, fate.any_alive)
+    if not ends_early(config):
+        fate.any_towards = tied(1, fate.any_towards)
+    if not (config.culling or config.materials):
+        fate.any_alive = tied(1, fate.any_alive)
 
     operator = control(
         clk=clk, reset_ray_caster=reset_ray_caster, enable=enable, picture=picture, rects=rects, steps=steps, fate=fate,
@@ -50,11 +57,13 @@ def ray_caster(clk, reset_ray_caster, enable, place, camera, picture, rects, don
     def join_pixels():
         pixels.next = together
 
-    if config.culling:
+    if predicts:
         culler = group_culler(
             clk=clk, reset_ray_caster=reset_ray_caster, start_group=steps.screen_to_ray, done=done, place=place,
             camera=camera, rects=rects, may_hit=fate.may_hit, config=config,
         )  # fmt: skip
+
+    if config.culling or config.materials:
 
         @always_comb
         def judge_alive():

@@ -8,7 +8,6 @@ from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
     DISTANCE_BITS,
-    RGB_BITS,
     bit,
     exact_slope_bits,
     index_bits,
@@ -21,23 +20,23 @@ LATENCY = 5
 
 
 @block
-def rect_setup(
-    clk, reset, start_line, rects, camera, column_slope, row_slope, load, facet, growth, start, config: Configuration
-):
+def rect_setup(clk, reset, start_line, rects, camera, slope, load, facet, growth, start, config: Configuration):
     """From start_line on, fetch a rectangle a cycle; LATENCY cycles later the outputs are its own.
 
     Six products of a distance and a component of the ray through the first column (Kensler and Shirley 2006); along the
     row they grow linearly, so no later column needs one (forward differences). load: a bit for each rectangle, high
-    where the outputs are its own; growth: what a column adds to start. rects: the rectangle, with or without a colour,
-    comes two cycles after fetch. column_slope, row_slope: D[y] of the first column and D[z], constant from the third
-    cycle after start_line on. reset: synchronous. Distances to bounds have growth's width, their products start's.
+    where the outputs are its own; growth: what a column adds to start. Where the camera turns there is no growth: it is
+    the products with what a column adds to the slope, in its place. rects: the rectangle, with or without a look, comes
+    two cycles after fetch. slope: a `Direction`, constant from the third cycle after start_line on. reset: synchronous.
+    Distances to bounds have growth's width, their products start's.
     """
     slope_bits = exact_slope_bits(config) + 1
-    bound_bits = len(growth.low_p)
-    way_q_bits, product_bits = len(facet.way_q), len(start.way_p)
+    bound_bits = DISTANCE_BITS if config.turn else len(growth.low_p)
+    product_bits = len(start.way_p)
+    way_q_bits = product_bits if config.turn else len(facet.way_q)
+    look_bits = facet.slice("colour")[0] + 1
     last = config.rectangles - 1
-    view_distance = config.screen_geometry.view_distance
-    colour = rects.rect.colour if "colour" in rects.rect.layout else tied(0, RGB_BITS)
+    look = getattr(rects.rect, "look", tied(0, look_bits))
 
     reading, asked, at_hand = bit(), bit(), bit()
     number = unsigned(index_bits(config))
@@ -50,13 +49,12 @@ def rect_setup(
     number_0, number_1, number_2 = (unsigned(index_bits(config)) for _ in range(3))
     at_hand_2, usable_2 = bit(), bit()
     axis_2 = unsigned(AXIS_BITS)
-    colour_2 = unsigned(RGB_BITS)
+    look_2 = unsigned(look_bits)
     distance_2 = signed(DISTANCE_BITS)
     to_low_p_2, to_high_p_2, to_low_q_2, to_high_q_2 = (signed(bound_bits) for _ in range(4))
     slope_a_2, slope_p_2, slope_q_2 = (signed(slope_bits) for _ in range(3))
     way_q = signed(way_q_bits)
     way_p, way_low_p, way_high_p, way_low_q, way_high_q = (signed(product_bits) for _ in range(5))
-    more_way_p, more_low_p, more_high_p, more_low_q, more_high_q = (signed(bound_bits) for _ in range(5))
 
     @always(clk.posedge)
     def count():
@@ -99,23 +97,23 @@ def rect_setup(
             eye_a.next = camera.x
             eye_p.next = camera.y
             eye_q.next = camera.z
-            slope_a.next = view_distance
-            slope_p.next = column_slope
-            slope_q.next = row_slope
+            slope_a.next = slope.x
+            slope_p.next = slope.y
+            slope_q.next = slope.z
         elif rects.rect.axis == 1:
             eye_a.next = camera.y
             eye_p.next = camera.x
             eye_q.next = camera.z
-            slope_a.next = column_slope
-            slope_p.next = view_distance
-            slope_q.next = row_slope
+            slope_a.next = slope.y
+            slope_p.next = slope.x
+            slope_q.next = slope.z
         else:
             eye_a.next = camera.z
             eye_p.next = camera.y
             eye_q.next = camera.x
-            slope_a.next = row_slope
-            slope_p.next = column_slope
-            slope_q.next = view_distance
+            slope_a.next = slope.z
+            slope_p.next = slope.y
+            slope_q.next = slope.x
         if rects.rect.axis == 2:
             low_p.next = rects.rect.v_low
             high_p.next = rects.rect.v_high
@@ -138,7 +136,7 @@ def rect_setup(
     @always(clk.posedge)
     def hold_distances():
         axis_2.next = rects.rect.axis
-        colour_2.next = colour
+        look_2.next = look
         distance_2.next = distance
         to_low_p_2.next = to_low_p
         to_high_p_2.next = to_high_p
@@ -157,28 +155,41 @@ def rect_setup(
         way_low_q.next = to_low_q_2 * slope_a_2
         way_high_q.next = to_high_q_2 * slope_a_2
 
-    # A product grows where its component of the slope is the one that the column changes, D[y].
-    @always_comb
-    def choose_growth():
-        more_way_p.next = distance_2
-        more_low_p.next = 0
-        more_high_p.next = 0
-        more_low_q.next = 0
-        more_high_q.next = 0
-        if axis_2 == 1:
-            more_way_p.next = 0
-            more_low_p.next = to_low_p_2
-            more_high_p.next = to_high_p_2
-            more_low_q.next = to_low_q_2
-            more_high_q.next = to_high_q_2
-
     @always(clk.posedge)
-    def present():
-        facet.word.next = concat(usable_2, axis_2, distance_2, way_q, colour_2)
-        start.word.next = concat(way_p[product_bits:], way_low_p, way_high_p, way_low_q, way_high_q)
-        growth.word.next = concat(more_way_p[bound_bits:], more_low_p, more_high_p, more_low_q, more_high_q)
+    def announce():
         load.next = 0
         if at_hand_2 and not reset:
             load.next[number_2] = True
+
+    if config.turn:
+
+        @always(clk.posedge)
+        def present():
+            facet.word.next = concat(usable_2, axis_2, distance_2, look_2)
+            start.word.next = concat(way_p[product_bits:], way_q, way_low_p, way_high_p, way_low_q, way_high_q)
+
+    else:
+        more_way_p, more_low_p, more_high_p, more_low_q, more_high_q = (signed(bound_bits) for _ in range(5))
+
+        # A product grows where its component of the slope is the one that the column changes, D[y].
+        @always_comb
+        def choose_growth():
+            more_way_p.next = distance_2
+            more_low_p.next = 0
+            more_high_p.next = 0
+            more_low_q.next = 0
+            more_high_q.next = 0
+            if axis_2 == 1:
+                more_way_p.next = 0
+                more_low_p.next = to_low_p_2
+                more_high_p.next = to_high_p_2
+                more_low_q.next = to_low_q_2
+                more_high_q.next = to_high_q_2
+
+        @always(clk.posedge)
+        def present():
+            facet.word.next = concat(usable_2, axis_2, distance_2, way_q, look_2)
+            start.word.next = concat(way_p[product_bits:], way_low_p, way_high_p, way_low_q, way_high_q)
+            growth.word.next = concat(more_way_p[bound_bits:], more_low_p, more_high_p, more_low_q, more_high_q)
 
     return instances()

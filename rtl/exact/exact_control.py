@@ -4,13 +4,13 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.records import Surface
+from raycaster.rtl.common.records import surface_of
 from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import unsigned
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
 
 WRITE_AT = 2
-"""The last bit of in_flight, which comes three cycles after find_intersection."""
+"""The bit of in_flight that comes three cycles after find_intersection."""
 
 
 @block
@@ -18,10 +18,11 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
     """A ray_sequencer that takes a rectangle a clock, with done and the other ports as it has them.
 
     write_z_buf follows find_intersection by three cycles, the latency of rect_tester; offered: the `Surface` of the
-    rectangle that find_intersection then started on.
+    rectangle that find_intersection then started on. With config.patterns a pass goes on until the cells of the
+    nearest hit are known: load_divider in the cycle after a write_z_buf, and store_quotient three after the last one.
     """
-    in_flight = unsigned(WRITE_AT + 1)
-    first, second = Surface(), Surface()
+    in_flight = unsigned(WRITE_AT + 1 + (config.facts.pattern_latency if config.patterns else 0))
+    first, second = surface_of(config), surface_of(config)
 
     sequencer = ray_sequencer(
         clk=clk, reset_ray_caster=reset_ray_caster, enable=enable, picture=picture, rects=rects, steps=steps,
@@ -31,6 +32,14 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
     @always_comb
     def operate_stages():
         steps.write_z_buf.next = in_flight[WRITE_AT]
+
+    if config.patterns:
+        load_at, store_at = WRITE_AT + 1, WRITE_AT + 4
+
+        @always_comb
+        def operate_divider():
+            steps.load_divider.next = in_flight[load_at]
+            steps.store_quotient.next = in_flight[store_at] and (in_flight[store_at:] == 0)
 
     # The surface moves with its tests: it is the same for all units, so they need no copies.
     @always(clk.posedge)

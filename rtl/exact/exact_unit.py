@@ -5,11 +5,14 @@ from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.interfaces import Eye, Slope
-from raycaster.rtl.common.records import Mirror, Signs, Surface
+from raycaster.rtl.common.records import Signs, mirror_of, surface_of
 from raycaster.rtl.common.ties import unconnected
-from raycaster.rtl.common.widths import bit, exact_slope_bits, eye_bits, unsigned
+from raycaster.rtl.common.widths import RGB_BITS, bit, exact_slope_bits, eye_bits, unsigned
 from raycaster.rtl.engine.colour_combiner import colour_combiner
+from raycaster.rtl.engine.pattern_colour import pattern_colour
 from raycaster.rtl.engine.ray_generator import ray_generator
+from raycaster.rtl.engine.turned_generator import turned_generator
+from raycaster.rtl.exact.cell_finder import cell_finder
 from raycaster.rtl.exact.eye_register import eye_register
 from raycaster.rtl.exact.nearest_hit import nearest_hit
 from raycaster.rtl.exact.rect_tester import rect_tester
@@ -19,40 +22,67 @@ from raycaster.rtl.exact.rect_tester import rect_tester
 def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, pixel, fate, config: Configuration):
     """Trace the pixel at (place.row, place.column_offset * units + column_base) as the steps say.
 
-    It holds no control of its own: one exact_control operates all units in step. camera: a `Point`; rect: the rectangle
-    at hand, a new one each clock; offered: the `Surface` of the one whose verdict is due; pixel: valid after the last
-    step; fate: with config.culling.
+    It holds no control of its own: one exact_control operates all units in step. camera: a `Camera`; rect: the
+    rectangle at hand, a new one each clock; offered: the `Surface` of the one whose verdict is due; pixel: valid after
+    the last step; fate: with config.culling or config.materials.
     """
     initial_signs, signs = Signs(), Signs()
     slope, eye = Slope(exact_slope_bits(config)), Eye(eye_bits(config))
-    mirror, found_surface = Mirror(), Surface()
+    mirror, found_surface = mirror_of(config), surface_of(config)
+    found_mirror = found_surface.mirror if config.materials else None
+    at_mirror, found_at_mirror = (bit(), bit()) if "met_x" in mirror.layout else (None, None)
     hit, found = bit(), bit()
-    missed = bit() if config.culling else unconnected(1)
-    numerator, denominator = unsigned(eye_bits(config) - 1), unsigned(exact_slope_bits(config))
+    missed = bit() if config.culling or config.materials else unconnected(1)
+    numerator, found_distance = (unsigned(eye_bits(config) - 1) for _ in range(2))
+    denominator = unsigned(exact_slope_bits(config))
+    found_slope = unsigned(len(denominator)) if config.patterns else unconnected(len(denominator))
+    colour = unsigned(RGB_BITS) if config.patterns else found_surface.colour
 
-    generator = ray_generator(
-        clk=clk, steps=steps, place=place, column_base=column_base, initial_signs=initial_signs, slope=slope,
-        config=config,
-    )  # fmt: skip
+    if config.turn:
+        generator = turned_generator(
+            clk=clk, steps=steps, place=place, column_base=column_base, camera=camera, initial_signs=initial_signs,
+            slope=slope, config=config,
+        )  # fmt: skip
+    else:
+        generator = ray_generator(
+            clk=clk, steps=steps, place=place, column_base=column_base, initial_signs=initial_signs, slope=slope,
+            config=config,
+        )  # fmt: skip
     memory = eye_register(
-        clk=clk, steps=steps, camera=camera, initial_signs=initial_signs, found_surface=found_surface, eye=eye,
-        signs=signs, mirror=mirror,
+        clk=clk, steps=steps, camera=camera, initial_signs=initial_signs, found_surface=found_surface,
+        found_distance=found_distance, found_at_mirror=found_at_mirror, eye=eye, signs=signs, mirror=mirror,
     )  # fmt: skip
     tester = rect_tester(
-        clk=clk, steps=steps, rect=rect, eye=eye, signs=signs, slope=slope, mirror=mirror, hit=hit, numerator=numerator,
-        denominator=denominator,
+        clk=clk, steps=steps, rect=rect, eye=eye, signs=signs, slope=slope, mirror=mirror, hit=hit,
+        at_mirror=at_mirror, numerator=numerator, denominator=denominator,
     )  # fmt: skip
     nearest = nearest_hit(
-        clk=clk, steps=steps, offered=offered, hit=hit, numerator=numerator, denominator=denominator, found=found,
-        found_surface=found_surface,
+        clk=clk, steps=steps, offered=offered, hit=hit, at_mirror=at_mirror, numerator=numerator,
+        denominator=denominator, found=found, found_surface=found_surface, found_distance=found_distance,
+        found_slope=found_slope, found_at_mirror=found_at_mirror,
     )  # fmt: skip
     combiner = colour_combiner(
-        clk=clk, steps=steps, found=found, found_colour=found_surface.colour, picture=picture, missed=missed,
-        pixel=pixel, config=config,
+        clk=clk, steps=steps, found=found, found_colour=colour, found_mirror=found_mirror,
+        picture=picture, missed=missed, pixel=pixel, config=config,
     )  # fmt: skip
 
-    if config.culling:
-        # After a miss the unit goes on with a ray that is none: it hits nothing.
+    if config.patterns:
+        odd_u, odd_v = bit(), bit()
+        finder = cell_finder(
+            clk=clk, steps=steps, eye=eye, signs=signs, slope=slope, found_surface=found_surface,
+            found_distance=found_distance, found_slope=found_slope, odd_u=odd_u, odd_v=odd_v,
+        )  # fmt: skip
+        painter = pattern_colour(look=found_surface, odd_u=odd_u, odd_v=odd_v, colour=colour)
+
+    # What a ray that has ended goes on to hit does not count.
+    if config.materials:
+
+        @always_comb
+        def judge_alive():
+            fate.alive.next = found and (found_mirror != 0) and not missed
+
+    elif config.culling:
+
         @always_comb
         def judge_alive():
             fate.alive.next = found and not missed

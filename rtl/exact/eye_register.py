@@ -8,14 +8,19 @@ from raycaster.rtl.common.widths import bit, signed, unsigned
 
 
 @block
-def eye_register(clk, steps, camera, initial_signs, found_surface, eye, signs, mirror):
+def eye_register(
+    clk, steps, camera, initial_signs, found_surface, found_distance, found_at_mirror, eye, signs, mirror
+):  # fmt: skip
     """Where a ray seems to come from: the camera at steps.screen_to_ray, and its image in the mirror at store_ray.
 
     A ray reflected at plane k on axis a is the ray from E'[a] = 2k - E[a] with D'[a] = -D[a] and the same parameter
     (Heckbert and Hanrahan 1984), so no hit point is computed. initial_signs: the primary ray's, from the cycle after
     steps.screen_to_ray; signs: the ray's at hand, whose slope's magnitudes do not change; mirror: what it left last.
+    found_distance: from the eye to the plane of found_surface, unsigned, and so from its image; found_at_mirror, with
+    corners in the `Mirror`: the hit is in the point where the ray left its last mirror.
     """
     eye_bits = len(eye.x)
+    corners = "met_x" in mirror.layout
     flipped_x, flipped_y, flipped_z, dx, dy, dz = (bit() for _ in range(6))
     twice = unsigned(COORDINATE_BITS + 1)
     twice_signed = signed(COORDINATE_BITS + 2)
@@ -49,7 +54,7 @@ def eye_register(clk, steps, camera, initial_signs, found_surface, eye, signs, m
     def fit():
         image.next = difference[eye_bits:].signed()
 
-    # The eye, the mirror that it was last seen in, and which slopes all mirrors together have turned around.
+    # The eye, and which slopes all mirrors together have turned around.
     @always(clk.posedge)
     def keep():
         if steps.screen_to_ray:
@@ -59,9 +64,7 @@ def eye_register(clk, steps, camera, initial_signs, found_surface, eye, signs, m
             flipped_x.next = False
             flipped_y.next = False
             flipped_z.next = False
-            mirror.word.next = 0
         elif steps.store_ray:
-            mirror.word.next = concat(True, found_surface.axis, found_surface.position)
             if found_surface.axis == 0:
                 eye.x.next = image
                 flipped_x.next = not flipped_x
@@ -71,6 +74,37 @@ def eye_register(clk, steps, camera, initial_signs, found_surface, eye, signs, m
             else:
                 eye.z.next = image
                 flipped_z.next = not flipped_z
+
+    if corners:
+        met = unsigned(3)
+
+        @always_comb
+        def meet():
+            met.next = 0
+            if found_at_mirror:
+                met.next = concat(mirror.met_x, mirror.met_y, mirror.met_z)
+            if found_surface.axis == 0:
+                met.next[2] = True
+            elif found_surface.axis == 1:
+                met.next[1] = True
+            else:
+                met.next[0] = True
+
+        @always(clk.posedge)
+        def leave():
+            if steps.screen_to_ray:
+                mirror.word.next = 0
+            elif steps.store_ray:
+                mirror.word.next = concat(True, found_surface.axis, found_distance, met)
+
+    else:
+
+        @always(clk.posedge)
+        def leave():
+            if steps.screen_to_ray:
+                mirror.word.next = 0
+            elif steps.store_ray:
+                mirror.word.next = concat(True, found_surface.axis, found_distance)
 
     @always_comb
     def turn():

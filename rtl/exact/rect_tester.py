@@ -4,46 +4,59 @@
 from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.rtl.common.records import Record
+from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import bit, signed, unsigned
 
 
 @block
-def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, numerator, denominator):
+def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, numerator, denominator):
     """A rectangle and ray a clock, at steps.find_intersection; hit, numerator, denominator follow three cycles later.
 
-    The ray runs from the eye E with the slope D; the plane k on axis a is at t = n / e, where n = k - E[a], e = D[a],
-    and both are negated where e is negative. Where n > 0 and e > 0, the bounds low <= E[u] + D[u] n / e <= high become
-    (low - E[u]) e <= D[u] n <= (high - E[u]) e (Kensler and Shirley 2006 test triangles so). A reflected ray must hit
-    strictly beyond its last mirror, on the side that its slope points to: on another axis the mirror's plane takes the
-    place of the bound behind it, and equality no longer counts; on the same axis planes are compared.
+    The ray runs from the eye E with the slope D. Where D is negative the axis is turned around: coordinates are
+    complemented, which negates each difference of two, and the bounds change places. So with D its magnitude the plane
+    k on axis a is at t = n / e, where n = k - E[a] and e = D[a], and where both are positive, near <= E[u] + D[u] n / e
+    <= far becomes (near - E[u]) e <= D[u] n <= (far - E[u]) e (Kensler and Shirley 2006 test triangles so).
 
-    rect: a `Rect`; numerator, denominator: n and e, unsigned, don't care unless hit is high. Widths are the
-    ports': coordinates' from rect, slopes' from slope, and the eye's, which any distance in the world fits, from eye.
+    A reflected ray must hit beyond its last mirror: on another axis the mirror's distance from the eye takes the place
+    of a nearer bound's; on the same axis distances are compared. In the mirror's plane itself it hits what is on
+    another axis, for it reflects off all planes of a corner. With corners in the `Mirror`, at_mirror: the hit is there;
+    it is none where a mirror on the rectangle's axis was met in that very point. Without, at_mirror is None: a ray has
+    left one mirror.
+
+    rect: a `Rect`; mirror.distance is read a cycle after all else; numerator, denominator: n and e, unsigned, as
+    at_mirror don't care unless hit is high. Widths are the ports': coordinates' from rect, slopes' from slope, and the
+    eye's, which any distance in the world fits, from eye.
     """
     coordinate_bits, slope_bits, eye_bits = len(rect.position), len(slope.dx), len(eye.x)
-    way_bits = eye_bits + slope_bits
+    distance_bits = eye_bits - 1
+    way_bits = distance_bits + slope_bits
+    corners = "met_x" in mirror.layout
 
-    eye_a, eye_u, eye_v = (signed(eye_bits) for _ in range(3))
-    plane, low_u, high_u, low_v, high_v = (signed(coordinate_bits + 1) for _ in range(5))
+    eye_a, eye_u, eye_v, turned_eye_a, turned_eye_u, turned_eye_v = (signed(eye_bits) for _ in range(6))
     e, slope_u, slope_v = (unsigned(slope_bits) for _ in range(3))
-    back, back_u, back_v = (bit() for _ in range(3))
-    mirror_on_a, mirror_on_u, mirror_on_v = (bit() for _ in range(3))
-    beyond, crosses = bit(), bit()
-    open_low_u, open_high_u, open_low_v, open_high_v = (bit() for _ in range(4))
-
-    distance, opposite_distance, n, n_u, n_v = (signed(eye_bits) for _ in range(5))
-    to_low_u, to_high_u, to_low_v, to_high_v = (signed(eye_bits) for _ in range(4))
+    back, back_u, back_v, mirror_on_a, mirror_on_u, mirror_on_v = (bit() for _ in range(6))
+    position, low_u, high_u, low_v, high_v = (signed(coordinate_bits + 1) for _ in range(5))
+    plane, near_u, far_u, near_v, far_v = (signed(coordinate_bits + 1) for _ in range(5))
+    # One bit more than a distance and its sign take is for operands of two rays, while signals settle.
+    n, to_near_u, to_far_u, to_near_v, to_far_v = (signed(eye_bits + 1) for _ in range(5))
+    crosses, passed_u, passed_v = bit(), bit(), bit()
 
     # The number at a name's end is that of the stage whose registers have it.
-    n_u_1, n_v_1, to_low_u_1, to_high_u_1, to_low_v_1, to_high_v_1 = (signed(eye_bits) for _ in range(6))
-    e_1, slope_u_1, slope_v_1 = (signed(slope_bits + 1) for _ in range(3))
-    carried = dict.fromkeys(("crosses", "open_low_u", "open_high_u", "open_low_v", "open_high_v"), 1)
-    carried_1, carried_2 = (Record(carried | {"n": eye_bits - 1, "e": slope_bits}) for _ in range(2))
-    way_u, way_v, way_to_low_u, way_to_high_u, way_to_low_v, way_to_high_v = (signed(way_bits) for _ in range(6))
-    way_u_2, way_v_2, way_to_low_u_2, way_to_high_u_2, way_to_low_v_2, way_to_high_v_2 = (
-        signed(way_bits) for _ in range(6)
+    slope_u_1, slope_v_1 = unsigned(slope_bits), unsigned(slope_bits)
+    to_near_u_1, to_far_u_1, to_near_v_1, to_far_v_1 = (unsigned(distance_bits) for _ in range(4))
+    seen_1 = Record(
+        dict.fromkeys(("crosses", "passed_u", "passed_v", "mirror_on_a", "mirror_on_u", "mirror_on_v"), 1)
+        | {"n": distance_bits, "e": slope_bits}
     )
-    above_low_u, below_high_u, above_low_v, below_high_v = (bit() for _ in range(4))
+    beyond, clips_u, clips_v, behind_u, behind_v = (bit() for _ in range(5))
+    first_u, first_v = unsigned(distance_bits), unsigned(distance_bits)
+    way_u, way_v, way_to_near_u, way_to_far_u, way_to_near_v, way_to_far_v = (unsigned(way_bits) for _ in range(6))
+    way_u_2, way_v_2, way_to_near_u_2, way_to_far_u_2, way_to_near_v_2, way_to_far_v_2 = (
+        unsigned(way_bits) for _ in range(6)
+    )
+    seen_2 = Record({"crosses": 1, "behind_u": 1, "behind_v": 1, "n": distance_bits, "e": slope_bits})
+    inside_u, inside_v = bit(), bit()
+    again = bit() if corners else tied(0, 1)
 
     @always_comb
     def choose_axes():
@@ -88,129 +101,147 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, numerator, den
         else:
             mirror_on_v.next = mirror.active and (mirror.axis == 2)
 
-    # On the same axis, the plane must lie on the side that the ray runs to.
     @always_comb
-    def compare_planes():
-        if back:
-            beyond.next = (not mirror_on_a) or (rect.position < mirror.position)
-        else:
-            beyond.next = (not mirror_on_a) or (rect.position > mirror.position)
-
-    # The mirror may take the place of the bound behind the ray, on u, and on v.
-    @always_comb
-    def clip_u():
+    def extend():
+        position.next = rect.position
         low_u.next = rect.u_low
         high_u.next = rect.u_high
-        open_low_u.next = False
-        open_high_u.next = False
-        if mirror_on_u and (not back_u) and (rect.u_low <= mirror.position):
-            low_u.next = mirror.position
-            open_low_u.next = True
-        if mirror_on_u and back_u and (rect.u_high >= mirror.position):
-            high_u.next = mirror.position
-            open_high_u.next = True
-
-    @always_comb
-    def clip_v():
         low_v.next = rect.v_low
         high_v.next = rect.v_high
-        open_low_v.next = False
-        open_high_v.next = False
-        if mirror_on_v and (not back_v) and (rect.v_low <= mirror.position):
-            low_v.next = mirror.position
-            open_low_v.next = True
-        if mirror_on_v and back_v and (rect.v_high >= mirror.position):
-            high_v.next = mirror.position
-            open_high_v.next = True
 
     @always_comb
-    def extend_plane():
-        plane.next = rect.position
+    def turn():
+        plane.next = position
+        turned_eye_a.next = eye_a
+        near_u.next = low_u
+        far_u.next = high_u
+        turned_eye_u.next = eye_u
+        near_v.next = low_v
+        far_v.next = high_v
+        turned_eye_v.next = eye_v
+        if back:
+            plane.next = ~position
+            turned_eye_a.next = ~eye_a
+        if back_u:
+            near_u.next = ~high_u
+            far_u.next = ~low_u
+            turned_eye_u.next = ~eye_u
+        if back_v:
+            near_v.next = ~high_v
+            far_v.next = ~low_v
+            turned_eye_v.next = ~eye_v
 
     @always_comb
     def measure():
-        distance.next = plane - eye_a
-        to_low_u.next = low_u - eye_u
-        to_high_u.next = high_u - eye_u
-        to_low_v.next = low_v - eye_v
-        to_high_v.next = high_v - eye_v
+        n.next = plane - turned_eye_a
+        to_near_u.next = near_u - turned_eye_u
+        to_far_u.next = far_u - turned_eye_u
+        to_near_v.next = near_v - turned_eye_v
+        to_far_v.next = far_v - turned_eye_v
 
-    @always_comb
-    def negate():
-        opposite_distance.next = -distance
-
-    # n, and n with the sign of the slope on u and on v, whose magnitude is all that is left to multiply by.
-    @always_comb
-    def choose_signs():
-        n.next = distance
-        n_u.next = distance
-        n_v.next = distance
-        if back:
-            n.next = opposite_distance
-        if back != back_u:
-            n_u.next = opposite_distance
-        if back != back_v:
-            n_v.next = opposite_distance
-
-    # Otherwise the plane is nowhere, behind the eye, or not beyond the mirror.
+    # Otherwise the plane is nowhere or behind the eye, or the far bound is. A near bound behind it is passed.
     @always_comb
     def judge_plane():
-        crosses.next = beyond and (n > 0) and (e != 0)
+        crosses.next = (
+            (not n[distance_bits]) and (n[distance_bits:] != 0) and (e != 0)
+            and (not to_far_u[distance_bits]) and (not to_far_v[distance_bits])
+        )  # fmt: skip
+        passed_u.next = to_near_u[distance_bits]
+        passed_v.next = to_near_v[distance_bits]
 
     @always(clk.posedge)
     def stage_1():
         if steps.find_intersection:
-            n_u_1.next = n_u
-            n_v_1.next = n_v
             slope_u_1.next = slope_u
             slope_v_1.next = slope_v
-            to_low_u_1.next = to_low_u
-            to_high_u_1.next = to_high_u
-            to_low_v_1.next = to_low_v
-            to_high_v_1.next = to_high_v
-            carried_1.word.next = concat(
-                crosses, open_low_u, open_high_u, open_low_v, open_high_v, n[eye_bits - 1 :], e
+            to_near_u_1.next = to_near_u[distance_bits:]
+            to_far_u_1.next = to_far_u[distance_bits:]
+            to_near_v_1.next = to_near_v[distance_bits:]
+            to_far_v_1.next = to_far_v[distance_bits:]
+            seen_1.word.next = concat(
+                crosses, passed_u, passed_v, mirror_on_a, mirror_on_u, mirror_on_v, n[distance_bits:], e
             )
 
     @always_comb
-    def extend_slope():
-        e_1.next = carried_1.e
+    def clip():
+        beyond.next = seen_1.crosses and ((not seen_1.mirror_on_a) or (seen_1.n > mirror.distance))
+        clips_u.next = seen_1.mirror_on_u and (seen_1.passed_u or (to_near_u_1 <= mirror.distance))
+        clips_v.next = seen_1.mirror_on_v and (seen_1.passed_v or (to_near_v_1 <= mirror.distance))
+
+    @always_comb
+    def choose_first():
+        first_u.next = to_near_u_1
+        first_v.next = to_near_v_1
+        behind_u.next = seen_1.passed_u and not clips_u
+        behind_v.next = seen_1.passed_v and not clips_v
+        if clips_u:
+            first_u.next = mirror.distance
+        if clips_v:
+            first_v.next = mirror.distance
 
     @always_comb
     def multiply():
-        way_u.next = n_u_1 * slope_u_1
-        way_v.next = n_v_1 * slope_v_1
-        way_to_low_u.next = to_low_u_1 * e_1
-        way_to_high_u.next = to_high_u_1 * e_1
-        way_to_low_v.next = to_low_v_1 * e_1
-        way_to_high_v.next = to_high_v_1 * e_1
+        way_u.next = seen_1.n * slope_u_1
+        way_v.next = seen_1.n * slope_v_1
+        way_to_near_u.next = first_u * seen_1.e
+        way_to_far_u.next = to_far_u_1 * seen_1.e
+        way_to_near_v.next = first_v * seen_1.e
+        way_to_far_v.next = to_far_v_1 * seen_1.e
 
     @always(clk.posedge)
     def stage_2():
         way_u_2.next = way_u
         way_v_2.next = way_v
-        way_to_low_u_2.next = way_to_low_u
-        way_to_high_u_2.next = way_to_high_u
-        way_to_low_v_2.next = way_to_low_v
-        way_to_high_v_2.next = way_to_high_v
-        carried_2.word.next = carried_1.word
+        way_to_near_u_2.next = way_to_near_u
+        way_to_far_u_2.next = way_to_far_u
+        way_to_near_v_2.next = way_to_near_v
+        way_to_far_v_2.next = way_to_far_v
+        seen_2.word.next = concat(beyond, behind_u, behind_v, seen_1.n, seen_1.e)
 
-    # A bound that the mirror made is open.
     @always_comb
     def compare():
-        above_low_u.next = (way_to_low_u_2 < way_u_2) or ((not carried_2.open_low_u) and (way_to_low_u_2 == way_u_2))
-        below_high_u.next = (way_u_2 < way_to_high_u_2) or (
-            (not carried_2.open_high_u) and (way_u_2 == way_to_high_u_2)
-        )
-        above_low_v.next = (way_to_low_v_2 < way_v_2) or ((not carried_2.open_low_v) and (way_to_low_v_2 == way_v_2))
-        below_high_v.next = (way_v_2 < way_to_high_v_2) or (
-            (not carried_2.open_high_v) and (way_v_2 == way_to_high_v_2)
-        )
+        inside_u.next = (seen_2.behind_u or (way_to_near_u_2 <= way_u_2)) and (way_u_2 <= way_to_far_u_2)
+        inside_v.next = (seen_2.behind_v or (way_to_near_v_2 <= way_v_2)) and (way_v_2 <= way_to_far_v_2)
 
     @always(clk.posedge)
     def stage_3():
-        hit.next = carried_2.crosses and above_low_u and below_high_u and above_low_v and below_high_v
-        numerator.next = carried_2.n
-        denominator.next = carried_2.e
+        hit.next = seen_2.crosses and inside_u and inside_v and not again
+        numerator.next = seen_2.n
+        denominator.next = seen_2.e
+
+    if corners:
+        met, met_1, met_2 = bit(), bit(), bit()
+        clipped_u_2, clipped_v_2, in_mirror = bit(), bit(), bit()
+
+        @always_comb
+        def see_met():
+            if rect.axis == 0:
+                met.next = mirror.met_x
+            elif rect.axis == 1:
+                met.next = mirror.met_y
+            else:
+                met.next = mirror.met_z
+
+        @always(clk.posedge)
+        def carry_corner():
+            if steps.find_intersection:
+                met_1.next = met
+            met_2.next = met_1
+            clipped_u_2.next = clips_u
+            clipped_v_2.next = clips_v
+
+        @always_comb
+        def compare_with_mirror():
+            in_mirror.next = (clipped_u_2 and (way_to_near_u_2 == way_u_2)) or (
+                clipped_v_2 and (way_to_near_v_2 == way_v_2)
+            )
+
+        @always_comb
+        def see_again():
+            again.next = met_2 and in_mirror
+
+        @always(clk.posedge)
+        def tell_corner():
+            at_mirror.next = in_mirror
 
     return instances()

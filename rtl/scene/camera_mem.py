@@ -1,32 +1,85 @@
 # SPDX-License-Identifier: MIT
-"""The camera's position."""
+"""The camera's position, and where it looks."""
 
-from myhdl import always_comb, block, concat, instances
+from myhdl import Signal, always_comb, block, concat, instances, intbv
 
+from raycaster.configuration import Configuration
 from raycaster.registers import register_map
 from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import WORD_BITS, bit, unsigned
+from raycaster.rtl.common.widths import WORD_BITS, bit
 from raycaster.rtl.scene.scene_word import scene_word
 
-CAMERA = register_map(1)["camera"]
+REGISTERS = register_map(1)
 
 
 @block
-def camera_mem(clk, reset, bus, readback, camera):
-    """A scene_word, taken apart: camera is the live position, readback the shadow's word, 32 bits."""
-    address, implemented = tied(CAMERA.address, len(bus.address)), tied(CAMERA.implemented, WORD_BITS)
-    selected = bit()
-    live = unsigned(WORD_BITS)
-    x, y, z = (live(field.lsb + field.width, field.lsb) for field in map(CAMERA.fields.get, "xyz"))
+def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
+    """A scene_word for the position and, where the camera turns, one for each vector of its basis.
 
-    word = scene_word(clk, reset, bus, selected, implemented=implemented, shadow=readback, live=live)
+    camera: the live one. readback: the shadow's word at bus.address, 32 bits; don't care at other addresses.
+    """
+    vectors = ("forward", "right", "up") if config.turn else ()
+    registers = [REGISTERS[name] for name in ("camera", *vectors)]
+    selects = [bit() for _ in registers]
+    shadows, lives = ([Signal(intbv(register.reset)[WORD_BITS:]) for register in registers] for _ in range(2))
+    x, y, z, *basis = (
+        live(field.lsb + field.width, field.lsb)
+        for register, live in zip(registers, lives, strict=True)
+        for field in map(register.fields.get, "xyz")
+    )
+
+    words = [
+        scene_word(
+            clk, reset, bus, select, implemented=tied(register.implemented, WORD_BITS), shadow=shadow, live=live,
+            first=register.reset,
+        )
+        for register, select, shadow, live in zip(registers, selects, shadows, lives, strict=True)
+    ]  # fmt: skip
+    select_position, position_word = selects[0], shadows[0]
+    camera_address = tied(registers[0].address, len(bus.address))
 
     @always_comb
     def decode():
-        selected.next = bus.address == address
+        select_position.next = bus.address == camera_address
 
-    @always_comb
-    def take_apart():
-        camera.word.next = concat(x, y, z)
+    if config.turn:
+        select_forward, select_right, select_up = selects[1:]
+        forward_word, right_word, up_word = shadows[1:]
+        forward_address, right_address, up_address = (
+            tied(register.address, len(bus.address)) for register in registers[1:]
+        )
+        forward_x, forward_y, forward_z, right_x, right_y, right_z, up_x, up_y, up_z = basis
+
+        @always_comb
+        def decode_basis():
+            select_forward.next = bus.address == forward_address
+            select_right.next = bus.address == right_address
+            select_up.next = bus.address == up_address
+
+        @always_comb
+        def read():
+            readback.next = position_word
+            if select_forward:
+                readback.next = forward_word
+            elif select_right:
+                readback.next = right_word
+            elif select_up:
+                readback.next = up_word
+
+        @always_comb
+        def take_apart():
+            camera.word.next = concat(
+                x, y, z, forward_x, forward_y, forward_z, right_x, right_y, right_z, up_x, up_y, up_z
+            )
+
+    else:
+
+        @always_comb
+        def read():
+            readback.next = position_word
+
+        @always_comb
+        def take_apart():
+            camera.word.next = concat(x, y, z)
 
     return instances()

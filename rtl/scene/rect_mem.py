@@ -4,12 +4,12 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.records import Rect
+from raycaster.rtl.common.records import rect_of
 from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import bit, index_bits, side_by_side, signed, unsigned
+from raycaster.rtl.common.widths import WORD_BITS, bit, index_bits, side_by_side, signed, unsigned
 from raycaster.rtl.scene.rect_slot import rect_slot
 from raycaster.rtl.scene.rect_sorter import rect_sorter
-from raycaster.rtl.scene.written_rect import CORNER, WrittenRect
+from raycaster.rtl.scene.written_rect import CORNER, written_of
 
 
 @block
@@ -25,21 +25,24 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     index_width = index_bits(config)
 
     numbers = [tied(table_slot + number, address_width - 2) for number in range(count)]
-    shadows, lives = ([WrittenRect() for _ in range(count)] for _ in range(2))
+    shadows, lives = ([written_of(config) for _ in range(count)] for _ in range(2))
     shadow_words, live_words = ([written.word for written in stage] for stage in (shadows, lives))
     usables, bads = ([bit() for _ in range(count)] for _ in range(2))
     usable, bad = side_by_side(usables), side_by_side(bads)
     read_slot = signed(address_width - 1)
     read_index = unsigned(index_width)
     in_table = bit()
-    read, chosen = WrittenRect(), WrittenRect()
-    sorted_rect = Rect()
+    read, chosen = written_of(config), written_of(config)
+    pattern_word = read.pattern if config.patterns else tied(0, WORD_BITS)
+    sorted_rect = rect_of(config)
 
     slots = [
-        rect_slot(clk, reset, bus, numbers[i], shadow=shadows[i], live=lives[i], usable=usables[i], bad=bads[i])
+        rect_slot(
+            clk, reset, bus, numbers[i], shadow=shadows[i], live=lives[i], usable=usables[i], bad=bads[i], config=config
+        )
         for i in range(count)
     ]
-    sorter = rect_sorter(chosen, sorted_rect)
+    sorter = rect_sorter(chosen, sorted_rect, config)
 
     # The table starts after the other registers.
     @always_comb
@@ -58,7 +61,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     def read_rect():
         read.word.next = shadow_words[read_index]
 
-    # 0 outside the table and in the unused word of each slot.
+    # 0 outside the table.
     @always_comb
     def read_word():
         readback.next = 0
@@ -69,6 +72,8 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
                 readback.next = read.corner_1
             elif bus.address[2:] == 2:
                 readback.next = read.surface
+            else:
+                readback.next = pattern_word
 
     @always_comb
     def show_slots():

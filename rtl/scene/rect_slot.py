@@ -3,21 +3,22 @@
 
 from myhdl import always, always_comb, block, concat, instances
 
+from raycaster.configuration import Configuration
 from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import WORD_BITS, bit, unsigned
 from raycaster.rtl.scene.scene_word import scene_word
-from raycaster.rtl.scene.written_rect import CORNER, SURFACE
+from raycaster.rtl.scene.written_rect import CORNER, PATTERN, surface_mask
 
 
 @block
-def rect_slot(clk, reset, bus, number, shadow, live, usable, bad):
-    """The three words of a rectangle, each a scene_word; shadow, live: WrittenRect.
+def rect_slot(clk, reset, bus, number, shadow, live, usable, bad, config: Configuration):
+    """The words of a rectangle, each a scene_word; shadow, live: WrittenRect.
 
     number: constant, the slot's address in units of four words. usable: the live rectangle is enabled and has a plane,
     a cycle late. bad: the shadow's is enabled and has none.
     """
     address_width = len(bus.address)
-    corner_bits, surface_bits = tied(CORNER.implemented, WORD_BITS), tied(SURFACE.implemented, WORD_BITS)
+    corner_bits, surface_bits = tied(CORNER.implemented, WORD_BITS), tied(surface_mask(config), WORD_BITS)
     corner_0, corner_1, surface, live_corner_0, live_corner_1, live_surface = (unsigned(WORD_BITS) for _ in range(6))
     select_corner_0, select_corner_1, select_surface = (bit() for _ in range(3))
     flat, live_flat = bit(), bit()
@@ -32,10 +33,29 @@ def rect_slot(clk, reset, bus, number, shadow, live, usable, bad):
         select_corner_1.next = (bus.address[address_width:2] == number) and (bus.address[2:] == 1)
         select_surface.next = (bus.address[address_width:2] == number) and (bus.address[2:] == 2)
 
-    @always_comb
-    def join():
-        shadow.word.next = concat(corner_0, corner_1, surface)
-        live.word.next = concat(live_corner_0, live_corner_1, live_surface)
+    if config.patterns:
+        pattern_bits = tied(PATTERN.implemented, WORD_BITS)
+        pattern, live_pattern = unsigned(WORD_BITS), unsigned(WORD_BITS)
+        select_pattern = bit()
+        word_3 = scene_word(
+            clk, reset, bus, select_pattern, implemented=pattern_bits, shadow=pattern, live=live_pattern
+        )
+
+        @always_comb
+        def decode_pattern():
+            select_pattern.next = (bus.address[address_width:2] == number) and (bus.address[2:] == 3)
+
+        @always_comb
+        def join():
+            shadow.word.next = concat(corner_0, corner_1, surface, pattern)
+            live.word.next = concat(live_corner_0, live_corner_1, live_surface, live_pattern)
+
+    else:
+
+        @always_comb
+        def join():
+            shadow.word.next = concat(corner_0, corner_1, surface)
+            live.word.next = concat(live_corner_0, live_corner_1, live_surface)
 
     # A rectangle lies in a plane where its corners share a coordinate.
     @always_comb

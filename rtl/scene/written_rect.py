@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A rectangle as software writes it."""
 
+from raycaster.configuration import Configuration
 from raycaster.registers import register_map
 from raycaster.rtl.common.records import Field, Record
 from raycaster.rtl.common.widths import RGB_BITS, WORD_BITS
@@ -8,19 +9,41 @@ from raycaster.rtl.common.widths import RGB_BITS, WORD_BITS
 REGISTERS = register_map(1)
 CORNER = REGISTERS["rectangle[0].corner_0"]
 SURFACE = REGISTERS["rectangle[0].surface"]
+PATTERN = REGISTERS["rectangle[0].pattern"]
+
+
+def surface_mask(config: Configuration) -> int:
+    """The bits of the surface register that a design has."""
+    return SURFACE.implemented & ~(0 if config.materials else SURFACE.fields["mirror"].mask)
 
 
 class WrittenRect(Record):
-    """The three registers of a rectangle, 32 bits each: two corners in any order, and colour and enable bit.
+    """The registers of a rectangle, 32 bits each: two corners in any order, surface, and pattern where there are some.
 
-    x_0 ... z_1 are the corners' coordinates, 9 bits each. Bits that no register field has are 0.
+    x_0 ... z_1 are the corners' coordinates, 9 bits each; colour, enable; with materials mirror, 0..7; with patterns
+    kind, cell and colour_2. Bits that no register field has are 0.
     """
 
-    def __init__(self):
-        super().__init__(dict.fromkeys(("corner_0", "corner_1", "surface"), WORD_BITS))
-        for number, low in enumerate((2 * WORD_BITS, WORD_BITS)):
+    def __init__(self, materials: bool = False, patterns: bool = False):
+        words = ("corner_0", "corner_1", "surface", *(["pattern"] if patterns else []))
+        super().__init__(dict.fromkeys(words, WORD_BITS))
+
+        def part(name: str, word: str, low: int, width: int) -> None:
+            setattr(self, name, Field(self.word, name, self.slice(word)[1] + low, width))
+
+        for number in range(2):
             for axis, field in CORNER.fields.items():
-                name = f"{axis}_{number}"
-                setattr(self, name, Field(self.word, name, low + field.lsb, field.width))
-        self.colour = Field(self.word, "colour", SURFACE.fields["blue"].lsb, RGB_BITS)
-        self.enable = Field(self.word, "enable", SURFACE.fields["enable"].lsb, 1)
+                part(f"{axis}_{number}", f"corner_{number}", field.lsb, field.width)
+        part("colour", "surface", SURFACE.fields["blue"].lsb, RGB_BITS)
+        part("enable", "surface", SURFACE.fields["enable"].lsb, 1)
+        if materials:
+            part("mirror", "surface", SURFACE.fields["mirror"].lsb, SURFACE.fields["mirror"].width)
+        if patterns:
+            part("colour_2", "pattern", PATTERN.fields["blue"].lsb, RGB_BITS)
+            for name in ("kind", "cell"):
+                part(name, "pattern", PATTERN.fields[name].lsb, PATTERN.fields[name].width)
+
+
+def written_of(config: Configuration) -> WrittenRect:
+    """One of a design's."""
+    return WrittenRect(config.materials, config.patterns)

@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, unsigned
-from raycaster.rtl.seed.divider_step import divider_step
+from raycaster.rtl.engine.divider_step import divider_step
 
 
 @block

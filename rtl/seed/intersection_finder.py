@@ -6,17 +6,21 @@ from myhdl import always_comb, block, concat, instances
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.ties import unconnected
 from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, signed, unsigned
+from raycaster.rtl.seed.cell_parity import cell_parity
 from raycaster.rtl.seed.intersection_helper import intersection_helper
 
 
 @block
-def intersection_finder(clk, steps, rect, offered, ray, slope, hit, depth, point, towards, config: Configuration):
+def intersection_finder(
+    clk, steps, rect, offered, ray, slope, hit, depth, point, odd_u, odd_v, towards, config: Configuration
+):
     """Two a + b * (c - d) / e units, one for each axis other than the plane's, and the test against the bounds.
 
     The plane of rect is taken at steps.find_intersection; offered is the same rectangle from the cycle after its
     store_quotient on. ray and slope hold still while a ray is traced. hit, depth (|distance| along x, with the
     configured fraction) and point (the hit point, an `Origin`) are valid in the second cycle after store_quotient,
-    which is steps.write_z_buf. towards: the ray runs towards the plane, from the cycle after find_intersection.
+    which is steps.write_z_buf; odd_u and odd_v too, the `cell_parity` of its u and v, which are None without
+    config.patterns. towards: the ray runs towards the plane, from the cycle after find_intersection.
     """
     fraction_bits, position_width = config.fraction_bits, position_bits(config)
 
@@ -38,6 +42,10 @@ def intersection_finder(clk, steps, rect, offered, ray, slope, hit, depth, point
         e_negative=e_negative, value=v_value, quotient=unconnected(position_width),
         distance=unconnected(position_width), valid=v_valid, towards=unconnected(1), config=config,
     )  # fmt: skip
+
+    if config.patterns:
+        u_parity = cell_parity(value=u_value, size=offered.cell, odd=odd_u, config=config)
+        v_parity = cell_parity(value=v_value, size=offered.cell, odd=odd_v, config=config)
 
     # Scene coordinates are whole units; here they get the fraction that origins have.
     @always_comb

@@ -7,8 +7,9 @@ from raycaster.configuration import Configuration
 from raycaster.rtl.common.interfaces import Slope
 from raycaster.rtl.common.records import Origin, Ray, Signs
 from raycaster.rtl.common.ties import unconnected
-from raycaster.rtl.common.widths import AXIS_BITS, RGB_BITS, bit, position_bits, unsigned
+from raycaster.rtl.common.widths import AXIS_BITS, MIRROR_BITS, RGB_BITS, bit, position_bits, unsigned
 from raycaster.rtl.engine.colour_combiner import colour_combiner
+from raycaster.rtl.engine.pattern_colour import pattern_colour
 from raycaster.rtl.engine.ray_generator import ray_generator
 from raycaster.rtl.engine.ray_sequencer import ends_early
 from raycaster.rtl.seed.intersection_finder import intersection_finder
@@ -22,7 +23,7 @@ def ray_unit(clk, steps, place, column_base, camera, rect, offered, picture, pix
 
     It holds no control of its own: one ray_control operates all units in step. camera: a `Point`; rect: what
     find_intersection starts on; offered: the `Rect` whose quotients were stored last; pixel: valid after the last
-    step; fate: with config.culling.
+    step; fate: with config.culling or config.materials.
     """
     fraction_bits = config.fraction_bits
 
@@ -31,9 +32,12 @@ def ray_unit(clk, steps, place, column_base, camera, rect, offered, picture, pix
     point, found_point = Origin(config), Origin(config)
     hit, found = bit(), bit()
     towards = bit() if ends_early(config) else unconnected(1)
-    missed = bit() if config.culling else unconnected(1)
+    missed = bit() if config.culling or config.materials else unconnected(1)
     depth = unsigned(position_bits(config))
     found_axis, found_colour = unsigned(AXIS_BITS), unsigned(RGB_BITS)
+    found_mirror = unsigned(MIRROR_BITS) if config.materials else None
+    colour = unsigned(RGB_BITS) if config.patterns else offered.colour
+    odd_u, odd_v = (bit() if config.patterns else None for _ in range(2))
     start_x, start_y, start_z = (unsigned(position_bits(config)) for _ in range(3))
 
     generator = ray_generator(
@@ -42,17 +46,21 @@ def ray_unit(clk, steps, place, column_base, camera, rect, offered, picture, pix
     )  # fmt: skip
     finder = intersection_finder(
         clk=clk, steps=steps, rect=rect, offered=offered, ray=ray, slope=slope, hit=hit, depth=depth, point=point,
-        towards=towards, config=config,
+        odd_u=odd_u, odd_v=odd_v, towards=towards, config=config,
     )  # fmt: skip
     z_buf = z_buffer(
-        clk=clk, steps=steps, offered=offered, hit=hit, depth=depth, point=point, found=found, found_axis=found_axis,
-        found_colour=found_colour, found_point=found_point, config=config,
+        clk=clk, steps=steps, offered=offered, colour=colour, hit=hit, depth=depth, point=point, found=found,
+        found_axis=found_axis, found_colour=found_colour, found_mirror=found_mirror, found_point=found_point,
+        config=config,
     )  # fmt: skip
     memory = ray_mem(clk=clk, steps=steps, found_axis=found_axis, found_point=found_point, ray=ray, reflected=reflected)
     combiner = colour_combiner(
-        clk=clk, steps=steps, found=found, found_colour=found_colour, picture=picture, missed=missed, pixel=pixel,
-        config=config,
+        clk=clk, steps=steps, found=found, found_colour=found_colour, found_mirror=found_mirror, picture=picture,
+        missed=missed, pixel=pixel, config=config,
     )  # fmt: skip
+
+    if config.patterns:
+        painter = pattern_colour(look=offered, odd_u=odd_u, odd_v=odd_v, colour=colour)
 
     @always_comb
     def align_camera():
@@ -67,8 +75,14 @@ def ray_unit(clk, steps, place, column_base, camera, rect, offered, picture, pix
         else:
             ray.word.next = reflected.word
 
-    # After a miss the unit goes on with a ray that is none: it hits nothing, and runs towards nothing.
-    if config.culling:
+    # What a ray that has ended goes on to hit does not count.
+    if config.materials:
+
+        @always_comb
+        def judge_alive():
+            fate.alive.next = found and (found_mirror != 0) and not missed
+
+    elif config.culling:
 
         @always_comb
         def judge_alive():

@@ -6,7 +6,7 @@ from myhdl import block, instances
 from raycaster.configuration import Configuration
 from raycaster.rtl.bus.avalon_interface import avalon_interface
 from raycaster.rtl.common.interfaces import Picture, Progress, Rects, SceneBus
-from raycaster.rtl.common.records import Point
+from raycaster.rtl.common.records import camera_of
 from raycaster.rtl.common.ties import tied, unconnected
 from raycaster.rtl.common.widths import WORD_BITS, bit, unsigned
 from raycaster.rtl.engine.engines import block_named
@@ -24,7 +24,7 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration):
     """
     fixed = config.fixed
     bus = SceneBus(len(avs_s0.address))
-    picture, camera, rects, progress = Picture(), Point(), Rects(config), Progress()
+    picture, camera, rects, progress = Picture(), camera_of(config), Rects(config), Progress()
     camera_readback, rect_readback = unsigned(WORD_BITS), unsigned(WORD_BITS)
     bad_rectangle = bit()
 
@@ -36,13 +36,13 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration):
         rectangles = rect_mem(clk, reset, bus, rect_readback, bad_rectangle, rects, config)
     if fixed and fixed.camera:
         camera_readback = tied(0, WORD_BITS)
-        camera.tie(dict(zip("xyz", fixed.camera, strict=True)))
+        camera.tie(fixed.camera_fields)
         picture.background = tied(fixed.background, picture.background)
         picture.reflections = tied(config.reflections, picture.reflections)
         for name, signal in vars(bus).items():
             setattr(bus, name, unconnected(signal))
     else:
-        position = camera_mem(clk, reset, bus, camera_readback, camera)
+        position = camera_mem(clk, reset, bus, camera_readback, camera, config)
     registers = avalon_interface(
         clk, reset, avs_s0=avs_s0, irq=irq, bus=bus, camera_readback=camera_readback, rect_readback=rect_readback,
         bad_rectangle=bad_rectangle, picture=picture, progress=progress, config=config,

@@ -23,7 +23,7 @@ def player_program(scene: Scene, config: Configuration) -> tuple[list[tuple[int,
     """
     registers = register_map(config.table)
     enable, pending = registers["irq_enable"], registers["irq_pending"]
-    load = scene_words(scene, config.table)
+    load = scene_words(scene, config)
     frame = [(pending.address, pending.pack(start_screen=1)), (registers["camera"].address, 0), load[-1]]
     return [*load, (enable.address, enable.pack(start_screen=1)), *frame], len(load) + 1
 

@@ -27,6 +27,12 @@ enum {
     LINE_SIZE = 2,
 };
 
+// The player looks after the ball where the camera turns: a degree a frame, and no further than the court is wide.
+enum {
+    MOST_TURN = 3,
+    UNITS_A_DEGREE = 40, // of the ball, from the middle
+};
+
 enum {
     LIVES = 3,
     TILES_PER_LEVEL = 4,
@@ -105,6 +111,12 @@ static int32_t veil_size(const struct game *game) {
     return 24 + 4 * game->level;
 }
 
+static void turn_head(struct game *game) {
+    const int32_t aside = game->ball.y / UNIT - MIDDLE;
+    const int32_t wanted = clamp(aside / UNITS_A_DEGREE, -MOST_TURN, MOST_TURN);
+    game->turn += (wanted > game->turn) - (wanted < game->turn);
+}
+
 static void enter(struct game *game, enum game_phase phase) {
     game->phase = phase;
     game->age = 0;
@@ -136,6 +148,7 @@ static void start(struct game *game, bool attract) {
     game->score = 0;
     game->sway = 0;
     game->alarm = 0;
+    game->turn = 0;
     game->racket = (struct game_vector){RACKET_X, MIDDLE, EYE_HEIGHT};
     move_target(game);
     move_veil(game);
@@ -273,6 +286,7 @@ unsigned game_step(struct game *game, unsigned buttons) {
     }
     move_racket(game, game->attract ? game_autoplay(game) : buttons);
     move_veil(game);
+    turn_head(game);
     switch (game->phase) {
     case GAME_SERVE:
         if (fire || game->age == SERVE_FRAMES) {
@@ -414,6 +428,11 @@ enum raycaster_error game_draw(struct game *game, const struct raycaster *device
         error = raycaster_set_camera(device, camera);
     }
     game->camera = camera;
+    if (error == RAYCASTER_OK && device->turn && (all || game->turn != game->shown_turn)) {
+        const struct raycaster_basis basis = raycaster_turned(game->turn, 0, 0);
+        error = raycaster_set_basis(device, &basis);
+    }
+    game->shown_turn = game->turn;
     for (unsigned index = 0; index < GAME_RECTANGLES && error == RAYCASTER_OK; index++) {
         const struct game_rectangle *wanted = &scene[index];
         if (all || !same_rectangle(wanted, &game->shown[index])) {

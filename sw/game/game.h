@@ -81,7 +81,9 @@ struct game {
     struct game_vector racket; // its centre, in whole units, as the two that follow
     struct game_vector target;
     struct game_vector veil;
+    int32_t turn; // degrees by which the player looks to the right
     bool drawn; // the rest is what the registers hold
+    int32_t shown_turn;
     struct raycaster_point camera;
     struct game_rectangle shown[GAME_RECTANGLES];
 };

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from random import Random
 
 import cocotb
@@ -17,12 +18,24 @@ from raycaster.sim.harness import Harness
 from raycaster.verif.seeds import seed
 
 ALL_ONES = 0xFFFF_FFFF
+BASIS = ("forward", "right", "up")
 
 
 def _writable(harness: Harness) -> list[Register]:
-    """Registers that hold what is written, all fields of them."""
-    names = ("irq_enable", "background", "camera", "rectangle[")
-    return [register for name, register in harness.bus.registers.items() if name.startswith(names)]
+    """Registers that hold what is written, with those of their fields that the design has."""
+    names = ("irq_enable", "background", "camera", *BASIS, "rectangle[")
+    config = harness.configuration
+    found = []
+    for name, register in harness.bus.registers.items():
+        missing = set()
+        if (name in BASIS and not config.turn) or (name.endswith("pattern") and not config.patterns):
+            missing = set(register.fields)
+        elif name.endswith("surface") and not config.materials:
+            missing = {"mirror"}
+        if name.startswith(names):
+            fields = {field: place for field, place in register.fields.items() if field not in missing}
+            found.append(replace(register, fields=fields))
+    return found
 
 
 def _mask(register: Register) -> int:
@@ -48,6 +61,9 @@ async def says_what_it_is(bench: HierarchyObject) -> None:
             "colour_bits": configuration.colour_bits,
             "fixed": 0,
             "culling": int(configuration.culling),
+            "turn": int(configuration.turn),
+            "materials": int(configuration.materials),
+            "patterns": int(configuration.patterns),
         },
         "size": {
             "units": configuration.units,
@@ -63,7 +79,7 @@ async def says_what_it_is(bench: HierarchyObject) -> None:
 
 @cocotb.test()
 async def reset_values(bench: HierarchyObject) -> None:
-    """Everything that can be written is 0 after reset, whatever it was before."""
+    """Everything that can be written is 0 after reset, whatever it was before; but a camera looks along x."""
     harness = Harness(bench)
     await harness.reset()
     await harness.bus.write("control", run=1, reflections=3)
@@ -73,8 +89,9 @@ async def reset_values(bench: HierarchyObject) -> None:
     for name in ("control", "cycles", "irq_pending"):
         assert await harness.bus.read_word(harness.bus.registers[name].address) == 0, name
     assert (await harness.bus.read("status"))["underrun"] == 0
+    first = {"forward": 1 << 8, "right": 1 << 18, "up": 1 << 28} if harness.configuration.turn else {}
     for register in _writable(harness):
-        assert await harness.bus.read_word(register.address) == 0, register.name
+        assert await harness.bus.read_word(register.address) == first.get(register.name, 0), register.name
 
 
 @cocotb.test()

@@ -84,8 +84,10 @@ class Traffic:
         while True:
             kind = rng.choice(("silence", "reads", "mixture", "gaps", "shadow", "scene"))
             if kind == "scene":
-                scene = random_scene(rng.randrange(1 << 16), configuration.rectangles, configuration.reflections)
-                for name, fields in scene_fields(scene, configuration.rectangles):
+                scene = random_scene(
+                    rng.randrange(1 << 16), configuration.rectangles, configuration.reflections, configuration.looks
+                )
+                for name, fields in scene_fields(scene, configuration):
                     yield Request(registers[name].address, registers[name].pack(**fields))
                     if rng.random() < 0.2:
                         yield rng.choice((None, Request(rng.choice(addresses))))

@@ -227,7 +227,7 @@ def main(argv: list[str] | None = None) -> int:
     if arguments.seeds < 1 or arguments.jobs < 1:
         raise UserError("--seeds and --jobs must be at least 1")
     explanations = load_explanations()
-    scenes = list(packaged_scenes().values())
+    scenes = list(packaged_scenes(plain=True).values())
     scenes.append(EXTRA_SCENE)
     # Into a file or a pipe rich would print as if on 80 columns, which the tables do not fit.
     console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)

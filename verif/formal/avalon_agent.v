@@ -162,14 +162,14 @@ end
 always @* if (known && last_reset) assert (!readdatavalid);
 
 // What the renderer gets is the live word, which changes at StartScreen only.
-(* hierconn *) wire [31:0] \registers.live_control , \registers.live_background , \camera.live ,
+(* hierconn *) wire [31:0] \registers.live_control , \registers.live_background , \camera.lives_0 ,
     \rects.rect_slot_0_i.live_corner_0 , \rects.rect_slot_0_i.live_corner_1 , \rects.rect_slot_0_i.live_surface ,
     \rects.rect_slot_1_i.live_corner_0 , \rects.rect_slot_1_i.live_corner_1 , \rects.rect_slot_1_i.live_surface ;
 reg [31:0] shown;
 always @* case (watched)
     CONTROL: shown = \registers.live_control ;
     BACKGROUND: shown = \registers.live_background ;
-    CAMERA: shown = \camera.live ;
+    CAMERA: shown = \camera.lives_0 ;
     TABLE: shown = \rects.rect_slot_0_i.live_corner_0 ;
     TABLE + 1: shown = \rects.rect_slot_0_i.live_corner_1 ;
     TABLE + 2: shown = \rects.rect_slot_0_i.live_surface ;

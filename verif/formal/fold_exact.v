@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The beam engine's folded ray against the definition, with a division: the ray from the mirrored eye, P = E' + D' t, is
-// ahead, within the bounds, and strictly beyond the last mirror on the side that the slope points to.
+// ahead, within the bounds, and beyond the last mirror on the side that the slope points to: strictly, or in the mirror's
+// point where the ray has met no mirror on the rectangle's axis there.
 //
 // One ray, one rectangle and up to two mirrors hold still; the pipeline is long enough after a few cycles. Assumed, as the
-// engine has it: bounds in order, axes of three, and mirrors that the ray meets, one after the other.
+// engine has it: bounds in order, axes of three, and mirrors that the ray meets, one after the other, or in one point where
+// they are on different axes. VIEW_DISTANCE is the slope along x, 0 for any, as a camera that turns has it.
 
 module fold_exact #(
     parameter COORDINATE_BITS = 2, parameter SLOPE_BITS = 2, parameter VIEW_DISTANCE = 2, parameter MIRRORS = 1,
@@ -14,7 +16,8 @@ module fold_exact #(
 localparam TURN_BITS = COORDINATE_BITS + 2, WIDE = 2 * (COORDINATE_BITS + SLOPE_BITS + 4);
 
 (* anyconst *) reg [COORDINATE_BITS-1:0] x, y, z, position, u_low, u_high, v_low, v_high, plane_1, plane_2;
-(* anyconst *) reg signed [SLOPE_BITS:0] dy, dz;
+(* anyconst *) reg signed [SLOPE_BITS:0] any_dx, dy, dz;
+wire signed [SLOPE_BITS:0] dx = VIEW_DISTANCE == 0 ? any_dx : VIEW_DISTANCE;
 (* anyconst *) reg [1:0] axis, axis_1, axis_2, count;
 
 // Everything wide enough for any value; 0, 1, 2 are x, y, z.
@@ -25,7 +28,7 @@ endfunction
 function signed [WIDE-1:0] magnitude(input signed [WIDE-1:0] value);
     magnitude = value < 0 ? -value : value;
 endfunction
-wire signed [WIDE-1:0] eye_x = {1'b0, x}, eye_y = {1'b0, y}, eye_z = {1'b0, z}, view = VIEW_DISTANCE, wide_dy = dy, wide_dz = dz;
+wire signed [WIDE-1:0] eye_x = {1'b0, x}, eye_y = {1'b0, y}, eye_z = {1'b0, z}, view = dx, wide_dy = dy, wide_dz = dz;
 wire signed [WIDE-1:0] k = {1'b0, position}, k_1 = {1'b0, plane_1}, k_2 = {1'b0, plane_2};
 
 // The eye and the slope, mirrored once and twice.
@@ -43,10 +46,12 @@ wire signed [WIDE-1:0] dz_2 = two && axis_2 == 2 ? -dz_1 : dz_1;
 wire signed [WIDE-1:0] n_1 = k_1 - of_three(axis_1, eye_x, eye_y, eye_z), e_1 = of_three(axis_1, view, wide_dy, wide_dz);
 wire signed [WIDE-1:0] n_2 = k_2 - of_three(axis_2, x_1, y_1, z_1), e_2 = of_three(axis_2, dx_1, dy_1, dz_1);
 wire met_1 = n_1 * e_1 > 0;
-wire met_2 = n_2 * e_2 > 0 && magnitude(n_2) * magnitude(e_1) > magnitude(n_1) * magnitude(e_2);
+wire later = magnitude(n_2) * magnitude(e_1) > magnitude(n_1) * magnitude(e_2);
+wire together = magnitude(n_2) * magnitude(e_1) == magnitude(n_1) * magnitude(e_2);
+wire met_2 = n_2 * e_2 > 0 && (later || together && axis_2 != axis_1);
 always @* begin
     assume (axis < 3 && axis_1 < 3 && axis_2 < 3 && count <= MIRRORS && u_low <= u_high && v_low <= v_high);
-    assume (dy != -(1 << SLOPE_BITS) && dz != -(1 << SLOPE_BITS));
+    assume (dx != -(1 << SLOPE_BITS) && dy != -(1 << SLOPE_BITS) && dz != -(1 << SLOPE_BITS));
     if (one) assume (met_1);
     if (two) assume (met_2);
 end
@@ -68,19 +73,20 @@ wire signed [WIDE-1:0] walk_low_q = (low_q - camera_q) * slope_a, walk_high_q = 
 wire [1:0] last_axis = two ? axis_2 : axis_1;
 wire signed [WIDE-1:0] last_plane = two ? k_2 : k_1;
 wire signed [WIDE-1:0] last_distance = last_plane - of_three(last_axis, eye_x, eye_y, eye_z);
-localparam FOLD_WORD = 5 + 3 * TURN_BITS + 6 * FOLD_BITS + 3 * WALK_BITS + 2 + COORDINATE_BITS + 1;
+localparam FOLD_WORD = 8 + 3 * TURN_BITS + 6 * FOLD_BITS + 3 * WALK_BITS + 2 + COORDINATE_BITS + 1;
 wire [FOLD_WORD-1:0] fold;
 
 // Words of records, the first field in the highest bits: see `raycaster.rtl.common.records`.
 ray_fold folder (
-    .clk(clk), .earlier_word({two, axis_1, n_1[COORDINATE_BITS:0]}),
-    .last_word({1'b1, last_axis, last_distance[COORDINATE_BITS:0]}), .column_slope(dy), .row_slope(dz), .fold_word(fold)
+    .clk(clk), .earlier_word({two, 1'b0, axis_1, n_1[COORDINATE_BITS:0]}),
+    .last_word({1'b1, two && together, last_axis, last_distance[COORDINATE_BITS:0]}),
+    .slope_x(dx), .slope_y(dy), .slope_z(dz), .fold_word(fold)
 );
 
-wire hit, hit_index;
+wire hit, hit_at_mirror, hit_index;
 wire [NUMERATOR_BITS-1:0] numerator;
 wire [SLOPE_BITS-1:0] denominator;
-wire signed [WIDE-1:0] size_y = magnitude(wide_dy), size_z = magnitude(wide_dz);
+wire signed [WIDE-1:0] size_x = magnitude(view), size_y = magnitude(wide_dy), size_z = magnitude(wide_dz);
 
 // Without a mirror all of the fold is 0, and with one it is active. A colour has 24 bits.
 fold_tester tester (
@@ -88,8 +94,9 @@ fold_tester tester (
     .facet_word({1'b1, axis, distance[COORDINATE_BITS:0], way_q[WALK_BITS-1:0], 24'd0}),
     .walk_word({way_p[WALK_BITS-1:0], walk_low_p[WALK_BITS-1:0], walk_high_p[WALK_BITS-1:0], walk_low_q[WALK_BITS-1:0],
                 walk_high_q[WALK_BITS-1:0]}),
-    .column_slope(dy), .row_slope(dz), .slope_dy(size_y[SLOPE_BITS-1:0]), .slope_dz(size_z[SLOPE_BITS-1:0]),
-    .fold_word(one ? fold : {FOLD_WORD{1'b0}}), .index(1'b1), .hit_word({hit, numerator, denominator, hit_index})
+    .signs_word({dx < 0, dy < 0, dz < 0}), .slope_dx(size_x[SLOPE_BITS-1:0]), .slope_dy(size_y[SLOPE_BITS-1:0]),
+    .slope_dz(size_z[SLOPE_BITS-1:0]), .fold_word(one ? fold : {FOLD_WORD{1'b0}}), .index(1'b1),
+    .hit_word({hit, hit_at_mirror, numerator, denominator, hit_index})
 );
 
 // By the definition: t = n / e, and the whole part and the rest of the way on p and on q from the mirrored eye.
@@ -113,7 +120,10 @@ endfunction
 function beyond(input signed [WIDE-1:0] base, input more, input negative, input signed [WIDE-1:0] place);
     beyond = negative ? base < place || base == place && more : base > place || base == place && more;
 endfunction
-wire clear = !one || (last_axis == axis ? beyond(k, 1'b0, slope < 0, last_plane)
+wire met = two && together && axis == axis_1;
+wire at_mirror = one && last_axis != axis
+    && (last_axis == on_p ? base_p == last_plane && !more_p : base_q == last_plane && !more_q);
+wire clear = !one || at_mirror && !met || (last_axis == axis ? beyond(k, 1'b0, slope < 0, last_plane)
     : last_axis == on_p ? beyond(base_p, more_p, slope_p < 0, last_plane) : beyond(base_q, more_q, slope_q < 0, last_plane));
 wire defined = ahead && clear && within(base_p, more_p, slope_p < 0, low_p, high_p)
     && within(base_q, more_q, slope_q < 0, low_q, high_q);
@@ -123,7 +133,7 @@ reg [2:0] age = 3'd0;
 always @(posedge clk) if (age != 7) age <= age + 1;
 always @* if (age == 7) begin
     assert (hit == defined);
-    if (hit) assert (numerator == n && denominator == e && hit_index);
+    if (hit) assert (numerator == n && denominator == e && hit_index && hit_at_mirror == at_mirror);
 end
 
 // Hits with as many mirrors as there are.

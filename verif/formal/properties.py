@@ -9,7 +9,7 @@ from raycaster.fixed import FixedScene
 from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.bus.avalon_interface import engine_word, size_word
-from raycaster.rtl.common.records import Rect
+from raycaster.rtl.common.records import rect_of
 from raycaster.rtl.common.widths import (
     bits_for,
     index_bits,
@@ -111,7 +111,7 @@ def _order(config: Configuration, small: bool) -> Property:
             "STEPS": config.slot_cycles,
             "SLOT_BITS": bits_for(config.slot_cycles),
             "REFLECTIONS": config.reflections,
-            "RESULT_LATENCY": config.facts.result_latency,
+            "RESULT_LATENCY": config.pass_latency,
             "RUN_BOUND": bound,
             "CULLING": int(config.culling),
         },
@@ -188,10 +188,11 @@ def _divider(config: Configuration, part: int, small: bool) -> Property:
 
 def _tester(coordinate_bits: int, reflections: int, small: bool) -> Property:
     last = (1 << coordinate_bits) - 1
-    widths = TesterWidths(coordinate_bits, coordinate_bits, (last * (reflections + 1)).bit_length() + 1)
+    eye_bits = (last * (reflections + 1)).bit_length() + 1
+    widths = TesterWidths(coordinate_bits, coordinate_bits, eye_bits, corners=reflections > 1)
     return Property(
         "tester-exact",
-        "a rectangle is hit where the quotient's point is within it and beyond the mirror",
+        "a rectangle is hit where the quotient's point is within it and beyond the mirror, or with it in a corner",
         widths,
         f"{coordinate_bits} bits, {reflections} mirrors",
         ("rect_tester",),
@@ -208,12 +209,13 @@ def _tester(coordinate_bits: int, reflections: int, small: bool) -> Property:
 
 
 def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: int, small: bool) -> Property:
-    widths = FoldWidths(coordinate_bits, slope_bits, view_distance, mirrors)
+    widths = FoldWidths(coordinate_bits, slope_bits, mirrors)
+    turned = "" if view_distance else ", turned"
     return Property(
         "fold-exact",
         "a folded ray hits a rectangle where the mirrored eye's, by a division, is within it and beyond the mirror",
         widths,
-        f"{coordinate_bits} and {slope_bits} bits, {mirrors} mirrors",
+        f"{coordinate_bits} and {slope_bits} bits, {mirrors} mirrors{turned}",
         ("ray_fold", "fold_tester"),
         {
             "COORDINATE_BITS": widths.coordinate,
@@ -234,8 +236,8 @@ FIXED_SCENE = Scene(
     camera=Camera(position=(20, 250, 100)),
     rect=(
         Rectangle(corners=((0, 100, 0), (511, 420, 0)), colour=(200, 200, 180)),
-        Rectangle(corners=((300, 400, 180), (300, 60, 0)), colour=(80, 160, 255)),
-        Rectangle(corners=((200, 270, 20), (130, 270, 140)), colour=(255, 64, 32)),
+        Rectangle(corners=((300, 400, 180), (300, 60, 0)), colour=(80, 160, 255), mirror=1.0),
+        Rectangle(corners=((200, 270, 20), (130, 270, 140)), colour=(255, 64, 32), mirror=0.25),
     ),
 )
 """A floor, a wall and a post; corners in any order."""
@@ -246,12 +248,11 @@ def _fixed(engine: str, alike: bool, small: bool) -> Property:
     rect = (FIXED_SCENE.rect[1],) * 3 if alike else FIXED_SCENE.rect
     if alike:
         rect = (*rect[:2], rect[2].model_copy(update={"colour": (1, 2, 3)}))
-    general = configure(engine=engine, rectangles=len(rect), allow_underrun=True)
+    options = {"engine": engine, "materials": not alike, "allow_underrun": True}
+    general = configure(rectangles=len(rect), **options)
     every = (1 << len(rect)) - 1
-    fixed = configure(
-        engine=engine, fixed=FixedScene(tuple(map(fixed_rectangle, rect)), (every, every)), allow_underrun=True
-    )
-    words = dict(scene_words(FIXED_SCENE.model_copy(update={"rect": rect}), len(rect)))
+    fixed = configure(fixed=FixedScene(tuple(map(fixed_rectangle, rect)), (every, every)), **options)
+    words = dict(scene_words(FIXED_SCENE.model_copy(update={"rect": rect}), general))
     registers = register_map(len(rect))
     parameters = {
         f"{name.upper()}_{index}": words[registers[f"rectangle[{index}].{name}"].address]
@@ -267,7 +268,7 @@ def _fixed(engine: str, alike: bool, small: bool) -> Property:
         {
             "INDEX_BITS": index_bits(fixed),
             "ADDRESS_BITS": address_bits(general.table),
-            "RECT_BITS": len(Rect().word),
+            "RECT_BITS": len(rect_of(fixed).word),
             "LATENCY": fixed.facts.rect_latency,
             **parameters,
         },
@@ -342,10 +343,12 @@ PROPERTIES: list[Property] = [
     _counters(_tiny(rectangles=2), small=True),
     _counters(_tiny(rectangles=2, culling=False), small=False),
     _counters(configure(units=16, rectangles=4), small=False),
+    _tester(1, 2, small=True),
     _tester(2, 1, small=True),
     _tester(2, 2, small=False),
     _tester(3, 1, small=False),
     _fold(2, 1, 1, 1, small=True),
+    _fold(2, 1, 0, 1, small=False),
     _fold(2, 1, 1, 2, small=False),
     _fold(2, 2, 2, 1, small=False),
     _fixed("seed", False, small=True),

@@ -21,9 +21,9 @@ from raycaster.registers import address_bits
 from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.bus.avalon_host import avalon_host
-from raycaster.rtl.common.interfaces import Access, AvalonPort, Eye, Rects, Scan, SceneBus, Slope, Steps, Vga
+from raycaster.rtl.common.interfaces import Access, AvalonPort, Direction, Eye, Rects, Scan, SceneBus, Slope, Steps, Vga
 from raycaster.rtl.common.records import Candidate, Facet, Fold, Mirror, Pixel, Rect, Reflector, Signs, Walk
-from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, signed, unsigned
+from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, unsigned
 from raycaster.rtl.exact.rect_tester import rect_tester
 from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.rtl.scene.rect_rom import rect_rom
@@ -47,6 +47,7 @@ class TesterWidths:
     coordinate: int
     slope: int
     eye: int
+    corners: bool
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,6 @@ class FoldWidths:
 
     coordinate: int
     slope: int
-    view_distance: int
     mirrors: int
 
     @property
@@ -236,7 +236,8 @@ def _convert_rect_tester(widths: TesterWidths, directory: Path) -> None:
     with elaboration():
         top = rect_tester(
             clk=bit(), steps=Steps(), rect=Rect(widths.coordinate), eye=Eye(widths.eye), signs=Signs(),
-            slope=Slope(widths.slope), mirror=Mirror(widths.coordinate), hit=bit(), numerator=unsigned(widths.eye - 1),
+            slope=Slope(widths.slope), mirror=Mirror(widths.eye - 1, widths.corners), hit=bit(),
+            at_mirror=bit() if widths.corners else None, numerator=unsigned(widths.eye - 1),
             denominator=unsigned(widths.slope),
         )  # fmt: skip
     convert_hierarchy(top, directory, "// {module}")
@@ -246,16 +247,11 @@ def _convert_fold(widths: FoldWidths, directory: Path) -> None:
     distance, product = widths.coordinate + 1, widths.walk
     earlier, last = Reflector(distance), Reflector(distance)
     fold = Fold(widths.fold, product, widths.coordinate + 2, distance)
-    column_slope, row_slope = signed(widths.slope + 1), signed(widths.slope + 1)
     with elaboration():
-        folder = ray_fold(
-            bit(), earlier=earlier, last=last, column_slope=column_slope, row_slope=row_slope, fold=fold,
-            view_distance=widths.view_distance,
-        )  # fmt: skip
+        folder = ray_fold(bit(), earlier=earlier, last=last, slope=Direction(widths.slope + 1), fold=fold)
         tester = fold_tester(
-            bit(), facet=Facet(product, distance), walk=Walk(product), column_slope=column_slope, row_slope=row_slope,
-            slope=Slope(widths.slope), fold=fold, index=bit(), hit=Candidate(widths.numerator, widths.slope, 1),
-            view_distance=widths.view_distance,
+            bit(), facet=Facet(product, distance), walk=Walk(product), signs=Signs(), slope=Slope(widths.slope),
+            fold=fold, index=bit(), hit=Candidate(widths.numerator, widths.slope, 1),
         )  # fmt: skip
     for top in (folder, tester):
         convert_hierarchy(top, directory, "// {module}")

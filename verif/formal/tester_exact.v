@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The rectangle test against its definition, with a division: the point P = E + D (k - E[a]) / D[a] is ahead of the eye,
-// within the bounds, and strictly beyond the mirror on the side that the slope points to.
+// within the bounds, and beyond the mirror on the side that the slope points to, or in its plane where no mirror on the
+// rectangle's axis was met there.
 //
 // Assumed, as the engine has it: bounds in order, an axis of three, an eye as far away as so many mirrors can put it, and
-// no mirror on an axis along which the ray does not move. The ray and the rectangle may change in every cycle.
+// a mirror that the ray met ahead of the eye. The ray and the rectangle may change in every cycle.
 
 module tester_exact #(
     parameter COORDINATE_BITS = 3, parameter SLOPE_BITS = 3, parameter EYE_BITS = 5, parameter REFLECTIONS = 1
@@ -12,29 +13,53 @@ module tester_exact #(
     input [COORDINATE_BITS-1:0] u_high, input [COORDINATE_BITS-1:0] v_low, input [COORDINATE_BITS-1:0] v_high,
     input signed [EYE_BITS-1:0] x, input signed [EYE_BITS-1:0] y, input signed [EYE_BITS-1:0] z,
     input [SLOPE_BITS-1:0] dx, input [SLOPE_BITS-1:0] dy, input [SLOPE_BITS-1:0] dz, input [2:0] backward,
-    input mirrored, input [1:0] mirror_axis, input [COORDINATE_BITS-1:0] mirror
+    input mirrored, input [1:0] mirror_axis, input [COORDINATE_BITS-1:0] mirror, input [2:0] met
 );
 localparam LAST = (1 << COORDINATE_BITS) - 1, WIDE = EYE_BITS + SLOPE_BITS + 2;
+localparam RECT_BITS = 2 + 24 + 5 * COORDINATE_BITS;
 
-wire hit;
+wire hit, at_mirror;
 wire [EYE_BITS-2:0] numerator;
 wire [SLOPE_BITS-1:0] denominator;
 
-rect_tester dut (
-    .clk(clk), .steps_find_intersection(started), .rect_word({axis, position, 24'd0, u_low, u_high, v_low, v_high}),
-    .eye_x(x), .eye_y(y), .eye_z(z), .signs_word({backward[0], backward[1], backward[2]}), .slope_dx(dx), .slope_dy(dy),
-    .slope_dz(dz), .mirror_word({mirrored, mirror_axis, mirror}), .hit(hit), .numerator(numerator),
-    .denominator(denominator)
-);
+wire [RECT_BITS-1:0] rect = {axis, position, 24'd0, u_low, u_high, v_low, v_high};
+wire [2:0] signs = {backward[0], backward[1], backward[2]};
+generate
+    if (REFLECTIONS > 1) begin: design
+        rect_tester dut (
+            .clk(clk), .steps_find_intersection(started), .rect_word(rect), .eye_x(x), .eye_y(y), .eye_z(z),
+            .signs_word(signs), .slope_dx(dx), .slope_dy(dy), .slope_dz(dz),
+            .mirror_word({mirrored, mirror_axis, distance_1, met[0], met[1], met[2]}), .hit(hit),
+            .at_mirror(at_mirror), .numerator(numerator), .denominator(denominator)
+        );
+    end
+    else begin: design
+        rect_tester dut (
+            .clk(clk), .steps_find_intersection(started), .rect_word(rect), .eye_x(x), .eye_y(y), .eye_z(z),
+            .signs_word(signs), .slope_dx(dx), .slope_dy(dy), .slope_dz(dz),
+            .mirror_word({mirrored, mirror_axis, distance_1}), .hit(hit), .numerator(numerator),
+            .denominator(denominator)
+        );
+        assign at_mirror = 0;
+    end
+endgenerate
 
+// The mirror's distance is read a cycle after all else.
 wire [SLOPE_BITS-1:0] mirror_slope = mirror_axis == 0 ? dx : mirror_axis == 1 ? dy : dz;
+wire mirror_back = mirror_axis == 0 ? backward[0] : mirror_axis == 1 ? backward[1] : backward[2];
+wire signed [WIDE-1:0] mirror_eye = mirror_axis == 0 ? x : mirror_axis == 1 ? y : z;
+wire signed [WIDE-1:0] mirror_place = {1'b0, mirror};
+wire signed [WIDE-1:0] distance = mirror_back ? mirror_eye - mirror_place : mirror_place - mirror_eye;
+reg [EYE_BITS-2:0] distance_1;
+always @(posedge clk) distance_1 <= distance;
 function in_reach(input signed [EYE_BITS-1:0] place);
     in_reach = place >= -LAST * REFLECTIONS && place <= LAST * (REFLECTIONS + 1);
 endfunction
 always @* begin
     assume (axis < 3 && mirror_axis < 3 && u_low <= u_high && v_low <= v_high);
     assume (in_reach(x) && in_reach(y) && in_reach(z));
-    if (mirrored) assume (mirror_slope != 0);
+    if (mirrored) assume (mirror_slope != 0 && distance > 0);
+    if (mirrored) assume (REFLECTIONS > 1 ? met[mirror_axis] : met == 1 << mirror_axis);
 end
 
 // The axes as the rectangle has them; all that follows is wide enough for any value.
@@ -71,25 +96,32 @@ endfunction
 wire signed [WIDE-1:0] base_u = back_u ? eye_u - whole_u : eye_u + whole_u;
 wire signed [WIDE-1:0] base_v = back_v ? eye_v - whole_v : eye_v + whole_v;
 wire signed [WIDE-1:0] low_u = {1'b0, u_low}, high_u = {1'b0, u_high}, low_v = {1'b0, v_low}, high_v = {1'b0, v_high};
-wire signed [WIDE-1:0] mirror_place = {1'b0, mirror};
-wire defined = ahead && within(base_u, more_u, back_u, low_u, high_u) && within(base_v, more_v, back_v, low_v, high_v)
-    && (!on_a || beyond(plane, 1'b0, back, mirror_place)) && (!on_u || beyond(base_u, more_u, back_u, mirror_place))
+wire in_mirror = on_u && base_u == mirror_place && !more_u || on_v && base_v == mirror_place && !more_v;
+wire allowed = in_mirror ? !met[axis] : (!on_u || beyond(base_u, more_u, back_u, mirror_place))
     && (!on_v || beyond(base_v, more_v, back_v, mirror_place));
+wire defined = ahead && within(base_u, more_u, back_u, low_u, high_u) && within(base_v, more_v, back_v, low_v, high_v)
+    && (!on_a || beyond(plane, 1'b0, back, mirror_place)) && allowed;
 
 // It comes three cycles later.
-reg [2:0] valid = 3'b000, hits;
+reg [2:0] valid = 3'b000, hits, in_mirrors;
 reg [WIDE-1:0] n_1, n_2, n_3, e_1, e_2, e_3;
 always @(posedge clk) begin
     valid <= {valid, started};
     hits <= {hits, defined};
+    in_mirrors <= {in_mirrors, in_mirror};
     n_1 <= n; n_2 <= n_1; n_3 <= n_2;
     e_1 <= e; e_2 <= e_1; e_3 <= e_2;
 end
 always @* if (valid[2]) begin
     assert (hit == hits[2]);
     if (hit) assert (numerator == n_3 && denominator == e_3);
+    if (hit && REFLECTIONS > 1) assert (at_mirror == in_mirrors[2]);
 end
 
-// Hits in front of a mirror that stands on the same axis, and on another.
 always @* cover (valid[2] && hit);
+generate
+    if (REFLECTIONS > 1) begin: corners
+        always @* cover (valid[2] && hit && at_mirror);
+    end
+endgenerate
 endmodule

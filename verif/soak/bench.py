@@ -24,13 +24,13 @@ async def soak(bench: HierarchyObject) -> None:
     job, configuration = harness.job, harness.configuration
     output = Path(job.output)
     await harness.reset()
-    failed, cases = [], catalogue()
+    failed, cases = [], catalogue(configuration.looks)
     with (output / "results.jsonl").open("w") as results:
         for seed in job.seeds:
             if job.stiff:
                 scene = cases[seed].scene
             else:
-                scene = random_scene(seed, configuration.rectangles, configuration.reflections)
+                scene = random_scene(seed, configuration.rectangles, configuration.reflections, configuration.looks)
             result = {"seed": seed, "title": scene.title} | await show(harness, scene)
             if result["wrong_vs_golden"]:
                 failed.append(seed)

@@ -136,7 +136,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     output = arguments.build / "soak"
     seeds = range(arguments.first, arguments.first + arguments.seeds)
     if arguments.stiff:
-        seeds = range(len(catalogue()))
+        seeds = range(len(catalogue(configuration.looks)))
     whole = Share(configuration, arguments.simulator, seeds, output, arguments.build, arguments.stiff)
     with executors(arguments.scheduler, arguments.jobs) as make_executor:
         results, failures = soak(whole, console, make_executor)

@@ -2,6 +2,7 @@
 """What may become of a group's rays, for tests of those who control them."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ from raycaster.configuration import Configuration
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.common.interfaces import GroupFate, Picture, Rects, Steps
-from raycaster.rtl.common.records import Rect, Surface
+from raycaster.rtl.common.records import rect_of, surface_of
 from raycaster.rtl.common.widths import bit, unsigned
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
 from raycaster.verif.leaf import Leaf, TraceCycle, slot_length
@@ -20,7 +21,7 @@ from raycaster.verif.leaf import Leaf, TraceCycle, slot_length
 def control_leaf(function: Callable, config: Configuration, directory: Path) -> Leaf:
     """Of ray_control, exact_control, or the ray_sequencer in either."""
     write_at = slot_length(config) + 3 if config.facts.divides else 2
-    arguments = {"offered": Rect if config.facts.divides else Surface}
+    arguments = {"offered": partial(rect_of if config.facts.divides else surface_of, config)}
     if function is ray_sequencer:
         arguments = {"in_flight": lambda: unsigned(write_at + 1), "early_out": bit}
     return Leaf(

@@ -65,15 +65,22 @@ ENGINE_OPTIONS = {
     "exact": {
         "units": st.sampled_from([1, 2, 4, 8, 16, 32, 64]),
         "culling": st.booleans(),
+        "turn": st.booleans(),
         "screen": st.sampled_from(["vga", "tiny"]),
     },
-    "beam": {"scale": st.sampled_from([1, 2, 4]), "screen": st.sampled_from(["vga", "tiny", "play"])},
+    "beam": {
+        "turn": st.booleans(),
+        "scale": st.sampled_from([1, 2, 4]),
+        "screen": st.sampled_from(["vga", "tiny", "play"]),
+    },
 }
 ANY_OPTIONS = {
     "rectangles": st.integers(1, 32),
     "reflections": st.integers(0, 2),
     "rows": st.sampled_from([240, 200, 180, 48]),
     "colour_bits": st.integers(1, 8),
+    "materials": st.booleans(),
+    "patterns": st.booleans(),
 }
 ODD = {
     "engine": "none", "units": 7, "rectangles": 33, "reflections": -1, "rows": 100, "scale": 6, "fraction_bits": 9,

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Scenes for leaf tests in which one ray tells a lot: it meets mirrors to its end, and edges where it does."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from raycaster.configuration import CHANNEL_BITS, WORLD_SIZE, Configuration
 from raycaster.golden import exact, seed_engine
-from raycaster.golden.random_world import random_camera, random_rectangles
+from raycaster.golden.random_world import random_camera, random_looks, random_rectangles
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.verif.seeds import repeat
 
@@ -18,7 +19,10 @@ def rectangles_in_view(
     random: np.random.Generator, camera: np.ndarray, slopes: np.ndarray, count: int, axis: int | None = None
 ) -> Rectangles:
     """Small rectangles where some ray passes, so that rays see this one or that one; the first on an axis."""
-    targets = camera + slopes[random.integers(len(slopes), size=count)] * random.uniform(0, 3.5, (count, 1))
+    seen = slopes[random.integers(len(slopes), size=count)]
+    # The steepest component of one is some 160 units, whatever its camera's basis is.
+    reach = 160 / np.abs(seen).max(axis=1, initial=1, keepdims=True)
+    targets = camera + seen * reach * random.uniform(0, 3.5, (count, 1))
     size = random.choice([0, 3, 40, 400], (count, 2, 3)) * np.array([-1, 1]).reshape(1, 2, 1)
     corners = np.clip(targets[:, None, :] + size, 0, WORLD_SIZE - 1).astype(np.int64)
     flat = random.integers(3, size=count)
@@ -53,7 +57,17 @@ def mirrored_on(random: np.random.Generator, table: Rectangles, camera, slope, m
         corners[index, :, axis] = plane
         enabled[index] = True
         way[axis] = -way[axis]
-    return Rectangles(corners, table.colours, enabled)
+    return replace(table, corners=corners, enabled=enabled)
+
+
+def with_looks(random: np.random.Generator, config: Configuration, table: Rectangles) -> Rectangles:
+    """The table with all mirrors and patterns that the design knows of."""
+    looks = random_looks(random, table)
+    if not config.materials:
+        looks = replace(looks, mirrors=table.mirrors)
+    if not config.patterns:
+        looks = replace(looks, kinds=table.kinds)
+    return looks
 
 
 def edged(random: np.random.Generator, config: Configuration, golden, table: Rectangles) -> Rectangles:
@@ -74,7 +88,7 @@ def edged(random: np.random.Generator, config: Configuration, golden, table: Rec
     whole = point // int(bounce.denominators[winner, 0]) if config.engine != "seed" else point >> config.fraction_bits
     place = whole + int(random.integers(-1, 2))
     corners[winner, int(random.integers(2)), axis] = np.clip(place, 0, WORLD_SIZE - 1)
-    return Rectangles(corners, table.colours, table.enabled)
+    return replace(table, corners=corners)
 
 
 def rivalled(random: np.random.Generator, table: Rectangles, winner: int, camera, slope) -> Rectangles:
@@ -89,7 +103,7 @@ def rivalled(random: np.random.Generator, table: Rectangles, winner: int, camera
     place = round(int(camera[across]) + int(slope[across]) * t) + int(random.integers(-1, 2))
     corners[rival, :, across] = np.clip(place, 0, WORLD_SIZE - 1)
     enabled[rival] = True
-    return Rectangles(corners, table.colours, enabled)
+    return replace(table, corners=corners, enabled=enabled)
 
 
 def tracer(config: Configuration, **given) -> Callable:
@@ -107,6 +121,7 @@ def traced_scene(random: np.random.Generator, config: Configuration, slopes: np.
     rich = random.random() < 0.7
     for _ in range(300):
         camera, table = scene_of(random, slopes, config.rectangles)
+        table = with_looks(random, config, table)
         background = random.integers(256, size=3)
         reflections = config.reflections if rich else int(random.integers(config.reflections + 1))
         if rich and random.random() < 0.7:
@@ -137,7 +152,9 @@ def pixel_of(config: Configuration, output: dict[str, int]) -> int:
     )
 
 
-def verdict(table: Rectangles, index: int, eye, slope, mirror) -> tuple[bool, int, int]:
+def verdict(
+    table: Rectangles, index: int, eye, slope, mirror, met: Collection[int] = (0, 1, 2)
+) -> tuple[bool, int, int]:
     """The definition, in fractions: hit, n and e.
 
     Args:
@@ -146,6 +163,7 @@ def verdict(table: Rectangles, index: int, eye, slope, mirror) -> tuple[bool, in
         eye: where the ray seems to start.
         slope: with signs.
         mirror: axis and coordinate of the plane that it left last, or None.
+        met: axes of all mirrors that it met in the point that it left last; by default it hits nothing there.
     """
     axis = int(table.axes[index])
     if slope[axis] == 0:
@@ -154,7 +172,8 @@ def verdict(table: Rectangles, index: int, eye, slope, mirror) -> tuple[bool, in
     point = [int(eye[u]) + int(slope[u]) * t for u in range(3)]
     hit = t > 0 and all(table.low[index, u] <= point[u] <= table.high[index, u] for u in OTHER_AXES[axis])
     if mirror is not None:
-        hit = hit and (point[mirror[0]] - mirror[1]) * int(slope[mirror[0]]) > 0
+        beyond = (point[mirror[0]] - mirror[1]) * int(slope[mirror[0]])
+        hit = hit and (beyond > 0 or (beyond == 0 and axis not in met))
     return hit, abs(int(table.low[index, axis] - eye[axis])), abs(int(slope[axis]))
 
 

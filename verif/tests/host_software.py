@@ -15,6 +15,7 @@ from typing import NamedTuple
 from raycaster.configuration import Configuration, configure
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.registers import register_map
+from raycaster.scene import Basis
 from raycaster.sim.register_model import LiveScene, RegisterFile, Request
 
 ROOT = Path(__file__).parents[2]
@@ -72,8 +73,30 @@ class RayCaster(ctypes.Structure):
                 "colour_bits",
             )
         ),
-        ("nearest", ctypes.c_bool),
+        *((name, ctypes.c_bool) for name in ("nearest", "turn", "materials", "patterns")),
     ]  # fmt: skip
+
+
+class Direction(ctypes.Structure):
+    """`struct raycaster_vector`."""
+
+    _fields_ = [(axis, ctypes.c_int16) for axis in "xyz"]
+
+
+class Turned(ctypes.Structure):
+    """`struct raycaster_basis`."""
+
+    _fields_ = [(name, Direction) for name in ("forward", "right", "up")]
+
+    @classmethod
+    def of(cls, basis: Basis) -> Turned:
+        """One of these three vectors."""
+        return cls(*(Direction(*vector) for vector in basis))
+
+    @property
+    def basis(self) -> Basis:
+        """Its three vectors."""
+        return tuple(tuple(getattr(getattr(self, name), axis) for axis in "xyz") for name, _ in self._fields_)
 
 
 class Vector(ctypes.Structure):
@@ -100,7 +123,9 @@ class Game(ctypes.Structure):
             for name in ("score", "random", "age", "held", "sway", "racket_flash", "tile_flash", "alarm")
         ),
         *((name, Vector) for name in ("ball", "velocity", "racket", "target", "veil")),
+        ("turn", ctypes.c_int32),
         ("drawn", ctypes.c_bool),
+        ("shown_turn", ctypes.c_int32),
         ("camera", Point),
         ("shown", 12 * GameRectangle),
     ]
@@ -131,6 +156,7 @@ def compile_library(directory: Path, *sources: str) -> ctypes.CDLL:
         ("raycaster_frame", ctypes.c_uint16),
         ("raycaster_acknowledge", ctypes.c_bool),
         ("raycaster_is_committing", ctypes.c_bool),
+        ("raycaster_turned", Turned),
     ):
         getattr(loaded, function).restype = result
     return loaded
@@ -220,10 +246,10 @@ class Frame(NamedTuple):
 class Session:
     """A game and its ray tracer."""
 
-    def __init__(self, library: ctypes.CDLL, seed: int = SEED):
+    def __init__(self, library: ctypes.CDLL, seed: int = SEED, config: Configuration = CONFIG):
         self.software = library
         self.game = Game()
-        self.registers = Registers(CONFIG)
+        self.registers = Registers(config)
         with attached(library, self.registers):
             self.device = probed(library)
             library.raycaster_set_run(ctypes.byref(self.device), True)

@@ -86,19 +86,19 @@ def send(register: str) -> list[Line]:
     return [("sw", register, 0, "x8")]
 
 
-def small_program(scene: Scene, rectangles: int) -> list[int]:
+def small_program(scene: Scene, config: Configuration) -> list[int]:
     """Words of a program that sends `RAYC`, as it reads it, and shows the scene; sends `M` and `E`, if its memory and
     arithmetic work, and `go` and a newline; and then, each frame, moves the camera to the side by what is held, and
     sends that as a letter, `@` and on.
 
     Left and right are 8 of y, in either direction.
     """
-    registers = register_map(rectangles)
+    registers = register_map(config.table)
     camera, control, pending, enable = (
         4 * registers[name].address for name in ("camera", "control", "irq_pending", "irq_enable")
     )
     y_bit = registers["camera"].fields["y"].lsb
-    load = scene_words(scene, rectangles)
+    load = scene_words(scene, config)
     start = load[-1][1]
     x, y, z = scene.camera.position
     still = registers["camera"].pack(x=x, z=z)
@@ -180,7 +180,7 @@ def small_program(scene: Scene, rectangles: int) -> list[int]:
 
 def write_program(scene: Path, configuration: Configuration, directory: Path) -> Path:
     """The program for a scene and a design, as a file that a memory is loaded from."""
-    words = small_program(load_scene(scene, configuration.rectangles), configuration.rectangles)
+    words = small_program(load_scene(scene, configuration.rectangles), configuration)
     program = directory / "small.hex"
     program.write_text("".join(f"{word:08x}\n" for word in words))
     return program

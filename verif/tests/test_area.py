@@ -19,7 +19,7 @@ from raycaster.fpga.area import CHIPS, FAMILIES, Area, Chip, Model, measure, mea
 YOSYS = "0.70.0.0.post1259"
 SMALL = configure(screen="tiny", units=2, rectangles=2, divider_bits=1, allow_underrun=True, culling=False)
 AREAS = {
-    "ecp5": Area(tables=2442, registers=1808, elements=2442, multipliers=4, memories=0),
+    "ecp5": Area(tables=2441, registers=1808, elements=2441, multipliers=4, memories=0),
     "cycloneive": Area(tables=2854, registers=1742, elements=3286, multipliers=4, memories=2),
     "cyclonev": Area(tables=1925, registers=1808, elements=1016, multipliers=4, memories=2),
 }

@@ -8,8 +8,8 @@ from raycaster.configuration import Configuration, configure
 from raycaster.golden import seed_engine
 from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
+from raycaster.rtl.engine.divider_step import divider_step
 from raycaster.rtl.seed.divider import divider
-from raycaster.rtl.seed.divider_step import divider_step
 from raycaster.rtl.seed.intersection_helper import intersection_helper
 from raycaster.verif.leaf import Leaf
 from raycaster.verif.seeds import repeat, seed

@@ -18,10 +18,14 @@ from raycaster.sim.simulator import SimulationError
 from raycaster.verif.seeds import repeat, seed
 
 TRAFFIC_SEEDS = {"verilator": 2, "icarus": 1}
+EVERYTHING = {"turn": True, "materials": True, "patterns": True}
 FULL_SCENE = ROOT / "scenes" / "mirror_room.toml"
 DESIGNS = [
     *(pytest.param("verilator", configure(engine=engine, screen="tiny"), FULL_SCENE, id=engine) for engine in ENGINES),
     pytest.param("icarus", configure(screen="tiny", units=8, rectangles=3, culling=False), SMALL_SCENE, id="icarus"),
+    pytest.param(
+        "icarus", configure(engine="exact", screen="tiny", rectangles=3, **EVERYTHING), SMALL_SCENE, id="everything"
+    ),
 ]
 on_every_engine = pytest.mark.parametrize(("simulator", "configuration", "scene"), DESIGNS)
 

@@ -229,7 +229,7 @@ def test_an_arrow_without_its_edge():
 
 
 def test_a_drawing_that_is_missing():
-    with pytest.raises(UserError, match=r"nothing\.json: cannot be read: .*; make docs draws it"):
+    with pytest.raises(UserError, match=r"nothing\.json: cannot be read: .*; raycaster docs draws it"):
         timing.kept("nothing")
 
 

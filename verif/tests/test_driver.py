@@ -17,6 +17,7 @@ from host_software import (
     Point,
     RayCaster,
     Registers,
+    Turned,
     attached,
     compile_library,
     enumerators,
@@ -29,7 +30,8 @@ from raycaster.convert.take_home import TOP
 from raycaster.golden.world import Rectangles
 from raycaster.program import scene_words
 from raycaster.registers import register_map
-from raycaster.scene import load_scene
+from raycaster.scene import UNTURNED, Camera, load_scene
+from raycaster.verif.seeds import repeat, seed
 
 ERRORS = enumerators(SOFTWARE / "raycaster.h", "raycaster_error")
 WHITE = Colour(255, 255, 255)
@@ -65,13 +67,18 @@ def error(number: int) -> str:
             allow_underrun=True,
         ),
         configure(engine="beam", rectangles=3, rows=180),
+        configure(engine="exact", turn=True, patterns=True),
+        configure(engine="beam", materials=True),
     ],
     ids=lambda config: config.name,
 )  # fmt: skip
 def test_probe_reads_what_the_design_is(library, config):
     with attached(library, Registers(config)):
         found = probed(library)
-    for name in ("units", "rows", "rectangles", "reflections", "scale", "fraction_bits", "divider_bits", "colour_bits"):
+    for name in (
+        "units", "rows", "rectangles", "reflections", "scale", "fraction_bits", "divider_bits", "colour_bits", "turn",
+        "materials", "patterns",
+    ):  # fmt: skip
         assert getattr(found, name) == getattr(config, name), name
     engines = enumerators(SOFTWARE / "raycaster.h", "raycaster_engine")
     assert engines[found.engine] == f"RAYCASTER_{config.engine.upper()}"
@@ -99,7 +106,7 @@ def test_probe_refuses_others(library, registers, register, fields, expected):
 def test_a_scene_is_the_words_that_the_project_writes(library, registers, device, scenes):
     for path in sorted(scenes.glob("*.toml")):
         scene = load_scene(path)
-        if scene.reflections > CONFIG.reflections:
+        if scene.reflections > CONFIG.reflections or scene.lacks(()):
             continue
         model = Registers(CONFIG)
         with attached(library, model):
@@ -117,7 +124,7 @@ def test_a_scene_is_the_words_that_the_project_writes(library, registers, device
             results.append(library.raycaster_set_reflections(ctypes.byref(device), scene.reflections))
             results.append(library.raycaster_commit(ctypes.byref(device)))
         assert set(results) == {0}
-        expected = [(4 * address, word) for address, word in scene_words(scene, CONFIG.rectangles)]
+        expected = [(4 * address, word) for address, word in scene_words(scene, CONFIG)]
         # Run and reflections share a register with commit, and are written one by one.
         run_and_reflections = len(model.written) - len(expected)
         assert run_and_reflections == 2
@@ -189,6 +196,113 @@ def test_what_is_built_in_is_not_set(library, registers, built_in, camera):
     assert error(library.raycaster_set_background(handle, WHITE)) == camera
     assert error(library.raycaster_set_reflections(handle, 1)) == camera
     assert len(registers.written) == (3 if camera == "OK" else 0)
+
+
+@pytest.fixture
+def everything(library):
+    """The registers of a design that has all that scenes may need, and its handle."""
+    model = Registers(configure(engine="exact", screen="tiny", turn=True, materials=True, patterns=True))
+    with attached(library, model):
+        yield model, ctypes.byref(probed(library))
+
+
+def shown(library, model, handle):
+    assert library.raycaster_commit(handle) == 0
+    return model.start_screen()
+
+
+def test_looks(library, everything):
+    model, handle = everything
+    corners = Point(1, 2, 3), Point(1, 20, 30)
+    for index in range(12):
+        assert library.raycaster_set_rectangle(handle, index, *corners, Colour(1, 2, 3)) == 0
+        assert library.raycaster_set_mirror(handle, index, index % 5) == 0
+        assert library.raycaster_set_pattern(handle, index, index % 4, 8 << index % 6, Colour(index, 5, 6)) == 0
+    live = shown(library, model, handle).rectangles
+    indices = np.arange(12)
+    assert live.enabled.all()
+    assert (live.mirrors == indices % 5).all()
+    assert (live.kinds == indices % 4).all()
+    assert (live.cells == 8 << indices % 6).all()
+    assert live.colours_2.tolist() == [[index, 5, 6] for index in range(12)]
+    assert (live.colours == [1, 2, 3]).all()
+    # Another rectangle in its place has no look of the one before; one that is left out for a while has.
+    assert library.raycaster_set_rectangle(handle, 3, *corners, Colour(7, 8, 9)) == 0
+    for enable in (False, True):
+        assert library.raycaster_enable_rectangle(handle, 7, enable) == 0
+    live = shown(library, model, handle).rectangles
+    assert (live.mirrors[3], live.kinds[3]) == (2, 0)
+    assert (live.mirrors[7], live.kinds[7], live.cells[7]) == (2, 3, 16)
+
+
+@pytest.mark.parametrize("quarters", [5, 8, 0xFFFFFFFF])
+def test_mirrors_that_are_none(library, everything, quarters):
+    model, handle = everything
+    assert error(library.raycaster_set_mirror(handle, 0, quarters)) == "NO_SUCH_LOOK"
+    assert error(library.raycaster_set_mirror(handle, 12, 1)) == "NO_SUCH_RECTANGLE"
+    assert not model.written
+
+
+@pytest.mark.parametrize(
+    ("pattern", "cell"), [(4, 32), (0xFFFFFFFF, 32), (1, 0), (1, 4), (1, 12), (1, 257), (1, 512), (1, 0x80000000)]
+)
+def test_patterns_that_are_none(library, everything, pattern, cell):
+    model, handle = everything
+    assert error(library.raycaster_set_pattern(handle, 0, pattern, cell, WHITE)) == "NO_SUCH_LOOK"
+    assert error(library.raycaster_set_pattern(handle, 12, 1, 8, WHITE)) == "NO_SUCH_RECTANGLE"
+    assert not model.written
+
+
+def test_looks_that_the_hardware_does_not_have(library, registers, device):
+    handle = ctypes.byref(device)
+    assert error(library.raycaster_set_mirror(handle, 0, 1)) == "NOT_IN_HARDWARE"
+    assert error(library.raycaster_set_pattern(handle, 0, 1, 8, WHITE)) == "NOT_IN_HARDWARE"
+    assert error(library.raycaster_set_basis(handle, ctypes.byref(Turned.of(UNTURNED)))) == "NOT_IN_HARDWARE"
+    assert not registers.written
+
+
+def test_a_camera_turns(library, everything):
+    model, handle = everything
+    assert library.raycaster_set_camera(handle, Point(1, 2, 3)) == 0
+    assert shown(library, model, handle).basis == UNTURNED
+    basis = ((-512, 511, 0), (1, -1, 256), (511, -512, -511))
+    assert library.raycaster_set_basis(handle, ctypes.byref(Turned.of(basis))) == 0
+    live = shown(library, model, handle)
+    assert (live.basis, live.camera) == (basis, (1, 2, 3))
+    written = len(model.written)
+    for place in range(9):
+        for part in (512, -513):
+            parts = [part if place == other else 0 for other in range(9)]
+            wrong = Turned.of([parts[:3], parts[3:6], parts[6:]])
+            assert error(library.raycaster_set_basis(handle, ctypes.byref(wrong))) == "OUTSIDE_WORLD"
+    model.say("engine", fixed=2)
+    fixed = probed(library)
+    right = Turned.of(UNTURNED)
+    assert error(library.raycaster_set_basis(ctypes.byref(fixed), ctypes.byref(right))) == "FIXED"
+    assert len(model.written) == written
+
+
+def test_angles_are_those_of_scenes(library):
+    """Each angle alone and with others at whole right angles and others; and any three."""
+    random = np.random.default_rng(seed())
+    some = [*range(-360, 361, 45), -37, 1, 89]
+    angles = [(one, other, third) for one in range(-360, 361) for other in some[::2] for third in some[::3]]
+    angles += [(third, one, other) for one, other, third in angles]
+    angles = [angles[index] for index in random.permutation(len(angles))[:6000]]
+    angles += random.integers(-360, 361, (12000, 3)).tolist()
+    for yaw, pitch, roll in angles:
+        wanted = Camera(position=(0, 0, 0), yaw=yaw, pitch=pitch, roll=roll).basis
+        assert library.raycaster_turned(yaw, pitch, roll).basis == wanted, (yaw, pitch, roll, repeat())
+
+
+def test_angles_of_any_size(library):
+    for turns in (-5, 7, 5_000_000):
+        wanted = library.raycaster_turned(30, -20, 77).basis
+        assert library.raycaster_turned(30 + 360 * turns, -20, 77 - 360 * turns).basis == wanted
+    assert (
+        library.raycaster_turned(2**31 - 1, -(2**31), 0).basis
+        == Camera(position=(0, 0, 0), yaw=(2**31 - 1) % 360, pitch=2**31 % 360 * -1.0).basis
+    )
 
 
 @pytest.mark.parametrize("position", [(512, 0, 0), (0, 512, 0), (0, 0, 512), (65535, 65535, 65535)])

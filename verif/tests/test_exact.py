@@ -3,16 +3,26 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from fractions import Fraction
 
 import numpy as np
 import pytest
+from definition import follow, pixel
 
 from raycaster.golden import exact
-from raycaster.golden.random_world import random_camera, random_rectangles, random_slopes
+from raycaster.golden.random_world import (
+    ROOM,
+    random_basis,
+    random_camera,
+    random_grid,
+    random_looks,
+    random_rectangles,
+    random_slopes,
+)
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
-from raycaster.scene import Scene
+from raycaster.scene import UNTURNED, Camera, Scene
 from raycaster.screens import SCREENS
 from raycaster.verif.seeds import repeat, seed
 
@@ -21,77 +31,61 @@ RAYS = 40
 BACKGROUND = (7, 80, 201)
 
 
-def points_by_definition(corners, enabled, origin, slope):
-    """Where a ray meets each rectangle, None for those that it does not meet: (Fraction, Fraction, Fraction)."""
-    points = []
-    for (first, second), on in zip(corners, enabled, strict=True):
-        points.append(None)
-        equal = [axis for axis in range(3) if first[axis] == second[axis]]
-        if not on or not equal:
-            continue
-        axis = equal[0]
-        n, e = first[axis] - origin[axis], slope[axis]
-        if e == 0 or n == 0 or (n > 0) != (e > 0):
-            continue
-        point = [origin[i] + Fraction(slope[i]) * n / e for i in range(3)]
-        if all(min(first[i], second[i]) <= point[i] <= max(first[i], second[i]) for i in range(3) if i != axis):
-            points[-1] = (axis, point)
-    return points
+def corner_worlds(rng):
+    """Tables, cameras and rays that run into corners."""
+    corners, camera = random_grid(rng, 10)
+    table = Rectangles(corners, rng.integers(256, size=(10, 3)).astype(np.uint8), np.ones(10, dtype=bool))
+    slopes = np.where(rng.random((RAYS, 1)) < 0.4, rng.choice([-1, 1], (RAYS, 3)), rng.integers(-2, 3, (RAYS, 3)))
+    return table, camera, slopes
 
 
-def follow_by_definition(corners, enabled, camera, slope, reflections):
-    """Bounce by bounce: the points and the index of the nearest, -1 for none."""
-    origin, slope = [Fraction(c) for c in camera], list(slope)
-    path = []
-    for _ in range(reflections + 1):
-        points = points_by_definition(corners, enabled, origin, slope) if origin else [None] * len(corners)
-        depths = {i: abs(met[1][0] - origin[0]) for i, met in enumerate(points) if met}
-        # The first of equals is the lower index.
-        winner = min(depths, key=depths.get) if depths else -1
-        path.append((points, winner))
-        if winner < 0:
-            origin = None
-        else:
-            axis, origin = points[winner]
-            slope[axis] = -slope[axis]
-    return path
+def anywhere(rng):
+    """Tables, cameras and rays of any kind, those of a turned camera among them."""
+    table = random_rectangles(rng)
+    slopes = random_slopes(rng, RAYS)
+    if rng.random() < 0.5:
+        basis = random_basis(rng)
+        slopes = primary_slopes(SCREENS["vga", 240], basis).reshape(-1, 3)[rng.integers(240 * 320, size=RAYS)]
+    return table, random_camera(rng, table), slopes
 
 
-def colour_by_definition(colours, winners):
-    c = [colours[winner] if winner >= 0 else BACKGROUND for winner in winners]
-    if len(c) == 1:
-        return c[0]
-    if len(c) == 2:
-        return tuple((a + b) >> 1 for a, b in zip(*c, strict=True))
-    return tuple((2 * a + b + d) >> 2 for a, b, d in zip(*c, strict=True))
-
-
-@pytest.mark.parametrize("reflections", [0, 1, 2, 5])
-def test_traces_as_fractions_do(reflections):
+@pytest.mark.parametrize("reflections", [0, 1, 2, 4])
+@pytest.mark.parametrize("world", [corner_worlds, anywhere])
+def test_traces_as_fractions_do(world, reflections):
     rng = np.random.default_rng([seed(), reflections])
-    deepest = 0
-    for table in range(TABLES):
-        rectangles, slopes = random_rectangles(rng), random_slopes(rng, RAYS)
-        camera = random_camera(rng, rectangles)
-        trace = exact.trace(rectangles, camera, BACKGROUND, slopes, reflections, keep=True)
-        corners, enabled = rectangles.corners.tolist(), rectangles.enabled.tolist()
+    longest, patterned, ended, in_corners = 0, 0, 0, Counter()
+    for number in range(TABLES):
+        table, camera, slopes = world(rng)
+        if rng.random() < 0.6:
+            table = random_looks(rng, table)
+        trace = exact.trace(table, camera, BACKGROUND, slopes, reflections, keep=True)
         for ray, slope in enumerate(slopes.tolist()):
-            context = f"table {table}, ray {ray}: camera {camera.tolist()}, slope {slope}; {repeat()}"
-            path = follow_by_definition(corners, enabled, camera.tolist(), slope, reflections)
-            winners = [winner for _, winner in path]
+            context = f"table {number}, ray {ray}: camera {camera.tolist()}, slope {slope}; {repeat()}"
+            path = follow(table, BACKGROUND, camera.tolist(), slope, reflections)
+            winners = [stop.winner for stop in path] + [-1] * (reflections + 1 - len(path))
             assert [int(winner[ray]) for winner in trace.winners] == winners, context
-            for bounce, (points, _) in zip(trace.bounces, path, strict=True):
-                assert bounce.hits[:, ray].tolist() == [met is not None for met in points], context
-                for index, met in enumerate(points):
-                    if met:
+            assert [seen[ray].tolist() for seen in trace.seen[: len(path)]] == [list(s.colour) for s in path], context
+            for bounce, stop in zip(trace.bounces, path, strict=False):
+                assert bounce.alive[ray], context
+                assert set(np.flatnonzero(bounce.met[ray])) == ({0, 1, 2} if stop.met is None else stop.met), context
+                assert bounce.hits[:, ray].tolist() == [point is not None for point in stop.points], context
+                for index, point in enumerate(stop.points):
+                    if point:
                         denominator = int(bounce.denominators[index, ray])
                         stored = [Fraction(int(p), denominator) for p in bounce.points[index, ray]]
-                        assert stored == met[1], f"rectangle {index}, {context}"
-            deepest = max(deepest, sum(winner >= 0 for winner in winners))
-            if reflections <= 2:
-                expected = colour_by_definition(rectangles.colours.tolist(), winners)
-                assert tuple(trace.colours[ray].tolist()) == tuple(expected), context
-    assert deepest == reflections + 1, f"no ray made all its reflections; {repeat()}"
+                        assert stored == point, f"rectangle {index}, {context}"
+            assert not any(bounce.alive[ray] for bounce in trace.bounces[len(path) :]), context
+            assert trace.colours[ray].tolist() == pixel(path), context
+            longest = max(longest, sum(stop.winner >= 0 for stop in path))
+            ended += path[-1].quarters == 0 and path[-1].winner >= 0
+            patterned += any(table.kinds[stop.winner] and stop.winner >= 0 for stop in path)
+            in_corners += Counter(len(stop.met) for stop in path if stop.corner)
+    assert longest == reflections + 1, f"no ray made all its reflections; {repeat()}"
+    assert min(ended, patterned) > TABLES, f"few rays ended early or met patterns; {repeat()}"
+    if world is corner_worlds:
+        # Of two planes with one reflection, and of three with two.
+        assert set(in_corners) == set(range(1, min(reflections, 2) + 1)), f"{in_corners}; {repeat()}"
+        assert min(in_corners.values(), default=TABLES) >= TABLES, f"{in_corners}; {repeat()}"
 
 
 def test_kept_values_agree_with_each_other():
@@ -126,31 +120,57 @@ def test_kept_values_agree_with_each_other():
 
 
 @pytest.mark.parametrize("reflections", [0, 1, 2])
-def test_renders_as_fractions_do(reflections):
+@pytest.mark.parametrize("turn", [{}, {"yaw": 130, "pitch": -35.5, "roll": 10}])
+def test_renders_as_fractions_do(turn, reflections):
     rng = np.random.default_rng(seed())
     rectangles = random_rectangles(rng, closed=True)
     drawn = np.flatnonzero(rectangles.axes >= 0)
     scene = Scene(
         background=BACKGROUND,
-        camera={"position": tuple(random_camera(rng, rectangles).tolist())},
+        camera={"position": tuple(random_camera(rng, rectangles).tolist()), **turn},
         rect=tuple(
             {
                 "corners": tuple(map(tuple, rectangles.corners[i].tolist())),
                 "colour": tuple(rectangles.colours[i].tolist()),
+                "mirror": (0.5, 0, 1, 0.25, 0.75)[place % 5],
+                **({"pattern": "checker", "colour2": (200, 30, place), "cell": 16} if place % 2 else {}),
             }
-            for i in drawn
+            for place, i in enumerate(drawn)
         ),
     )
     picture = exact.render(scene, SCREENS["tiny", 48], reflections)
     assert picture.shape == (48, 64, 3)
     assert picture.dtype == np.uint8
-    corners = rectangles.corners[drawn].tolist()
-    colours = rectangles.colours[drawn].tolist()
+    table = Rectangles.of_scene(scene)
+    forward, right, up = (np.array(vector) for vector in scene.camera.basis)
     for row, column in rng.integers((48, 64), size=(300, 2)).tolist():
-        slope = (100, column - 32, 38 - row)
-        path = follow_by_definition(corners, [True] * len(drawn), scene.camera.position, slope, reflections)
-        expected = colour_by_definition(colours, [winner for _, winner in path])
-        assert picture[row, column].tolist() == list(expected), f"row {row}, column {column}; {repeat()}"
+        slope = (100 * forward + (column - 32) * right + (38 - row) * up).tolist()
+        path = follow(table, BACKGROUND, scene.camera.position, slope, reflections)
+        assert picture[row, column].tolist() == pixel(path), f"row {row}, column {column}; {repeat()}"
+
+
+def room_from_its_middle():
+    """A closed room whose edges lie on the diagonals of pixels."""
+    walls = [{"corners": corners, "colour": (40 * index, 250 - 30 * index, 99)} for index, corners in enumerate(ROOM)]
+    return Scene(camera={"position": (255, 255, 255)}, reflections=2, rect=walls)
+
+
+def test_no_ray_leaves_a_closed_room():
+    scene = room_from_its_middle()
+    for basis in (UNTURNED, Camera(position=(0, 0, 0), yaw=45, pitch=45).basis):
+        slopes = primary_slopes(SCREENS["vga", 240], basis).reshape(-1, 3)
+        trace = exact.trace(Rectangles.of_scene(scene), scene.camera.position, BACKGROUND, slopes, 4)
+        assert all((winner >= 0).all() for winner in trace.winners)
+
+
+def test_camera_that_is_not_turned_needs_no_basis():
+    scene = room_from_its_middle()
+    screen = SCREENS["tiny", 48]
+    arguments = Rectangles.of_scene(scene), scene.camera.position, BACKGROUND
+    slopes = primary_slopes(screen).reshape(-1, 3)
+    plain, times_256 = (exact.trace(*arguments, factor * slopes, 2) for factor in (1, 256))
+    assert (plain.colours == times_256.colours).all()
+    assert (exact.render(scene, screen, 2).reshape(-1, 3) == plain.colours).all()
 
 
 @pytest.mark.parametrize(("rows", "horizon"), [(240, 190), (200, 150)])
@@ -185,11 +205,3 @@ def test_lower_index_wins_a_tie():
         colours = np.array([(1, 1, 1), (2, 2, 2)], dtype=np.uint8)[order]
         rectangles = Rectangles(np.array([wall, wall]), colours, np.ones(2, dtype=bool))
         assert exact.trace(rectangles, (0, 5, 5), (0, 0, 0), [(100, 0, 0)], 0).colours.tolist() == [colours[0].tolist()]
-
-
-def test_slope_along_x_must_not_be_0():
-    rectangles = Rectangles(
-        np.zeros((1, 2, 3), dtype=np.int64), np.zeros((1, 3), dtype=np.uint8), np.ones(1, dtype=bool)
-    )
-    with pytest.raises(ValueError, match="along x must not be 0"):
-        exact.trace(rectangles, (0, 0, 0), (0, 0, 0), [(0, 1, 1)], 0)

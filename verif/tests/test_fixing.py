@@ -22,7 +22,7 @@ from raycaster.design import design_for
 from raycaster.errors import UserError
 from raycaster.fit.choice import keep_choice, kept_choice
 from raycaster.fit.fixing import FIT, SCOPES, configuration_of, design_of, fix, fixed_rectangle
-from raycaster.fit.unneeded import covered, seen, unreachable
+from raycaster.fit.unneeded import covered, seen, unreachable, without_mirrors
 from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
 from raycaster.fpga import fit as search
 from raycaster.fpga.area import FAMILIES, measure
@@ -33,7 +33,7 @@ from raycaster.rtl.beam.beam_caster import known_facet, known_growth
 from raycaster.rtl.common.interfaces import Rects
 from raycaster.rtl.common.widths import bit, index_bits
 from raycaster.rtl.scene.rect_rom import rect_rom
-from raycaster.scene import Rectangle, Scene, load_scene
+from raycaster.scene import Camera, Rectangle, Scene, dump_scene, load_scene
 from raycaster.sim.simulator import SimulationError
 from raycaster.tools import run_yosys
 from raycaster.verif.leaf import Leaf
@@ -47,6 +47,13 @@ def scene_of(*corners, **values) -> Scene:
     """A scene of rectangles in colours of their own, seen from the middle of the world's near side."""
     rect = [{"corners": pair, "colour": f"#{number:06x}"} for number, pair in enumerate(corners, 1)]
     return Scene(**{"camera": {"position": (0, 255, 100)}, "rect": rect, **values})
+
+
+def matte(scene: Scene, index: int) -> Scene:
+    """The scene with one rectangle that is no mirror."""
+    rect = list(scene.rect)
+    rect[index] = rect[index].model_copy(update={"mirror": 0.0})
+    return scene.model_copy(update={"rect": tuple(rect)})
 
 
 WALL = ((300, 0, 0), (300, 511, 511))
@@ -70,6 +77,28 @@ def test_nothing_runs_to_x_0_that_met_no_other_mirror_on_x():
     assert unreachable(Rectangles.of_scene(scene_of(NEAR, FLOOR)), 1) == [{0}, {0}]
     assert unreachable(Rectangles.of_scene(scene_of(NEAR, WALL)), 2) == [{0}, set(), set()]
     assert unreachable(Rectangles.of_scene(scene_of(WALL, FLOOR)), 1) == [set(), set()]
+    assert unreachable(Rectangles.of_scene(matte(scene_of(NEAR, WALL), 1)), 1) == [{0}, {0}]
+    assert unreachable(Rectangles.of_scene(matte(scene_of(NEAR, WALL), 0)), 1) == [{0}, set()]
+
+
+def test_nothing_is_reflected_where_nothing_mirrors():
+    scene = matte(scene_of(WALL, FLOOR), 0)
+    assert without_mirrors(Rectangles.of_scene(scene), 2) == [set(), set(), set()]
+    assert without_mirrors(Rectangles.of_scene(matte(scene, 1)), 2) == [set(), {0, 1}, {0, 1}]
+
+
+def test_a_turned_camera_looks_back(tmp_path):
+    """What is at x = 0 stays where the camera is live, and where it is in sight."""
+    path = tmp_path / "back.toml"
+    scene = scene_of(NEAR, WALL, FLOOR, camera={"position": (200, 250, 100), "yaw": 170})
+    path.write_text(dump_scene(scene))
+    rects, everything = (fix(path, {"screen": "tiny"}, scope).design.configuration for scope in SCOPES)
+    assert (rects.engine, rects.turn, rects.passes) == ("exact", True, (0b111, 0b111))
+    assert everything.fixed.basis == scene.camera.basis
+    assert (0, 0) in zip(everything.fixed.column("axis"), everything.fixed.column("position"), strict=True)
+    # The same from a camera that looks the other way.
+    path.write_text(dump_scene(scene.model_copy(update={"camera": Camera(position=(200, 250, 100))})))
+    assert fix(path, {"screen": "tiny"}, "rects").design.configuration.passes == (0b110, 0b111)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -116,6 +145,10 @@ def test_random_cameras_need_nothing_that_was_left_out():
 def test_fixed_rectangles_are_in_order():
     rectangle = Rectangle(corners=((9, 300, 200), (500, 300, 7)), colour=(1, 2, 3))
     assert fixed_rectangle(rectangle) == FixedRectangle(1, 300, 9, 500, 7, 200, 0x010203)
+    look = {"mirror": 0.25, "pattern": "rows", "colour2": (4, 5, 6), "cell": 64}
+    assert fixed_rectangle(rectangle.model_copy(update=look)) == FixedRectangle(
+        1, 300, 9, 500, 7, 200, 0x010203, mirror=1, kind=2, cell=3, colour_2=0x040506
+    )
 
 
 def test_varying_bits():
@@ -201,29 +234,47 @@ def test_a_scene_of_one_rectangle_that_nobody_sees(tmp_path):
 # Leaves ---------------------------------------------------------------------------------------------------------------
 
 
-def fixed_config(count: int, engine: str, camera: bool, alike: bool = False) -> Configuration:
+def fixed_config(count: int, engine: str, camera: bool, alike: bool = False, **options: bool) -> Configuration:
     """A design of random fixed rectangles, of which the axis is the same for all where they are alike."""
     random = np.random.default_rng(seed())
     rectangles = tuple(
         FixedRectangle(1 if alike else int(axis), *map(int, random.integers(512, size=5)), int(colour))
         for axis, colour in zip(random.integers(3, size=count), random.integers(1 << 24, size=count), strict=True)
     )
+    if options:
+        looks = zip(*(random.integers(most, size=count).tolist() for most in (5, 4, 6, 1 << 24)), strict=True)
+        names = ("mirror", "kind", "cell", "colour_2")
+        rectangles = tuple(
+            dataclasses.replace(one, **dict(zip(names, look, strict=True)))
+            for one, look in zip(rectangles, looks, strict=True)
+        )
     eye = tuple(random.integers(512, size=3).tolist()) if camera else None
     fixed = FixedScene(rectangles, (2 * (1 << count) - 1 >> 1,) * 2, eye, 0 if camera else None)
-    return configure(engine=engine, fixed=fixed, allow_underrun=True)
+    return configure(engine=engine, fixed=fixed, allow_underrun=True, **options)
 
 
 @pytest.mark.parametrize(("engine", "latency"), [("seed", 1), ("beam", 2)])
-@pytest.mark.parametrize(("count", "alike"), [(1, False), (2, False), (7, False), (8, False), (12, True), (32, False)])
-def test_rect_rom(count, alike, engine, latency, tmp_path):
-    config = fixed_config(count, engine, False, alike)
+@pytest.mark.parametrize(
+    ("count", "alike", "options"),
+    [
+        *((count, count == 12, {}) for count in (1, 2, 7, 8, 12, 32)),
+        (7, False, {"materials": True}),
+        (3, False, {"patterns": True}),
+        (8, True, {"materials": True, "patterns": True}),
+    ],
+)  # fmt: skip
+def test_rect_rom(count, alike, options, engine, latency, tmp_path):
+    config = fixed_config(count, engine, False, alike, **options)
     leaf = Leaf(rect_rom, lambda: {"clk": bit(), "rects": Rects(config), "config": config}, tmp_path)
     random = np.random.default_rng(seed())
     stimulus = [
         {"rects_index": int(random.integers(count)), "rects_fetch": int(random.integers(2))} for _ in range(300)
     ]
     outputs = leaf.run_both(stimulus, settled=8)
-    fields = [field.name for field in dataclasses.fields(FixedRectangle)]
+    looks = {"materials": ("mirror",), "patterns": ("kind", "cell", "colour_2")}
+    left_out = [name for option, names in looks.items() if option not in options for name in names]
+    fields = [field.name for field in dataclasses.fields(FixedRectangle) if field.name not in left_out]
+    assert set(outputs[-1]) == {f"rects_rect_{name}" for name in fields}
     held, late = None, None
     for cycle, (inputs, output) in enumerate(zip(stimulus, outputs, strict=True)):
         shown = held if latency == 1 else late
@@ -414,7 +465,7 @@ def test_a_choice_for_another_scene_is_refused(tmp_path, monkeypatch):
     with pytest.raises(UserError, match="leave UNITS out"):
         design_of(scene, {"units": "4"}, FIT, Console(quiet=True))
     (tmp_path / "build" / "fit" / "other.json").write_text("{")
-    with pytest.raises(UserError, match="is not what make fit wrote"):
+    with pytest.raises(UserError, match="is not what the command fit wrote"):
         design_of(tmp_path / "other.toml", {}, FIT, Console(quiet=True))
     scene.write_text(SMALL_SCENE.read_text().replace("20, 250", "21, 250"))
     with pytest.raises(UserError, match="is not the scene that"):

@@ -31,6 +31,7 @@ PIPELINED = chosen("ray-order", "exact-tiny48-u2-r2-m1-c8-k1")
 SECTIONS = chosen("line-sections", "tiny48-u2-r2-m1-f0t-d3-c8")
 COUNTERS = chosen("render-counters", "vga240-u16-r4-m1-f0t-d1-c8")
 TESTER = chosen("tester-exact", "2 bits, 1 mirrors")
+CORNERS = chosen("tester-exact", "1 bits, 2 mirrors")
 FOLD = chosen("fold-exact", "2 and 1 bits, 1 mirrors")
 TABLE = chosen("fixed-rects", "seed, different")
 DIVIDER = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d3-c8 digits")
@@ -106,11 +107,12 @@ FAULTS = {
                         "scan_start_screen || done;"),
     "read-too-far": (COUNTERS, "ray_caster_renderer", "read_offset}) != 19)", "read_offset}) != 20)"),
     "divisor-equal": (DIVIDER, "divider_step", "if (difference < 0) begin", "if (difference <= 0) begin"),
-    "mirror-hits-itself": (TESTER, "rect_tester", "open_low_u = 1'b1;", "open_low_u = 1'b0;"),
-    "behind-the-mirror": (TESTER, "rect_tester", "(rect_position > mirror_position)",
-                          "(rect_position >= mirror_position)"),
-    "edge-missed": (TESTER, "rect_tester", "(!carried_2_open_high_u && (way_u_2 == way_to_high_u_2))", "1'b0"),
-    "own-mirror": (FOLD, "fold_tester", "clipped < border_1", "clipped <= border_1"),
+    "mirror-hits-itself": (TESTER, "rect_tester", "(seen_1_n > mirror_distance)", "(seen_1_n >= mirror_distance)"),
+    "behind-the-mirror": (TESTER, "rect_tester", "(seen_1_passed_v || (to_near_v_1 <= mirror_distance))",
+                          "seen_1_passed_v"),
+    "edge-missed": (TESTER, "rect_tester", "(way_u_2 <= way_to_far_u_2)", "(way_u_2 < way_to_far_u_2)"),
+    "corner-met-again": (CORNERS, "rect_tester", "again = met_2 && in_mirror;", "again = 1'b0;"),
+    "corner-missed": (FOLD, "fold_tester", "beyond = !met_2", "beyond = 1'b0"),
     "mirror-again": (FOLD, "fold_tester", "facet_distance > fold_distance", "facet_distance >= fold_distance"),
     "one-too-few": (FOLD, "ray_fold", "sum_xz_1 = x_by_z - not_z_by_x", "sum_xz_1 = x_by_z + z_by_x"),
     "bounds-swapped": (FOLD, "fold_tester", "(under_low_q || at_low_q) && (over_high_q || at_high_q)", "1'b0"),
@@ -122,7 +124,7 @@ FAULTS = {
 
 @pytest.mark.parametrize(
     "proof",
-    [TIMING, AGENT, HOST, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS, TESTER, FOLD, TABLE],
+    [TIMING, AGENT, HOST, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS, TESTER, CORNERS, FOLD, TABLE],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )
 def test_holds(proof, output):

@@ -13,16 +13,32 @@ from conftest import BUILD, ROOT, SMALL_SCENE, Bench
 from PIL import Image
 
 from raycaster.configuration import configure
+from raycaster.design import packaged_for
 from raycaster.golden import exact
-from raycaster.scene import load_scene
+from raycaster.scene import load_scene, packaged_scenes
 
-SCENES = sorted((ROOT / "scenes").glob("*.toml"))
+PLAIN = packaged_scenes(plain=True)
 
 
-@pytest.mark.parametrize("scene", SCENES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("scene", PLAIN.values(), ids=PLAIN)
 def test_full_size(bench: Bench, scene):
-    """Every scene, as `make sim` shows it."""
+    """Every scene that needs no more than the default design, as `make sim` shows it."""
     check_full_size(bench, scene, "seed")
+
+
+@pytest.mark.parametrize("engine", ["seed", "exact", "beam"])
+def test_scenes_with_looks(bench: Bench, engine):
+    """Every scene whose camera is turned or whose rectangles have looks, small, by one design of each engine."""
+    scenes = [path for path in packaged_for({"engine": engine}) if path.stem not in PLAIN]
+    assert len(scenes) >= (2 if engine == "seed" else 8)
+    # As few units as meet the row budget, which are soon compiled.
+    size = {"units": 16} if engine == "seed" else {"turn": True}
+    design = configure(engine=engine, screen="tiny", reflections=2, materials=True, patterns=True, **size)
+    for scene in scenes:
+        result = json.loads((bench("sim.frame_bench", design, "verilator", scene) / "result.json").read_text())
+        assert (result["pixels"], result["wrong_vs_golden"]) == (128 * 96, 0), scene.stem
+        assert engine == "seed" or result["wrong_vs_exact"] == 0, scene.stem
+        assert not result["underrun"], scene.stem
 
 
 def test_full_size_exact(bench: Bench):

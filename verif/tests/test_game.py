@@ -27,6 +27,8 @@ from raycaster.configuration import configure
 from raycaster.golden import exact
 from raycaster.golden.rays import primary_slopes
 from raycaster.memory_map import BUTTON_NAMES
+from raycaster.registers import register_map
+from raycaster.scene import Camera
 from raycaster.sim.register_model import LiveScene
 from raycaster.sw.play_script import DEMO, PlayScriptError, dump, load
 
@@ -296,6 +298,30 @@ def test_no_ray_meets_an_edge_of_the_court(session):
                 for at_v in (low[v], high[v]):
                     on_edge = (slope[:, u] * at_v == slope[:, v] * at_u) & (slope[:, u] * at_u > 0)
                     assert not on_edge.any(), (eye, at_u, at_v)
+
+
+def test_the_player_looks_after_the_ball(library):
+    """Where the camera turns: a degree a frame, towards the ball, and never past the court's front."""
+    config = configure(engine="exact", screen="tiny", turn=True)
+    session = Session(library, config=config)
+    basis = {4 * register_map(config.rectangles)[name].address for name in ("forward", "right", "up")}
+    edges = primary_slopes(configure(engine="exact").screen_geometry)[0, [0, -1]]
+    turns, wanted = [0], 0
+    for number, frame in enumerate(session.play(load(DEMO))):
+        turns.append(session.game.turn)
+        camera = Camera(position=frame.live.camera, yaw=float(turns[-1]))
+        assert frame.live.basis == camera.basis
+        changed = number == 0 or turns[-1] != turns[-2]
+        assert len({offset for offset, _ in frame.written} & basis) == (3 if changed else 0)
+        front = frame.live.rectangles.low[ENTRIES.index("GAME_FLOOR")][0]
+        for slope in edges @ np.array(frame.live.basis):
+            assert COURT["y"][0] < camera.position[1] + slope[1] * front / slope[0] < COURT["y"][1]
+        # Where it flew to in a frame is known in the next.
+        if "STARTED" not in frame.events:
+            assert turns[-1] - turns[-2] == np.sign(wanted - turns[-2])
+        aside = session.game.ball.y // 256 - sum(COURT["y"]) // 2
+        wanted = int(np.clip(int(aside / 40), -3, 3))
+    assert (min(turns), max(turns)) == (-3, 3)
 
 
 def test_a_table_that_is_too_small(library):

@@ -8,10 +8,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from definition import follow, pixel
 from generated import World, examples, worlds
 from hypothesis import given
 from hypothesis import strategies as st
-from test_exact import colour_by_definition, follow_by_definition
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.golden import exact, seed_engine
@@ -46,12 +46,10 @@ def test_exact_traces_as_fractions_do(world, reflections):
     table, camera, slopes = world
     traced = exact.trace(table, camera, BACKGROUND, slopes, reflections)
     for ray, slope in enumerate(slopes.tolist()):
-        path = follow_by_definition(table.corners.tolist(), table.enabled.tolist(), camera.tolist(), slope, reflections)
-        winners = [winner for _, winner in path]
+        path = follow(table, BACKGROUND, camera.tolist(), slope, reflections)
+        winners = [stop.winner for stop in path] + [-1] * (reflections + 1 - len(path))
         assert [int(winner[ray]) for winner in traced.winners] == winners
-        if reflections <= 2:
-            expected = colour_by_definition(table.colours.tolist(), winners)
-            assert traced.colours[ray].tolist() == list(expected)
+        assert traced.colours[ray].tolist() == pixel(path)
 
 
 @of_each

@@ -8,16 +8,22 @@ import numpy as np
 import pytest
 from hard_scenes import pixel_word, sharpened, traced_scene, verdict
 
-from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
+from raycaster.configuration import CHANNEL_BITS, WORLD_SIZE, Configuration, ConfigurationError, configure
 from raycaster.golden import exact
-from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
+from raycaster.golden.random_world import EXTREMES, random_basis, random_camera, random_looks, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.beam import fold_tester as tester
+from raycaster.rtl.beam import hit_cells as hit_cells_module
 from raycaster.rtl.beam import nearest_of_two as contest
 from raycaster.rtl.beam import ray_fold as folder
 from raycaster.rtl.beam.beam_caster import beam_caster, beam_latency
+from raycaster.rtl.beam.beam_pass import winner_latency
+from raycaster.rtl.beam.beam_renderer import blanking_left, check_blanking
+from raycaster.rtl.beam.cell_step import cell_step
 from raycaster.rtl.beam.fold_tester import fold_tester
+from raycaster.rtl.beam.hit_cells import hit_cells
+from raycaster.rtl.beam.line_starter import AIM_LATENCY, line_starter, start_cycles
 from raycaster.rtl.beam.nearest_of import nearest_of
 from raycaster.rtl.beam.nearest_of_two import nearest_of_two
 from raycaster.rtl.beam.ray_fold import ray_fold
@@ -25,14 +31,32 @@ from raycaster.rtl.beam.rect_walker import rect_walker
 from raycaster.rtl.beam.row_register import row_register
 from raycaster.rtl.beam.slope_walker import slope_walker
 from raycaster.rtl.beam.winner_delay import winner_delay
-from raycaster.rtl.common.interfaces import Picture, Rects, Slope
-from raycaster.rtl.common.records import Facet, Pixel, Point, Reflector, Walk, candidate_of, fold_of
+from raycaster.rtl.common.interfaces import Direction, Picture, Rects, Slope
+from raycaster.rtl.common.records import (
+    CellDivision,
+    Look,
+    Pixel,
+    Point,
+    Reflector,
+    Sight,
+    Signs,
+    camera_of,
+    candidate_of,
+    facet_of,
+    fold_of,
+    growth_of,
+    walk_of,
+    winner_of,
+)
 from raycaster.rtl.common.widths import (
+    BASIS_BITS,
     DISTANCE_BITS,
+    MIRROR_BITS,
     RGB_BITS,
     TURN_BITS,
     bit,
     exact_slope_bits,
+    factor_bits,
     fold_bits,
     index_bits,
     signed,
@@ -41,9 +65,11 @@ from raycaster.rtl.common.widths import (
     walk_bits,
 )
 from raycaster.rtl.engine import rect_setup as setup
-from raycaster.rtl.engine.colour_blend import colour_blend
+from raycaster.rtl.engine.colour_blend import blend_latency, blends_three, colour_blend, mixes
 from raycaster.rtl.engine.colour_mean import colour_mean
+from raycaster.rtl.engine.colour_mix import colour_mix
 from raycaster.rtl.engine.rect_setup import rect_setup
+from raycaster.scene import UNTURNED
 from raycaster.screens import BEAM_SCREENS
 from raycaster.verif.leaf import Leaf, reset_signal, sorted_rect
 from raycaster.verif.seeds import repeat, seed
@@ -53,6 +79,7 @@ LAST = WORLD_SIZE - 1
 P, Q = (1, 0, 1), (2, 2, 0)
 """By the axis of a plane: p is y unless the plane is on y, q is z unless it is on z."""
 WALK = ("way_p", "low_p", "high_p", "low_q", "high_q")
+CANDIDATE = ("valid", "at_mirror", "numerator", "denominator", "index")
 
 
 def config_id(value) -> str | None:
@@ -84,9 +111,26 @@ by_screen = pytest.mark.parametrize(
         beam_config(reflections=1, rows=180),
         beam_config(reflections=2, rows=240),
         beam_config(reflections=2, screen="tiny"),
+        beam_config(reflections=1, rows=180, turn=True),
+        beam_config(reflections=2, rows=240, turn=True, materials=True, patterns=True),
+        beam_config(reflections=2, screen="tiny", turn=True),
     ],
     ids=config_id,
 )
+
+
+def any_slope(random: np.random.Generator, config: Configuration) -> np.ndarray:
+    """One that a pixel's ray may have; where the camera turns, of any basis that the registers hold."""
+    slopes = primary_slopes(config.screen_geometry)
+    slope = slopes[int(random.integers(len(slopes))), int(random.integers(slopes.shape[1]))]
+    if not config.turn:
+        return slope
+    return slope @ np.array(random_basis(random), dtype=np.int64)
+
+
+def direction_ports(name: str, config: Configuration, slope) -> dict[str, int]:
+    width = exact_slope_bits(config) + 1
+    return {f"{name}_{axis}": word(value, width) for axis, value in zip(AXES, slope, strict=True)}
 
 
 # The configuration ----------------------------------------------------------------------------------------------------
@@ -144,9 +188,20 @@ def test_every_row_is_set_up_in_its_blanking(place, rectangles, reflections):
     """The latest column has left, and all rectangles are loaded, before the first column's turn."""
     screen, rows = place
     config = beam_config(screen=screen, rows=rows, rectangles=rectangles, reflections=reflections)
-    horizontal = config.screen_geometry.horizontal
-    # The horizontal sync is seen a pixel after its turn, and the columns start before theirs.
-    assert 1 + setup.LATENCY + rectangles <= horizontal.blank - horizontal.front - beam_latency(config)
+    assert blanking_left(config) >= 0
+
+
+@pytest.mark.parametrize(
+    ("screen", "rows", "most"), [("vga", 240, 2), ("vga", 180, 2), ("tiny", 48, 2), ("play", 240, 1)]
+)
+def test_every_row_of_a_turned_camera_is_set_up_in_its_blanking(screen, rows, most):
+    """That of a dozen rectangles, with all there is; on the playing screen with so many reflections at most."""
+    config = beam_config(screen=screen, rows=rows, reflections=most, turn=True, materials=True, patterns=True)
+    assert blanking_left(config) >= 0
+    with pytest.raises(
+        ConfigurationError, match=r"^rectangles: with 32 of them, 2 reflections .* is 37 cycles short of a line's"
+    ):
+        check_blanking(beam_config(screen="play", rectangles=32, reflections=2, turn=True))
 
 
 # rect_setup -----------------------------------------------------------------------------------------------------------
@@ -189,35 +244,31 @@ def test_rect_setup(config, tmp_path):
             "start_line": bit(),
             "rects": Rects(config),
             "camera": Point(),
-            "column_slope": signed(exact_slope_bits(config) + 1),
-            "row_slope": signed(exact_slope_bits(config) + 1),
+            "slope": Direction(exact_slope_bits(config) + 1),
             "load": unsigned(count),
-            "facet": Facet(walk_bits(config)),
-            "growth": Walk(DISTANCE_BITS),
-            "start": Walk(walk_bits(config)),
+            "facet": facet_of(config),
+            "growth": None if config.turn else growth_of(config),
+            "start": walk_of(config),
             "config": config,
         },
         tmp_path,
     )
     random = np.random.default_rng(seed())
-    slopes = primary_slopes(config.screen_geometry)
     stimulus = [{"reset": 1}] * 2
     loads = {}
-    for line in range(12):
-        table = flat_tables(random, count)
+    for _ in range(12):
+        table = random_looks(random, flat_tables(random, count))
         camera = np.array([any_place(random) for _ in AXES])
-        row = 0 if line == 0 else len(slopes) - 1 if line == 1 else int(random.integers(len(slopes)))
         held = {f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)}
         held |= {"reset": 0, "start_line": 0, "rects_usable": sum(int(one) << i for i, one in enumerate(table.enabled))}
         start = len(stimulus)
         stimulus += [{**held, "start_line": 1}, held, held]
-        column = 0 if line < 4 else int(random.integers(slopes.shape[1] - 1))
-        held["column_slope"] = word(slopes[row, column, 1], exact_slope_bits(config) + 1)
-        held["row_slope"] = word(slopes[row, column, 2], exact_slope_bits(config) + 1)
+        slope = any_slope(random, config)
+        held |= direction_ports("slope", config, slope)
         for index in range(count):
             # Two cycles after it was asked for.
-            stimulus.append({**held, **sorted_rect(table, index, "rects_rect")})
-            loads[start + setup.LATENCY + index] = table, index, camera, slopes[row, column : column + 2]
+            stimulus.append({**held, **sorted_rect(table, index, "rects_rect", config)})
+            loads[start + setup.LATENCY + index] = table, index, camera, slope
         stimulus += [held] * (setup.LATENCY + int(random.integers(5)))
     # Every stage of the last line has something at hand.
     end = start + setup.LATENCY + min(1, count - 1)
@@ -228,18 +279,23 @@ def test_rect_setup(config, tmp_path):
     width = walk_bits(config)
     for cycle, output in enumerate(outputs[2:], 2):
         assert output["load"] == (1 << loads[cycle][1] if cycle in loads else 0), (cycle, repeat())
-    for cycle, (table, index, camera, (first, second)) in loads.items():
+    for cycle, (table, index, camera, slope) in loads.items():
         output = outputs[cycle]
-        now, then = (products(table, index, camera, slope) for slope in (first, second))
-        case = cycle, index, camera, table.corners[index].tolist(), repeat()
+        now, then = (products(table, index, camera, column) for column in (slope, slope + np.array([0, 1, 0])))
+        case = cycle, index, camera, table.corners[index].tolist(), slope, repeat()
         assert output["facet_usable"] == table.enabled[index], case
         assert output["facet_axis"] == table.axes[index], case
         assert number(output["facet_distance"], DISTANCE_BITS) == now["distance"], case
-        assert number(output["facet_way_q"], width) == now["way_q"] == then["way_q"], case
-        assert output["facet_colour"] == int.from_bytes(bytes(table.colours[index])), case
+        looks = sorted_rect(table, index, "facet", config)
+        assert all(
+            output[f"facet_{name}"] == looks[f"facet_{name}"] for name in Look(config.materials, config.patterns).layout
+        )
+        way_q = output["start_way_q" if config.turn else "facet_way_q"]
+        assert number(way_q, width) == now["way_q"], case
         for name in WALK:
             assert number(output[f"start_{name}"], width) == now[name], (name, case)
-            assert number(output[f"growth_{name}"], DISTANCE_BITS) == then[name] - now[name], (name, case)
+            if not config.turn:
+                assert number(output[f"growth_{name}"], DISTANCE_BITS) == then[name] - now[name], (name, case)
 
 
 # The walkers ----------------------------------------------------------------------------------------------------------
@@ -280,37 +336,46 @@ def test_rect_walker(config, tmp_path):
             "load": bit(),
             "step_way": bit(),
             "step_bounds": bit(),
-            "start": Walk(walk_bits(config)),
-            "growth": Walk(DISTANCE_BITS),
-            "walk": Walk(walk_bits(config)),
+            "start": walk_of(config),
+            "growth": growth_of(config),
+            "walk": walk_of(config),
         },
         tmp_path,
     )
     random = np.random.default_rng(seed())
-    slopes = primary_slopes(config.screen_geometry)
-    width, columns = walk_bits(config), slopes.shape[1]
+    width, columns, names = walk_bits(config), config.screen_geometry.columns, list(walk_of(config).layout)
+    growth_width = int(growth_of(config).layout["way_p"])
     stimulus, expected = [], {}
-    for number in range(300):
-        row = (0, len(slopes) - 1, int(random.integers(len(slopes))))[number % 3]
-        first, steps = (0, columns) if number < 3 else (int(random.integers(columns - 8)), 8)
+    for line in range(300):
+        steps = columns if line < 3 else 8
         table = flat_tables(random, 1)
         camera = np.array([any_place(random) for _ in AXES])
-        now, then = (products(table, 0, camera, slope) for slope in slopes[row, first : first + 2])
-        inputs = {f"start_{name}": word(now[name], width) for name in WALK}
-        inputs |= {f"growth_{name}": word(then[name] - now[name], DISTANCE_BITS) for name in WALK}
+        first, more = row_slopes(random, config, steps)
+        now, then = (products(table, 0, camera, slope) for slope in (first, first + more))
+        inputs = {f"start_{name}": word(now[name], width) for name in names}
+        inputs |= {f"growth_{name}": word(then[name] - now[name], growth_width) for name in names}
         stimulus.append({**inputs, "load": 1})
         way = bounds = 0
         # One step more than there are columns: the last one's end.
         while min(way, bounds) < steps:
-            slope = slopes[row, first] + np.array([0, 1, 0]) * [[way], [bounds]]
-            seen = products(table, 0, camera, slope[0]), products(table, 0, camera, slope[1])
-            expected[len(stimulus)] = [word(seen[name != "way_p"][name], width) for name in WALK]
+            ways, walls = (products(table, 0, camera, first + more * done) for done in (way, bounds))
+            seen = [word((ways if name.startswith("way") else walls)[name], width) for name in names]
+            expected[len(stimulus)] = seen
             step_way, step_bounds = (int(done < steps and random.random() < 0.9) for done in (way, bounds))
             stimulus.append({"load": 0, "step_way": step_way, "step_bounds": step_bounds})
             way, bounds = way + step_way, bounds + step_bounds
     outputs = leaf.run_both(stimulus, settled=1)
     for cycle, values in expected.items():
-        assert [outputs[cycle][f"walk_{name}"] for name in WALK] == values, (cycle, repeat())
+        assert [outputs[cycle][f"walk_{name}"] for name in names] == values, (cycle, repeat())
+
+
+def row_slopes(random: np.random.Generator, config: Configuration, columns: int) -> tuple[np.ndarray, np.ndarray]:
+    """The slope of a column that so many columns of the screen follow, and what a column adds."""
+    screen = config.screen_geometry
+    row, column = int(random.integers(screen.rows)), int(random.integers(screen.columns - columns + 1))
+    basis = np.array(random_basis(random) if config.turn else np.eye(3), dtype=np.int64)
+    factors = [screen.view_distance, column - screen.centre_column, screen.horizon_row - row]
+    return factors @ basis, basis[1]
 
 
 @by_screen
@@ -322,22 +387,95 @@ def test_slope_walker(config, tmp_path):
             "clk": bit(),
             "start_line": bit(),
             "step": bit(),
-            "column_slope": signed(slope_bits),
+            "aim": Direction(slope_bits),
+            "slope": Direction(slope_bits),
             "config": config,
         },
         tmp_path,
     )
-    columns = config.screen_geometry.columns
-    stimulus = [{"start_line": 1, "step": 1}, *({"start_line": 0, "step": step % 3 != 2} for step in range(columns))]
-    stimulus.append({"start_line": 1})
-    outputs = leaf.run_both(
-        [*({name: int(value) for name, value in cycle.items()} for cycle in stimulus), {}], settled=1
+    random = np.random.default_rng(seed())
+    columns, walked = config.screen_geometry.columns, AXES if config.turn else "y"
+    stimulus, expected = [], []
+    for _ in range(3):
+        first, more = row_slopes(random, config, columns)
+        aim = direction_ports("aim", config, more if config.turn else first)
+        aim = {name: value for name, value in aim.items() if name[-1] in walked}
+        steps = [int(step % 3 != 2) for step in range(columns)]
+        stimulus += [{"start_line": 1, "step": 1, **aim}, *({"start_line": 0, "step": step} for step in steps)]
+        # A turned camera's first step is from 0 to the row's start, which is another test's.
+        base = 0 * first if config.turn else first
+        expected += [base + more * sum(steps[:column]) for column in range(columns + 1)]
+    outputs = leaf.run_both([*stimulus, {}], settled=1)
+    for slope, output in zip(expected, outputs[1:], strict=True):
+        given = direction_ports("slope", config, slope)
+        assert output == {name: given[name] for name in output} and len(output) == len(walked), repeat()
+
+
+@pytest.mark.parametrize(
+    "config",
+    [beam_config(screen="tiny", turn=True, rectangles=3), beam_config(rows=180, turn=True, rectangles=1)],
+    ids=config_id,
+)
+def test_line_starter(config, tmp_path):
+    """The first ray's slope from its latency on, until the first sweep's end; the second sweep's ends nothing."""
+    slope_bits, screen, basis_names = (
+        exact_slope_bits(config) + 1,
+        config.screen_geometry,
+        list(camera_of(config).layout)[3:],
     )
-    column = 0
-    for inputs, output in zip(stimulus[1:], outputs[1:], strict=False):
-        assert number(output["column_slope"], slope_bits) == column - columns // 2
-        column += inputs.get("step", 0)
-    assert number(outputs[-1]["column_slope"], slope_bits) == -columns // 2
+    leaf = Leaf(
+        line_starter,
+        lambda: {
+            "clk": bit(),
+            "reset": reset_signal(),
+            "start_line": bit(),
+            "camera": camera_of(config),
+            "row_slope": signed(factor_bits(config)),
+            "loaded": bit(),
+            "aim": Direction(slope_bits),
+            "start_sweep": bit(),
+            "enter": bit(),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    stimulus, expected = [{"reset": 1}] * 6, {}
+    for _ in range(60):
+        basis = np.array(random_basis(random), dtype=np.int64)
+        row = int(random.choice([0, screen.rows - 1, random.integers(screen.rows)]))
+        held = {
+            f"camera_{name}": word(value, BASIS_BITS) for name, value in zip(basis_names, basis.flatten(), strict=True)
+        }
+        held |= {"reset": 0, "start_line": 0, "loaded": 0}
+        start, ended = len(stimulus), random.random() < 0.2
+        sweep = setup.LATENCY + config.rectangles - 1
+        first_end = AIM_LATENCY - 3 + sweep
+        stimulus += [
+            {**held, "start_line": 1},
+            {**held, "reset": int(ended)},
+            {**held, "row_slope": word(screen.horizon_row - row, factor_bits(config))},
+        ]
+        stimulus += [held] * (first_end - 3)
+        stimulus += [
+            {**held, "loaded": 1},
+            *[held] * (sweep - 1),
+            {**held, "loaded": 1},
+            *[held] * int(random.integers(1, 4)),
+        ]
+        first = direction_ports(
+            "aim", config, [screen.view_distance, -screen.centre_column, screen.horizon_row - row] @ basis
+        )
+        column = direction_ports("aim", config, basis[1])
+        for cycle in range(start, len(stimulus)):
+            age = cycle - start
+            sweeps = age in (AIM_LATENCY - 3, first_end) and not ended
+            strobes = {"start_sweep": int(sweeps), "enter": int(age == first_end and not ended)}
+            aim = {} if age < AIM_LATENCY or ended else first if age < first_end + 2 else column
+            expected[cycle] = strobes | aim
+    outputs = leaf.run_both([*stimulus, {}], settled=6 + AIM_LATENCY)
+    for cycle, fields in expected.items():
+        assert {name: outputs[cycle][name] for name in fields} == fields, (cycle, repeat())
 
 
 # ray_fold and fold_tester ---------------------------------------------------------------------------------------------
@@ -355,8 +493,9 @@ def beam_rays(random: np.random.Generator, config: Configuration, count: int):
         camera = random_camera(random, table).astype(np.int64)
         # Of a power of two its one bit counts, and of ways that a small one divides the lowest bits.
         extremes = [0, view, steepest, random.choice(powers), *random.integers([4, 16, 16, steepest])]
-        sides = random.choice(extremes, 2) * random.choice([-1, 1], 2)
-        slope = np.array([view, *sides])
+        slope = random.choice(extremes, 3) * random.choice([-1, 1], 3)
+        if not config.turn:
+            slope[0] = view
         wanted = int(random.integers(config.reflections + 1))
         mirrors: list[tuple[int, int]] = []
         met = Fraction(0)
@@ -370,8 +509,12 @@ def beam_rays(random: np.random.Generator, config: Configuration, count: int):
                 axis, plane = mirrors[-1][0], LAST - mirrors[-1][1]
             elif turned[axis] and random.random() < 0.6:
                 plane = coordinate(eye, turned, time_ahead(random, eye, turned, met, axis), axis)
-            if turned[axis] and Fraction(int(plane - eye[axis]), int(turned[axis])) > met:
-                met = Fraction(int(plane - eye[axis]), int(turned[axis]))
+            if not turned[axis]:
+                continue
+            t = Fraction(int(plane - eye[axis]), int(turned[axis]))
+            # A corner has a mirror on each of its axes.
+            if t > met or (t == met and mirrors and axis != mirrors[-1][0]):
+                met = t
                 mirrors.append((axis, plane))
         eye, turned = seen_from(camera, slope, mirrors)
         chosen = random.choice(np.flatnonzero(table.visible), 4)
@@ -408,6 +551,15 @@ def seen_from(camera, slope, mirrors) -> tuple[np.ndarray, np.ndarray]:
     return eye, turned
 
 
+def met_last(camera, slope, mirrors) -> list[int]:
+    """The axes of the mirrors that a ray met in the point that it left last."""
+    times = []
+    for number, (axis, plane) in enumerate(mirrors):
+        eye, turned = seen_from(camera, slope, mirrors[:number])
+        times.append(Fraction(int(plane - eye[axis]), int(turned[axis])))
+    return [axis for t, (axis, _) in zip(times, mirrors, strict=True) if t == times[-1]]
+
+
 def folded(config: Configuration, camera, slope, mirrors) -> dict[str, int]:
     """The fold, by its definition: x - E = +-(X - E) + T, where the room's x is the mirrored camera's."""
     eye, turned = seen_from(camera, slope, mirrors)
@@ -425,12 +577,8 @@ def folded(config: Configuration, camera, slope, mirrors) -> dict[str, int]:
     distance = plane - int(camera[axis])
     fields |= {f"border_{name}": word(distance * int(slope[c]), walk_bits(config)) for c, name in enumerate(AXES)}
     fields["mirror_back"] = int(turned[axis] < 0)
+    fields |= {f"met_{name}": int(c in met_last(camera, slope, mirrors)) for c, name in enumerate(AXES)}
     return fields | {"axis": axis, "distance": word(distance, DISTANCE_BITS)}
-
-
-def slope_ports(config: Configuration, slope) -> dict[str, int]:
-    width = exact_slope_bits(config) + 1
-    return {"column_slope": word(slope[1], width), "row_slope": word(slope[2], width)}
 
 
 @by_screen
@@ -441,15 +589,13 @@ def test_fold_tester(config, tmp_path):
         fold_tester,
         lambda: {
             "clk": bit(),
-            "facet": Facet(walk_bits(config)),
-            "walk": Walk(walk_bits(config)),
-            "column_slope": signed(slope_bits + 1),
-            "row_slope": signed(slope_bits + 1),
+            "facet": facet_of(config),
+            "walk": walk_of(config),
+            "signs": Signs(),
             "slope": Slope(slope_bits),
             "fold": fold_of(config),
             "index": unsigned(index_bits(config)),
             "hit": candidate_of(config),
-            "view_distance": config.screen_geometry.view_distance,
         },
         tmp_path,
     )
@@ -461,36 +607,51 @@ def test_fold_tester(config, tmp_path):
         for index in chosen:
             now = products(table, index, camera, slope)
             bounds = {f"walk_{name}": word(now[name], walk_bits(config)) for name in WALK if name != "way_p"}
+            way_q = {"walk_way_q" if config.turn else "facet_way_q": word(now["way_q"], walk_bits(config))}
             facet = {
                 "facet_usable": int(random.random() < 0.9),
                 "facet_axis": int(table.axes[index]),
                 "facet_distance": word(now["distance"], DISTANCE_BITS),
-                "facet_way_q": word(now["way_q"], walk_bits(config)),
             }
-            ray = {"walk_way_p": word(now["way_p"], walk_bits(config)), **slope_ports(config, slope)}
+            if config.patterns:
+                facet["facet_cell"] = int(random.integers(8))
+            ray = {"walk_way_p": word(now["way_p"], walk_bits(config)), **way_q}
+            ray |= {f"signs_d{axis}": int(component < 0) for axis, component in zip(AXES, slope, strict=True)}
             start = len(stimulus)
             stimulus += [
                 {**facet, **fold, **ray, "fold_active": int(bool(mirrors))},
                 bounds,
-                {"index": index} | {f"slope_d{AXES[c]}": abs(int(slope[c])) for c in (1, 2)},
+                {"index": index} | {f"slope_d{AXES[c]}": abs(int(slope[c])) for c in range(3)},
             ]
-            hit, n, e = verdict(table, index, eye, turned, mirrors[-1] if mirrors else None)
-            seen.add((len(mirrors), hit))
-            expected[start + tester.LATENCY] = hit and bool(facet["facet_usable"]), n, e, index, (
-                table.corners[index].tolist(), camera, slope, mirrors, repeat()
-            )  # fmt: skip
+            mirror, met = mirrors[-1] if mirrors else None, met_last(camera, slope, mirrors)
+            hit, n, e = verdict(table, index, eye, turned, mirror, met)
+            at_mirror = hit and not verdict(table, index, eye, turned, mirror)[0]
+            seen.add((len(met), hit, at_mirror))
+            case = table.corners[index].tolist(), camera, slope, mirrors, repeat()
+            expected[start + tester.LATENCY] = facet, hit and bool(facet["facet_usable"]), at_mirror, n, e, index, case
     outputs = leaf.run_both([*stimulus, {}], settled=tester.LATENCY)
-    assert len(seen) == 2 * (config.reflections + 1)
-    for cycle, (hit, n, e, index, case) in expected.items():
+    # With no mirror, one, and two in one point; a third plane may be there too.
+    assert len(seen) == 2 + 3 * config.reflections
+    for cycle, (facet, hit, at_mirror, n, e, index, case) in expected.items():
         output = outputs[cycle]
         assert output["hit_valid"] == hit, case
         assert output["hit_index"] == index, case
-        assert not hit or (output["hit_numerator"], output["hit_denominator"]) == (n, e), case
+        if config.patterns:
+            assert (output["hit_axis"], output["hit_cell"]) == (facet["facet_axis"], facet["facet_cell"]), case
+        if hit:
+            fields = [output[f"hit_{name}"] for name in ("at_mirror", "numerator", "denominator")]
+            assert fields == [at_mirror, n, e], case
 
 
 @pytest.mark.parametrize(
     "config",
-    [beam_config(rows=180), beam_config(reflections=2), beam_config(reflections=2, screen="tiny")],
+    [
+        beam_config(rows=180),
+        beam_config(reflections=2),
+        beam_config(reflections=2, screen="tiny"),
+        beam_config(rows=180, turn=True),
+        beam_config(reflections=2, turn=True),
+    ],
     ids=config_id,
 )
 def test_ray_fold(config, tmp_path):
@@ -502,10 +663,8 @@ def test_ray_fold(config, tmp_path):
             "clk": bit(),
             "earlier": Reflector(),
             "last": Reflector(),
-            "column_slope": signed(slope_bits),
-            "row_slope": signed(slope_bits),
+            "slope": Direction(slope_bits),
             "fold": fold_of(config),
-            "view_distance": config.screen_geometry.view_distance,
         },
         tmp_path,
     )
@@ -520,7 +679,8 @@ def test_ray_fold(config, tmp_path):
             distance = word(plane - int(camera[axis]), DISTANCE_BITS)
             stimulus[cycle] |= {f"{name}_axis": axis, f"{name}_distance": distance}
         stimulus[cycle] |= {"earlier_active": int(len(mirrors) == 2), "last_active": 1}
-        stimulus[cycle + 1] |= slope_ports(config, slope)
+        stimulus[cycle] |= {"last_at_mirror": int(len(met_last(camera, slope, mirrors)) == 2)}
+        stimulus[cycle + 1] |= direction_ports("slope", config, slope)
     outputs = leaf.run_both(stimulus, settled=folder.LATENCY)
     for cycle, (camera, slope, mirrors) in enumerate(rays):
         expected = {f"fold_{name}": value for name, value in folded(config, camera, slope, mirrors).items()}
@@ -530,15 +690,15 @@ def test_ray_fold(config, tmp_path):
 # The nearest ----------------------------------------------------------------------------------------------------------
 
 
-def any_candidate(random: np.random.Generator, config: Configuration) -> tuple[int, int, int, int]:
-    """valid, numerator, denominator, index; equal fractions in other terms are common."""
+def any_candidate(random: np.random.Generator, config: Configuration) -> tuple[int, int, int, int, int]:
+    """valid, at_mirror, numerator, denominator, index; equal fractions in other terms are common."""
     most = [(1 << len(signal)) - 1 for signal in (candidate_of(config).numerator, candidate_of(config).denominator)]
     if random.random() < 0.4:
         n, e, times = int(random.integers(1, 4)), int(random.integers(1, 4)), int(random.integers(1, 60))
         n, e = n * times, e * times
     else:
         n, e = (int(random.choice([1, limit, random.integers(1, limit)])) for limit in most)
-    return int(random.random() < 0.8), n, e, int(random.integers(config.rectangles))
+    return int(random.random() < 0.8), int(random.integers(2)), n, e, int(random.integers(config.rectangles))
 
 
 def close_candidates(random: np.random.Generator, config: Configuration) -> tuple:
@@ -555,12 +715,20 @@ def close_candidates(random: np.random.Generator, config: Configuration) -> tupl
         second = (first * below[1] + apart) // below[0]
         if 0 < first <= most and 0 < second <= most:
             indices = map(int, random.integers(config.rectangles, size=2))
-            return tuple((1, *one) for one in zip((first, second), below, indices, strict=True))
+            corners = map(int, random.integers(2, size=2))
+            return tuple((1, *one) for one in zip(corners, (first, second), below, indices, strict=True))
 
 
-def candidate_ports(name: str, candidate) -> dict[str, int]:
-    fields = zip(("valid", "numerator", "denominator", "index"), candidate, strict=True)
-    return {f"{name}_{field}": value for field, value in fields}
+def candidate_ports(config: Configuration, name: str, candidate) -> dict[str, int]:
+    fields = dict(zip(CANDIDATE, candidate, strict=True))
+    if config.patterns:
+        fields |= {"axis": fields["index"] % 3, "cell": fields["index"] % 8}
+    return {f"{name}_{field}": value for field, value in fields.items()}
+
+
+def fraction_of(candidate) -> Fraction:
+    _, _, numerator, denominator, _ = candidate
+    return Fraction(numerator, denominator)
 
 
 @by_screen
@@ -573,7 +741,9 @@ def test_nearest_of_two(config, tmp_path):
     random = np.random.default_rng(seed())
     pairs = [(any_candidate(random, config), any_candidate(random, config)) for _ in range(3000)]
     pairs += [close_candidates(random, config) for _ in range(1000)]
-    stimulus = [candidate_ports("first", first) | candidate_ports("second", second) for first, second in pairs]
+    stimulus = [
+        candidate_ports(config, "first", first) | candidate_ports(config, "second", second) for first, second in pairs
+    ]
     outputs = leaf.run_both([*stimulus, *[{}] * contest.LATENCY], settled=contest.LATENCY)
     ties = 0
     for (first, second), output in zip(pairs, outputs[contest.LATENCY :], strict=True):
@@ -581,8 +751,8 @@ def test_nearest_of_two(config, tmp_path):
         assert output["nearest_valid"] == bool(valid)
         if valid:
             # min takes the first of equals.
-            assert output == candidate_ports("nearest", min(valid, key=lambda one: Fraction(one[1], one[2]))), repeat()
-            ties += len({Fraction(one[1], one[2]) for one in valid}) < len(valid)
+            assert output == candidate_ports(config, "nearest", min(valid, key=fraction_of)), repeat()
+            ties += len(set(map(fraction_of, valid))) < len(valid)
     assert ties > 20
 
 
@@ -601,7 +771,6 @@ def test_nearest_of(count, tmp_path):
         tmp_path,
     )  # fmt: skip
     random = np.random.default_rng(seed())
-    names = ("valid", "numerator", "denominator", "index")
     # Often with few that are valid, so that each of them is the nearest often enough.
     fields = []
     for _ in range(1200):
@@ -613,7 +782,7 @@ def test_nearest_of(count, tmp_path):
             field[place : place + 2] = close_candidates(random, config)
         fields.append(field)
     stimulus = [
-        {"candidates": sum(record.pack(dict(zip(names, one, strict=True))) << i * len(record.word)
+        {"candidates": sum(record.pack(dict(zip(CANDIDATE, one, strict=True))) << i * len(record.word)
                            for i, one in enumerate(field))}
         for field in fields
     ]  # fmt: skip
@@ -623,7 +792,7 @@ def test_nearest_of(count, tmp_path):
         valid = [one for one in field if one[0]]
         assert output["nearest_valid"] == bool(valid), repeat()
         if valid:
-            assert output == candidate_ports("nearest", min(valid, key=lambda one: Fraction(one[1], one[2]))), repeat()
+            assert output == candidate_ports(config, "nearest", min(valid, key=fraction_of)), repeat()
 
 
 @pytest.mark.parametrize("cycles", [2, 3, 13])
@@ -671,15 +840,53 @@ def test_colour_mean(colour_bits, tmp_path):
         assert output["mean"] == mean >> (8 - colour_bits), (inputs, repeat())
 
 
-def test_colour_blend(tmp_path):
-    """What comes after a ray that found nothing is background."""
-    config = beam_config(colour_bits=6)
+@pytest.mark.parametrize("behind", [0, 1])
+def test_colour_mix(behind, tmp_path):
+    """Every share of channels at their ends and between; what is behind has a fraction of its own."""
+    far_bits = CHANNEL_BITS + 2 * behind
+    leaf = Leaf(
+        colour_mix,
+        lambda: {
+            "clk": bit(),
+            "near": unsigned(CHANNEL_BITS),
+            "mirror": unsigned(MIRROR_BITS),
+            "far": unsigned(far_bits),
+            "mixed": unsigned(far_bits + 2),
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    # The most that is behind is 255, without a fraction.
+    ends = [[near, far << 2 * behind] for near in (0, 1, 254, 255) for far in (0, 1, 254, 255)]
+    pairs = [*ends, *random.integers([256, (255 << 2 * behind) + 1], size=(400, 2)).tolist()]
+    stimulus = [{"near": near, "mirror": mirror, "far": far} for near, far in pairs for mirror in range(5)]
+    outputs = leaf.run_both([*stimulus, {}], settled=1)
+    for inputs, output in zip(stimulus, outputs[1:], strict=True):
+        near, mirror, far = (inputs[name] for name in ("near", "mirror", "far"))
+        assert output["mixed"] == (4 - mirror) * (near << 2 * behind) + mirror * far, (inputs, repeat())
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        beam_config(colour_bits=6),
+        beam_config(reflections=1, materials=True),
+        beam_config(reflections=2, materials=True, colour_bits=6),
+        beam_config(reflections=0, materials=True),
+    ],
+    ids=config_id,
+)
+def test_colour_blend(config, tmp_path):
+    """What comes after a ray that found nothing is background, and weighs as much as the mirrors before it say."""
+    seen_count = 3 if blends_three(config) else 2
+    mirror_count = config.reflections if mixes(config) else 0
     leaf = Leaf(
         colour_blend,
         lambda: {
             "clk": bit(),
-            **{f"found_{number}": bit() for number in range(3)},
-            **{f"colour_{number}": unsigned(RGB_BITS) for number in range(3)},
+            **{f"found_{i}": bit() if i < seen_count else None for i in range(3)},
+            **{f"colour_{i}": unsigned(RGB_BITS) if i < seen_count else None for i in range(3)},
+            **{f"mirror_{i}": unsigned(MIRROR_BITS) if i < mirror_count else None for i in range(2)},
             "picture": Picture(),
             "pixel": Pixel(config.colour_bits),
             "config": config,
@@ -688,25 +895,130 @@ def test_colour_blend(tmp_path):
     )
     random = np.random.default_rng(seed())
     stimulus, expected = [], []
-    background, reflections = 0x123456, 0
+    latency, background, reflections = blend_latency(config), 0x123456, 0
+    asked = config.reflections + 1 if mirror_count else 3
     for number in range(1800):
         if number % 100 == 0:
-            background, reflections = int(random.integers(1 << RGB_BITS)), number // 100 % 3
-        found = (random.random(3) < 0.7).astype(int).tolist()
+            background, reflections = int(random.integers(1 << RGB_BITS)), number // 100 % asked
+        found = (random.random(seen_count) < 0.7).astype(int).tolist()
         colours = [int(random.integers(1 << RGB_BITS)) for _ in found]
+        mirrors = [int(random.integers(5)) for _ in range(mirror_count)]
         stimulus.append({
             "picture_background": background, "picture_reflections": reflections,
             **{f"found_{i}": one for i, one in enumerate(found)},
             **{f"colour_{i}": one for i, one in enumerate(colours)},
+            **{f"mirror_{i}": one for i, one in enumerate(mirrors)},
         })  # fmt: skip
         seen = [colour if all(found[: i + 1]) else background for i, colour in enumerate(colours)]
-        weights, shift = (((1, 0, 0), 0), ((1, 1, 0), 1), ((2, 1, 1), 2))[reflections]
-        channels = [[colour >> low & 255 for colour in seen] for low in (16, 8, 0)]
-        expected.append([sum(w * c for w, c in zip(weights, one, strict=True)) >> shift >> 2 for one in channels])
-    outputs = leaf.run_both([*stimulus, {}, {}], settled=2)
-    for number, (colour, output) in enumerate(zip(expected, outputs[2:], strict=True)):
-        if number % 100 != 99:  # whose background has changed on the way
+        pixel = []
+        for low in (16, 8, 0):
+            channels = [Fraction(colour >> low & 255) for colour in seen[: reflections + 1]]
+            value = channels.pop()
+            for own, quarters in reversed(list(zip(channels, mirrors or (2, 2), strict=False))):
+                value = ((4 - quarters) * own + quarters * value) / 4
+            pixel.append(int(value) >> CHANNEL_BITS - config.colour_bits)
+        expected.append(pixel)
+    outputs = leaf.run_both([*stimulus, *[{}] * latency], settled=latency)
+    for number, (colour, output) in enumerate(zip(expected, outputs[latency:], strict=True)):
+        if number % 100 < 100 - latency:  # of the others the background has changed on the way
             assert [output[f"pixel_{channel}"] for channel in ("red", "green", "blue")] == colour, (number, repeat())
+
+
+# The cells of patterns ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("place", [8, 5, 3])
+def test_cell_step(place, tmp_path):
+    """A quotient's bit, and what is left below it."""
+    bits = 7
+    leaf = Leaf(
+        cell_step,
+        lambda: {
+            "clk": bit(), "before": CellDivision(bits, place + 1), "after": CellDivision(bits, place), "place": place
+        },
+        tmp_path,
+    )  # fmt: skip
+    random = np.random.default_rng(seed())
+    stimulus = []
+    for _ in range(800):
+        divisor = int(random.integers(1, 1 << bits))
+        edge = int(random.integers(3)) * (divisor << place) + int(random.integers(-1, 2))
+        rest = edge if random.random() < 0.5 else int(random.integers(divisor << place + 1))
+        fields = {"rest": min(max(rest, 0), (divisor << place + 1) - 1), "divisor": divisor}
+        fields |= {"cell": int(random.integers(8)), "odd": int(random.integers(2))}
+        stimulus.append({f"before_{name}": value for name, value in fields.items()})
+    outputs = leaf.run_both([*stimulus, {}], settled=1)
+    for inputs, output in zip(stimulus, outputs[1:], strict=True):
+        rest, divisor, cell, odd = (inputs[f"before_{name}"] for name in ("rest", "divisor", "cell", "odd"))
+        fits = rest // (divisor << place)
+        expected = rest % (divisor << place), divisor, cell, fits if 8 << cell == 1 << place else odd
+        assert tuple(output[f"after_{name}"] for name in ("rest", "divisor", "cell", "odd")) == expected, repeat()
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        beam_config(screen="tiny", patterns=True, reflections=0),
+        beam_config(patterns=True, rows=180),
+        beam_config(screen="tiny", patterns=True, turn=True, reflections=2),
+    ],
+    ids=config_id,
+)
+def test_hit_cells(config, tmp_path):
+    """Points of all axes, many of them right at a cell's edge; what sees nothing is don't care."""
+    slope_bits, latency = exact_slope_bits(config), hit_cells_module.LATENCY
+    leaf = Leaf(
+        hit_cells,
+        lambda: {
+            "clk": bit(),
+            "fold": fold_of(config),
+            "nearest": candidate_of(config),
+            "winner": winner_of(config),
+            "slope": Direction(slope_bits + 1),
+            "camera": Point(),
+            "sight": Sight(index_bits(config)),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    entered = winner_latency(config)
+    stimulus, expected = [{} for _ in range(4000)], {}
+    camera = random.integers(100, 400, size=3).tolist()
+    stimulus[0] |= {f"camera_{axis}": value for axis, value in zip(AXES, camera, strict=True)}
+    cycle = entered
+    for table, chosen, _, slope, mirrors in beam_rays(random, config, 1200):
+        eye, turned = seen_from(camera, slope, mirrors)
+        for index in 8 * list(chosen):
+            axis, plane = int(table.axes[index]), any_place(random)
+            u, v = OTHER_AXES[axis]
+            if turned[u] and random.random() < 0.5:
+                t = Fraction(8 * int(random.integers(64)) - int(eye[u]), int(turned[u]))
+                plane = int(eye[axis] + int(turned[axis]) * t) if turned[axis] else plane
+            n, e = (plane - int(eye[axis])) * int(np.sign(turned[axis])), abs(int(turned[axis]))
+            if n <= 0 or not 0 <= plane < WORLD_SIZE:
+                continue
+            point = [Fraction(int(eye[c]) * e + int(turned[c]) * n, e) for c in (u, v)]
+            if not all(0 <= coordinate <= LAST for coordinate in point) or cycle + latency >= len(stimulus):
+                continue
+            cell, number = int(random.integers(6)), int(random.integers(config.rectangles))
+            parities = [int(coordinate // (8 << cell)) % 2 for coordinate in point]
+            fields = {"valid": 1, "numerator": n, "denominator": e, "axis": axis, "cell": cell}
+            stimulus[cycle] |= {f"nearest_{name}": value for name, value in fields.items()}
+            stimulus[cycle] |= {"winner_valid": 1, "winner_index": number}
+            stimulus[cycle - entered] |= {
+                f"fold_{name}": value for name, value in folded(config, camera, slope, mirrors).items()
+                if name.startswith(("turn", "back"))
+            }  # fmt: skip
+            stimulus[cycle + hit_cells_module.SLOPE_AT] |= direction_ports("slope", config, slope)
+            expected[cycle + latency] = *parities, number
+            cycle += 1
+    assert len(expected) > 400
+    outputs = leaf.run_both(stimulus, settled=entered + latency)
+    for cycle, values in expected.items():
+        output = outputs[cycle]
+        assert output["sight_valid"]
+        assert tuple(output[f"sight_{name}"] for name in ("odd_u", "odd_v", "index")) == values, (cycle, repeat())
 
 
 # The engine -----------------------------------------------------------------------------------------------------------
@@ -730,7 +1042,8 @@ def race(random: np.random.Generator, config: Configuration, slopes) -> tuple[np
     count, before_centre = config.rectangles, config.screen_geometry.centre_column - 1
     ends = int(random.integers(min(config.reflections + 1, count), size=2).max())
     by_mirror = ends > 0 and random.random() < 0.25
-    for _ in range(300):
+    # A camera that turns looks at more places from which a second mirror is out of reach.
+    for _ in range(5000):
         camera, table = random.integers(WORLD_SIZE, size=3), flat_tables(random, count)
         corners, order = table.corners.copy(), random.permutation(count)
         # The last column whose rays run down along y is the one that tells its sign from the next one's.
@@ -775,6 +1088,10 @@ def race(random: np.random.Generator, config: Configuration, slopes) -> tuple[np
         (beam_config(screen="tiny", rectangles=3, reflections=2, scale=1), 400),
         (beam_config(screen="tiny", rectangles=8, reflections=2), 12),
         (beam_config(rows=180, rectangles=5, reflections=1), 4),
+        (beam_config(screen="tiny", rectangles=3, reflections=2, scale=1, turn=True), 200),
+        (beam_config(screen="tiny", rectangles=3, reflections=1, scale=1, materials=True, patterns=True), 24),
+        (beam_config(screen="tiny", rectangles=8, reflections=2, turn=True, materials=True, patterns=True), 12),
+        (beam_config(screen="tiny", rectangles=2, reflections=0, scale=1, materials=True, patterns=True), 24),
     ],
     ids=config_id,
 )
@@ -787,8 +1104,8 @@ def test_beam_caster(config, lines, tmp_path):
             "reset": reset_signal(),
             "start_line": bit(),
             "next_column": bit(),
-            "row_slope": signed(exact_slope_bits(config) + 1),
-            "camera": Point(),
+            "row_slope": signed(factor_bits(config)),
+            "camera": camera_of(config),
             "picture": Picture(),
             "rects": Rects(config),
             "pixel": Pixel(config.colour_bits),
@@ -797,11 +1114,16 @@ def test_beam_caster(config, lines, tmp_path):
         tmp_path,
     )
     random = np.random.default_rng(seed())
-    slopes = primary_slopes(config.screen_geometry)
+    slopes, basis, horizon_row = primary_slopes(config.screen_geometry), UNTURNED, config.screen_geometry.horizon_row
+    # Of a camera that turns, the rectangles are set up twice.
+    sweeps = [AIM_LATENCY - 3, AIM_LATENCY - 4 + setup.LATENCY + config.rectangles] if config.turn else [0]
     # Until no column is on its way, whatever the registers started from.
     stimulus, expected, fates = [{"reset": 1}] * beam_latency(config), {}, set()
-    flat = [config.screen_geometry.horizon_row + slope for slope in (-3, -1, 1, 3)]
+    flat = [horizon_row + slope for slope in (-3, -1, 1, 3)]
     for number in range(lines):
+        if config.turn:
+            basis = random_basis(random)
+            slopes = primary_slopes(config.screen_geometry, basis)
         row = int(random.choice([0, len(slopes) - 1, *flat, *random.integers(len(slopes), size=4)]))
         if number % 8:
             camera, table, column = race(random, config, slopes[row])
@@ -810,9 +1132,12 @@ def test_beam_caster(config, lines, tmp_path):
         else:
             camera, table, background, reflections, _ = traced_scene(random, config, random.permutation(slopes[row]))
             line = slopes[row]
+        if config.materials:
+            table = random_looks(random, table)
         traced = exact.trace(table, camera, background, line, reflections)
         fates |= {tuple(int(winner[column] >= 0) for winner in traced.winners) for column in range(len(line))}
-        held = {f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)}
+        vectors = np.concatenate([camera, *(basis if config.turn else ())]).tolist()
+        held = {f"camera_{name}": value for name, value in zip(camera_of(config).layout, vectors, strict=True)}
         held |= {"reset": 0, "start_line": 0, "next_column": 0, "picture_reflections": reflections}
         held["picture_background"] = int.from_bytes(bytes(background.astype(np.uint8)))
         held["rects_usable"] = sum(1 << int(index) for index in np.flatnonzero(table.visible))
@@ -822,11 +1147,11 @@ def test_beam_caster(config, lines, tmp_path):
             stimulus += [{**held, "start_line": 1}, *[held] * begun, {**held, "reset": 1}]
             stimulus += [held] * beam_latency(config)
         stimulus += [{**held, "start_line": 1}, held, held]
-        held["row_slope"] = word(slopes[row, 0, 2], exact_slope_bits(config) + 1)
-        for index in range(config.rectangles):
-            rect = sorted_rect(table, index, "rects_rect") if table.visible[index] else {}
+        held["row_slope"] = word(horizon_row - row, factor_bits(config))
+        given = {sweep + 3 + index: index for sweep in sweeps for index in np.flatnonzero(table.visible)}
+        for cycle in range(3, start_cycles(config) + int(random.integers(4))):
+            rect = sorted_rect(table, given[cycle], "rects_rect", config) if cycle in given else {}
             stimulus.append({**held, **rect})
-        stimulus += [held] * (setup.LATENCY - 3 + int(random.integers(4)))
         for colour in traced.colours:
             stimulus += [held] * int(random.random() < 0.5 * (config.scale == 1 and number % 8 == 0))
             expected[len(stimulus) + beam_latency(config)] = (

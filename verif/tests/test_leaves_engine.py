@@ -10,15 +10,17 @@ from unittest import mock
 import numpy as np
 import pytest
 from fates import control_leaf, group_fate_in, mask_of, may_hit_mask, random_fate
-from hard_scenes import edged, pixel_of, pixel_word, rectangles_in_view, traced_scene, tracer
+from hard_scenes import edged, pixel_of, pixel_word, rectangles_in_view, traced_scene, tracer, with_looks
 
 from raycaster.configuration import WORLD_SIZE, Configuration, configure
 from raycaster.golden import engines, seed_engine
+from raycaster.golden.random_world import random_basis
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
+from raycaster.program import basis_fields
 from raycaster.registers import register_map
 from raycaster.rtl.common.interfaces import Picture, Place, Progress, RayFate, Rects, Steps, Vga
-from raycaster.rtl.common.records import Pixel, Point, Rect
+from raycaster.rtl.common.records import Pixel, Point, camera_of, rect_of
 from raycaster.rtl.common.widths import bit, pixel_bits, unit_bits, unsigned
 from raycaster.rtl.cull.group_culler import LATENCY
 from raycaster.rtl.engine.engines import block_named
@@ -31,7 +33,7 @@ from raycaster.rtl.system.ray_caster_module import ray_caster_module
 from raycaster.rtl.system.ray_caster_system import ray_caster_system
 from raycaster.rtl.system.reset_release import HOLD_CYCLES
 from raycaster.rtl.system.scene_player import BUTTONS
-from raycaster.scene import Camera, Rectangle, Scene
+from raycaster.scene import UNTURNED, Basis, Camera, Rectangle, Scene
 from raycaster.screens import BEAM_SCREENS, SCREENS, Screen, Span
 from raycaster.sim.register_model import RegisterFile, Request
 from raycaster.verif.leaf import Leaf, TraceCycle, reset_signal, slot_length, sorted_rect, trace_cycles
@@ -47,6 +49,9 @@ SMALL_SCREEN = Screen(
     vertical=Span(8, 1, 2, 2, active_high=True),
 )
 """Small enough that MyHDL's simulator shows a whole frame in seconds."""
+
+LONG_BLANKING = replace(SMALL_SCREEN, horizontal=Span(32, 8, 24, 44, active_high=False))
+"""In which a beam engine whose camera turns sets up a line."""
 
 
 def config_id(config: Configuration) -> str:
@@ -167,28 +172,31 @@ def test_ray_control(config, tmp_path):
             held_by_memory = output["rects_index"]
 
 
-def fate_of(golden) -> dict[str, Any]:
+def fate_of(config: Configuration, golden, table: Rectangles) -> dict[str, Any]:
     """What the control is told of a group that golden has traced: the keyword arguments of `trace_cycles`."""
+    if not (config.culling or config.materials):
+        return {}
     behind = {
         (number, index)
         for number, bounce in enumerate(golden.bounces)
         for index in range(len(bounce.numerators))
         if not np.any(bounce.alive & (bounce.numerators[index] * bounce.denominators[index] > 0))
     }
-    missed = np.logical_or.accumulate(np.array(golden.winners) < 0)
-    return {"behind": behind, "lost": next(iter(np.flatnonzero(missed.all(axis=1))), None)}
+    winners = np.array(golden.winners)
+    ended = np.logical_or.accumulate((winners < 0) | (table.mirrors[winners] == 0))
+    return {"behind": behind, "lost": next(iter(np.flatnonzero(ended.all(axis=1))), None)}
 
 
 # ray_unit ------------------------------------------------------------------------------------------------------------
 
 
-def rects_shown(cycle, table: Rectangles) -> dict[str, int]:
+def rects_shown(config: Configuration, cycle, table: Rectangles) -> dict[str, int]:
     """What the control and the memory show all units in a cycle."""
     inputs = {}
     if cycle.current is not None:
-        inputs |= sorted_rect(table, cycle.current, "rect")
+        inputs |= sorted_rect(table, cycle.current, "rect", config)
     if cycle.offered is not None:
-        inputs |= sorted_rect(table, cycle.offered, "offered")
+        inputs |= sorted_rect(table, cycle.offered, "offered", config)
     return inputs
 
 
@@ -211,8 +219,8 @@ def ray_unit_leaf(config: Configuration, directory) -> Leaf:
             "place": Place(config),
             "column_base": unsigned(unit_bits(config)),
             "camera": Point(),
-            "rect": Rect(),
-            "offered": Rect(),
+            "rect": rect_of(config),
+            "offered": rect_of(config),
             "picture": Picture(),
             "pixel": Pixel(config.colour_bits),
             "fate": RayFate(),
@@ -238,18 +246,20 @@ def check_ray_unit(leaf: Leaf, config: Configuration, rays: int = 24) -> None:
         if len(results) >= rays and fate in fates:
             continue
         fates.add(fate)
+        # With materials, the steps say which ray is the last.
+        picture = {"picture_background": colour_word(background)}
+        picture |= {} if config.materials else {"picture_reflections": reflections}
         held = {
             "place_row": row,
             "place_column_offset": column // config.units,
             "column_base": column % config.units,
-            "picture_background": colour_word(background),
-            "picture_reflections": reflections,
+            **picture,
             **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
         }
-        fated = fate_of(golden) if config.culling else {}
+        fated = fate_of(config, golden, table)
         for cycle in trace_cycles(config, visible_indices(table), reflections, **fated):
-            inputs = {**held, **cycle.steps, **rects_shown(cycle, table)}
-            if config.culling:
+            inputs = {**held, **cycle.steps, **rects_shown(config, cycle, table)}
+            if config.culling or config.materials:
                 told.append((len(stimulus), cycle.towards, cycle.alive))
             if not cycle.steps["steps_screen_to_ray"] and not cycle.steps["steps_find_intersection"]:
                 inputs |= unrelated_inputs(random, config)
@@ -257,7 +267,7 @@ def check_ray_unit(leaf: Leaf, config: Configuration, rays: int = 24) -> None:
         case = f"row {row}, column {column}, camera {camera}, corners {table.corners.tolist()}; {repeat()}"
         results.append((len(stimulus), pixel_word(config, golden.colours[0]), case))
         # done: the pixel stands, whatever comes.
-        stimulus.append({**held, **dict.fromkeys(stimulus[-1], 0), "picture_reflections": reflections})
+        stimulus.append({**held, **dict.fromkeys(stimulus[-1], 0), **picture})
     outputs = leaf.run_both(stimulus, settled=results[0][0])
     for cycle, pixel, case in results:
         assert pixel_of(config, outputs[cycle]) == pixel, case
@@ -280,7 +290,14 @@ def check_ray_unit(leaf: Leaf, config: Configuration, rays: int = 24) -> None:
             ("tiny", 16, 8, 2, 8, "nearest", 2, 8), ("vga", 40, 8, 2, 8, "truncate", 3, 8),
         )
     ]
-    + [any_config(units=16, rectangles=8, reflections=2, culling=False)],
+    + [any_config(units=16, rectangles=8, reflections=2, culling=False)]
+    + [
+        any_config(units=units, rectangles=8, reflections=reflections, fraction_bits=bits, **options)
+        for units, reflections, bits, options in (
+            (16, 1, 0, {"materials": True}), (32, 2, 3, {"materials": True, "patterns": True}),
+            (64, 1, 8, {"patterns": True}), (16, 2, 0, {"materials": True, "patterns": True, "culling": False}),
+        )
+    ],
     ids=config_id,
 )  # fmt: skip
 def test_ray_unit(config, tmp_path):
@@ -339,6 +356,10 @@ def remembered(config: Configuration, cycles: list[TraceCycle], usable: list[int
         any_config(engine="exact", units=5, rectangles=7, reflections=0, colour_bits=4),
         any_config(units=4, rectangles=6, reflections=2, divider_bits=1, culling=False),
         any_config(engine="exact", units=4, rectangles=6, reflections=2, culling=True),
+        any_config(units=2, rectangles=6, reflections=2, divider_bits=3, materials=True, patterns=True),
+        any_config(units=4, rectangles=5, reflections=2, divider_bits=3, materials=True, culling=False),
+        any_config(engine="exact", units=2, rectangles=6, reflections=2, materials=True),
+        any_config(engine="exact", units=4, rectangles=6, reflections=1, turn=True, culling=True),
     ],
     ids=config_id,
 )
@@ -354,7 +375,7 @@ def test_ray_caster(config, tmp_path):
             "reset_ray_caster": bit(),
             "enable": bit(),
             "place": Place(config),
-            "camera": Point(),
+            "camera": camera_of(config),
             "picture": Picture(),
             "rects": Rects(config),
             "done": bit(),
@@ -364,10 +385,12 @@ def test_ray_caster(config, tmp_path):
         tmp_path,
     )
     random = np.random.default_rng(seed())
-    groups = primary_slopes(config.screen_geometry)[:, : config.groups * config.units]
-    groups = groups.reshape(len(groups), config.groups, config.units, 3)
+    predicts = config.culling and not config.turn
     stimulus, results, shown, culled = [], [], {}, 0
     for _ in range((160 if config.engine == "exact" else 80) if config.units == 1 else 12):
+        basis = random_basis(random) if config.turn else UNTURNED
+        groups = primary_slopes(config.screen_geometry, basis)
+        groups = groups.reshape(len(groups), config.groups, config.units, 3)
         last = int(random.integers(1, len(groups))), int(random.integers(config.groups))
         camera, table, background, reflections, _ = traced_scene(random, config, groups[last])
         trace = tracer(config, camera=camera, background=background, reflections=reflections)
@@ -378,13 +401,16 @@ def test_ray_caster(config, tmp_path):
             "rects_usable": usable_mask(table),
             **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
         }
-        rects = {index: sorted_rect(table, index, "rects_rect") for index in usable}
+        if config.turn:
+            for name, vector in zip(("forward", "right", "up"), basis, strict=True):
+                scene |= {f"camera_{name}_{axis}": part for axis, part in zip(AXES, vector, strict=True)}
+        rects = {index: sorted_rect(table, index, "rects_rect", config) for index in usable}
         following, at_hand = None, 0
         places = [*places_before(random, config, last), last] if config.culling else [last]
         for place in places:
             golden = trace(table, slopes=groups[place])
-            fate = fate_of(golden) if config.culling else {}
-            if place == following:
+            fate = fate_of(config, golden, table)
+            if predicts and place == following:
                 mask = may_hit_mask(config, table, camera, *place)
                 fate["may_hit"] = [index for index in usable if mask >> index & 1]
                 culled += len(usable) - len(fate["may_hit"])
@@ -421,7 +447,7 @@ def test_ray_caster(config, tmp_path):
     for cycle, index in shown.items():
         before = next(past for past in range(cycle - 1, -1, -1) if outputs[past]["rects_fetch"])
         assert outputs[before]["rects_index"] == index, f"cycle {cycle}: it fetched another rectangle; {repeat()}"
-    assert bool(culled) == config.culling, "some groups were to be culled"
+    assert bool(culled) == predicts, "some groups were to be culled"
 
 
 # The picture ---------------------------------------------------------------------------------------------------------
@@ -644,7 +670,7 @@ class Bus:
     """Writes the stimulus of a bus master, and remembers when the answer to each read comes."""
 
     def __init__(self, config: Configuration):
-        self.registers = register_map(config.rectangles)
+        self.config, self.registers = config, register_map(config.rectangles)
         self.stimulus: list[dict[str, int]] = []
         self.reads: dict[str, int] = {}
         self._idle = {"avs_s0_write": 0, "avs_s0_read": 0}
@@ -666,16 +692,26 @@ class Bus:
         self.reads[name] = len(self.stimulus) + 2
         self.stimulus.append({**self._idle, "avs_s0_address": self.registers[name].address, "avs_s0_read": 1})
 
-    def write_scene(self, camera, background, reflections: int, table: Rectangles, run: bool = True) -> None:
+    def write_scene(
+        self, camera, background, reflections: int, table: Rectangles, run: bool = True, basis: Basis = UNTURNED
+    ) -> None:
         self.write("camera", **dict(zip(AXES, camera, strict=True)))
+        if self.config.turn:
+            for name, fields in basis_fields(basis):
+                self.write(name, **fields)
         self.write("background", **dict(zip(("red", "green", "blue"), background, strict=True)))
         for index, (corners, colour, enabled) in enumerate(
             zip(table.corners, table.colours, table.enabled, strict=True)
         ):
             for number, corner in enumerate(corners):
                 self.write(f"rectangle[{index}].corner_{number}", **dict(zip(AXES, corner, strict=True)))
-            channels = dict(zip(("red", "green", "blue"), colour, strict=True))
-            self.write(f"rectangle[{index}].surface", enable=enabled, **channels)
+            channels, channels_2 = (
+                dict(zip(("red", "green", "blue"), one, strict=True)) for one in (colour, table.colours_2[index])
+            )
+            if self.config.patterns:
+                cell = int(table.cells[index]).bit_length() - 4
+                self.write(f"rectangle[{index}].pattern", kind=table.kinds[index], cell=cell, **channels_2)
+            self.write(f"rectangle[{index}].surface", enable=enabled, mirror=table.mirrors[index], **channels)
         self.write("control", run=run, commit=1, reflections=reflections)
 
 
@@ -705,6 +741,11 @@ def check_bus(config: Configuration, stimulus: list[dict[str, int]], outputs: li
         small_config(units=2, rectangles=5, reflections=0, divider_bits=3, colour_bits=6),
         small_config(engine="beam", rectangles=3, reflections=1, scale=1),
         small_config(engine="beam", rectangles=2, reflections=2, scale=2, colour_bits=4),
+        small_config(units=4, rectangles=3, reflections=1, materials=True, patterns=True),
+        small_config(engine="exact", units=4, rectangles=3, reflections=2, turn=True, materials=True, patterns=True),
+        small_config(
+            LONG_BLANKING, engine="beam", rectangles=2, reflections=1, scale=1, turn=True, materials=True, patterns=True
+        ),
     ],
     ids=config_id,
 )
@@ -712,7 +753,6 @@ def test_ray_caster_module(config, tmp_path):
     """Two scenes over the bus, one shown after the other; each output of each cycle, and each pixel."""
     random = np.random.default_rng(seed())
     screen = config.screen_geometry
-    slopes = primary_slopes(screen).reshape(-1, 3)
     bus = Bus(config)
     pictures = []
     bus.wait(2, reset=1)
@@ -721,7 +761,9 @@ def test_ray_caster_module(config, tmp_path):
         # Most of what is random cannot be told from a wall.
         for _ in range(1000):
             camera = random.integers(WORLD_SIZE, size=3) // [2, 1, 1]
-            table = rectangles_in_view(random, camera, slopes, config.rectangles)
+            basis = random_basis(random) if config.turn else UNTURNED
+            slopes = primary_slopes(screen, basis).reshape(-1, 3)
+            table = with_looks(random, config, rectangles_in_view(random, camera, slopes, config.rectangles))
             background = random.integers(256, size=3)
             colours = engines.trace(config, table, camera, background, slopes, config.reflections).colours
             if len(np.unique(colours, axis=0)) > min(config.rectangles, 3):
@@ -729,7 +771,7 @@ def test_ray_caster_module(config, tmp_path):
         else:
             raise AssertionError(f"no scene shows more than {min(config.rectangles, 3)} colours; {repeat()}")
         pictures.append(golden_words(config, colours))
-        bus.write_scene(camera, background, config.reflections, table)
+        bus.write_scene(camera, background, config.reflections, table, basis=basis)
         # To the cycle after the next StartScreen.
         so_far = len(bus.stimulus) - 2 - start_screen_cycle(screen) - 1
         bus.wait(-so_far % screen.frame_cycles)

@@ -2,29 +2,47 @@
 """The exact engine's blocks: MyHDL's simulator, the converted Verilog and exact arithmetic on one set of vectors."""
 
 from fractions import Fraction
-from itertools import pairwise
+from itertools import pairwise, product
+from math import gcd
 
 import numpy as np
 import pytest
 from fates import control_leaf, group_fate_in, mask_of, random_fate
 from hard_scenes import pixel_of, pixel_word, rivalled, sharpened, traced_scene, tracer, verdict
 
-from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
-from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
+from raycaster.configuration import GROUP_OVERHEAD, WORLD_SIZE, Configuration, ConfigurationError, configure
+from raycaster.golden.random_world import EXTREMES, random_basis, random_camera, random_looks, random_rectangles
 from raycaster.golden.rays import primary_slopes
-from raycaster.golden.world import Rectangles
+from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.common.interfaces import Eye, Picture, Place, RayFate, Slope, Steps
-from raycaster.rtl.common.records import Mirror, Pixel, Point, Rect, Signs, Surface
+from raycaster.rtl.common.records import (
+    Look,
+    Pixel,
+    Point,
+    Rect,
+    Signs,
+    Surface,
+    camera_of,
+    mirror_of,
+    rect_of,
+    surface_of,
+)
 from raycaster.rtl.common.widths import (
+    RGB_BITS,
     bit,
     exact_slope_bits,
     eye_bits,
     index_bits,
+    signed,
     unit_bits,
     unsigned,
 )
+from raycaster.rtl.engine.pattern_colour import pattern_colour
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
 from raycaster.rtl.engine.rect_sequencer import rect_sequencer
+from raycaster.rtl.engine.slope_component import slope_component
+from raycaster.rtl.engine.turned_generator import turned_generator
+from raycaster.rtl.exact.cell_finder import cell_finder
 from raycaster.rtl.exact.exact_control import exact_control
 from raycaster.rtl.exact.exact_unit import exact_unit
 from raycaster.rtl.exact.eye_register import eye_register
@@ -47,6 +65,7 @@ def exact_config(**options) -> Configuration:
     return configure(engine="exact", **{"allow_underrun": True} | options)
 
 
+by_turn = pytest.mark.parametrize("turn", [False, True])
 by_reflections = pytest.mark.parametrize("reflections", [0, 1, 2])
 
 
@@ -54,9 +73,9 @@ def two_complement(values, bits: int, prefix: str) -> dict[str, int]:
     return {f"{prefix}_{axis}": int(value) % (1 << bits) for axis, value in zip(AXES, values, strict=True)}
 
 
-def slope_inputs(slope) -> dict[str, int]:
+def slope_inputs(slope, which: str = "") -> dict[str, int]:
     inputs = {f"slope_d{axis}": abs(int(value)) for axis, value in zip(AXES, slope, strict=True)}
-    return inputs | {f"signs_d{axis}": int(value < 0) for axis, value in zip(AXES, slope, strict=True)}
+    return inputs | {f"{which}signs_d{axis}": int(value < 0) for axis, value in zip(AXES, slope, strict=True)}
 
 
 # The configuration ----------------------------------------------------------------------------------------------------
@@ -71,12 +90,25 @@ def slope_inputs(slope) -> dict[str, int]:
         ({"rectangles": 32}, 8, 76),
         ({"screen": "tiny"}, 4, 36),
         ({"units": 16}, 16, 36),
+        ({"patterns": True}, 5, 48),
+        ({"patterns": True, "reflections": 0}, 4, 26),
+        ({"patterns": True, "reflections": 2}, 8, 70),
     ],
 )
 def test_as_few_units_as_meet_the_row_budget(options, units, cycles):
     config = configure(engine="exact", **options)
     assert (config.units, config.group_cycles) == (units, cycles)
     assert config.groups * config.group_cycles < config.screen_geometry.row_cycles
+
+
+@pytest.mark.parametrize("reflections", [1, 2])
+def test_a_room_that_does_not_mirror_takes_fewer_cycles(reflections):
+    """As test_controls holds the control to these cycles: at most 60 % of those of a room of mirrors."""
+    config = configure(engine="exact", reflections=reflections, materials=True)
+    every = range(config.rectangles)
+    matte, mirrors = (len(trace_cycles(config, every, reflections, lost=lost)) + 3 for lost in (0, None))
+    assert mirrors == config.group_cycles
+    assert matte == config.rectangles + config.facts.result_latency + reflections + GROUP_OVERHEAD <= 0.6 * mirrors
 
 
 @pytest.mark.parametrize(
@@ -97,6 +129,98 @@ def test_what_an_engine_without_quotients_has_not(options, complaint):
         configure(engine="exact", **options)
 
 
+# turned_generator -----------------------------------------------------------------------------------------------------
+
+
+def basis_inputs(basis) -> dict[str, int]:
+    inputs = {}
+    for vector, components in zip(("forward", "right", "up"), basis, strict=True):
+        inputs |= two_complement(components, 10, f"camera_{vector}")
+    return inputs
+
+
+def test_slope_component(tmp_path):
+    config = exact_config(turn=True, units=8)
+    screen = config.screen_geometry
+    leaf = Leaf(
+        slope_component,
+        lambda: {
+            "clk": bit(),
+            "steps": Steps(),
+            **{name: signed(10) for name in ("forward", "right", "up", "column", "row")},
+            "column_base": unsigned(unit_bits(config)),
+            "size": unsigned(exact_slope_bits(config)),
+            "negative": bit(),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    stimulus, expected, component = [], [], 0
+    for _ in range(1000):
+        forward, right, up = (int(value) for value in random_basis(random)[0])
+        column = int(random.choice([0, screen.columns - config.units, random.integers(screen.columns)]))
+        row = int(random.choice([0, screen.rows - 1, random.integers(screen.rows)]))
+        given = {"column": column - screen.centre_column, "row": screen.horizon_row - row}
+        given |= {"column_base": int(random.integers(config.units)), "forward": forward, "right": right, "up": up}
+        load = int(not stimulus or random.random() < 0.8)
+        for strobe in (0, load):
+            stimulus.append({**given, "steps_screen_to_ray": strobe})
+            expected.append(component)
+        if load:
+            across = given["column"] + given["column_base"]
+            component = screen.view_distance * forward + across * right + given["row"] * up
+    outputs = leaf.run_both([*stimulus, {"steps_screen_to_ray": 0}], settled=2)
+    for cycle, wanted in enumerate([*expected, component]):
+        if cycle >= 2:
+            assert (outputs[cycle]["size"], outputs[cycle]["negative"]) == (abs(wanted), int(wanted < 0)), repeat()
+
+
+@pytest.mark.parametrize(
+    "config",
+    [exact_config(turn=True, units=units, screen=screen) for units, screen in ((4, "vga"), (5, "vga"), (2, "tiny"))],
+    ids=config_id,
+)
+def test_turned_generator(config, tmp_path):
+    """Place and camera come a cycle before the ray is loaded; one that is not loaded changes nothing."""
+    leaf = Leaf(
+        turned_generator,
+        lambda: {
+            "clk": bit(),
+            "steps": Steps(),
+            "place": Place(config),
+            "column_base": unsigned(unit_bits(config)),
+            "camera": camera_of(config),
+            "initial_signs": Signs(),
+            "slope": Slope(exact_slope_bits(config)),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    screen = config.screen_geometry
+    stimulus, expected, slope = [], [], None
+    for number in range(500):
+        basis = random_basis(random)
+        row = int(random.choice([0, screen.horizon_row, screen.rows - 1, random.integers(screen.rows)]))
+        column = int(random.choice([0, screen.centre_column, screen.columns - 1, random.integers(screen.columns)]))
+        load = int(number == 0 or random.random() < 0.8)
+        held = {"place_row": row, "place_column_offset": column // config.units, "column_base": column % config.units}
+        held |= basis_inputs(basis)
+        for strobe in (0, load):
+            stimulus.append({**held, "steps_screen_to_ray": strobe})
+            expected.append(slope)
+        if load:
+            place = [screen.view_distance, column - screen.centre_column, screen.horizon_row - row]
+            slope = np.array(place) @ np.array(basis)
+    # The counters rest one past their last value; nothing there may overflow.
+    stimulus.append({**held, "place_row": screen.rows, "place_column_offset": config.groups})
+    expected.append(slope)
+    outputs = leaf.run_both(stimulus, settled=2)
+    for cycle, wanted in enumerate(expected):
+        assert wanted is None or outputs[cycle] == slope_inputs(wanted, "initial_"), (stimulus[cycle - 1], repeat())
+
+
 # rect_tester ----------------------------------------------------------------------------------------------------------
 
 
@@ -110,13 +234,20 @@ def leaf_of_tester(config: Configuration, directory) -> Leaf:
             "eye": Eye(eye_bits(config)),
             "signs": Signs(),
             "slope": Slope(exact_slope_bits(config)),
-            "mirror": Mirror(),
+            "mirror": mirror_of(config),
             "hit": bit(),
+            "at_mirror": bit() if config.reflections > 1 else None,
             "numerator": unsigned(eye_bits(config) - 1),
             "denominator": unsigned(exact_slope_bits(config)),
         },
         directory,
     )
+
+
+def mirror_time(eye, slope, mirror) -> Fraction:
+    """t of the mirror that the ray left last."""
+    axis, position = mirror
+    return Fraction(int(position - eye[axis]), int(slope[axis]))
 
 
 def mirrored_rays(random: np.random.Generator, config: Configuration, count: int):
@@ -137,7 +268,10 @@ def mirrored_rays(random: np.random.Generator, config: Configuration, count: int
             if mirror is not None and random.random() < 0.5:
                 # From corner to corner the image runs as far away as it can.
                 axis, plane = mirror[0], LAST - mirror[1]
-            eye[axis], slope[axis], mirror = 2 * plane - eye[axis], -slope[axis], (axis, plane)
+            if plane != eye[axis]:
+                # A mirror is ahead of the eye, whichever image it is.
+                slope[axis] = abs(slope[axis]) * (1 if eye[axis] < plane else -1)
+                eye[axis], slope[axis], mirror = 2 * plane - eye[axis], -slope[axis], (axis, plane)
         chosen = random.choice(np.flatnonzero(table.visible), 4)
         for index in chosen:
             table = sharpened(random, table, int(index), eye, slope, mirror)
@@ -145,46 +279,61 @@ def mirrored_rays(random: np.random.Generator, config: Configuration, count: int
         yield table, set(chosen.tolist()), eye, slope, mirror
 
 
+@by_turn
 @by_reflections
-def test_rect_tester(reflections, tmp_path):
-    config = exact_config(reflections=reflections)
+def test_rect_tester(reflections, turn, tmp_path):
+    """The hit and its t; after two mirrors in one point, what is hit in that point, and that it was there."""
+    config = exact_config(reflections=reflections, turn=turn)
     leaf = leaf_of_tester(config, tmp_path)
     random = np.random.default_rng(seed())
-    stimulus, expected = [], []
-    for table, chosen, eye, slope, mirror in mirrored_rays(random, config, 5000):
+    stimulus, expected, distance = [], [], 0
+    for table, chosen, eye, slope, mirror in mirrored_rays(random, config, 1000):
+        met = {mirror[0]} if mirror else set()
+        if mirror and reflections > 1 and random.random() < 0.5:
+            met |= set(random.choice(3, int(random.integers(3))).tolist())
+        mask = {f"mirror_met_{axis}": int(place in met) for place, axis in enumerate(AXES)}
         for index in chosen:
             started = int(not stimulus or random.random() < 0.9)
             stimulus.append(
                 {
                     **sorted_rect(table, index, "rect"), **two_complement(eye, eye_bits(config), "eye"),
+                    **{name: value for name, value in mask.items() if name in leaf.given},
                     **slope_inputs(slope), "mirror_active": int(mirror is not None),
                     "mirror_axis": mirror[0] if mirror else int(random.integers(3)),
-                    "mirror_position": mirror[1] if mirror else int(random.integers(WORLD_SIZE)),
-                    "steps_find_intersection": started,
+                    "mirror_distance": distance, "steps_find_intersection": started,
                 }
             )  # fmt: skip
-            expected.append(verdict(table, index, eye, slope, mirror) if started else None)
-    seen = set()
-    outputs = leaf.run_both([*stimulus, *[{"steps_find_intersection": 0}] * LATENCY], settled=LATENCY)
+            # It is read a cycle after all else.
+            distance = abs(int(mirror[1] - eye[mirror[0]])) if mirror else int(random.integers(WORLD_SIZE))
+            hit, n, e = verdict(table, index, eye, slope, mirror, met)
+            meets = hit and mirror is not None and Fraction(n, e) == mirror_time(eye, slope, mirror)
+            expected.append((hit, n, e, meets) if started else None)
+    seen, corners = set(), set()
+    stimulus += [{"mirror_distance": distance, "steps_find_intersection": 0}] * LATENCY
+    outputs = leaf.run_both(stimulus, settled=LATENCY)
     for cycle, wanted in enumerate(expected):
         if wanted is None:
             continue
         output = outputs[cycle + LATENCY]
         assert bool(output["hit"]) == wanted[0], (stimulus[cycle], repeat())
         if wanted[0]:
-            assert (output["numerator"], output["denominator"]) == wanted[1:], (stimulus[cycle], repeat())
+            assert (output["numerator"], output["denominator"]) == wanted[1:3], (stimulus[cycle], repeat())
+            assert reflections < 2 or bool(output["at_mirror"]) == wanted[3], (stimulus[cycle], repeat())
+        corners.add(wanted[3])
         seen.add((wanted[0], stimulus[cycle]["rect_axis"], stimulus[cycle]["mirror_active"]))
     assert len(seen) == (12 if reflections else 6), "hits and misses on each axis, with a mirror and without"
+    assert corners == {False, reflections > 0}, "hits in the mirror's plane and beyond it"
 
 
+@by_turn
 @by_reflections
-def test_the_widths_are_just_wide_enough(reflections, tmp_path):
+def test_the_widths_are_just_wide_enough(reflections, turn, tmp_path):
     """The furthest image of a camera, its greatest products, and a bit that each of them needs."""
-    config = exact_config(reflections=reflections)
+    config = exact_config(reflections=reflections, turn=turn)
     far = LAST * (reflections + 1)
     assert eye_bits(config) == far.bit_length() + 1
-    greatest = far * 190
-    assert greatest.bit_length() == (17, 18, 19)[reflections]
+    greatest = far * (450 * 512 if turn else 190)
+    assert greatest.bit_length() == (27, 28, 29)[reflections] if turn else (17, 18, 19)[reflections]
     leaf = leaf_of_tester(config, tmp_path)
     steepest = (1 << exact_slope_bits(config)) - 1
     corners = np.array([[[0, 0, 0], [0, LAST, LAST]], [[0, 0, 0], [LAST, 0, LAST]], [[0, 0, LAST], [LAST, LAST, LAST]]])
@@ -214,10 +363,12 @@ def test_the_widths_are_just_wide_enough(reflections, tmp_path):
 # nearest_hit ----------------------------------------------------------------------------------------------------------
 
 
+@by_turn
 @by_reflections
-def test_nearest_hit(reflections, tmp_path):
-    config = exact_config(reflections=reflections)
+def test_nearest_hit(reflections, turn, tmp_path):
+    config = exact_config(reflections=reflections, turn=turn)
     numerator_bits, denominator_bits = eye_bits(config) - 1, exact_slope_bits(config)
+    corners = reflections > 1
     leaf = Leaf(
         nearest_hit,
         lambda: {
@@ -225,10 +376,14 @@ def test_nearest_hit(reflections, tmp_path):
             "steps": Steps(),
             "offered": Surface(),
             "hit": bit(),
+            "at_mirror": bit() if corners else None,
             "numerator": unsigned(numerator_bits),
             "denominator": unsigned(denominator_bits),
             "found": bit(),
             "found_surface": Surface(),
+            "found_distance": unsigned(numerator_bits),
+            "found_slope": unsigned(denominator_bits),
+            "found_at_mirror": bit() if corners else None,
         },
         tmp_path,
     )
@@ -261,20 +416,25 @@ def test_nearest_hit(reflections, tmp_path):
             {
                 "steps_reset_z_buf": reset, "steps_write_z_buf": write, "hit": hit, "numerator": n, "denominator": e,
                 **{f"offered_{name}": value for name, value in offered.items()},
+                **({"at_mirror": int(random.integers(2))} if corners else {}),
             }
         )  # fmt: skip
         expected.append((best is not None, surface))
         if reset:
             best = None
         elif write and hit and (best is None or Fraction(n, e) < best):
-            best, surface = Fraction(n, e), offered
+            best = Fraction(n, e)
+            surface = {f"surface_{name}": value for name, value in offered.items()}
+            surface |= {"distance": n, "slope": e} | {
+                name: value for name, value in stimulus[-1].items() if name == "at_mirror"
+            }
             settled = settled or len(stimulus)
     outputs = leaf.run_both(stimulus, settled=settled)
     for cycle, wanted in enumerate(expected):
         if wanted is not None:
             assert bool(outputs[cycle]["found"]) == wanted[0], (cycle, repeat())
             if wanted[0]:
-                assert {name: outputs[cycle][f"found_surface_{name}"] for name in wanted[1]} == wanted[1], repeat()
+                assert {name: outputs[cycle][f"found_{name}"] for name in wanted[1]} == wanted[1], repeat()
 
 
 # eye_register ---------------------------------------------------------------------------------------------------------
@@ -291,9 +451,11 @@ def test_eye_register(reflections, tmp_path):
             "camera": Point(),
             "initial_signs": Signs(),
             "found_surface": Surface(),
+            "found_distance": unsigned(eye_bits(config) - 1),
+            "found_at_mirror": bit() if reflections > 1 else None,
             "eye": Eye(eye_bits(config)),
             "signs": Signs(),
-            "mirror": Mirror(),
+            "mirror": mirror_of(config),
         },
         tmp_path,
     )
@@ -306,6 +468,7 @@ def test_eye_register(reflections, tmp_path):
         stimulus.append({**two_complement(camera, 9, "camera"), "steps_screen_to_ray": 1, "steps_store_ray": 0})
         expected.append(None)
         eye, signs, mirror = [int(value) for value in camera], [bool(value) for value in initial], None
+        met, distance = set(), 0
         for bounce in range(reflections + 1):
             for _ in range(int(random.integers(1, 3))):
                 axis, plane = int(random.integers(3)), int(random.choice([0, LAST, random.integers(WORLD_SIZE)]))
@@ -313,24 +476,31 @@ def test_eye_register(reflections, tmp_path):
                     # From corner to corner the image runs as far away as it can.
                     axis, plane = mirror[0], LAST - mirror[1]
                 surface = {"found_surface_axis": axis, "found_surface_position": plane}
+                surface |= {"found_distance": abs(plane - eye[axis])}
                 noise = two_complement(random.integers(WORLD_SIZE, size=3), 9, "camera")
                 stimulus.append({**noise, **sight, **surface, "steps_screen_to_ray": 0, "steps_store_ray": 0})
-                expected.append((list(eye), list(signs), mirror))
+                if reflections > 1:
+                    stimulus[-1]["found_at_mirror"] = int(random.integers(2))
+                expected.append((list(eye), list(signs), mirror and (mirror[0], distance), set(met)))
             if bounce < reflections:
                 stimulus[-1]["steps_store_ray"] = 1
                 eye[axis], signs[axis], mirror = 2 * plane - eye[axis], not signs[axis], (axis, plane)
+                distance = abs(plane - eye[axis])
+                met = met | {axis} if stimulus[-1].get("found_at_mirror") else {axis}
     outputs = leaf.run_both(stimulus, settled=2)
     bits = eye_bits(config)
     for cycle, wanted in enumerate(expected):
         if wanted is None:
             continue
-        eye, signs, mirror = wanted
+        eye, signs, mirror, met = wanted
         output = outputs[cycle]
         assert {name: output[name] for name in two_complement(eye, bits, "eye")} == two_complement(eye, bits, "eye")
         assert [bool(output[f"signs_d{axis}"]) for axis in AXES] == signs, repeat()
         assert bool(output["mirror_active"]) == (mirror is not None), repeat()
         if mirror is not None:
-            assert (output["mirror_axis"], output["mirror_position"]) == mirror, repeat()
+            assert (output["mirror_axis"], output["mirror_distance"]) == mirror, repeat()
+        if reflections > 1:
+            assert {place for place, axis in enumerate(AXES) if output[f"mirror_met_{axis}"]} == met, repeat()
 
 
 # rect_sequencer, ray_sequencer, exact_control -------------------------------------------------------------------------
@@ -411,6 +581,8 @@ def seed_config(**options) -> Configuration:
             (exact_control, exact_config(rectangles=n, reflections=r))
             for n, r in ((1, 0), (1, 2), (3, 2), (12, 2), (32, 0))
         ),
+        (exact_control, exact_config(rectangles=5, reflections=2, patterns=True)),
+        (exact_control, exact_config(rectangles=2, reflections=2, materials=True)),
         *((ray_sequencer, exact_config(rectangles=n, reflections=r)) for n, r in ((2, 1), (12, 2))),
         *(
             (ray_sequencer, seed_config(rectangles=n, reflections=2, divider_bits=b))
@@ -435,13 +607,14 @@ def test_controls(function, config, tmp_path):
     )
     flat = random.integers(3, size=count)
     table.corners[np.arange(count), 1, flat] = table.corners[np.arange(count), 0, flat]
+    table = random_looks(random, table)
     quiet = {name: 0 for name in leaf.outputs if name.startswith("steps_") and name != "steps_initial_ray"}
     quiet["done"] = 0
     quiet_cycle = TraceCycle({}, 0)
     stimulus, expected = [], []
 
     def drive(inputs, wanted=None, current=None, offered=None):
-        rect = sorted_rect(table, int(random.integers(count)) if current is None else current, "rects_rect")
+        rect = sorted_rect(table, int(random.integers(count)) if current is None else current, "rects_rect", config)
         stimulus.append({**inputs, **{name: value for name, value in rect.items() if name in leaf.given}})
         expected.append((wanted, current, offered))
 
@@ -498,8 +671,8 @@ def test_controls(function, config, tmp_path):
                 alive[place] &= not stimulus[cycle - 1 - place + EARLY_OUT_AT].get("early_out", 0)
             assert output["in_flight"] == sum(bit << place for place, bit in enumerate(alive)), (cycle, repeat())
         elif offered is not None:
-            rect = sorted_rect(table, offered, "offered")
-            surface = {name: rect[name] for name in ("offered_axis", "offered_position", "offered_colour")}
+            rect = sorted_rect(table, offered, "offered", config)
+            surface = {name: value for name, value in rect.items() if name in output}
             assert {name: output[name] for name in surface} == surface, (cycle, repeat())
         if output["rects_fetch"]:
             held_by_memory = output["rects_index"]
@@ -550,6 +723,90 @@ def opposite_beside(values: list[int | None]) -> list[int]:
     ]
 
 
+# cell_finder ----------------------------------------------------------------------------------------------------------
+
+
+@by_turn
+@by_reflections
+def test_cell_finder(reflections, turn, tmp_path):
+    """The cells of points by fractions; of each size, and on the cells' borders."""
+    config = exact_config(reflections=reflections, turn=turn, patterns=True)
+    leaf = Leaf(
+        cell_finder,
+        lambda: {
+            "clk": bit(),
+            "steps": Steps(),
+            "eye": Eye(eye_bits(config)),
+            "signs": Signs(),
+            "slope": Slope(exact_slope_bits(config)),
+            "found_surface": surface_of(config),
+            "found_distance": unsigned(eye_bits(config) - 1),
+            "found_slope": unsigned(exact_slope_bits(config)),
+            "odd_u": bit(),
+            "odd_v": bit(),
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    stimulus, expected, borders = [], [], 0
+    far, steepest = LAST * (reflections + 1), (1 << exact_slope_bits(config)) - 1
+    while len(expected) < 300:
+        axis, size = int(random.integers(3)), int(random.integers(8))
+        n = int(random.choice([1, 8, far, random.integers(1, far + 1)]))
+        e = int(random.choice([1, 2, min(n, steepest), steepest, random.integers(1, steepest + 1)]))
+        eye, slope = random.integers(WORLD_SIZE, size=3), random.integers(-steepest, steepest + 1, 3)
+        for q in OTHER_AXES[axis]:
+            # A whole point on the border of a cell or elsewhere, and slopes that miss it by as little as they can.
+            place = int(random.choice([8 * random.integers(64), random.integers(WORLD_SIZE)]))
+            times = int(random.integers(-4, 5))
+            slope[q] = times * (e // gcd(n, e)) + int(random.choice([-1, 0, 0, 1]))
+            eye[q] = place - times * (n // gcd(n, e))
+        point = [int(eye[q]) + Fraction(int(slope[q]) * n, e) for q in OTHER_AXES[axis]]
+        if not all(0 <= place <= LAST for place in point) or abs(slope).max() > steepest:
+            continue
+        if eye.min() < -LAST * reflections or eye.max() > far:
+            continue
+        cells = [place / (8 << size) for place in point]
+        borders += any(cell.denominator == 1 for cell in cells)
+        held = {"found_surface_axis": axis, "found_surface_cell": size, "found_distance": n, "found_slope": e}
+        held |= {**two_complement(eye, eye_bits(config), "eye"), **slope_inputs(slope)}
+        for cycle in range(7):
+            stimulus.append({**held, "steps_load_divider": int(cycle == 0), "steps_store_quotient": int(cycle == 3)})
+        expected.append((len(stimulus) - 1, [int(cell) % 2 for cell in cells]))
+    outputs = leaf.run_both(stimulus, settled=6)
+    for cycle, odd in expected:
+        assert [outputs[cycle]["odd_u"], outputs[cycle]["odd_v"]] == odd, (stimulus[cycle], repeat())
+    assert borders > 30, repeat()
+
+
+# pattern_colour -----------------------------------------------------------------------------------------------------
+
+
+def test_pattern_colour(tmp_path):
+    """Each pattern in each kind of cell; two colours that no bit has in common, and random ones."""
+    leaf = Leaf(
+        pattern_colour,
+        lambda: {
+            "look": Look(materials=True, patterns=True),
+            "odd_u": bit(),
+            "odd_v": bit(),
+            "colour": unsigned(RGB_BITS),
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    stimulus, expected = [], []
+    for kind, odd_u, odd_v in product(range(4), range(2), range(2)):
+        second = (0, (odd_u + odd_v) % 2, odd_v, odd_u)[kind]
+        for colours in ((0, (1 << RGB_BITS) - 1), ((1 << RGB_BITS) - 1, 0), random.integers(1 << RGB_BITS, size=2)):
+            look = {"kind": kind, "colour": int(colours[0]), "colour_2": int(colours[1])}
+            look |= {"mirror": int(random.integers(5)), "cell": int(random.integers(8))}
+            stimulus.append({**{f"look_{name}": one for name, one in look.items()}, "odd_u": odd_u, "odd_v": odd_v})
+            expected.append(int(colours[second]))
+    outputs = leaf.run_both(stimulus)
+    assert [output["colour"] for output in outputs] == expected, repeat()
+
+
 # exact_unit ---------------------------------------------------------------------------------------------------------
 
 
@@ -566,7 +823,14 @@ def held_inputs(camera, background, reflections) -> dict[str, int]:
             ("vga", 4, 8, 1, 8), ("vga", 5, 8, 2, 4), ("tiny", 2, 8, 0, 1), ("vga", 320, 8, 2, 8), ("vga", 1, 4, 2, 8),
         )
     ]
-    + [exact_config(units=8, rectangles=8, reflections=2, culling=True)],
+    + [exact_config(units=8, rectangles=8, reflections=2, culling=True)]
+    + [
+        exact_config(units=units, rectangles=8, reflections=reflections, **dict.fromkeys(switches, True))
+        for units, reflections, *switches in (
+            (4, 1, "turn"), (8, 2, "turn"), (5, 1, "patterns"), (8, 2, "materials"),
+            (5, 2, "turn", "materials", "patterns"), (4, 0, "turn", "materials", "patterns"),
+        )
+    ],
     ids=config_id,
 )  # fmt: skip
 def test_exact_unit(config, tmp_path):
@@ -577,9 +841,9 @@ def test_exact_unit(config, tmp_path):
             "steps": Steps(),
             "place": Place(config),
             "column_base": unsigned(unit_bits(config)),
-            "camera": Point(),
-            "rect": Rect(),
-            "offered": Surface(),
+            "camera": camera_of(config),
+            "rect": rect_of(config),
+            "offered": surface_of(config),
             "picture": Picture(),
             "pixel": Pixel(config.colour_bits),
             "fate": RayFate(),
@@ -591,7 +855,11 @@ def test_exact_unit(config, tmp_path):
     slopes = primary_slopes(config.screen_geometry)
     rows, columns, _ = slopes.shape
     stimulus, results, fates, alive = [], [], set(), {}
-    for _ in range(300 if config.units == 5 else 80):
+    ends = config.culling or config.materials
+    for _ in range(300 if config.colour_bits == 4 else 80):
+        basis = random_basis(random) if config.turn else None
+        if basis is not None:
+            slopes = primary_slopes(config.screen_geometry, basis)
         row = int(random.choice([0, 1, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))
         column = int(random.choice([0, 1, columns // 2, columns - 1, random.integers(columns)]))
         slope = slopes[row, column][None]
@@ -603,27 +871,36 @@ def test_exact_unit(config, tmp_path):
         fates.add((reflections, sum(int(winner[0]) >= 0 for winner in traced.winners)))
         place = {"place_row": row, "place_column_offset": column // config.units, "column_base": column % config.units}
         held = {**held_inputs(camera, background, reflections), **place}
+        if basis is not None:
+            held |= basis_inputs(basis)
+        held = {name: value for name, value in held.items() if name in leaf.given}
         usable = [int(index) for index in np.flatnonzero(table.visible)]
         if not usable:
             continue
-        misses = [bounce for bounce, winner in enumerate(traced.winners) if winner[0] < 0]
-        lost = min(misses, default=None) if config.culling else None
-        for cycle in trace_cycles(config, usable, reflections, lost=lost):
-            inputs = {**held, **cycle.steps}
-            if cycle.alive is not None and config.culling:
+        endings = [
+            bounce
+            for bounce, winner in enumerate(traced.winners)
+            if winner[0] < 0 or (config.materials and table.mirrors[winner[0]] == 0)
+        ]
+        lost = min(endings, default=None) if ends else None
+        cycles = trace_cycles(config, usable, reflections, lost=lost)
+        # The place stands before the ray is loaded.
+        stimulus.append({**held, **{name: 0 for name in cycles[0].steps if name in leaf.given}})
+        for cycle in cycles:
+            if cycle.alive is not None and ends:
                 alive[len(stimulus)] = cycle.alive
             other = int(random.choice(usable))
-            inputs |= sorted_rect(table, other if cycle.current is None else cycle.current, "rect")
-            offered = sorted_rect(table, other if cycle.offered is None else cycle.offered, "offered")
-            inputs |= {f"offered_{name}": offered[f"offered_{name}"] for name in ("axis", "position", "colour")}
-            stimulus.append(inputs)
+            inputs = {**held, **cycle.steps}
+            inputs |= sorted_rect(table, other if cycle.current is None else cycle.current, "rect", config)
+            inputs |= sorted_rect(table, other if cycle.offered is None else cycle.offered, "offered", config)
+            stimulus.append({name: value for name, value in inputs.items() if name in leaf.given})
         case = f"row {row}, column {column}, camera {camera}, corners {table.corners.tolist()}; {repeat()}"
         results.append((len(stimulus), pixel_word(config, traced.colours[0]), case))
-        stimulus.append({**held, **dict.fromkeys(cycle.steps, 0)})
+        stimulus.append({**held, **{name: 0 for name in cycle.steps if name in leaf.given}})
     assert len(fates) >= 2 + 2 * config.reflections, repeat()
     outputs = leaf.run_both(stimulus, settled=results[0][0])
     for cycle, pixel, case in results:
         assert pixel_of(config, outputs[cycle]) == pixel, case
     for cycle, expected in alive.items():
         assert outputs[cycle]["fate_alive"] == expected, (cycle, repeat())
-    assert not config.culling or set(alive.values()) == {0, 1}
+    assert not ends or set(alive.values()) == {0, 1}

@@ -5,26 +5,40 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from myhdl import Signal, intbv
 
 from raycaster.configuration import WORLD_SIZE, Configuration, configure
-from raycaster.golden.random_world import EXTREMES, random_rectangles
+from raycaster.golden.random_world import EXTREMES, random_looks, random_rectangles
 from raycaster.golden.world import Rectangles
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.bus.avalon_interface import avalon_interface
 from raycaster.rtl.common.interfaces import AvalonPort, Picture, Progress, Rects, SceneBus
-from raycaster.rtl.common.records import Point, Rect
+from raycaster.rtl.common.records import camera_of, rect_of
 from raycaster.rtl.common.widths import CYCLE_BITS, WORD_BITS, bit, unsigned
 from raycaster.rtl.scene.camera_mem import camera_mem
 from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.rtl.scene.rect_slot import rect_slot
 from raycaster.rtl.scene.rect_sorter import rect_sorter
 from raycaster.rtl.scene.scene_word import scene_word
-from raycaster.rtl.scene.written_rect import WrittenRect
-from raycaster.sim.register_model import AXES, COLOURS, Agent, Table, Word
+from raycaster.rtl.scene.written_rect import written_of
+from raycaster.scene import UNTURNED
+from raycaster.sim.register_model import AXES, COLOURS, Agent, CameraWords, Table, Word
 from raycaster.verif.leaf import Leaf, reset_signal, sorted_rect
 from raycaster.verif.seeds import repeat, seed
 
 CYCLES = 500
+LOOKS = [
+    {"engine": "exact"}, {"engine": "exact", "materials": True}, {"engine": "beam", "patterns": True},
+    {"engine": "exact", "materials": True, "patterns": True},
+]  # fmt: skip
+
+
+def label(options) -> str:
+    """A design's options as a test's name has them."""
+    return "-".join([options["engine"], *(name for name in options if name != "engine")])
+
+
+looks = pytest.mark.parametrize("options", LOOKS, ids=label)
 EVERY_BIT = (1 << WORD_BITS) - 1
 MASKS = (0, 0xFF, 0xFF00, 0xFF0000, 0xFF000000, 0xFFFF, EVERY_BIT, EVERY_BIT, EVERY_BIT)
 
@@ -48,8 +62,10 @@ def random_bus(random: np.random.Generator, addresses: list[int], data: int | No
     }
 
 
-@pytest.mark.parametrize("implemented", [EVERY_BIT, 0x1FF7FDFF, 0x80FFFFFF, 1, 0, "any"])
-def test_scene_word(implemented, tmp_path):
+@pytest.mark.parametrize(
+    ("implemented", "first"), [(EVERY_BIT, 0), (0x1FF7FDFF, 0), (0x3FFFFFFF, 256), (1, 0), (0, 0), ("any", 3 << 10)]
+)
+def test_scene_word(implemented, first, tmp_path):
     leaf = Leaf(
         scene_word,
         lambda: {
@@ -58,21 +74,22 @@ def test_scene_word(implemented, tmp_path):
             "bus": SceneBus(7),
             "selected": bit(),
             "implemented": unsigned(WORD_BITS),
-            "shadow": unsigned(WORD_BITS),
-            "live": unsigned(WORD_BITS),
+            "shadow": Signal(intbv(first)[WORD_BITS:]),
+            "live": Signal(intbv(first)[WORD_BITS:]),
+            "first": first,
         },
         tmp_path,
     )
     random = np.random.default_rng(seed())
     stimulus = []
     for cycle in range(CYCLES):
-        inputs = random_bus(random, [0]) | {"reset": int(cycle == 0 or random.random() < 0.01)}
+        inputs = random_bus(random, [0]) | {"reset": int(cycle == 0 or random.random() < 0.05)}
         del inputs["bus_address"]
         # A module has no constants: whatever this input says when a word is written counts.
         bits = int(random.integers(1 << WORD_BITS)) if implemented == "any" else implemented
         stimulus.append(inputs | {"implemented": bits, "selected": int(random.random() < 0.8)})
     outputs = leaf.run_both(stimulus, settled=1)
-    model = Word(0)
+    model = Word(0, first)
     for cycle, (inputs, output) in enumerate(zip(stimulus, outputs, strict=True)):
         if cycle:
             assert output == {"shadow": model.shadow, "live": model.live}, (cycle, repeat())
@@ -83,7 +100,9 @@ def test_scene_word(implemented, tmp_path):
             model.clock(inputs, bool(inputs["selected"]))
 
 
-def test_camera_mem(tmp_path):
+@pytest.mark.parametrize("turn", [False, True])
+def test_camera_mem(turn, tmp_path):
+    config = sized(12, engine="exact", turn=turn)
     leaf = Leaf(
         camera_mem,
         lambda: {
@@ -91,72 +110,102 @@ def test_camera_mem(tmp_path):
             "reset": reset_signal(),
             "bus": SceneBus(address_bits(12)),
             "readback": unsigned(WORD_BITS),
-            "camera": Point(),
+            "camera": camera_of(config),
+            "config": config,
         },
         tmp_path,
     )
-    camera = register_map(12)["camera"]
+    addresses = [register_map(12)[name].address for name in ("camera", "forward", "right", "up")]
+    position = register_map(12)["camera"]
     random = np.random.default_rng(seed())
-    neighbours = [camera.address ^ 1 << place for place in range(address_bits(12))]
+    neighbours = [address ^ 1 << place for address in addresses for place in range(address_bits(12))]
     stimulus = []
-    for cycle in range(CYCLES):
-        position = {axis: int(random.choice([*EXTREMES, random.integers(WORLD_SIZE)])) for axis in AXES}
-        data = camera.pack(**position) if random.random() < 0.5 else None
-        bus = random_bus(random, [camera.address] * 10 + neighbours, data)
+    for cycle in range(3 * CYCLES):
+        place = {axis: int(random.choice([*EXTREMES, random.integers(WORLD_SIZE)])) for axis in AXES}
+        data = position.pack(**place) if random.random() < 0.5 else None
+        bus = random_bus(random, addresses * 10 + neighbours, data)
         stimulus.append({**bus, "reset": int(cycle == 0 or random.random() < 0.01)})
     outputs = leaf.run_both(stimulus, settled=1)
-    model = Word(camera.implemented)
+    model = CameraWords(config)
+    bases = set()
     for cycle, (inputs, output) in enumerate(zip(stimulus, outputs, strict=True)):
         if cycle:
-            position = {f"camera_{axis}": value for axis, value in camera.unpack(model.live).items()}
-            assert output == {"readback": model.shadow, **position}, (cycle, repeat())
-        if inputs["reset"]:
-            model.reset()
-        else:
-            model.clock(inputs, inputs["bus_address"] == camera.address)
+            expected = {f"camera_{axis}": value for axis, value in zip(AXES, model.position, strict=True)}
+            if word := model.by_address.get(inputs["bus_address"]):
+                expected["readback"] = word.shadow
+            if turn:
+                for name, vector in zip(("forward", "right", "up"), model.basis, strict=True):
+                    # A negative component is its bits.
+                    expected |= {f"camera_{name}_{axis}": part % 1024 for axis, part in zip(AXES, vector, strict=True)}
+            assert {name: output[name] for name in expected} == expected, (cycle, repeat())
+            assert set(output) == {*expected, "readback"}
+            bases.add(model.basis)
+        for address, word in model.by_address.items():
+            if inputs["reset"]:
+                word.reset()
+            else:
+                word.clock(inputs, inputs["bus_address"] == address)
+    assert UNTURNED in bases
+    assert (len(bases) > 50) == turn
 
 
-def rectangle_words(random: np.random.Generator) -> tuple[Rectangles, list[tuple[int, int, int]]]:
+def rectangle_words(random: np.random.Generator) -> tuple[Rectangles, list[tuple[int, ...]]]:
     """Rectangles, some of them none, and their words with something in the bits that do not exist."""
     registers = register_map(1)
-    point, surface = registers["rectangle[0].corner_0"], registers["rectangle[0].surface"]
-    table = random_rectangles(random, 12)
+    point, surface, pattern = (registers[f"rectangle[0].{name}"] for name in ("corner_0", "surface", "pattern"))
+    table = random_looks(random, random_rectangles(random, 12))
     words = []
-    for corners, colour, enabled in zip(table.corners, table.colours, table.enabled, strict=True):
+    for index, corners in enumerate(table.corners):
         first, second = (
             point.pack(**dict(zip(AXES, map(int, corner), strict=True)))
             | int(random.integers(1 << WORD_BITS)) & ~point.implemented
             for corner in corners
         )
-        channels = dict(zip(COLOURS, map(int, colour), strict=True))
-        words.append((first, second, surface.pack(enable=int(enabled), **channels)))
+        channels, channels_2 = (
+            dict(zip(COLOURS, map(int, colours[index]), strict=True)) for colours in (table.colours, table.colours_2)
+        )
+        # 4 and all that is more are the same.
+        mirror = int(random.integers(4, 8) if table.mirrors[index] == 4 else table.mirrors[index])
+        cell = int(table.cells[index]).bit_length() - 4
+        words.append(
+            (
+                first,
+                second,
+                surface.pack(enable=int(table.enabled[index]), mirror=mirror, **channels),
+                pattern.pack(kind=int(table.kinds[index]), cell=cell, **channels_2),
+            )
+        )
     return table, words
 
 
-def almost_flat(random: np.random.Generator) -> tuple[int, int, int]:
+def almost_flat(random: np.random.Generator) -> tuple[int, ...]:
     """The words of an enabled rectangle whose corners differ by one bit in each coordinate, or in none of an axis."""
     first = int(random.integers(1 << WORD_BITS))
     second = first ^ int(random.integers(1 << WORD_BITS)) & ~register_map(1)["rectangle[0].corner_0"].implemented
     for field in register_map(1)["rectangle[0].corner_0"].fields.values():
         if random.random() < 0.75:
             second ^= 1 << field.lsb + int(random.integers(field.width))
-    return first, second, int(random.integers(1 << 24)) | register_map(1)["rectangle[0].surface"].pack(enable=1)
+    surface = int(random.integers(1 << 27)) | register_map(1)["rectangle[0].surface"].pack(enable=1)
+    return first, second, surface, int(random.integers(1 << WORD_BITS))
 
 
-def test_rect_sorter(tmp_path):
+@looks
+def test_rect_sorter(options, tmp_path):
+    config = sized(1, **options)
     leaf = Leaf(
         rect_sorter,
-        lambda: {"written": WrittenRect(), "rect": Rect()},
+        lambda: {"written": written_of(config), "rect": rect_of(config), "config": config},
         tmp_path,
     )
     random = np.random.default_rng(seed())
     stimulus, expected = [], []
     for _ in range(150):
         table, words = rectangle_words(random)
-        for index, (first, second, surface) in enumerate(words):
+        for index, written in enumerate(words):
             if table.axes[index] >= 0:
-                stimulus.append({"written_corner_0": first, "written_corner_1": second, "written_surface": surface})
-                expected.append(sorted_rect(table, index, "rect"))
+                names = Table(config).names
+                stimulus.append({f"written_{name}": word for name, word in zip(names, written, strict=False)})
+                expected.append(sorted_rect(table, index, "rect", config))
     outputs = leaf.run_both(stimulus)
     assert {rect["rect_axis"] for rect in expected} == {0, 1, 2}
     for inputs, output, rect in zip(stimulus, outputs, expected, strict=True):
@@ -172,19 +221,19 @@ def table_stimulus(random: np.random.Generator, table: Table, rectangles: int) -
     # Many rectangles take their time.
     while len(stimulus) < (CYCLES * 5 if rectangles <= 4 else CYCLES if rectangles < 20 else CYCLES // 2):
         _, words = rectangle_words(random)
-        slot = int(random.integers(rectangles))
+        slot, size = int(random.integers(rectangles)), len(table.names)
         data = words[int(random.integers(len(words)))]
         if random.random() < 0.5:
             idle = {"bus_write": 0, "bus_commit": 0, "bus_go_live": 0, "bus_mask": EVERY_BIT, "reset": 0}
             if random.random() < 0.8:
                 data = almost_flat(random)
-            addresses = written[3 * slot : 3 * slot + 3]
-            for address, word in zip(addresses, data, strict=True):
+            addresses = written[size * slot : size * (slot + 1)]
+            for address, word in zip(addresses, data, strict=False):
                 stimulus.append({**idle, "bus_write": 1, "bus_address": address, "bus_data": word})
             stimulus += [{**idle, "bus_address": address, "bus_data": 0} for address in addresses]
             stimulus[-2]["bus_commit"] = stimulus[-1]["bus_go_live"] = 1
             continue
-        for address, word in zip(written[3 * slot : 3 * slot + 3], data, strict=True):
+        for address, word in zip(written[size * slot : size * (slot + 1)], data, strict=False):
             bus = random_bus(random, [address] * 8 + [address ^ 1, int(random.integers(last))], word)
             stimulus.append({**bus, "reset": int(random.random() < 0.003)})
         stimulus.append({**random_bus(random, [int(random.integers(last))]), "reset": 0})
@@ -192,10 +241,11 @@ def table_stimulus(random: np.random.Generator, table: Table, rectangles: int) -
 
 
 @pytest.mark.parametrize("number", [0, 3])
-def test_rect_slot(number, tmp_path):
+@looks
+def test_rect_slot(options, number, tmp_path):
     rectangles = number + 1
-    names = ("corner_0", "corner_1", "surface")
-    table = Table(rectangles)
+    config = sized(rectangles, **options)
+    table = Table(config)
     width = address_bits(rectangles)
     leaf = Leaf(
         rect_slot,
@@ -204,15 +254,16 @@ def test_rect_slot(number, tmp_path):
             "reset": reset_signal(),
             "bus": SceneBus(width),
             "number": unsigned(width - 2),
-            "shadow": WrittenRect(),
-            "live": WrittenRect(),
+            "shadow": written_of(config),
+            "live": written_of(config),
             "usable": bit(),
             "bad": bit(),
+            "config": config,
         },
         tmp_path,
     )
     random = np.random.default_rng(seed())
-    place = list(table.words)[3 * number] // 4
+    place = list(table.words)[len(table.names) * number] // 4
     stimulus = [{**cycle, "number": place} for cycle in table_stimulus(random, table, rectangles)]
     outputs = leaf.run_both(stimulus, settled=2)
     usable = False
@@ -222,7 +273,7 @@ def test_rect_slot(number, tmp_path):
         bad = shadow.enabled[number] and shadow.axes[number] < 0
         if cycle >= 2:
             expected = {"usable": int(usable), "bad": int(bad)}
-            for name, word in zip(names, table.slot(number), strict=True):
+            for name, word in zip(table.names, table.slot(number), strict=True):
                 expected |= {f"shadow_{name}": word.shadow, f"live_{name}": word.live}
             assert output == expected, (cycle, repeat())
             seen.add((bool(usable), bool(bad)))
@@ -231,10 +282,18 @@ def test_rect_slot(number, tmp_path):
     assert len(seen) == 4
 
 
-@pytest.mark.parametrize(("engine", "latency"), [("seed", 1), ("beam", 2)])
-@pytest.mark.parametrize("rectangles", [1, 2, 3, 12, 32])
-def test_rect_mem(rectangles, engine, latency, tmp_path):
-    config = sized(rectangles, engine=engine)
+@pytest.mark.parametrize(
+    ("rectangles", "options"),
+    [
+        *((rectangles, {"engine": engine}) for rectangles in (1, 2, 3, 12, 32) for engine in ("seed", "beam")),
+        (3, {"engine": "beam", "materials": True}), (2, {"engine": "exact", "patterns": True}),
+        (3, {"engine": "seed", "materials": True, "patterns": True}),
+    ],
+    ids=lambda value: label(value) if isinstance(value, dict) else str(value),
+)  # fmt: skip
+def test_rect_mem(rectangles, options, tmp_path):
+    config = sized(rectangles, **options)
+    latency = config.facts.rect_latency
     leaf = Leaf(
         rect_mem,
         lambda: {
@@ -249,7 +308,7 @@ def test_rect_mem(rectangles, engine, latency, tmp_path):
         tmp_path,
     )
     random = np.random.default_rng(seed())
-    table = Table(rectangles)
+    table = Table(config)
     stimulus = table_stimulus(random, table, rectangles)
     for cycle, inputs in enumerate(stimulus):
         stimulus[cycle] = inputs | {
@@ -278,7 +337,7 @@ def test_rect_mem(rectangles, engine, latency, tmp_path):
             presented = on_the_way
         if inputs["rects_fetch"]:
             presentable = live.axes[inputs["rects_index"]] >= 0
-            on_the_way = sorted_rect(live, inputs["rects_index"], "rects_rect") if presentable else None
+            on_the_way = sorted_rect(live, inputs["rects_index"], "rects_rect", config) if presentable else None
         if latency == 1:
             presented = on_the_way
         usable = bits_of(live.visible)
@@ -295,6 +354,8 @@ def test_rect_mem(rectangles, engine, latency, tmp_path):
         sized(12),
         sized(1, reflections=0, fraction_bits=8, rounding="nearest", divider_bits=3, colour_bits=4),
         sized(32, reflections=2, units=320, rows=200),
+        sized(2, engine="exact", turn=True, patterns=True),
+        sized(2, engine="beam", materials=True),
     ],
     ids=lambda config: config.name,
 )

@@ -146,7 +146,7 @@ def test_scene_player(rectangles, tmp_path):
     outputs = leaf.run_both(stimulus, settled=1)
 
     registers = register_map(rectangles)
-    load = scene_words(scene, rectangles)
+    load = scene_words(scene, config)
     commit = load[-1]
     expected: deque[tuple[int, int]] = deque()
     position: list[int] = []

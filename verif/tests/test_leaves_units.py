@@ -2,6 +2,9 @@
 """What a ray unit is made of, but for its arithmetic: MyHDL's simulator, the converted Verilog and golden on one set of
 vectors."""
 
+from fractions import Fraction
+from itertools import product
+
 import numpy as np
 import pytest
 
@@ -13,12 +16,15 @@ from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.common.interfaces import Picture, Place, Slope, Steps
 from raycaster.rtl.common.magnitude import magnitude
-from raycaster.rtl.common.records import Origin, Pixel, Ray, Rect, Signs
+from raycaster.rtl.common.records import Origin, Pixel, Ray, Signs, rect_of
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
+    CELL_BITS,
+    MIRROR_BITS,
     RGB_BITS,
     bit,
     position_bits,
+    share_bits,
     signed,
     unit_bits,
     unsigned,
@@ -26,7 +32,10 @@ from raycaster.rtl.common.widths import (
 from raycaster.rtl.engine.colour_average import colour_average
 from raycaster.rtl.engine.colour_channel import colour_channel
 from raycaster.rtl.engine.colour_combiner import colour_combiner
+from raycaster.rtl.engine.colour_share import colour_share
+from raycaster.rtl.engine.colour_sum import colour_sum
 from raycaster.rtl.engine.ray_generator import ray_generator
+from raycaster.rtl.seed.cell_parity import cell_parity
 from raycaster.rtl.seed.intersection_finder import intersection_finder
 from raycaster.rtl.seed.ray_mem import ray_mem
 from raycaster.rtl.seed.z_buffer import z_buffer
@@ -68,13 +77,15 @@ def finder_leaf(config: Configuration, directory) -> Leaf:
         lambda: {
             "clk": bit(),
             "steps": Steps(),
-            "rect": Rect(),
-            "offered": Rect(),
+            "rect": rect_of(config),
+            "offered": rect_of(config),
             "ray": Ray(config),
             "slope": Slope(),
             "hit": bit(),
             "depth": unsigned(position_bits(config)),
             "point": Origin(config),
+            "odd_u": bit() if config.patterns else None,
+            "odd_v": bit() if config.patterns else None,
             "towards": bit(),
             "config": config,
         },
@@ -185,21 +196,28 @@ def test_intersection_finder(config, tmp_path):
     assert len(seen) == 6, "each axis was to be hit and missed"
 
 
-@fractions
+@pytest.mark.parametrize(
+    "config",
+    [any_config(), any_config(fraction_bits=8), any_config(materials=True), any_config(fraction_bits=3, patterns=True)],
+    ids=config_id,
+)
 def test_z_buffer(config, tmp_path):
     width = position_bits(config)
+    kept_words = ["found_axis", "found_colour", *(["found_mirror"] if config.materials else [])]
     leaf = Leaf(
         z_buffer,
         lambda: {
             "clk": bit(),
             "steps": Steps(),
-            "offered": Rect(),
+            "offered": rect_of(config),
+            "colour": unsigned(RGB_BITS),
             "hit": bit(),
             "depth": unsigned(width),
             "point": Origin(config),
             "found": bit(),
             "found_axis": unsigned(AXIS_BITS),
             "found_colour": unsigned(RGB_BITS),
+            "found_mirror": unsigned(MIRROR_BITS) if config.materials else None,
             "found_point": Origin(config),
             "config": config,
         },
@@ -219,7 +237,8 @@ def test_z_buffer(config, tmp_path):
                 "hit": int(number == 0 or random.random() < 0.7),
                 "depth": int(depth),
                 "offered_axis": int(random.integers(3)),
-                "offered_colour": int(random.integers(1 << RGB_BITS)),
+                "colour": int(random.integers(1 << RGB_BITS)),
+                **({"offered_mirror": int(random.integers(5))} if config.materials else {}),
                 **{f"point_{axis}": int(random.integers(limit + 1)) for axis in AXES},
             }
         )
@@ -228,8 +247,9 @@ def test_z_buffer(config, tmp_path):
     for cycle, (inputs, output) in enumerate(zip(stimulus[1:], outputs[1:], strict=True)):
         assert output["found"] == (kept is not None), (cycle, repeat())
         if kept is not None:
-            assert output["found_axis"] == kept["offered_axis"], (cycle, repeat())
-            assert output["found_colour"] == kept["offered_colour"], (cycle, repeat())
+            for name in kept_words:
+                of_port = name.replace("found", "offered")
+                assert output[name] == kept["colour" if name == "found_colour" else of_port], (cycle, repeat())
             for axis in AXES:
                 assert output[f"found_point_{axis}"] == kept[f"point_{axis}"], (cycle, repeat())
         if inputs["steps_reset_z_buf"]:
@@ -389,15 +409,108 @@ def test_colour_channel(colour_bits, tmp_path):
         stimulus.append({**idle, "seen": int(random.integers(256))})
     outputs = leaf.run_both(stimulus, settled=1)
     for cycle, seen in results:
-        palette = np.array(seen, dtype=np.uint8)[:, None].repeat(3, axis=1)
-        expected = blend(palette, (0, 0, 0), [np.array([i]) for i in range(len(seen))])[0, 0]
+        expected = blend(np.array(seen, dtype=np.uint8)[:, None, None], [[2]] * len(seen))[0, 0]
         assert outputs[cycle]["blended"] == expected >> (CHANNEL_BITS - colour_bits), (seen, repeat())
 
 
+def mirrored(random: np.random.Generator, run_time: int) -> list[tuple[bool, int]]:
+    """What becomes of a ray and its reflections: whether it hits something, and how much that mirrors, in quarters."""
+    return [(bool(random.random() < 0.75), int(random.integers(5))) for _ in range(run_time + 1)]
+
+
+def plain_shares(hits: list[tuple[bool, int]]) -> list[Fraction]:
+    """How much what each ray saw counts: a mirror passes its quarters on, a miss and the last hit pass on nothing."""
+    shares, left = [], Fraction(1)
+    for number, (found, quarters) in enumerate(hits):
+        passed_on = Fraction(quarters, 4) if found and number < len(hits) - 1 else Fraction(0)
+        shares.append(left * (1 - passed_on))
+        left *= passed_on
+    return shares
+
+
 @pytest.mark.parametrize("reflections", [0, 1, 2])
-@pytest.mark.parametrize("colour_bits", [1, 3, 4, 8])
-def test_colour_combiner(colour_bits, reflections, tmp_path):
-    config = any_config(colour_bits=colour_bits, reflections=reflections)
+def test_colour_share(reflections, tmp_path):
+    """Of each mirror after each other one, and misses among them."""
+    config = any_config(reflections=reflections, materials=True)
+    leaf = Leaf(
+        colour_share,
+        lambda: {
+            "clk": bit(),
+            "steps": Steps(),
+            "found": bit(),
+            "found_mirror": unsigned(MIRROR_BITS),
+            "share": unsigned(share_bits(config)),
+            "missed": bit(),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    idle = {"steps_reset_colour": 0, "steps_add_colour": 0, "steps_store_ray": 0}
+    one_ray = list(product((False, True), range(5)))
+    stimulus, results = [], []
+    for run_time in range(reflections + 1):
+        for hits in product(one_ray, repeat=run_time + 1):
+            stimulus.append({**idle, "steps_reset_colour": 1})
+            missed = False
+            for number, ((found, quarters), share) in enumerate(zip(hits, plain_shares(hits), strict=True)):
+                # Only what is found in the cycle of the addition counts.
+                other = {"found": int(random.integers(2)), "found_mirror": int(random.integers(5))}
+                stimulus += [{**idle, **other}] * int(random.integers(2))
+                results.append((len(stimulus), share, missed, hits))
+                ray = {"found": int(found), "found_mirror": quarters, "steps_store_ray": int(number < run_time)}
+                stimulus.append({**idle, **ray, "steps_add_colour": 1})
+                missed = missed or not found or quarters == 0
+            if run_time < reflections:
+                stimulus.append(idle)
+    outputs = leaf.run_both(stimulus, settled=1)
+    for cycle, share, missed, hits in results:
+        assert outputs[cycle]["share"] == share * 4**reflections, hits
+        assert outputs[cycle]["missed"] == missed, hits
+
+
+@pytest.mark.parametrize("reflections", [0, 1, 2])
+@pytest.mark.parametrize("colour_bits", [1, 4, 8])
+def test_colour_sum(colour_bits, reflections, tmp_path):
+    """Of all shares that a pixel may have."""
+    config = any_config(reflections=reflections, colour_bits=colour_bits, materials=True)
+    leaf = Leaf(
+        colour_sum,
+        lambda: {
+            "clk": bit(),
+            "steps": Steps(),
+            "seen": unsigned(CHANNEL_BITS),
+            "share": unsigned(share_bits(config)),
+            "blended": unsigned(colour_bits),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    idle = {"steps_reset_colour": 0, "steps_add_colour": 0}
+    stimulus, results = [], []
+    for run_time in range(reflections + 1):
+        for quarters in product(range(5), repeat=run_time):
+            shares = plain_shares([*((True, one) for one in quarters), (True, 0)])
+            for values in ([255] * len(shares), *random.integers(256, size=(8, len(shares))).tolist()):
+                stimulus.append({**idle, "steps_reset_colour": 1})
+                for share, value in zip(shares, values, strict=True):
+                    stimulus += [{**idle, "seen": int(random.integers(256))}] * int(random.integers(2))
+                    whole = int(share * 4**reflections)
+                    stimulus.append({**idle, "seen": value, "share": whole, "steps_add_colour": 1})
+                total = sum(share * value for share, value in zip(shares, values, strict=True))
+                results.append((len(stimulus), int(total) >> (CHANNEL_BITS - colour_bits), (quarters, values)))
+                stimulus.append(idle)
+    outputs = leaf.run_both(stimulus, settled=1)
+    for cycle, expected, case in results:
+        assert outputs[cycle]["blended"] == expected, (case, repeat())
+
+
+@pytest.mark.parametrize("materials", [False, True])
+@pytest.mark.parametrize("reflections", [0, 1, 2])
+@pytest.mark.parametrize("colour_bits", [1, 4, 8])
+def test_colour_combiner(colour_bits, reflections, materials, tmp_path):
+    config = any_config(colour_bits=colour_bits, reflections=reflections, materials=materials)
     leaf = Leaf(
         colour_combiner,
         lambda: {
@@ -405,6 +518,7 @@ def test_colour_combiner(colour_bits, reflections, tmp_path):
             "steps": Steps(),
             "found": bit(),
             "found_colour": unsigned(RGB_BITS),
+            "found_mirror": unsigned(MIRROR_BITS) if materials else None,
             "picture": Picture(),
             "missed": bit(),
             "pixel": Pixel(colour_bits),
@@ -417,25 +531,49 @@ def test_colour_combiner(colour_bits, reflections, tmp_path):
     for _ in range(200):
         run_time = int(random.integers(reflections + 1))
         palette = random.choice([0, 1, 255, 128, *random.integers(256, size=4)], (run_time + 2, 3)).astype(np.uint8)
-        words = [int.from_bytes(bytes(colour)) for colour in palette]
-        held = {"picture_background": words[-1], "picture_reflections": run_time}
-        held |= {"steps_reset_colour": 0, "steps_add_colour": 0}
+        *words, background = (int.from_bytes(bytes(colour)) for colour in palette)
+        held = {"picture_background": background, "steps_reset_colour": 0, "steps_add_colour": 0, "steps_store_ray": 0}
+        if not materials:
+            held["picture_reflections"] = run_time
         stimulus.append({**held, "steps_reset_colour": 1})
-        winners, missed = [], False
-        for number in range(run_time + 1):
-            # After a miss the units go on and may find something, which must not count.
-            found = bool(random.random() < 0.6)
-            missed = missed or not found
-            winners.append(np.array([-1 if missed else number]))
-            ray = {**held, "found": int(found), "found_colour": words[number], "steps_initial_ray": int(number == 0)}
+        # After its end a ray goes on and may find something, which must not count.
+        hits = mirrored(random, run_time) if materials else [(found, 2) for found, _ in mirrored(random, run_time)]
+        for number, ((found, quarters), word) in enumerate(zip(hits, words, strict=True)):
+            ray = {**held, "found": int(found), "found_colour": word, "steps_initial_ray": int(number == 0)}
+            if materials:
+                ray["found_mirror"] = quarters
             # Only what is found in the cycle of the addition counts.
             stimulus += [{**ray, "found": int(random.integers(2))}] * int(random.integers(2))
-            stimulus.append({**ray, "steps_add_colour": 1})
-        results.append((len(stimulus), palette, winners, missed))
+            stimulus.append({**ray, "steps_add_colour": 1, "steps_store_ray": int(number < run_time)})
+            missed = any(not found or quarters == 0 for found, quarters in hits[: number + 1])
+            if number < run_time or not materials:
+                results.append((len(stimulus), None, missed, hits))
+        seen = [palette[number] if found else palette[-1] for number, (found, _) in enumerate(hits)]
+        pixel = sum(share * colour.astype(object) for share, colour in zip(plain_shares(hits), seen, strict=True))
+        results.append((len(stimulus), [int(channel) for channel in pixel], None, hits))
         stimulus.append({**held, "found": int(random.integers(2))})
+    stimulus = [{name: value for name, value in cycle.items() if name in leaf.given} for cycle in stimulus]
     outputs = leaf.run_both(stimulus, settled=1)
-    for cycle, palette, winners, missed in results:
-        for name, channel in zip(("red", "green", "blue"), blend(palette[:-1], palette[-1], winners)[0], strict=True):
-            expected = int(channel) >> (CHANNEL_BITS - colour_bits)
-            assert outputs[cycle][f"pixel_{name}"] == expected, (palette.tolist(), winners, repeat())
-        assert outputs[cycle]["missed"] == missed, (winners, repeat())
+    for cycle, pixel, missed, hits in results:
+        assert missed is None or outputs[cycle]["missed"] == missed, (hits, repeat())
+        for name, channel in zip(("red", "green", "blue"), pixel or (), strict=pixel is not None):
+            assert outputs[cycle][f"pixel_{name}"] == channel >> (CHANNEL_BITS - colour_bits), (hits, repeat())
+
+
+@pytest.mark.parametrize("fraction_bits", [0, 1, 8])
+def test_cell_parity(fraction_bits, tmp_path):
+    """Of each coordinate at the borders of cells, and next to them."""
+    config = any_config(fraction_bits=fraction_bits, patterns=True)
+    leaf = Leaf(
+        cell_parity,
+        lambda: {
+            "value": signed(position_bits(config) + 2), "size": unsigned(CELL_BITS), "odd": bit(), "config": config,
+        },
+        tmp_path,
+    )  # fmt: skip
+    one = 1 << fraction_bits
+    values = {border * one + beside for border in range(0, WORLD_SIZE, 8) for beside in (-1, 0, 1, one // 2, 7 * one)}
+    cases = [(value, size) for value in sorted(values) if value >= 0 for size in range(8)]
+    outputs = leaf.run_both([{"value": value, "size": size} for value, size in cases])
+    for (value, size), output in zip(cases, outputs, strict=True):
+        assert output["odd"] == value // (one * (8 << size)) % 2, (value, size)

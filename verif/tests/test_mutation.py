@@ -5,17 +5,19 @@ from __future__ import annotations
 
 import json
 import re
+from itertools import product
 
 import pytest
 from conftest import SMALL_SCENE
 
 from raycaster.configuration import configure
 from raycaster.convert.write import write_processor_system, write_system
+from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.rtl.common.interfaces import SceneBus
 from raycaster.rtl.common.widths import WORD_BITS, bit, unsigned
+from raycaster.rtl.engine.divider_step import divider_step
 from raycaster.rtl.scene.scene_word import scene_word
-from raycaster.rtl.seed.divider_step import divider_step
 from raycaster.scene import load_scene
 from raycaster.verif.formal.prover import missing_tools
 from raycaster.verif.leaf import Leaf, reset_signal
@@ -193,9 +195,10 @@ def test_an_explanation_fits_what_it_names():
 def test_every_module_is_mutated(tmp_path):
     scene = load_scene(SMALL_SCENE)
     files = []
-    for engine in ("seed", "exact", "beam"):
-        config = configure(engine=engine, units=1, rectangles=5, reflections=2, allow_underrun=True)
-        files += write_system(config, scene, tmp_path / engine)
+    for engine, rich in product(("seed", "exact", "beam"), (True, False)):
+        looks = {"turn": rich and ENGINES[engine].turns, "materials": rich, "patterns": rich}
+        config = configure(engine=engine, units=1, rectangles=5, reflections=2, allow_underrun=True, **looks)
+        files += write_system(config, scene, tmp_path / config.name)
     files += write_processor_system(config, tmp_path / "processor")
     known = expectations()
     # The system's scene is fixed when it is generated, so its leaf test cannot vary what goes over its wires. With a

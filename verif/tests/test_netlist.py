@@ -14,6 +14,7 @@ from test_leaves_engine import check_ray_unit, ray_unit_leaf
 
 from raycaster.configuration import configure
 from raycaster.errors import UserError
+from raycaster.scene import packaged_scenes
 from raycaster.sim import netlist
 from raycaster.sim import scenes as simulate
 from raycaster.sim.netlist import Netlist, NetlistError, synthesise
@@ -135,8 +136,8 @@ def test_missing_yosys(tmp_path, monkeypatch):
 
 
 def test_default_design():
-    """One small design shows all scenes in time, each with its own reflections, unless something is asked for."""
-    scenes = sorted((BUILD.parent / "scenes").glob("*.toml"))
+    """One small design shows all plain scenes in time, each with its own reflections, unless something is asked for."""
+    scenes = list(packaged_scenes(plain=True).values())
     runs = simulate.plan_runs(scenes, {}, simulate.GATES_OPTIONS)
     assert len(simulate.configurations(runs)) == 1
     assert runs[0].configuration.screen == "tiny"

@@ -96,13 +96,16 @@ def test_the_page_has_every_text(tmp_path):
 
 
 def test_the_verilog_decodes_what_the_map_says(tmp_path):
-    write_verilog(configure(screen="tiny", units=1, rectangles=3, allow_underrun=True), tmp_path / "verilog")
-    text = (tmp_path / "verilog" / "avalon_interface.v").read_text()
+    config = configure(engine="exact", turn=True, screen="tiny", units=1, rectangles=3, allow_underrun=True)
+    write_verilog(config, tmp_path / "verilog")
+    text = "".join((tmp_path / "verilog" / f"{name}.v").read_text() for name in ("avalon_interface", "camera_mem"))
     found = {
         name: int(value)
         for name, value in re.findall(r"^localparam \[\d+:0\] (\w+)_address = \d+'d(\d+);$", text, re.M)
     }
-    single = {name: register.address for name, register in register_map(3).items() if "." not in name}
+    # The basis is of a camera that turns, and register_bench reads it there.
+    basis = ("forward", "right", "up")
+    single = {name: one.address for name, one in register_map(3).items() if "." not in name and name not in basis}
     assert found == single
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from raycaster.configuration import Configuration
 from raycaster.errors import UserError
-from raycaster.scene import SceneError, load_scene
+from raycaster.scene import Camera, SceneError, dump_scene, load_scene
 
 SCENES = Path(__file__).parents[2] / "scenes"
 
@@ -29,7 +29,8 @@ CAMERA = "[camera]\nposition = [20, 256, 100]\n"
 RECT = GOOD[GOOD.index("[[rect]]") :]
 CORNERS = "[[0, 0, 0], [511, 511, 0]]"
 TOP_KEYS = "title, rows, reflections, background, camera, rect"
-RECT_KEYS = "corners, colour, name"
+CAMERA_KEYS = "position, yaw, pitch, roll"
+RECT_KEYS = "corners, colour, name, mirror, pattern, colour2, cell"
 
 
 def write(folder: Path, text: str) -> Path:
@@ -82,7 +83,7 @@ def test_rows_that_a_file_may_ask_for(tmp_path, rows):
         ("title", "titel", f"titel: is not a key of scene files; the keys here are {TOP_KEYS}"),
         ("title", '"ti\\ntle"', f'"ti\\ntle": is not a key of scene files; the keys here are {TOP_KEYS}'),
         ("[[rect]]", "[[rects]]", f"rects: is not a key of scene files; the keys here are {TOP_KEYS}"),
-        ("position", "angle", "camera.angle: is not a key of scene files; the keys here are position"),
+        ("position", "angle", f"camera.angle: is not a key of scene files; the keys here are {CAMERA_KEYS}"),
         ("colour", "color", f'rect[0] ("floor") color: is not a key of scene files; the keys here are {RECT_KEYS}'),
         ("name", "nam", f"rect[0].nam: is not a key of scene files; the keys here are {RECT_KEYS}"),
         # Numbers out of range or of another kind.
@@ -133,6 +134,29 @@ def test_rows_that_a_file_may_ask_for(tmp_path, rows):
         ("#c8c8b4", "beige", 'rect[0] ("floor") colour: must be a colour such as "#c8c8b4", not "beige"'),
         ('"#c8c8b4"', "[1, 2, 3]", 'rect[0] ("floor") colour: must be a colour such as "#c8c8b4", not [1, 2, 3]'),
         ('"#000000"', "0", 'background: must be a colour such as "#c8c8b4", not 0'),
+        # Angles and looks.
+        ("100]", "100]\nyaw = 361", "camera.yaw: must be an angle in degrees, -360..360, not 361"),
+        ("100]", "100]\npitch = nan", "camera.pitch: must be an angle in degrees, -360..360, not NaN"),
+        ("100]", "100]\nroll = true", "camera.roll: must be an angle in degrees, -360..360, not true"),
+        ("100]", '100]\nyaw = "90"', 'camera.yaw: must be an angle in degrees, -360..360, not "90"'),
+        ('b4"', 'b4"\nmirror = 0.3', 'rect[0] ("floor") mirror: must be 0, 0.25, 0.5, 0.75 or 1, not 0.3'),
+        ('b4"', 'b4"\nmirror = true', 'rect[0] ("floor") mirror: must be 0, 0.25, 0.5, 0.75 or 1, not true'),
+        (
+            'b4"',
+            'b4"\npattern = "dots"',
+            'rect[0] ("floor") pattern: must be "plain", "checker", "rows" or "columns", not "dots"',
+        ),
+        (
+            'b4"',
+            'b4"\npattern = "rows"\ncolour2 = "#000000"\ncell = 48',
+            'rect[0] ("floor") cell: must be 8, 16, 32, 64, 128 or 256, not 48',
+        ),
+        ('b4"', 'b4"\npattern = "rows"', 'rect[0] ("floor"): a pattern has a second colour; give colour2 beside rows'),
+        (
+            'b4"',
+            'b4"\ncolour2 = "#000000"',
+            'rect[0] ("floor"): colour2 is for a pattern; give pattern = "checker", "rows" or "columns"',
+        ),
         # Not TOML.
         ("rows = 240", "rows = ", "is not TOML: Invalid value (at line 2, column 8)"),
         ("rows = 240", "rows: 240", "is not TOML: Expected '=' after a key in a key/value pair (at line 2, column 5)"),
@@ -140,6 +164,58 @@ def test_rows_that_a_file_may_ask_for(tmp_path, rows):
 )
 def test_mistake(tmp_path, old, new, expected):
     assert complaint(write(tmp_path, changed(old, new))) == expected
+
+
+LOOKS = """\
+yaw = 30
+pitch = -12.5
+[[rect]]
+corners = [[0, 0, 0], [511, 511, 0]]
+colour = "#c8c8b4"
+mirror = 0.25
+pattern = "columns"
+colour2 = "#010203"
+cell = 128
+[[rect]]
+corners = [[0, 0, 0], [511, 511, 0]]
+colour = "#c8c8b4"
+mirror = 1
+"""
+
+
+def test_reads_angles_and_looks(tmp_path):
+    scene = load_scene(write(tmp_path, CAMERA + LOOKS))
+    assert (scene.camera.yaw, scene.camera.pitch, scene.camera.roll) == (30, -12.5, 0)
+    first, second = scene.rect
+    assert (first.quarters, first.kind, first.cell_code, first.colour2) == (1, 3, 4, (1, 2, 3))
+    assert (second.quarters, second.kind, second.cell, second.colour2) == (4, 0, 32, None)
+    assert scene.needs == {"turn": True, "materials": True, "patterns": True}
+    plain = load_scene(write(tmp_path, GOOD))
+    assert (plain.needs, plain.rect[0].quarters) == (dict.fromkeys(("turn", "materials", "patterns"), False), 2)
+    assert scene.lacks(("turn", "patterns")) == ["materials"]
+    path = write(tmp_path, dump_scene(scene))
+    assert load_scene(path) == scene
+
+
+@pytest.mark.parametrize(
+    ("angles", "basis"),
+    [
+        ((0, 0, 0), ((256, 0, 0), (0, 256, 0), (0, 0, 256))),
+        ((90, 0, 0), ((0, 256, 0), (-256, 0, 0), (0, 0, 256))),
+        ((0, 90, 0), ((0, 0, 256), (0, 256, 0), (-256, 0, 0))),
+        ((0, 0, 90), ((256, 0, 0), (0, 0, 256), (0, -256, 0))),
+        ((180, 0, 0), ((-256, 0, 0), (0, -256, 0), (0, 0, 256))),
+        ((0, -90, 0), ((0, 0, -256), (0, 256, 0), (256, 0, 0))),
+        # Looks up a quarter turn, after it was rolled, before it is yawed.
+        ((90, 90, 0), ((0, 0, 256), (-256, 0, 0), (0, -256, 0))),
+        ((30, 0, 0), ((222, 128, 0), (-128, 222, 0), (0, 0, 256))),
+        ((360, -360, 360), ((256, 0, 0), (0, 256, 0), (0, 0, 256))),
+    ],
+)
+def test_where_a_camera_looks(angles, basis):
+    camera = Camera(position=(0, 0, 0), **dict(zip(("yaw", "pitch", "roll"), angles, strict=True)))
+    assert camera.basis == basis
+    assert camera.turned == (basis != ((256, 0, 0), (0, 256, 0), (0, 0, 256)))
 
 
 def test_no_rectangles(tmp_path):

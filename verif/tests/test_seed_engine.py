@@ -3,15 +3,18 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pytest
+from definition import Stop, colour_at, pixel
 
-from raycaster.golden import exact, seed_engine
+from raycaster.configuration import configure
+from raycaster.golden import engines, exact, seed_engine
 from raycaster.golden.picture import count_wrong
-from raycaster.golden.random_world import random_camera, random_rectangles, random_slopes
+from raycaster.golden.random_world import random_camera, random_looks, random_rectangles, random_slopes
 from raycaster.scene import load_scene
 from raycaster.screens import SCREENS
 from raycaster.verif.seeds import repeat, seed
@@ -71,7 +74,7 @@ def follow_by_definition(rectangles, camera, slope, reflections, mode):
         # The first of equals is the lower index.
         winner = min(depths, key=depths.get) if depths else -1
         path.append((met, winner))
-        if winner < 0:
+        if winner < 0 or rectangles.mirrors[winner] == 0:
             origin = None
         else:
             axis, origin = met[winner]
@@ -83,14 +86,15 @@ def follow_by_definition(rectangles, camera, slope, reflections, mode):
 @pytest.mark.parametrize("mode", MODES, ids=lambda mode: f"F{mode[0]}-{mode[1]}")
 def test_traces_by_definition(mode, reflections):
     rng = np.random.default_rng([seed(), reflections])
-    deepest = 0
+    deepest, patterned, ended = 0, 0, 0
     for table in range(20):
         rectangles, slopes = random_rectangles(rng), random_slopes(rng, 40)
+        if table % 2:
+            rectangles = random_looks(rng, rectangles)
         camera = random_camera(rng, rectangles)
         trace = seed_engine.trace(
             rectangles, camera, BACKGROUND, slopes, reflections, fraction_bits=mode[0], rounding=mode[1], keep=True
         )
-        palette = [*rectangles.colours.tolist(), BACKGROUND]
         for ray, slope in enumerate(slopes.tolist()):
             context = f"table {table}, ray {ray}: camera {camera.tolist()}, slope {slope}; {repeat()}"
             path = follow_by_definition(rectangles, camera.tolist(), slope, reflections, mode)
@@ -102,14 +106,22 @@ def test_traces_by_definition(mode, reflections):
                     if hit:
                         assert bounce.points[index, ray].tolist() == hit[1], f"rectangle {index}, {context}"
             deepest = max(deepest, sum(winner >= 0 for winner in winners))
-            c = [palette[winner] for winner in winners]
-            expected = {
-                0: lambda c: c[0],
-                1: lambda c: [(a + b) >> 1 for a, b in zip(*c, strict=True)],
-                2: lambda c: [(2 * a + b + d) >> 2 for a, b, d in zip(*c, strict=True)],
-            }[reflections](c)
-            assert trace.colours[ray].tolist() == list(expected), context
+            stops = []
+            for met, winner in path:
+                if winner < 0:
+                    stops.append(Stop(None, [], -1, False, BACKGROUND, 0))
+                    break
+                point = [Fraction(part, 2 ** mode[0]) for part in met[winner][1]]
+                colour, quarters = colour_at(rectangles, winner, point), int(rectangles.mirrors[winner])
+                stops.append(Stop(None, [], winner, False, colour, quarters))
+                patterned += bool(rectangles.kinds[winner])
+                if quarters == 0:
+                    ended += 1
+                    break
+            assert [seen[ray].tolist() for seen in trace.seen[: len(stops)]] == [list(s.colour) for s in stops], context
+            assert trace.colours[ray].tolist() == pixel(stops), context
     assert deepest == reflections + 1, f"no ray made all its reflections; {repeat()}"
+    assert min(patterned, ended) > 10, f"few rays met patterns or ended; {repeat()}"
 
 
 def test_kept_values_agree_with_each_other():
@@ -223,6 +235,15 @@ def test_lower_index_wins_a_tie():
         rectangles = seed_engine.Rectangles(np.array([wall, wall]), colours, np.ones(2, dtype=bool))
         trace = seed_engine.trace(rectangles, (0, 5, 5), (0, 0, 0), [(100, 0, 0)], 0)
         assert trace.colours.tolist() == [colours[0].tolist()]
+
+
+def test_refuses_a_camera_that_turns():
+    scene = load_scene(SCENES / "mirror_room.toml")
+    turned = scene.model_copy(update={"camera": scene.camera.model_copy(update={"yaw": 1.0})})
+    with pytest.raises(ValueError, match="the camera cannot turn"):
+        seed_engine.render(turned, SCREENS["tiny", 48])
+    with pytest.raises(ValueError, match="a design without turn does not draw this scene"):
+        engines.render(configure(), turned, 1)
 
 
 def test_refuses_an_unknown_rounding():

@@ -14,6 +14,8 @@ import pytest
 from conftest import ROOT, SMALL_SCENE
 from PIL import Image
 
+from raycaster.design import design_for
+
 RESULT_KEYS = {
     "pixels",
     "wrong_vs_golden",
@@ -105,6 +107,10 @@ colour = "#c8c8b4"
 """
 
 
+TURNED = SCENE.replace("100]", "100]\nyaw = 20")
+PATTERNED = SCENE + 'pattern = "rows"\ncolour2 = "#000000"'
+
+
 @pytest.mark.parametrize(
     ("text", "options", "complaint"),
     [
@@ -124,6 +130,11 @@ colour = "#c8c8b4"
         (SCENE, ("--fraction-bits", "9"), "fraction_bits: "),
         (SCENE, ("--colour-bits", "0"), "colour_bits: "),
         (SCENE, ("--reflections", "3"), "reflections: "),
+        (TURNED, ("--engine", "seed"), "the seed engine measures depth along x, so its camera cannot turn"),
+        (TURNED, ("TURN=0",), "the scene needs a camera that turns; leave TURN out"),
+        (SCENE + "mirror = 0", ("MATERIALS=0",), "the scene needs rectangles that mirror more or less than half"),
+        (PATTERNED, ("PATTERNS=0",), "the scene needs rectangles with patterns; leave PATTERNS out"),
+        (TURNED, ("FIX=all", "ENGINE=seed"), "the seed engine measures depth along x"),
         (SCENE, ("--simulator", "questa"), "simulator: verilator or icarus, not questa"),
     ],
 )
@@ -139,6 +150,21 @@ def test_mistakes(build, tmp_path, text, options, complaint):
     assert ran.stderr.count("\n") == 1
     assert ran.stdout == ""
     assert not build.exists()
+
+
+def test_a_scene_chooses_what_it_needs(tmp_path):
+    def chosen(text, **options):
+        path = tmp_path / "mine.toml"
+        path.write_text(text)
+        config = design_for(path, options).configuration
+        return config.engine, config.looks
+
+    assert chosen(SCENE) == ("seed", ())
+    assert chosen(SCENE, engine="exact", turn="1") == ("exact", ("turn",))
+    assert chosen(TURNED) == ("exact", ("turn",))
+    assert chosen(TURNED, engine="beam") == ("beam", ("turn",))
+    assert chosen(PATTERNED) == ("seed", ("patterns",))
+    assert chosen(TURNED + "mirror = 0") == ("exact", ("turn", "materials"))
 
 
 def test_two_scenes_of_one_name(build, scenes, tmp_path):

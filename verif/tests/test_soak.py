@@ -6,6 +6,8 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from collections import Counter
+from itertools import product
 
 import pytest
 from conftest import BUILD, ROOT
@@ -17,18 +19,33 @@ from raycaster.sim.job import Job
 from raycaster.sim.simulator import SimulationError, build_model, convert, run_bench
 from raycaster.verif.random_scenes import STYLES, random_scene
 
+LOOKS = ("turn", "materials", "patterns")
 SMALL = configure(screen="tiny", units=8, rectangles=4, reflections=2, divider_bits=3)
 
 
 def test_scenes_survive_their_file(tmp_path):
-    """Every style, and what is written is what is read."""
-    for seed in range(4 * len(STYLES)):
-        scene = random_scene(seed, 12, 2)
+    """Every style and look, and what is written is what is read."""
+    for seed, looks in product(range(4 * len(STYLES)), ((), ("turn",), ("materials", "patterns"), LOOKS)):
+        scene = random_scene(seed, 12, 2, looks)
         assert 1 <= len(scene.rect) <= 12
         path = tmp_path / f"{seed}.toml"
         path.write_text(dump_scene(scene))
         assert load_scene(path) == scene
-        assert random_scene(seed, 12, 2) == scene
+        assert random_scene(seed, 12, 2, looks) == scene
+        plain = random_scene(seed, 12, 2)
+        assert not scene.lacks(looks)
+        assert [rectangle.corners for rectangle in scene.rect] == [rectangle.corners for rectangle in plain.rect]
+    needed = Counter(need for seed in range(100) for need in random_scene(seed, 12, 2, LOOKS).lacks(()))
+    assert min(needed[look] for look in LOOKS) > 80
+
+
+def test_the_catalogue_has_what_a_design_shows():
+    counts = {looks: len(catalogue(looks)) for looks in ((), ("turn",), ("materials", "patterns"), LOOKS)}
+    assert counts[()] >= 80
+    assert counts["turn",] - counts[()] >= 15
+    assert counts["materials", "patterns"] - counts[()] >= 8
+    assert counts[LOOKS] > counts["turn",] + counts["materials", "patterns"] - counts[()]
+    assert all(len(case.scene.rect) <= 12 for case in catalogue(LOOKS))
 
 
 def test_soak():

@@ -29,9 +29,13 @@ CONFIGURATIONS = [
     configure(screen="tiny", units=1, rectangles=1, fraction_bits=3, colour_bits=1, allow_underrun=True),
     configure(engine="exact"),
     configure(engine="exact", screen="tiny", reflections=2, rectangles=1),
+    configure(units=2, rectangles=2, reflections=0, materials=True, culling=False, allow_underrun=True),
+    configure(units=2, rectangles=3, reflections=2, materials=True, patterns=True, allow_underrun=True),
+    configure(engine="exact", screen="tiny", reflections=2, turn=True, materials=True, patterns=True),
     configure(engine="beam", rows=180),
     configure(engine="beam", screen="tiny", reflections=2, rectangles=3, scale=1),
     configure(engine="beam", reflections=0, rectangles=1, colour_bits=4),
+    configure(engine="beam", screen="tiny", reflections=2, rectangles=2, turn=True, materials=True, patterns=True),
     fix(SMALL_SCENE, {"screen": "tiny"}, "rects").design.configuration,
     *(fix(SMALL_SCENE, {"engine": engine}, "all").design.configuration for engine in ("seed", "exact", "beam")),
 ]

@@ -16,9 +16,8 @@ from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.play import window
 from raycaster.play.machine import Machine, build_machine
-from raycaster.rtl.system import scene_player
-from raycaster.rtl.system.camera_axis import STEP
-from raycaster.scene import load_scene
+from raycaster.play.walk import Walker
+from raycaster.scene import UNTURNED, Camera, load_scene
 
 MIRROR_ROOM = ROOT / "scenes" / "mirror_room.toml"
 pygame = pytest.importorskip("pygame", reason="the extra play is not installed")
@@ -43,31 +42,56 @@ def test_the_game_is_played(unseen, tmp_path, capsys):
     assert picture.shape[0] > 96 and len(np.unique(picture.reshape(-1, 3), axis=0)) > 5
 
 
-# Two clocks a pixel, and one.
-@pytest.mark.parametrize("engine", ["exact", "beam"])
-def test_a_walk_is_judged(engine):
+# Two clocks a pixel, and one; with a camera that does not turn, and one that does.
+@pytest.mark.parametrize(("engine", "turn"), [("exact", True), ("beam", False), ("beam", True)])
+def test_a_walk_is_judged(engine, turn):
     """What is shown while the camera moves is held against the scene that its registers hold."""
     scene = load_scene(MIRROR_ROOM)
     # Lost bits of a colour are no wrong pixels.
-    config = configure(engine=engine, screen="tiny", colour_bits=5)
+    config = configure(engine=engine, screen="tiny", colour_bits=5, turn=turn)
     judge = window.Judge(config)
-    named = {name: 1 << bit for bit, name in enumerate(scene_player.BUTTONS)}
-    path = [named["forward"]] * 4 + [named["left"] | named["up"]] * 2 + [named["up"] | named["down"]] + [0] * 3
-    with Machine(build_machine(config, scene, BUILD), config) as machine:
+    walker = Walker(scene, config)
+    path = [["turn right"]] * 3 + [["forward", "look down"]] * 4 + [["left", "rise"]] * 2 + [["rise", "sink"], []]
+    with Machine(build_machine(config, BUILD, processor=False), config) as machine:
+        machine.frame(writes=walker.load())
         for held in path:
-            frame = machine.frame(held)
+            walker.move(held)
+            frame = machine.frame(writes=walker.writes())
             assert frame.clocks == config.screen_geometry.frame_cycles
             assert 0 < frame.busy < frame.clocks
             judge.look(frame)
             judge.finish()
-    x, y, z = scene.camera.position
-    assert frame.scene.camera == (x + 4 * STEP, y - 2 * STEP, z + 2 * STEP)
+            # What is written in the vertical sync is shown at once.
+            assert frame.scene.camera == walker.camera.position
+            assert frame.scene.basis == (walker.camera.basis if turn else UNTURNED)
     assert (judge.pictures, judge.all_wrong) == (len(path), 0)
     torn = frame.picture.copy()
     torn[3, 5] ^= 255
     judge.look(replace(frame, picture=torn))
     judge.finish()
     assert judge.wrong == judge.all_wrong == 1
+
+
+def test_a_walk_goes_where_it_looks():
+    scene = load_scene(MIRROR_ROOM)
+    scene = scene.model_copy(update={"camera": Camera(position=(100, 200, 300), roll=5.0)})
+    turning = Walker(scene, configure(engine="beam", screen="tiny", turn=True))
+    for _ in range(45):
+        turning.move(["turn right"])
+    turning.move([], (-80, 40))
+    assert (turning.camera.yaw, turning.camera.pitch, turning.camera.roll) == (70.0, -10.0, 5.0)
+    turning.move([], (80, -400))
+    assert (turning.camera.yaw, turning.camera.pitch) == (90.0, 89.0)
+    # Level, however steep it looks.
+    turning.move(["forward"])
+    turning.move(["forward", "right"])
+    assert turning.camera.position == (97, 206, 300)
+    for _ in range(200):
+        turning.move(["back", "rise"])
+    assert turning.camera.position == (97, 0, 511)
+    straight = Walker(scene, configure(engine="seed", screen="tiny"))
+    straight.move(["turn right", "look up", "forward", "left"], (10, 10))
+    assert (straight.camera.position, straight.camera.yaw, straight.camera.pitch) == ((103, 197, 300), 0.0, 0.0)
 
 
 def test_keys_are_buttons(unseen):
@@ -82,6 +106,11 @@ def test_keys_are_buttons(unseen):
         pygame.event.post(pygame.event.Event(pygame.KEYUP, key=pygame.K_LEFT))
         pygame.event.post(pygame.event.Event(pygame.KEYUP, key=pygame.K_SPACE))
         assert shown.held() == 1 << BUTTON_NAMES.index("left")
+        pygame.event.post(pygame.event.Event(pygame.MOUSEMOTION, rel=(3, -4), buttons=(1, 0, 0), pos=(0, 0)))
+        pygame.event.post(pygame.event.Event(pygame.MOUSEMOTION, rel=(2, 1), buttons=(1, 0, 0), pos=(0, 0)))
+        pygame.event.post(pygame.event.Event(pygame.MOUSEMOTION, rel=(9, 9), buttons=(0, 0, 0), pos=(0, 0)))
+        assert (shown.held(), shown.drag) == (1 << BUTTON_NAMES.index("left"), (5, -3))
+        assert (shown.held(), shown.drag) == (1 << BUTTON_NAMES.index("left"), (0, 0))
         pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_ESCAPE))
         assert shown.held() is None
     finally:

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: MIT
+"""What each line of a camera that turns begins with: its first ray, and then what a column adds."""
+
+from myhdl import always, always_comb, block, concat, instances
+
+from raycaster.configuration import Configuration
+from raycaster.rtl.common.widths import BASIS_BITS, bit, exact_slope_bits, factor_bits, signed, unsigned
+from raycaster.rtl.engine import rect_setup as setup
+
+AIM_LATENCY = 5
+"""Cycles from start_line to the first ray."""
+
+
+def start_cycles(config: Configuration) -> int:
+    """Cycles from start_line until the first column may come."""
+    if not config.turn:
+        return setup.LATENCY + config.rectangles
+    # A sweep reads its slope from the third cycle on, and the second one starts with the first one's last load.
+    return AIM_LATENCY - 3 + 2 * (setup.LATENCY + config.rectangles - 1) + 1
+
+
+@block
+def line_starter(clk, reset, start_line, camera, row_slope, loaded, aim, start_sweep, enter, config: Configuration):
+    """Let rect_setup go through the rectangles twice: with the first ray's slope, and with what a column adds to it.
+
+    aim: D = view distance * forward - centre column * right + row_slope * up of the line's first ray, and from the
+    second cycle after enter on right. start_sweep: strobe, rect_setup starts; loaded: its last load; enter: strobe with
+    the first sweep's, so that in the cycle after it all that walks along the row may take its start. row_slope: rows
+    above the horizon, constant from the third cycle after start_line on.
+    """
+    slope_bits = exact_slope_bits(config) + 1
+    view_distance, first_column = config.screen_geometry.view_distance, -config.screen_geometry.centre_column
+
+    ages = unsigned(AIM_LATENCY - 1)
+    first_sweep, entered = bit(), bit()
+    factor = signed(factor_bits(config))
+    x, y, z = (signed(BASIS_BITS) for _ in range(3))
+    x_product, y_product, z_product = (signed(slope_bits) for _ in range(3))
+
+    # Bit i: the line started i + 1 cycles ago.
+    @always(clk.posedge)
+    def follow():
+        ages.next = concat(ages[AIM_LATENCY - 2 :], start_line)
+        entered.next = enter
+        if reset:
+            ages.next = 0
+            first_sweep.next = False
+        elif start_line:
+            first_sweep.next = True
+        elif loaded:
+            first_sweep.next = False
+
+    @always_comb
+    def sweep():
+        enter.next = loaded and first_sweep
+        start_sweep.next = ages[AIM_LATENCY - 4] or enter
+
+    @always_comb
+    def choose():
+        if ages[0]:
+            factor.next = view_distance
+            x.next = camera.forward_x
+            y.next = camera.forward_y
+            z.next = camera.forward_z
+        elif ages[1]:
+            factor.next = first_column
+            x.next = camera.right_x
+            y.next = camera.right_y
+            z.next = camera.right_z
+        else:
+            factor.next = row_slope
+            x.next = camera.up_x
+            y.next = camera.up_y
+            z.next = camera.up_z
+
+    @always(clk.posedge)
+    def multiply():
+        x_product.next = factor * x
+        y_product.next = factor * y
+        z_product.next = factor * z
+
+    @always(clk.posedge)
+    def accumulate():
+        if ages[0]:
+            aim.x.next = 0
+            aim.y.next = 0
+            aim.z.next = 0
+        elif ages[AIM_LATENCY - 1 : 1] != 0:
+            aim.x.next = aim.x + x_product
+            aim.y.next = aim.y + y_product
+            aim.z.next = aim.z + z_product
+        elif entered:
+            aim.x.next = camera.right_x
+            aim.y.next = camera.right_y
+            aim.z.next = camera.right_z
+
+    return instances()

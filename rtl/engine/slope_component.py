@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+"""A component of the primary ray of a turned camera."""
+
+from myhdl import always, always_comb, block, instances
+
+from raycaster.configuration import Configuration
+from raycaster.rtl.common.magnitude import magnitude
+from raycaster.rtl.common.widths import bit, signed, unsigned
+
+
+@block
+def slope_component(
+    clk, steps, forward, right, up, column, row, column_base, size, negative, config: Configuration
+):  # fmt: skip
+    """view distance * forward + (column + column_base) * right + row * up, in sign and magnitude.
+
+    Loaded at steps.screen_to_ray; all but column_base, which never changes, hold still from the cycle before on.
+    forward, right, up: components of the camera's basis; column: from the screen's centre to the first unit's, to the
+    right; row: from the horizon up, both signed; size: wide enough for the screen's steepest.
+    """
+    view_distance = config.screen_geometry.view_distance
+    # A group past the last one is legal, where none is loaded: twice the steepest slope is more than enough.
+    bits = len(size) + 2
+
+    ahead, across, upward, aside = (signed(bits) for _ in range(4))
+    level, total, start, component = (signed(bits) for _ in range(4))
+    component_size = unsigned(len(size))
+    component_negative = bit()
+    absolute = magnitude(component, component_size)
+
+    @always_comb
+    def multiply():
+        ahead.next = forward * view_distance
+        across.next = right * column
+        upward.next = up * row
+        aside.next = right * column_base
+
+    @always_comb
+    def add_columns():
+        level.next = ahead + across
+
+    @always_comb
+    def add_rows():
+        total.next = level + upward
+
+    # It is the same in all units, so synthesis keeps one of them.
+    @always(clk.posedge)
+    def keep_start():
+        start.next = total
+
+    @always_comb
+    def go_aside():
+        component.next = start + aside
+
+    @always_comb
+    def take_sign():
+        component_negative.next = component < 0
+
+    @always(clk.posedge)
+    def load():
+        if steps.screen_to_ray:
+            size.next = component_size
+            negative.next = component_negative
+
+    return instances()

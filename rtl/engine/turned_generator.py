@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: MIT
+"""The primary ray of a unit's column, of a camera that turns."""
+
+from myhdl import always_comb, block, concat, instances
+
+from raycaster.configuration import Configuration
+from raycaster.rtl.common.widths import bit, row_bits, signed, unsigned
+from raycaster.rtl.engine.slope_component import slope_component
+
+
+@block
+def turned_generator(
+    clk, steps, place, column_base, camera, initial_signs, slope, config: Configuration
+):  # fmt: skip
+    """In place of `ray_generator`, with its ports and a `Camera`: the slope, in sign and magnitude, is view distance *
+    forward + (column - centre) * right + (horizon - row) * up, and 256 times as long as that of a camera not turned.
+
+    place and camera hold still from the cycle before steps.screen_to_ray on.
+    """
+    units = config.units
+    screen = config.screen_geometry
+    centre_column, horizon_row = screen.centre_column, screen.horizon_row
+    column_width = (config.groups * units + units).bit_length()
+
+    group_start = unsigned(column_width)
+    column = signed(column_width + 1)
+    row = signed(row_bits(config) + 1)
+    negative_x, negative_y, negative_z = bit(), bit(), bit()
+
+    along_x = slope_component(
+        clk=clk, steps=steps, forward=camera.forward_x, right=camera.right_x, up=camera.up_x, column=column, row=row,
+        column_base=column_base, size=slope.dx, negative=negative_x, config=config,
+    )  # fmt: skip
+    along_y = slope_component(
+        clk=clk, steps=steps, forward=camera.forward_y, right=camera.right_y, up=camera.up_y, column=column, row=row,
+        column_base=column_base, size=slope.dy, negative=negative_y, config=config,
+    )  # fmt: skip
+    along_z = slope_component(
+        clk=clk, steps=steps, forward=camera.forward_z, right=camera.right_z, up=camera.up_z, column=column, row=row,
+        column_base=column_base, size=slope.dz, negative=negative_z, config=config,
+    )  # fmt: skip
+
+    @always_comb
+    def scale_offset():
+        group_start.next = place.column_offset * units
+
+    @always_comb
+    def centre():
+        column.next = group_start - centre_column
+        row.next = horizon_row - place.row
+
+    @always_comb
+    def join_signs():
+        initial_signs.word.next = concat(negative_x, negative_y, negative_z)
+
+    return instances()

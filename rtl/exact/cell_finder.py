@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT
+"""In which cells of a pattern a hit lies, by the few bits of a quotient that decide it."""
+
+from myhdl import always, always_comb, block, concat, instances
+
+from raycaster.configuration import COORDINATE_BITS
+from raycaster.rtl.common.widths import SMALLEST_CELL_BITS, bit, signed, unsigned
+from raycaster.rtl.engine.divider_step import divider_step
+
+
+@block
+def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, found_slope, odd_u, odd_v):
+    """odd_u, odd_v: the lowest bits of floor(P[u] / cell) and floor(P[v] / cell), three cycles after store_quotient.
+
+    P = (E e + D n) / e is within the world, and a mirrored eye's is the point itself. So of the quotient's bits the
+    highest few decide, which a restoring division finds two a cycle; and a remainder less than e is left above them.
+
+    At steps.load_divider, P[u] is begun; at steps.store_quotient, three cycles later, its bit is kept and P[v] begun.
+    Until the end all else holds still. found_surface: a `Surface` with patterns; found_distance, found_slope: n and e,
+    unsigned. What is no hit has any cells, and so has a cell as large as the world or larger, which is even.
+    """
+    slope_bits, eye_bits = len(found_slope), len(eye.x)
+    point_bits = slope_bits + COORDINATE_BITS
+    digit_count = COORDINATE_BITS - SMALLEST_CELL_BITS
+
+    on_x, on_z = bit(), bit()
+    eye_q = signed(eye_bits)
+    slope_q = unsigned(slope_bits)
+    back_q = bit()
+    e = signed(slope_bits + 1)
+    position = signed(eye_bits + slope_bits + 1)
+    way_bits = max(eye_bits - 1 + slope_bits, point_bits)
+    way, turned_way = unsigned(way_bits), unsigned(way_bits)
+    from_eye, along, point = (unsigned(point_bits + 1) for _ in range(3))
+
+    remainder, remainder_1, remainder_2 = (unsigned(slope_bits) for _ in range(3))
+    digits, digits_1, digits_2 = (unsigned(digit_count) for _ in range(3))
+    first_step = divider_step(remainder, digits, found_slope, remainder_1, digits_1)
+    second_step = divider_step(remainder_1, digits_1, found_slope, remainder_2, digits_2)
+
+    # u is x but on a rectangle across x, and v is z but on one across z.
+    @always_comb
+    def see_axis():
+        on_x.next = (not steps.store_quotient) and (found_surface.axis != 0)
+        on_z.next = steps.store_quotient and (found_surface.axis != 2)
+
+    @always_comb
+    def choose_axis():
+        if on_x:
+            eye_q.next = eye.x
+            slope_q.next = slope.dx
+            back_q.next = signs.dx
+        elif on_z:
+            eye_q.next = eye.z
+            slope_q.next = slope.dz
+            back_q.next = signs.dz
+        else:
+            eye_q.next = eye.y
+            slope_q.next = slope.dy
+            back_q.next = signs.dy
+
+    @always_comb
+    def extend():
+        e.next = found_slope
+
+    @always_comb
+    def multiply():
+        position.next = eye_q * e
+        way.next = found_distance * slope_q
+
+    @always_comb
+    def turn_way():
+        turned_way.next = way
+        if back_q:
+            turned_way.next = ~way
+
+    # A bit below the units carries the one that a complement lacks.
+    @always_comb
+    def add_carry():
+        from_eye.next = concat(position[point_bits:], True)
+        along.next = concat(turned_way[point_bits:], back_q)
+
+    @always_comb
+    def add():
+        point.next = (from_eye + along) % (1 << (point_bits + 1))
+
+    @always(clk.posedge)
+    def divide():
+        if steps.load_divider or steps.store_quotient:
+            remainder.next = point[point_bits + 1 : COORDINATE_BITS + 1]
+            digits.next = point[COORDINATE_BITS + 1 : SMALLEST_CELL_BITS + 1]
+        else:
+            remainder.next = remainder_2
+            digits.next = digits_2
+
+    @always_comb
+    def choose_digit():
+        odd_v.next = False
+        for size in range(digit_count):
+            if found_surface.cell == size:
+                odd_v.next = digits_2[size]
+
+    @always(clk.posedge)
+    def keep_u():
+        if steps.store_quotient:
+            odd_u.next = odd_v
+
+    return instances()

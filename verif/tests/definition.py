@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: MIT
+"""The image contract written out ray by ray with fractions, for the tests of what computes it in other ways."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import floor
+
+from raycaster.golden.world import Rectangles
+
+Vector = Sequence[int | Fraction]
+
+
+@dataclass(frozen=True)
+class Stop:
+    """Where a ray is between two mirrors."""
+
+    met: frozenset[int] | None
+    """Axes of the mirrors that it met in the point where it starts; None for a ray from the camera."""
+
+    points: list[list[Fraction] | None]
+    """Where it meets each rectangle, None for those that it does not meet."""
+
+    winner: int
+    """The nearest of them, -1 for none."""
+
+    corner: bool
+    """That the nearest is met in the point where the ray starts."""
+
+    colour: tuple[int, ...]
+    """What is seen there."""
+
+    quarters: int
+    """How much of it is a mirror; 0 where nothing is hit."""
+
+
+def plane_of(table: Rectangles, index: int) -> int | None:
+    """The axis of an enabled rectangle, None where it has none."""
+    first, second = table.corners[index].tolist()
+    return next((axis for axis in range(3) if first[axis] == second[axis] and table.enabled[index]), None)
+
+
+def distance(table: Rectangles, index: int, origin: Vector, slope: Vector, met: frozenset[int] | None):
+    """How far along the slope a ray meets a rectangle, None where it does not; 0 in a corner."""
+    axis = plane_of(table, index)
+    if axis is None or slope[axis] == 0:
+        return None
+    first, second = table.corners[index].tolist()
+    t = Fraction(first[axis] - origin[axis]) / slope[axis]
+    in_a_corner = t == 0 and met is not None and axis not in met
+    point = [origin[i] + slope[i] * t for i in range(3)]
+    within = all(min(first[i], second[i]) <= point[i] <= max(first[i], second[i]) for i in range(3) if i != axis)
+    return t if within and (t > 0 or in_a_corner) else None
+
+
+def colour_at(table: Rectangles, index: int, point: Vector) -> tuple[int, ...]:
+    """The colour of a rectangle at a point of it."""
+    u, v = (axis for axis in range(3) if axis != plane_of(table, index))
+    number_u, number_v = (floor(point[axis] / Fraction(int(table.cells[index]))) for axis in (u, v))
+    odd = {0: 0, 1: number_u + number_v, 2: number_v, 3: number_u}[int(table.kinds[index])] % 2
+    return tuple((table.colours_2 if odd else table.colours)[index].tolist())
+
+
+def follow(table: Rectangles, background: Sequence[int], camera: Vector, slope: Vector, reflections: int) -> list[Stop]:
+    """Every stop of a ray, until it has made its reflections, hits nothing or meets what does not mirror."""
+    origin, slope, met, path = [Fraction(c) for c in camera], [Fraction(d) for d in slope], None, []
+    for _ in range(reflections + 1):
+        distances = [distance(table, index, origin, slope, met) for index in range(len(table))]
+        points = [None if t is None else [o + d * t for o, d in zip(origin, slope, strict=True)] for t in distances]
+        nearest = min((t for t in distances if t is not None), default=None)
+        if nearest is None:
+            return [*path, Stop(met, points, -1, False, tuple(background), 0)]
+        winner = distances.index(nearest)
+        quarters = int(table.mirrors[winner])
+        path.append(Stop(met, points, winner, nearest == 0, colour_at(table, winner, points[winner]), quarters))
+        if quarters == 0:
+            return path
+        axis = plane_of(table, winner)
+        met = frozenset({axis} | (met if nearest == 0 else set()))
+        origin = points[winner]
+        slope[axis] = -slope[axis]
+    return path
+
+
+def pixel(path: Sequence[Stop]) -> list[int]:
+    """The colour of a ray's pixel."""
+    colour = [Fraction(channel) for channel in path[-1].colour]
+    for stop in reversed(path[:-1]):
+        pairs = zip(stop.colour, colour, strict=True)
+        colour = [((4 - stop.quarters) * own + stop.quarters * after) / 4 for own, after in pairs]
+    return [floor(channel) for channel in colour]
