@@ -33,7 +33,7 @@ from raycaster.options import (
     given_options,
 )
 from raycaster.outcomes import add_keep_option, keep, scope_of
-from raycaster.scene import packaged_scenes
+from raycaster.scene import load_scene, packaged_scenes
 from raycaster.sim.contact_sheet import write_contact_sheet
 from raycaster.sim.job import Job
 from raycaster.sim.netlist import COUNTED_CELLS, Netlist, find_yosys, synthesise
@@ -90,7 +90,16 @@ def plan_runs(
     if scope:
         # Units and reflections are the scene's business then.
         defaults = {name: value for name, value in defaults.items() if name == "screen"}
-    runs = [design_of(path, options, scope, console or Console(quiet=True), **defaults) for path in paths]
+    paths = list(paths)
+    special = {path: scene.reflections for path in paths if any((scene := load_scene(path)).needs.values())}
+    # Scenes that need more than usual are few of a kind: they share hardware, or most of the time goes into building.
+    shared = {} if scope or len(special) < 2 else {"reflections": max(special.values())}
+    runs = [
+        design_of(
+            path, options, scope, console or Console(quiet=True), **(shared if path in special else {}) | defaults
+        )
+        for path in paths
+    ]
     seen: dict[Path, Path] = {}
     for run in runs:
         if (other := seen.setdefault(run.name, run.path)) != run.path:
