@@ -120,5 +120,5 @@ def test_keys_are_buttons(unseen):
 def test_where_there_is_no_display(monkeypatch):
     for name in window.DISPLAYS:
         monkeypatch.delenv(name, raising=False)
-    with pytest.raises(UserError, match=r"^there is no display to open a window on; raycaster game writes an animation"):
+    with pytest.raises(UserError, match=r"^there is no display to open a window on; raycaster game writes"):
         window.main([])
