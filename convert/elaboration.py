@@ -26,14 +26,23 @@ def elaboration() -> Iterator[None]:
     `inspect.stack` is replaced for the whole process while this lasts: other threads then get frames without their
     source. A second elaboration waits for the first one's end.
     """
-    with _ELABORATING:
-        with_source, known = inspect.stack, len(_signals)
+    with _ELABORATING, forgetting():
+        with_source = inspect.stack
         inspect.stack = _callers
         try:
             yield
         finally:
             inspect.stack = with_source
-            del _signals[known:]
+
+
+@contextmanager
+def forgetting() -> Iterator[None]:
+    """MyHDL forgets the signals that are made within this."""
+    known = len(_signals)
+    try:
+        yield
+    finally:
+        del _signals[known:]
 
 
 def _callers() -> list[inspect.FrameInfo]:

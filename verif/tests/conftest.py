@@ -6,12 +6,13 @@ from __future__ import annotations
 import os
 import re
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 from raycaster.configuration import Configuration
+from raycaster.convert.elaboration import forgetting
 from raycaster.options import run_command
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import MODELS_VARIABLE, build_model, run_bench
@@ -45,6 +46,13 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             of_it = line.lstrip("!")
             if of_it.partition("::")[0] in files and not any(name.startswith(of_it) for name in names.values()):
                 raise pytest.UsageError(f"{SLOW.name}: no test begins with {of_it}")
+
+
+@pytest.fixture(autouse=True)
+def forgotten_signals() -> Iterator[None]:
+    """Those of a test end with it: MyHDL would look at them in each later simulation, which took 40 times as long."""
+    with forgetting():
+        yield
 
 
 @pytest.fixture
