@@ -92,11 +92,13 @@ def beam_screens() -> str:
 def beam_latencies() -> str:
     """What the latency is made of."""
     config = configure(engine="beam")
+    turned = replace(config, turn=True)
     rows = [
         ["`fold_tester`", "whether the ray hits, all rectangles at once", fold_tester.LATENCY],
         ["`nearest_of_two`", f"a round; {config.rectangles} rectangles take {rounds(config)}", nearest_of_two.LATENCY],
         ["`ray_fold`", "how the ray folds at its mirror", ray_fold.LATENCY],
         ["", "all of it, from a ray to its reflection", pass_latency(config)],
+        ["", "the same where the camera turns, as each `fold_tester` registers its fold", pass_latency(turned)],
         ["`colour_blend`", "the pixel's colour", blend_latency(config)],
         ["`hit_cells`", "with patterns, in which of its cells the nearest rectangle is hit", hit_cells.LATENCY],
     ]

@@ -21,9 +21,10 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import Configuration, configure
 from raycaster.convert.take_home import TOP
 from raycaster.convert.write import write_verilog
+from raycaster.engines import ENGINES
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
@@ -281,6 +282,56 @@ def with_units(config: Configuration, units: int) -> Configuration:
     return replace(config, units=units, allow_underrun=True)
 
 
+FEATURES = ("turn", "materials", "patterns")
+"""Switches of the configuration that a design has more hardware with."""
+
+
+def feature_designs() -> list[tuple[str, str, dict[str, Any]]]:
+    """Of each engine the design without a feature, with each one alone, and with all: its module, engine and options.
+
+    Of the seed engine it is a ray unit, of which a design has many.
+    """
+    designs = []
+    for engine in ENGINES.values():
+        offered = [name for name in FEATURES if name != "turn" or engine.turns]
+        top = "ray_unit" if engine.divides else TOP
+        for chosen in ([], *([name] for name in offered), offered):
+            designs.append((top, engine.name, dict.fromkeys(chosen, 1)))
+    return designs
+
+
+def measure_features(output: Path, console: Console) -> list[dict[str, Any]]:
+    """What each of them takes of an ECP5.
+
+    Raises:
+        UserError: as `measure`.
+    """
+    tasks: dict[tuple[str, int], Callable[[Path], Any]] = {}
+    for top, engine, options in feature_designs():
+        config = configure(engine=engine, **options)
+        key = config.name, config.units
+        tasks[key] = lambda path, c=config, t=top: (c, t, measure(c, FAMILIES["ecp5"], path, t))
+    results = _run(tasks, output, console)
+    return [
+        {"engine": config.engine, "module": top, "options": options, **asdict(area)}
+        for (_, _, options), (config, top, area) in zip(feature_designs(), (results[key] for key in tasks), strict=True)
+    ]
+
+
+def show_features(features: Sequence[Mapping[str, Any]], console: Console) -> None:
+    """Print them, and by how much each is larger than the design without."""
+    table = _table(
+        "ECP5, by feature; of the seed engine one ray unit", "design", "tables", "more", "registers", "multipliers"
+    )
+    plain = {row["engine"]: row["tables"] for row in features if not row["options"]}
+    for row in features:
+        switches = " ".join(f"{name.upper()}=1" for name in row["options"])
+        more = f"{row['tables'] / plain[row['engine']] - 1:+.1%}"
+        counts = [f"{row[name]:,}" for name in ("registers", "multipliers")]
+        table.add_row(f"{row['engine']} {switches}", f"{row['tables']:,}", more, *counts)
+    console.print(table)
+
+
 def route(config: Configuration, directory: Path) -> float:
     """Place and route the bare module for a ULX3S's ECP5, on any pins; the clock that it reaches, in MHz.
 
@@ -356,6 +407,9 @@ def command_parser() -> CommandParser:
     parser = CommandParser("area", __doc__, "--engine exact --family ecp5")
     parser.add_argument("--family", help=f"one of {', '.join(FAMILIES)} (default: all)")
     parser.add_argument("--route", action="store_true", help="place and route for the ECP5 too, which takes minutes")
+    parser.add_argument(
+        "--features", action="store_true", help="what TURN, MATERIALS and PATTERNS take, of each engine"
+    )
     parser.add_argument("--output", type=Path, default=Path("build/area"), help="(default: %(default)s)")
     add_scene_argument(parser, "what to build in, with --fix")
     add_fix_option(parser)
@@ -370,6 +424,13 @@ def main(argv: Sequence[str] | None = None) -> None:
     if arguments.family and arguments.family not in FAMILIES:
         raise UserError(f"family: {arguments.family} is not known here; choose one of {', '.join(FAMILIES)}")
     console = Console()
+    if arguments.features:
+        if given_options(arguments) or arguments.scene or arguments.fix or arguments.family or arguments.route:
+            raise UserError("features: it has designs of its own, for the ECP5; leave everything else out")
+        features = measure_features(arguments.output, console)
+        show_features(features, console)
+        keep(arguments, {"designs": features}, {"rectangles": configure().rectangles}, "placing and routing")
+        return
     config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, console)
     families = [FAMILIES[arguments.family]] if arguments.family else list(FAMILIES.values())
     counts = unit_counts(config)

@@ -100,10 +100,10 @@ _TINY_48 = Screen(64, 48, 38, 2, Span(128, 8, 16, 8, active_high=False), _TINY_L
 # And this one for the beam engine to take up to 32 rectangles in its blanking.
 _TINY_BEAM_48 = replace(_TINY_48, horizontal=Span(128, 16, 32, 64, active_high=False))
 
-# A pixel a ray and the shortest blanking in which the beam engine takes 32 rectangles and two reflections, for programs
-# that are simulated; 60 frames a second.
+# A pixel a ray, for programs that are simulated, at 60 frames a second. The blanking is the shortest in which the beam
+# engine takes two reflections and 32 rectangles, or 12 before a camera that turns.
 _PLAY_240 = Screen(
-    320, 240, 190, 1, Span(320, 2, 40, 50, active_high=False), Span(240, 1, 1, 1, active_high=False), pixel_hz=6_000_000
+    320, 240, 190, 1, Span(320, 2, 40, 58, active_high=False), Span(240, 1, 1, 1, active_high=False), pixel_hz=6_120_000
 )
 
 SCREENS: Mapping[tuple[str, int], Screen] = {

@@ -5,10 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from raycaster.configuration import Configuration
-from raycaster.debug.probes.ray import AXES, Event, Place, Probe, Ray, Read, Value, fields
-from raycaster.debug.probes.units import RECT_FIELDS, SIGNS, UnitProbes, slope_signs, sorted_rect, surface
+import numpy as np
+
+from raycaster.configuration import CHANNEL_BITS, Configuration
+from raycaster.debug.probes.ray import AXES, Event, Place, Probe, Ray, Read, Value, fields, packed
+from raycaster.debug.probes.units import RECT_FIELDS, SIGNS, UnitProbes, slope_signs, sorted_rect
 from raycaster.debug.waves import Samples
+from raycaster.golden.colour import hit_colours
 from raycaster.golden.world import OTHER_AXES
 from raycaster.rtl.common.records import Origin, Rect
 from raycaster.rtl.common.records import Ray as RayRecord
@@ -34,6 +37,25 @@ def of_nearest(name: str) -> Read:
         return of_rectangle(name, "hits")(ray, Place(place.bounce, nearest)) if nearest >= 0 else None
 
     return read
+
+
+def colour_there(ray: Ray, place: Place) -> Sequence[Value]:
+    """A rectangle's colour where it is hit."""
+    winner, point = np.array([place.rectangle]), np.array([ray.of_rectangle(place, "points")])
+    colours = hit_colours(ray.rectangles, ray.scene.background, winner, point, 1 << ray.config.fraction_bits)
+    return (packed(colours[0], CHANNEL_BITS),)
+
+
+def found_colour(ray: Ray, place: Place) -> Sequence[Value] | None:
+    """The colour of what a ray has hit, where it has; nothing for a miss."""
+    winner = ray.winner(place.bounce)
+    return colour_there(ray, Place(place.bounce, winner)) if winner >= 0 else None
+
+
+def nearest_surface(ray: Ray, place: Place) -> Sequence[Value] | None:
+    """Axis and colour of the nearest rectangle up to this one; nothing where there is none."""
+    nearest = Place(place.bounce, ray.nearest(place))
+    return (ray.plane(nearest)[0], *colour_there(ray, nearest)) if nearest.rectangle >= 0 else None
 
 
 def of_reflected(read: Read) -> Read:
@@ -157,9 +179,8 @@ class SeedProbes(UnitProbes):
             Probe("point", fields(finder, "point", AXES, point), "write", of_rectangle("points", "hits"), scale=True,
                 shown=False),
             Probe("nearest", (f"{buffer}.nearest",), "write", of_nearest("depths"), late=1, scale=True),
-            Probe("nearest surface", kept, "write",
-                lambda ray, place: (surface(ray, ray.nearest(place)) or ())[::2], late=1, shown=False),
+            Probe("nearest surface", kept, "write", nearest_surface, late=1, shown=False),
             Probe("nearest point", fields(buffer, "found_point", AXES, point), "write", of_nearest("points"), late=1,
                 scale=True, shown=False),
-            *self.last_probes(kept[-1]),
+            *self.last_probes(kept[-1], found_colour),
         ]  # fmt: skip

@@ -16,6 +16,7 @@ from raycaster.debug.probes.ray import (
     Place,
     Probe,
     Ray,
+    Read,
     Value,
     channels_of,
     fields,
@@ -47,6 +48,11 @@ def surface(ray: Ray, rectangle: int) -> Sequence[Value] | None:
 def slope_signs(ray: Ray, place: Place) -> Sequence[Value]:
     """Which components of the slope are negative; nothing of one that is 0."""
     return [None if slope == 0 else int(slope < 0) for slope in ray.of_ray(place.bounce, "slopes")]
+
+
+def ended_before(ray: Ray, place: Place) -> Sequence[Value]:
+    """Whether there is no such ray."""
+    return (int(not ray.alive(place.bounce)),)
 
 
 def found(ray: Ray, place: Place) -> Sequence[Value] | None:
@@ -241,15 +247,16 @@ class UnitProbes(Description):
             *([culling] if self.config.culling else []),
         ]  # fmt: skip
 
-    def last_probes(self, kept_colour: str) -> list[Probe]:
-        """From what a ray has found, of which the colour's signal is given, to the pins."""
+    def last_probes(self, kept_colour: str, golden_colour: Read = found_colour) -> list[Probe]:
+        """From what a ray has found to the pins; given are the signal of its colour, and what golden says of that."""
         combiner, bits = f"{self.unit}.colour_combiner_i", 3 * self.config.colour_bits
         buffer = f"{RENDERER}.{unit_name('line_buffer', self.config, self.number)}"
         channel = "colour_sum" if self.config.materials else "colour_channel"
         channels = tuple(f"{combiner}.{channel}_{number}_i.blended" for number in range(3))
         return [
+            Probe("ended before", (f"{combiner}.missed",), "blend", ended_before, shown=False),
             Probe("found", (kept_colour.rpartition(".")[0] + ".found",), "blend", found),
-            Probe("its colour", (kept_colour,), "blend", found_colour, colour=True),
+            Probe("its colour", (kept_colour,), "blend", golden_colour, colour=True),
             Probe("colour seen", (f"{combiner}.seen_word",), "blend", seen_colour, colour=True),
             Probe("means of the channels", channels, "done", pixel_channels),
             Probe("pixel", (f"{combiner}.pixel_word",), "done", pixel, colour=True),

@@ -10,6 +10,7 @@ from raycaster.configuration import Configuration
 from raycaster.rtl.beam import hit_cells as cells
 from raycaster.rtl.beam import ray_fold as folder
 from raycaster.rtl.beam.beam_pass import beam_pass, winner_latency
+from raycaster.rtl.beam.fold_tester import fold_lead
 from raycaster.rtl.beam.hit_cells import hit_cells
 from raycaster.rtl.beam.line_starter import line_starter
 from raycaster.rtl.beam.ray_fold import ray_fold
@@ -52,7 +53,7 @@ def tested(config: Configuration) -> list[list[int]]:
 
 def pass_latency(config: Configuration) -> int:
     """Cycles from a ray to its reflection."""
-    return winner_latency(config) + LOOK_UP_LATENCY + folder.LATENCY
+    return winner_latency(config) + LOOK_UP_LATENCY + folder.LATENCY + fold_lead(config)
 
 
 def cell_latency(config: Configuration) -> int:
@@ -120,9 +121,10 @@ def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture,
     load, last_rectangle = unsigned(config.rectangles), config.rectangles - 1
     new_facet, new_growth, new_start = facet_of(config), growth_of(config), walk_of(config)
     facets = [facet_of(config) for _ in range(config.rectangles)]
-    growths = [growth_of(config) for _ in range(config.rectangles)]
-    facet_words, growth_words = [facet.word for facet in facets], [growth.word for growth in growths]
-    all_facets, all_growths = side_by_side(facet_words), side_by_side(growth_words)
+    facet_words = [facet.word for facet in facets]
+    growth_words = [[unsigned(bits) for bits in new_growth.layout.values()] for _ in facets]
+    all_facets = side_by_side(facet_words)
+    all_growths = side_by_side([word for words in growth_words for word in reversed(words)])
     aim = Direction(exact_slope_bits(config) + 1)
 
     # Bit i: a column was announced i + 1 cycles ago. next_column comes a long way, so it is registered before its use.
@@ -169,10 +171,13 @@ def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture,
         row_register(clk, load(i + 1, i), new_facet.word, word=word, **fixing(new_facet, known_facet(i, config)))
         for i, word in enumerate(facet_words)
     ]
+    # A register a field: a simulator need not take words apart to add growth in every column.
     growth_registers = [
-        row_register(clk, load(i + 1, i), grown.word, word=word, **fixing(grown, known_growth(i, config)))
-        for i, word in enumerate(growth_words)
-    ]
+        row_register(clk, load(i + 1, i), grown.word(grown.slice(name)[0] + 1, grown.slice(name)[1]), word=word,
+            **fixing(Record({name: bits}), known_growth(i, config)))
+        for i, words in enumerate(growth_words)
+        for (name, bits), word in zip(grown.layout.items(), words, strict=True)
+    ]  # fmt: skip
 
     def step_after(cycles: int):
         return steps(cycles, cycles - 1)

@@ -39,12 +39,12 @@ def beam_pass(
 
     facets, growths: each rectangle's `Facet`, and what a column adds to its `Walk`, side by side, the first in the
     lowest bits; load: a bit for each, high where start is its own, or None where the camera turns and start_line loads
-    all. step_bounds: step a cycle later, for what is read then. fold: the ray's; tested: numbers of the rectangles that
-    it may meet. start_line, aim: as in `slope_walker`.
+    all. step_bounds: step a cycle later, for what is read then. fold: the ray's, `fold_lead` cycles before its step;
+    tested: numbers of the rectangles that it may meet. start_line, aim: as in `slope_walker`.
     """
     slope_bits = exact_slope_bits(config)
     straight, signs = ray_slope(aim, config), Signs()
-    size, size_1, size_2 = Slope(slope_bits), Slope(slope_bits), Slope(slope_bits)
+    size, size_1 = Slope(slope_bits), Slope(slope_bits)
     seen = [facet_of(config).cut(facets, i) for i in tested]
     grown = [growth_of(config).cut(growths, i) for i in tested]
     walks, hits = [walk_of(config) for _ in tested], [candidate_of(config) for _ in tested]
@@ -69,12 +69,20 @@ def beam_pass(
         size_1.dx.next = size.dx
         size_1.dy.next = size.dy
         size_1.dz.next = size.dz
-        size_2.dx.next = size_1.dx
-        size_2.dy.next = size_1.dy
-        size_2.dz.next = size_1.dz
+
+    if tester.slope_at(config) == 1:
+        tested_size = size_1
+    else:
+        tested_size = Slope(slope_bits)
+
+        @always(clk.posedge)
+        def follow_again():
+            tested_size.dx.next = size_1.dx
+            tested_size.dy.next = size_1.dy
+            tested_size.dz.next = size_1.dz
 
     testers = [
-        fold_tester(clk, facet=facet, walk=walk, signs=signs, slope=size_2, fold=fold,
+        fold_tester(clk, facet=facet, walk=walk, signs=signs, slope=tested_size, fold=fold,
             index=tied(i, index_bits(config)), hit=hit)
         for i, facet, walk, hit in zip(tested, seen, walks, hits, strict=True)
     ]  # fmt: skip

@@ -8,6 +8,7 @@ from myhdl import always, always_comb, block, concat, instances
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.rtl.beam.beam_pass import winner_latency
 from raycaster.rtl.beam.cell_step import SMALLEST_CELL_BITS, cell_step
+from raycaster.rtl.beam.fold_tester import fold_lead
 from raycaster.rtl.beam.winner_delay import winner_delay
 from raycaster.rtl.common.records import CellDivision, Turn, winner_of
 from raycaster.rtl.common.widths import (
@@ -35,8 +36,8 @@ def hit_cells(clk, fold, nearest, winner, slope, camera, sight, config: Configur
     quotient of E' * denominator + D' * numerator and the denominator is a world coordinate (Heckbert and Hanrahan
     1984), whose bit of a cell's worth a restoring division finds. Only the nearest rectangle's are formed.
 
-    fold: of the ray as it enters its pass, `winner_latency` cycles before nearest, a Candidate; slope: D, SLOPE_AT
-    cycles after it.
+    fold: of the ray as it enters its pass, `fold_lead` and `winner_latency` cycles before nearest, a Candidate; slope:
+    D, SLOPE_AT cycles after it.
     """
     slope_bits, numerator_bits, base_bits = exact_slope_bits(config), eye_bits(config) - 1, TURN_BITS + 1
     way_bits, base_way_bits = slope_bits + 1 + numerator_bits, base_bits + slope_bits
@@ -68,7 +69,7 @@ def hit_cells(clk, fold, nearest, winner, slope, camera, sight, config: Configur
             fold.back_x, fold.back_y, fold.back_z, fold.turn_x[TURN_BITS:], fold.turn_y, fold.turn_z
         )
 
-    turn_delay = winner_delay(clk, turn.word, late_turn.word, winner_latency(config) + 1)
+    turn_delay = winner_delay(clk, turn.word, late_turn.word, fold_lead(config) + winner_latency(config) + 1)
     delay = winner_delay(clk, winner.word, late.word, LATENCY)
 
     @always(clk.posedge)

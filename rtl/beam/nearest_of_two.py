@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
 """The nearer of two hits."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.rtl.common.widths import bit, unsigned
 
 LATENCY = 2
+
+MULTIPLIER_BITS = 18
+"""Of a factor that one hard multiplier takes; a denominator has at most two bits more."""
 
 
 @block
@@ -15,17 +18,69 @@ def nearest_of_two(clk, first, second, nearest):
     t = numerator / denominator is nearer than another where numerator * other denominator < other numerator *
     denominator.
     """
-    product_bits = len(first.numerator) + len(first.denominator)
+    numerator_bits, denominator_bits = len(first.numerator), len(first.denominator)
+    product_bits = numerator_bits + denominator_bits
     first_product, second_product = unsigned(product_bits), unsigned(product_bits)
     first_1, second_1 = first.twin(), first.twin()
     take_second = bit()
 
     @always(clk.posedge)
-    def multiply():
-        first_product.next = first.numerator * second.denominator
-        second_product.next = second.numerator * first.denominator
+    def keep():
         first_1.word.next = first.word
         second_1.word.next = second.word
+
+    if denominator_bits > MULTIPLIER_BITS:
+        # What the bits above a multiplier's add is registered by itself, and joins the product in the second cycle.
+        more_bits = product_bits - MULTIPLIER_BITS
+        first_high, second_high = unsigned(2), unsigned(2)
+        first_once, second_once = unsigned(numerator_bits), unsigned(numerator_bits)
+        first_twice, second_twice = unsigned(numerator_bits + 1), unsigned(numerator_bits + 1)
+        first_more, second_more, first_top, second_top = (unsigned(more_bits) for _ in range(4))
+        first_low, second_low = (unsigned(numerator_bits + MULTIPLIER_BITS) for _ in range(2))
+
+        @always_comb
+        def take_high_bits():
+            first_high.next = first.denominator[:MULTIPLIER_BITS]
+            second_high.next = second.denominator[:MULTIPLIER_BITS]
+
+        @always_comb
+        def mask():
+            first_once.next = 0
+            first_twice.next = 0
+            second_once.next = 0
+            second_twice.next = 0
+            if second_high[0]:
+                first_once.next = first.numerator
+            if second_high[1]:
+                first_twice.next = concat(first.numerator, False)
+            if first_high[0]:
+                second_once.next = second.numerator
+            if first_high[1]:
+                second_twice.next = concat(second.numerator, False)
+
+        @always(clk.posedge)
+        def multiply():
+            first_low.next = first.numerator * second.denominator[MULTIPLIER_BITS:]
+            second_low.next = second.numerator * first.denominator[MULTIPLIER_BITS:]
+            first_more.next = first_once + first_twice
+            second_more.next = second_once + second_twice
+
+        @always_comb
+        def add():
+            first_top.next = first_low[:MULTIPLIER_BITS] + first_more
+            second_top.next = second_low[:MULTIPLIER_BITS] + second_more
+
+        @always_comb
+        def join():
+            first_product.next = concat(first_top, first_low[MULTIPLIER_BITS:])
+            second_product.next = concat(second_top, second_low[MULTIPLIER_BITS:])
+
+    else:
+
+        @always(clk.posedge)
+        def multiply():
+            first_product.next = first.numerator * second.denominator
+            second_product.next = second.numerator * first.denominator
 
     @always_comb
     def compare():

@@ -48,6 +48,13 @@ def ray_fold(clk, earlier, last, slope, fold):
     p_x, p_y, p_z, q_x, q_y, q_z = (signed(part_bits) for _ in range(6))
     sum_xy_1, sum_xz_1, sum_yz_1 = (signed(part_bits + 1) for _ in range(3))
 
+    sides_3 = unsigned(7)
+    turn_x_3, turn_y_3, turn_z_3 = (signed(turn_bits) for _ in range(3))
+    p_x_3, p_y_3, p_z_3, q_x_3, q_y_3, q_z_3 = (signed(part_bits) for _ in range(6))
+    border_x_3, border_y_3, border_z_3 = (signed(product_bits) for _ in range(3))
+    axis_3 = unsigned(AXIS_BITS)
+    distance_3 = signed(distance_bits)
+
     # Two mirrors on one axis move the room by twice what lies between them.
     @always_comb
     def measure():
@@ -181,12 +188,31 @@ def ray_fold(clk, earlier, last, slope, fold):
             q_y.next = sum_yz_1[part_bits:].signed()
             p_z.next = sum_yz_1[part_bits:].signed()
 
-    # A fold is of a ray that has met a mirror.
+    # A register a field: a simulator need not take the word apart for every rectangle.
     @always(clk.posedge)
     def stage_3():
+        sides_3.next = concat(met_x_2, met_y_2, met_z_2, mirror_back_2, back_x_2, back_y_2, back_z_2)
+        turn_x_3.next = turn_x_2
+        turn_y_3.next = turn_y_2
+        turn_z_3.next = turn_z_2
+        p_x_3.next = p_x
+        p_y_3.next = p_y
+        p_z_3.next = p_z
+        q_x_3.next = q_x
+        q_y_3.next = q_y
+        q_z_3.next = q_z
+        border_x_3.next = border_x
+        border_y_3.next = border_y
+        border_z_3.next = border_z
+        axis_3.next = axis_2
+        distance_3.next = distance_2
+
+    # A fold is of a ray that has met a mirror.
+    @always_comb
+    def join():
         fold.word.next = concat(
-            True, met_x_2, met_y_2, met_z_2, mirror_back_2, back_x_2, back_y_2, back_z_2, turn_x_2, turn_y_2, turn_z_2,
-            p_x, p_y, p_z, q_x, q_y, q_z, border_x, border_y, border_z, axis_2, distance_2,
+            True, sides_3, turn_x_3, turn_y_3, turn_z_3, p_x_3, p_y_3, p_z_3, q_x_3, q_y_3, q_z_3, border_x_3,
+            border_y_3, border_z_3, axis_3, distance_3,
         )  # fmt: skip
 
     return instances()

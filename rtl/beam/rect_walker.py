@@ -12,48 +12,49 @@ def rect_walker(clk, load, step_way, step_bounds, start, growth, walk):
 
     Integers at their full width do not drift, so every column's products are exact (forward differences). fold_tester
     reads the ways and the bounds in different cycles, so they have steps of their own. walk, start: of the same widths.
+    A register a field: a simulator need not take walk's word apart to add to it.
     """
     product_bits = len(walk.way_p)
     way_p, low_p, high_p, low_q, high_q = (signed(product_bits) for _ in range(5))
 
-    @always_comb
-    def grow():
-        way_p.next = walk.way_p
-        low_p.next = walk.low_p
-        high_p.next = walk.high_p
-        low_q.next = walk.low_q
-        high_q.next = walk.high_q
-        if step_way:
-            way_p.next = walk.way_p + growth.way_p
-        if step_bounds:
-            low_p.next = walk.low_p + growth.low_p
-            high_p.next = walk.high_p + growth.high_p
-            low_q.next = walk.low_q + growth.low_q
-            high_q.next = walk.high_q + growth.high_q
+    @always(clk.posedge)
+    def advance_way():
+        if load:
+            way_p.next = start.way_p
+        elif step_way:
+            way_p.next = way_p + growth.way_p
+
+    @always(clk.posedge)
+    def advance_bounds():
+        if load:
+            low_p.next = start.low_p
+            high_p.next = start.high_p
+            low_q.next = start.low_q
+            high_q.next = start.high_q
+        elif step_bounds:
+            low_p.next = low_p + growth.low_p
+            high_p.next = high_p + growth.high_p
+            low_q.next = low_q + growth.low_q
+            high_q.next = high_q + growth.high_q
 
     if "way_q" in walk.layout:
         way_q = signed(product_bits)
 
-        @always_comb
-        def grow_q():
-            way_q.next = walk.way_q
-            if step_way:
-                way_q.next = walk.way_q + growth.way_q
-
         @always(clk.posedge)
-        def advance():
+        def advance_way_q():
             if load:
-                walk.word.next = start.word
-            else:
-                walk.word.next = concat(way_p[product_bits:], way_q, low_p, high_p, low_q, high_q)
+                way_q.next = start.way_q
+            elif step_way:
+                way_q.next = way_q + growth.way_q
+
+        @always_comb
+        def join():
+            walk.word.next = concat(way_p[product_bits:], way_q, low_p, high_p, low_q, high_q)
 
     else:
 
-        @always(clk.posedge)
-        def advance():
-            if load:
-                walk.word.next = start.word
-            else:
-                walk.word.next = concat(way_p[product_bits:], low_p, high_p, low_q, high_q)
+        @always_comb
+        def join():
+            walk.word.next = concat(way_p[product_bits:], low_p, high_p, low_q, high_q)
 
     return instances()

@@ -17,45 +17,52 @@ def rect_sorter(written, rect, config: Configuration):
     """
     looks, cells = [], len(CELLS)
     axis = unsigned(AXIS_BITS)
-    position, u_0, u_1, v_0, v_1, u_low, u_high, v_low, v_high = (unsigned(COORDINATE_BITS) for _ in range(9))
+    position, x_low, x_high, y_low, y_high, z_low, z_high = (unsigned(COORDINATE_BITS) for _ in range(7))
+    u_low, u_high, v_low, v_high = (unsigned(COORDINATE_BITS) for _ in range(4))
 
-    # The two other axes come in the order x, y, z.
     @always_comb
     def find_axis():
         axis.next = 2
         position.next = written.z_0
-        u_0.next = written.x_0
-        u_1.next = written.x_1
-        v_0.next = written.y_0
-        v_1.next = written.y_1
         if written.x_0 == written.x_1:
             axis.next = 0
             position.next = written.x_0
-            u_0.next = written.y_0
-            u_1.next = written.y_1
-            v_0.next = written.z_0
-            v_1.next = written.z_1
         elif written.y_0 == written.y_1:
             axis.next = 1
             position.next = written.y_0
-            v_0.next = written.z_0
-            v_1.next = written.z_1
 
+    # Meanwhile all three pairs are put in order: sorting what the axis leaves would take longer.
     @always_comb
-    def sort_u():
-        u_low.next = u_0
-        u_high.next = u_1
-        if u_0 > u_1:
-            u_low.next = u_1
-            u_high.next = u_0
+    def sort():
+        x_low.next = written.x_0
+        x_high.next = written.x_1
+        if written.x_0 > written.x_1:
+            x_low.next = written.x_1
+            x_high.next = written.x_0
+        y_low.next = written.y_0
+        y_high.next = written.y_1
+        if written.y_0 > written.y_1:
+            y_low.next = written.y_1
+            y_high.next = written.y_0
+        z_low.next = written.z_0
+        z_high.next = written.z_1
+        if written.z_0 > written.z_1:
+            z_low.next = written.z_1
+            z_high.next = written.z_0
 
+    # The two other axes come in the order x, y, z.
     @always_comb
-    def sort_v():
-        v_low.next = v_0
-        v_high.next = v_1
-        if v_0 > v_1:
-            v_low.next = v_1
-            v_high.next = v_0
+    def choose_bounds():
+        u_low.next = x_low
+        u_high.next = x_high
+        v_low.next = z_low
+        v_high.next = z_high
+        if axis == 0:
+            u_low.next = y_low
+            u_high.next = y_high
+        if axis == 2:
+            v_low.next = y_low
+            v_high.next = y_high
 
     if config.materials:
         mirror = unsigned(MIRROR_BITS)

@@ -20,10 +20,12 @@ def scene_word(clk, reset, bus, selected, implemented, shadow, live, first: int 
     def merge():
         merged.next = ((shadow & ~bus.mask) | (bus.data & bus.mask)) & implemented
 
+    # Two conditions, of which a simulator tests the first once for all words.
     @always_seq(clk.posedge, reset=reset)
     def write():
-        if bus.write and selected:
-            shadow.next = merged
+        if bus.write:  # noqa: SIM102
+            if selected:
+                shadow.next = merged
 
     @always_seq(clk.posedge, reset=reset)
     def commit():

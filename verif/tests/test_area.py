@@ -14,14 +14,15 @@ import pytest
 
 from raycaster.configuration import configure
 from raycaster.convert.write import write_verilog
+from raycaster.fpga import area
 from raycaster.fpga.area import CHIPS, FAMILIES, Area, Chip, Model, measure, measure_modules
 
 YOSYS = "0.70.0.0.post1259"
 SMALL = configure(screen="tiny", units=2, rectangles=2, divider_bits=1, allow_underrun=True, culling=False)
 AREAS = {
-    "ecp5": Area(tables=2441, registers=1808, elements=2441, multipliers=4, memories=0),
-    "cycloneive": Area(tables=2854, registers=1742, elements=3286, multipliers=4, memories=2),
-    "cyclonev": Area(tables=1925, registers=1808, elements=1016, multipliers=4, memories=2),
+    "ecp5": Area(tables=2470, registers=1808, elements=2470, multipliers=4, memories=0),
+    "cycloneive": Area(tables=2851, registers=1742, elements=3283, multipliers=4, memories=2),
+    "cyclonev": Area(tables=1952, registers=1808, elements=1007, multipliers=4, memories=2),
 }
 
 families = pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES)
@@ -101,6 +102,32 @@ def test_the_model_foretells_what_is_linear():
     assert model.fitting(replace(chip, elements=119), 320) == 0
 
 
+FEATURES = {
+    "seed": [(), ("materials",), ("patterns",), ("materials", "patterns")],
+    "exact": [(), ("turn",), ("materials",), ("patterns",), ("turn", "materials", "patterns")],
+    "beam": [(), ("turn",), ("materials",), ("patterns",), ("turn", "materials", "patterns")],
+}
+
+
+def test_features(tmp_path, monkeypatch, capsys):
+    """Each one alone and all, of a ray unit of the seed engine and of the others as a whole."""
+
+    def count(config, family, directory, top):
+        assert (family.name, top) == ("ecp5", "ray_unit" if config.engine == "seed" else "ray_caster_module")
+        return Area(100 + config.turn + 10 * config.materials + 20 * config.patterns, 7, 0, 3, 0)
+
+    monkeypatch.setattr(area, "measure", count)
+    kept = tmp_path / "features.json"
+    area.main(["--features", "--output", str(tmp_path / "area"), "--keep", str(kept)])
+    designs = json.loads(kept.read_text())["figures"]["designs"]
+    found = {engine: [tuple(row["options"]) for row in designs if row["engine"] == engine] for engine in FEATURES}
+    assert (found, len(designs)) == (FEATURES, 14)
+    assert [row["tables"] for row in designs] == [100, 110, 120, 130, *2 * (100, 101, 110, 120, 131)]
+    shown = capsys.readouterr().out
+    assert "seed MATERIALS=1 PATTERNS=1" in shown
+    assert shown.count("+31.0%") == 2
+
+
 def test_every_chip_belongs_to_a_family():
     assert {chip.family for chip in CHIPS} == set(FAMILIES)
 
@@ -120,6 +147,7 @@ def test_the_command(tmp_path):
     [
         (("--family", "ice40"), "error: family: ice40 is not known here; choose one of ecp5, cycloneive, cyclonev"),
         (("--units", "7"), "error: units: 7 does not divide the 320 columns"),
+        (("--features", "--engine", "beam"), "error: features: it has designs of its own"),
     ],
 )
 def test_bad_options_get_one_line(tmp_path, options, complaint):
