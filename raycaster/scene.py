@@ -8,12 +8,23 @@ import json
 import math
 import re
 import tomllib
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, ValidationError, model_validator
-from pydantic_core import ErrorDetails
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    ValidationError,
+    WithJsonSchema,
+    model_validator,
+)
+from pydantic_core import CoreSchema, ErrorDetails
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.errors import UserError
@@ -35,79 +46,122 @@ class SceneError(UserError):
     """A scene file that is refused: the file, the place in it, and what was expected."""
 
 
-def _whole(lowest: int, highest: int) -> BeforeValidator:
-    def check(value: object) -> object:
-        # A bool is an int to Python, but not to TOML.
-        if type(value) is not int or not lowest <= value <= highest:
-            raise ValueError(f"must be a whole number {lowest}..{highest}")
+COMPLAINTS = {
+    "missing": "is missing",
+    "extra_forbidden": "is not a key of scene files; the keys here are {keys}",
+    "model_type": "must be a table",
+    "string_type": "must be a text in quotes",
+    "no_colour2": "a pattern has a second colour; give colour2 beside {pattern}",
+    "no_pattern": 'colour2 is for a pattern; give pattern = "checker", "rows" or "columns"',
+    "too_many": (
+        "rect: {count} rectangles, but the hardware holds {rectangles}; remove some or build it with RECTANGLES={count}"
+    ),
+    "encoding": "is not UTF-8 text; a scene is a TOML file",
+    "syntax": "is not TOML at line {number}{line} ({reason})",
+}
+"""What is said of a file beside what the rules of its values expect; the first four by pydantic's types of errors."""
+
+LONGEST_SHOWN = 60
+"""Characters of the longest value or line that a complaint shows: longer ones do not help to find themselves."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Check:
+    """A rule for a value as a file has it, stated once: pydantic applies it, and the model's JSON schema tells it.
+
+    In the schema, what is checked has a list `checks`: of each rule its `kind`, which is the function's name, and
+    `expected`, `after` and the parameters.
+
+    Attributes:
+        holds: whether a value keeps the rule with these parameters.
+        expected: the words for what breaks it.
+        parameters: of `holds`, by name.
+        after: whether it is about a value whose parts have been checked.
+    """
+
+    holds: Callable[..., bool]
+    expected: str
+    parameters: Mapping[str, object] = field(default_factory=dict)
+    after: bool = False
+
+    def __call__(self, value: object) -> object:
+        """The value.
+
+        Raises:
+            ValueError: it breaks the rule.
+        """
+        if not self.holds(value, **self.parameters):
+            raise ValueError(self.expected)
         return value
 
-    return BeforeValidator(check)
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
+        validator = AfterValidator(self) if self.after else BeforeValidator(self)
+        return validator.__get_pydantic_core_schema__(source, handler)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, object]:
+        described = handler(schema)
+        rule = {"kind": self.holds.__name__.strip("_"), "expected": self.expected, "after": self.after}
+        return described | {"checks": [*described.get("checks", []), rule | self.parameters]}
 
 
-def _items(count: int | None, expected: str) -> BeforeValidator:
-    def check(value: object) -> object:
-        if not isinstance(value, list | tuple) or not value or (count is not None and len(value) != count):
-            raise ValueError(expected)
-        return value
-
-    return BeforeValidator(check)
+def _whole(value: object, lowest: int, highest: int) -> bool:
+    # A bool is an int to Python, but not to TOML.
+    return type(value) is int and lowest <= value <= highest
 
 
-def _choice(choices: Sequence[object], expected: str) -> BeforeValidator:
-    def check(value: object) -> object:
-        # A bool is a number to Python, but not to TOML.
-        if isinstance(value, bool) or value not in choices:
-            raise ValueError(expected)
-        return value
-
-    return BeforeValidator(check)
+def _items(value: object, count: int | None) -> bool:
+    return isinstance(value, list | tuple) and (bool(value) if count is None else len(value) == count)
 
 
-def _degrees(value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= 360:
-        raise ValueError("must be an angle in degrees, -360..360")
-    return float(value)
+def _choice(value: object, choices: Sequence[object], whole: bool = False) -> bool:
+    # A bool is a number to Python, but not to TOML.
+    return value in choices and not isinstance(value, bool) and not (whole and isinstance(value, float))
 
 
-def _check_rows(value: object) -> object:
-    # Literal alone would take 240.0, which equals 240.
-    if type(value) is not int or value not in (240, 200, 180):
-        raise ValueError("must be 240, 200 or 180")
-    return value
+def _angle(value: object, largest: int) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= largest
 
 
-def _parse_colour(value: object) -> tuple[int, int, int]:
-    if isinstance(value, str) and re.fullmatch("#[0-9a-fA-F]{6}", value):
-        red, green, blue = bytes.fromhex(value[1:])
-        return red, green, blue
-    if isinstance(value, tuple):
-        return value
-    raise ValueError('must be a colour such as "#c8c8b4"')
+def _colour(value: object, pattern: str) -> bool:
+    return isinstance(value, tuple) or (isinstance(value, str) and bool(re.fullmatch(pattern, value)))
 
 
-def _check_plane(corners: tuple[Point, Point]) -> tuple[Point, Point]:
-    if not any(a == b for a, b in zip(*corners, strict=True)):
-        raise ValueError("must have the same x, y or z in both corners, the rectangle's plane")
-    return corners
+def _plane(corners: tuple[Point, Point]) -> bool:
+    return any(a == b for a, b in zip(*corners, strict=True))
 
 
-Coordinate = Annotated[int, _whole(0, WORLD_SIZE - 1)]
-Point = Annotated[tuple[Coordinate, Coordinate, Coordinate], _items(3, "must be a point, [x, y, z]")]
+def _integer(lowest: int, highest: int) -> _Check:
+    return _Check(_whole, f"must be a whole number {lowest}..{highest}", {"lowest": lowest, "highest": highest})
+
+
+def _channels(colour: str | tuple[int, int, int]) -> tuple[int, int, int]:
+    return colour if isinstance(colour, tuple) else tuple(bytes.fromhex(colour[1:]))
+
+
+Coordinate = Annotated[int, _integer(0, WORLD_SIZE - 1)]
+Point = Annotated[tuple[Coordinate, Coordinate, Coordinate], _Check(_items, "must be a point, [x, y, z]", {"count": 3})]
 Corners = Annotated[
-    tuple[Point, Point], _items(2, "must be two opposite corners, [[x, y, z], [x, y, z]]"), AfterValidator(_check_plane)
+    tuple[Point, Point],
+    _Check(_items, "must be two opposite corners, [[x, y, z], [x, y, z]]", {"count": 2}),
+    _Check(_plane, "must have the same x, y or z in both corners, the rectangle's plane", after=True),
 ]
-Channel = Annotated[int, _whole(0, 255)]
-Colour = Annotated[tuple[Channel, Channel, Channel], BeforeValidator(_parse_colour)]
-
-
-Angle = Annotated[float, BeforeValidator(_degrees)]
-Mirror = Annotated[float, _choice((0, 0.25, 0.5, 0.75, 1), "must be 0, 0.25, 0.5, 0.75 or 1")]
+Channel = Annotated[int, _integer(0, 255)]
+Colour = Annotated[
+    tuple[Channel, Channel, Channel],
+    BeforeValidator(_channels),
+    WithJsonSchema({"type": "string"}),
+    _Check(_colour, 'must be a colour such as "#c8c8b4"', {"pattern": "#[0-9a-fA-F]{6}"}),
+]
+Rows = Annotated[
+    Literal[240, 200, 180], _Check(_choice, "must be 240, 200 or 180", {"choices": (240, 200, 180), "whole": True})
+]
+Angle = Annotated[float, _Check(_angle, "must be an angle in degrees, -360..360", {"largest": 360})]
+Mirror = Annotated[float, _Check(_choice, "must be 0, 0.25, 0.5, 0.75 or 1", {"choices": (0, 0.25, 0.5, 0.75, 1)})]
 Pattern = Annotated[
     Literal["plain", "checker", "rows", "columns"],
-    _choice(PATTERNS, 'must be "plain", "checker", "rows" or "columns"'),
+    _Check(_choice, 'must be "plain", "checker", "rows" or "columns"', {"choices": PATTERNS}),
 ]
-CellSize = Annotated[int, _choice(CELLS, "must be 8, 16, 32, 64, 128 or 256")]
+CellSize = Annotated[int, _Check(_choice, "must be 8, 16, 32, 64, 128 or 256", {"choices": CELLS})]
 Basis = tuple[tuple[int, int, int], tuple[int, int, int], tuple[int, int, int]]
 
 
@@ -156,9 +210,9 @@ class Rectangle(_Strict):
     @model_validator(mode="after")
     def _check_pattern(self) -> Rectangle:
         if self.pattern != "plain" and self.colour2 is None:
-            raise ValueError(f"a pattern has a second colour; give colour2 beside {self.pattern}")
+            raise ValueError(COMPLAINTS["no_colour2"].format(pattern=self.pattern))
         if self.pattern == "plain" and self.colour2 is not None:
-            raise ValueError('colour2 is for a pattern; give pattern = "checker", "rows" or "columns"')
+            raise ValueError(COMPLAINTS["no_pattern"])
         return self
 
     @property
@@ -187,11 +241,13 @@ class Scene(_Strict):
     """A scene file's contents. Rectangles keep the file's order, which settles ties of depth."""
 
     title: str = ""
-    rows: Annotated[Literal[240, 200, 180], BeforeValidator(_check_rows)] = 240
-    reflections: Annotated[int, _whole(0, 2)] = 1
+    rows: Rows = 240
+    reflections: Annotated[int, _integer(0, 2)] = 1
     background: Colour = (0, 0, 0)
     camera: Camera
-    rect: Annotated[tuple[Rectangle, ...], _items(None, "must be one or more tables, each headed [[rect]]")]
+    rect: Annotated[
+        tuple[Rectangle, ...], _Check(_items, "must be one or more tables, each headed [[rect]]", {"count": None})
+    ]
 
     @property
     def needs(self) -> dict[str, bool]:
@@ -218,24 +274,25 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
         SceneError: the file cannot be read, is not TOML, or is not a scene; one line says where and what was expected.
     """
     path = Path(path)
+    text = ""
     try:
-        contents = tomllib.loads(path.read_text(encoding="utf-8"))
+        # An editor may have written a byte order mark, which is not TOML to Python.
+        text = path.read_text(encoding="utf-8-sig")
+        contents = tomllib.loads(text)
     except OSError as error:
         raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
-        raise SceneError(f"{path}: is not UTF-8 text; a scene is a TOML file") from None
+        raise SceneError(f"{path}: {COMPLAINTS['encoding']}") from None
     except (ValueError, RecursionError) as error:
         # Beside what tomllib objects to: numbers of thousands of digits, and nesting as deep.
-        raise SceneError(f"{path}: is not TOML: {error}") from None
+        raise SceneError(f"{path}: {_syntax_complaint(str(error), text)}") from None
     try:
         scene = Scene.model_validate(contents)
     except ValidationError as error:
         raise SceneError(f"{path}: {_first_complaint(error, contents)}") from None
     if rectangles is not None and len(scene.rect) > rectangles:
-        raise SceneError(
-            f"{path}: rect: {len(scene.rect)} rectangles, but the hardware holds {rectangles}; "
-            f"remove some or build it with RECTANGLES={len(scene.rect)}"
-        )
+        complaint = COMPLAINTS["too_many"].format(count=len(scene.rect), rectangles=rectangles)
+        raise SceneError(f"{path}: {complaint}")
     return scene
 
 
@@ -296,6 +353,19 @@ def dump_scene(scene: Scene) -> str:
     return "\n".join(lines) + "\n"
 
 
+def _syntax_complaint(said: str, text: str) -> str:
+    """One line for what tomllib says of a text: its place there, and what tomllib expected."""
+    parts = re.fullmatch(r"(.+) \(at (?:line (\d+), column \d+|end of document)\)", said)
+    if parts is None:
+        return f"is not TOML: {said}"
+    lines = text.rstrip(" \t\n").split("\n")
+    # What is missed at the end is missed in the last line that has anything.
+    number = min(int(parts[2] or len(lines)), len(lines))
+    line = lines[number - 1].strip(" \t")
+    shown = f": {line}" if line.isprintable() and len(line) <= LONGEST_SHOWN else ""
+    return COMPLAINTS["syntax"].format(number=number, line=shown, reason=parts[1])
+
+
 def _first_complaint(error: ValidationError, contents: Mapping) -> str:
     """One line for the first thing that is wrong: its place, what was expected, and what stood there."""
     errors = error.errors()
@@ -325,26 +395,22 @@ def _place(details: ErrorDetails, contents: Mapping) -> str:
 
 def _expected(details: ErrorDetails) -> str:
     match details["type"]:
-        case "missing":
-            return "is missing"
-        case "extra_forbidden":
+        case "missing" as kind:
+            return COMPLAINTS[kind]
+        case "extra_forbidden" as kind:
             table = {1: Scene, 2: Camera, 3: Rectangle}[len(details["loc"])]
-            return f"is not a key of scene files; the keys here are {', '.join(table.model_fields)}"
+            return COMPLAINTS[kind].format(keys=", ".join(table.model_fields))
         case "value_error":
             expected = str(details["ctx"]["error"])
-        case "model_type":
-            expected = "must be a table"
-        case "string_type":
-            expected = "must be a text in quotes"
-        case _:
-            expected = details["msg"]
+        case kind:
+            expected = COMPLAINTS.get(kind, details["msg"])
     return expected + _given(details["input"])
 
 
 def _given(value: object) -> str:
     try:
         text = json.dumps(value, ensure_ascii=False, default=str)
-    except RecursionError:
+    except (RecursionError, ValueError):
+        # Nested or an integer of digits beyond Python's limits.
         return ""
-    # A long value does not help to find itself.
-    return f", not {text}" if len(text) <= 60 else ""
+    return f", not {text}" if len(text) <= LONGEST_SHOWN else ""

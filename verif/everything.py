@@ -8,10 +8,10 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from raycaster import ensure_tools
 from raycaster.errors import UserError
 from raycaster.jobs import positive
 from raycaster.options import CommandParser
-from raycaster.sim import ensure_icarus
 
 TESTS = Path(__file__).with_name("tests")
 
@@ -32,6 +32,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = command_parser().parse_args(argv)
     if not TESTS.is_dir():
         raise UserError("verify all: the tests come with a clone, not with the installed program")
-    ensure_icarus.main()
+    for tool in ensure_tools.TOOLS:
+        ensure_tools.ensure(tool)
     command = [sys.executable, "-m", "pytest", "-q", "-n", str(arguments.jobs), "--dist", "worksteal"]
     return subprocess.run([*command, "--durations=10", str(TESTS)], cwd=TESTS.parents[1], check=False).returncode

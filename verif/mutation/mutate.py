@@ -35,12 +35,11 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from raycaster import rtl
+from raycaster import ensure_tools, rtl
 from raycaster.errors import UserError
 from raycaster.jobs import add_job_options, executors, positive, run_jobs
 from raycaster.options import CommandParser
 from raycaster.outcomes import add_keep_option, keep
-from raycaster.sim import ensure_icarus
 from raycaster.sim.simulator import build_program
 from raycaster.tools import run_yosys
 from raycaster.verif.formal.prover import missing_tools
@@ -531,7 +530,7 @@ def main(argv: list[str] | None = None) -> int:
     """
     arguments = command_parser().parse_args(argv)
     arguments.build = arguments.build.resolve()  # tools run in the folders below it
-    ensure_icarus.main()
+    ensure_tools.ensure("icarus")
     if missing := missing_tools():
         raise UserError(f"{', '.join(missing)} not found; install the extra `formal` of this package")
     known = expectations()

@@ -58,7 +58,7 @@ def test_all_is_all(monkeypatch):
         asked.append(command)
         return SimpleNamespace(returncode=3)
 
-    monkeypatch.setattr(everything.ensure_icarus, "main", lambda: None)
+    monkeypatch.setattr(everything.ensure_tools, "ensure", lambda tool: None)
     monkeypatch.setattr(everything.subprocess, "run", run)
     assert everything.main(["--jobs", "4"]) == 3
     [command] = asked

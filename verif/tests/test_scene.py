@@ -30,6 +30,7 @@ RECT = GOOD[GOOD.index("[[rect]]") :]
 CORNERS = "[[0, 0, 0], [511, 511, 0]]"
 TOP_KEYS = "title, rows, reflections, background, camera, rect"
 CAMERA_KEYS = "position, yaw, pitch, roll"
+TWOS = "2" * 54 + " (Expected '=' after a key in a key/value pair)"
 RECT_KEYS = "corners, colour, name, mirror, pattern, colour2, cell"
 
 
@@ -158,8 +159,12 @@ def test_rows_that_a_file_may_ask_for(tmp_path, rows):
             'rect[0] ("floor"): colour2 is for a pattern; give pattern = "checker", "rows" or "columns"',
         ),
         # Not TOML.
-        ("rows = 240", "rows = ", "is not TOML: Invalid value (at line 2, column 8)"),
-        ("rows = 240", "rows: 240", "is not TOML: Expected '=' after a key in a key/value pair (at line 2, column 5)"),
+        ("rows = 240", " rows = ", "is not TOML at line 2: rows = (Invalid value)"),
+        ("rows = 240", "rows: 2", "is not TOML at line 2: rows: 2 (Expected '=' after a key in a key/value pair)"),
+        ("rows = 240", "rows = \u2028", "is not TOML at line 2 (Invalid value)"),
+        ('"#c8c8b4"\n', "[1, #\n\n", "is not TOML at line 10: colour = [1, # (Invalid value)"),
+        ("rows = 240", f"rows: {'2' * 54}", "is not TOML at line 2: rows: " + TWOS),
+        ("rows = 240", f"rows: {'2' * 55}", "is not TOML at line 2 (Expected '=' after a key in a key/value pair)"),
     ],
 )
 def test_mistake(tmp_path, old, new, expected):
@@ -263,6 +268,16 @@ def test_not_text(tmp_path):
 @pytest.mark.parametrize("text", ["rows = " + "9" * 5000, "rows = " + "[" * 5000])
 def test_monstrous_toml_is_refused_too(tmp_path, text):
     assert complaint(write(tmp_path, text)).startswith("is not TOML: ")
+
+
+def test_long_numbers_are_refused_too(tmp_path):
+    """Python reads hexadecimal ones of any length, but writes none of more than some thousand decimal digits."""
+    path = write(tmp_path, changed("rows = 240", "rows = 0x" + "f" * 4000))
+    assert complaint(path) == "rows: must be 240, 200 or 180"
+
+
+def test_a_byte_order_mark_is_no_part_of_the_scene(tmp_path):
+    assert load_scene(write(tmp_path, "\ufeff" + GOOD)) == load_scene(write(tmp_path, GOOD))
 
 
 def test_deep_values_are_refused_too(tmp_path):

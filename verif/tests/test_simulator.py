@@ -13,7 +13,7 @@ import pytest
 from conftest import BUILD
 
 from raycaster.configuration import configure
-from raycaster.sim import ensure_icarus, simulator
+from raycaster.sim import simulator
 from raycaster.sim.simulator import (
     MODELS_VARIABLE,
     VERILATOR_FLAGS,
@@ -151,62 +151,3 @@ def test_environment_is_left_alone(tmp_path):
     with simulator._building(Tool("icarus", "11", {"MAKEFLAGS": "-x"}), tmp_path, ()):
         assert os.environ["MAKEFLAGS"] == "-x"
     assert dict(os.environ) == before
-
-
-@pytest.mark.parametrize(
-    ("manager", "uid", "expected"),
-    [
-        ("apt-get", 0, "apt-get install -y -q iverilog"),
-        ("apt-get", 1000, "sudo apt-get install -y -q iverilog"),
-        ("dnf", 1000, "sudo dnf install -y -q iverilog"),
-        ("pacman", 0, "pacman -S --noconfirm --needed iverilog"),
-        ("brew", 1000, "brew install icarus-verilog"),
-    ],
-)
-def test_how_icarus_is_installed(tmp_path, monkeypatch, manager, uid, expected):
-    """With the package manager that is there, through sudo where this user is not root."""
-    _program(tmp_path, manager)
-    monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setattr(os, "geteuid", lambda: uid)
-    assert " ".join(ensure_icarus.install_command()) == expected
-
-
-def test_icarus_present(monkeypatch):
-    """Nothing is done."""
-    monkeypatch.setattr(ensure_icarus, "find", lambda: True)
-    monkeypatch.setattr(ensure_icarus, "_run", lambda *command: pytest.fail(f"ran {command}"))
-    ensure_icarus.main()
-
-
-def test_icarus_needs_root(tmp_path, monkeypatch):
-    """Without root or sudo, one line says what to run."""
-    _program(tmp_path, "apt-get")
-    monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setattr(os, "geteuid", lambda: 1000)
-    with pytest.raises(ensure_icarus.UserError, match="needs root; run: sudo apt-get install -y -q iverilog"):
-        ensure_icarus.main()
-
-
-def test_icarus_without_package_manager(tmp_path, monkeypatch):
-    """One line, and no guess."""
-    monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(ensure_icarus.UserError, match="no package manager is known here"):
-        ensure_icarus.main()
-
-
-def test_icarus_is_installed(tmp_path, monkeypatch, capsys):
-    """As root, after an update where the first attempt fails, as in a fresh container."""
-    tools = tmp_path / "bin"
-    _program(tools, "template", "exit 0")
-    _program(
-        tools,
-        "apt-get",
-        f"if [ $1 = update ]; then : > {tmp_path}/lists; exit 0; fi\n"
-        f"[ -e {tmp_path}/lists ] || exit 100\n"
-        f"/bin/cp {tools}/template {tools}/iverilog; /bin/cp {tools}/template {tools}/vvp",
-    )
-    monkeypatch.setenv("PATH", str(tools))
-    monkeypatch.setattr(os, "geteuid", lambda: 0)
-    ensure_icarus.main()
-    assert ensure_icarus.find()
-    assert "Icarus Verilog is missing; installing it" in capsys.readouterr().err

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: MIT
+"""`python -m raycaster.ensure_tools icarus chromium`: see to it that the tools are there that pip does not have."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from raycaster.errors import UserError
+from raycaster.options import run_command
+
+INSTALL: dict[str, tuple[str, ...]] = {
+    "apt-get": ("apt-get", "install", "-y", "-q"),
+    "dnf": ("dnf", "install", "-y", "-q"),
+    "pacman": ("pacman", "-S", "--noconfirm", "--needed"),
+    "brew": ("brew", "install"),
+}
+"""The command that installs, by the package manager's name; the first that is there is taken."""
+
+
+@dataclass(frozen=True)
+class Tool:
+    """A tool that pip does not have.
+
+    Attributes:
+        name: for people.
+        programs: any of these is the tool.
+        packages: what the package manager is asked for, by its name.
+        site: where else it comes from.
+    """
+
+    name: str
+    programs: tuple[str, ...]
+    packages: Mapping[str, tuple[str, ...]]
+    site: str
+
+
+TOOLS = {
+    "icarus": Tool(
+        "Icarus Verilog",
+        ("iverilog",),
+        dict.fromkeys(INSTALL, ("iverilog",)) | {"brew": ("icarus-verilog",)},
+        "steveicarus.github.io/iverilog",
+    ),
+    "chromium": Tool(
+        "Chromium",
+        (
+            "chromium",
+            "chromium-browser",
+            "google-chrome",
+            "/Applications/Chromium.app/Contents/MacOS/Chromium",
+            "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
+        ),
+        # Homebrew's chromium is not signed, so macOS does not run it.
+        dict.fromkeys(INSTALL, ("chromium",)) | {"brew": ("--cask", "google-chrome")},
+        "chromium.org",
+    ),
+}
+
+
+def find(tool: str) -> str | None:
+    """The path of one of `TOOLS`, or None where it is not on the PATH."""
+    return next(filter(None, map(shutil.which, TOOLS[tool].programs)), None)
+
+
+def install_command(tool: str) -> tuple[str, ...] | None:
+    """The command that installs one of `TOOLS` on this system, or None where no package manager is known."""
+    manager = next((name for name in INSTALL if shutil.which(name)), None)
+    if manager is None:
+        return None
+    command = (*INSTALL[manager], *TOOLS[tool].packages[manager])
+    # Homebrew refuses to be run as root; the others want it.
+    return command if manager == "brew" or os.geteuid() == 0 else ("sudo", *command)
+
+
+def missing(tool: str, why: str = "") -> UserError:
+    """The line for one of `TOOLS` that is not there: why, and what to run."""
+    command = install_command(tool)
+    if command is None:
+        line = f"is missing, and no package manager is known here; see {TOOLS[tool].site}"
+    else:
+        line = f"is missing{why}; run: {' '.join(command)}"
+    return UserError(f"{TOOLS[tool].name} {line}")
+
+
+def ensure(tool: str) -> None:
+    """Install one of `TOOLS` where it is missing and this user may.
+
+    Raises:
+        UserError: it is missing and could not be installed; says what to run.
+    """
+    if find(tool):
+        return
+    command = install_command(tool)
+    if command is None:
+        raise missing(tool)
+    if command[0] == "sudo" and not _run("sudo", "-n", "true"):
+        raise missing(tool, ", and installing it needs root")
+    print(f"{TOOLS[tool].name} is missing; installing it: {' '.join(command)}", file=sys.stderr)
+    installed = _run(*command)
+    if not installed and "apt-get" in command:
+        # The package lists of a fresh container are empty.
+        prefix = command[: command.index("apt-get")]
+        installed = _run(*prefix, "apt-get", "update", "-q") and _run(*command)
+    if not installed or not find(tool):
+        raise missing(tool, " and could not be installed")
+
+
+def _run(*command: str) -> bool:
+    try:
+        return subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, check=False).returncode == 0
+    except OSError:
+        return False
+
+
+def main() -> None:
+    """The command, whose arguments are names of `TOOLS`."""
+    for tool in sys.argv[1:]:
+        ensure(tool)
+
+
+if __name__ == "__main__":
+    run_command(main)

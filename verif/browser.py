@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: MIT
+"""A page in the system's Chromium, without a window, for the tests of what runs in browsers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from raycaster.ensure_tools import find, missing
+from raycaster.errors import UserError, not_installed
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+FLAGS = (
+    "--headless",
+    "--no-sandbox",  # a container's root may not make one
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+)
+
+
+@contextmanager
+def browser_page() -> Iterator[Page]:
+    """An empty page; the browser ends with the context.
+
+    Raises:
+        UserError: Chromium or Playwright is missing; says what to install.
+        AssertionError: at the end, with what the page's scripts did not catch.
+    """
+    try:
+        from playwright.sync_api import sync_playwright  # noqa: PLC0415 - wanted only where there is a browser
+    except ImportError:
+        raise UserError(not_installed("Playwright", "test")) from None
+    chromium = find("chromium")
+    if chromium is None:
+        raise missing("chromium")
+    with sync_playwright() as playwright, playwright.chromium.launch(executable_path=chromium, args=FLAGS) as browser:
+        page = browser.new_page()
+        errors: list[str] = []
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        yield page
+        assert not errors, errors
