@@ -5,17 +5,17 @@
 PYTHON3 ?= python3
 VENV := .venv
 PYTHON := $(VENV)/bin/python
-COMMANDS := sim scenes options play game wave trace verilog fit area quartus bitstream registers report docs results commands
+COMMANDS := sim scenes options play game web wave trace verilog fit area quartus bitstream registers report docs results commands
 CHECKS := soak prove mutate exhaustive coverage dvi verify-all
 ARGUMENTS = $(filter-out PYTHON3=% PYTHON=% VENV=%,$(MAKEOVERRIDES))
 
 # Extras of pyproject.toml that a target needs beside the program itself.
-play game: EXTRAS := play
+play game web: EXTRAS := play
 fit area: EXTRAS := fpga
 results: EXTRAS := fpga,docs
 bitstream: EXTRAS := fpga,play
 report: EXTRAS := fpga,report
-docs: EXTRAS := docs
+docs: EXTRAS := docs,play
 coverage: EXTRAS := coverage
 prove: EXTRAS := formal
 sim: EXTRAS := $(if $(filter-out 0,$(GATES)),formal)
@@ -37,7 +37,7 @@ $(COMMANDS) $(CHECKS): $(VENV)/base
 lint test: $(VENV)/base
 	@$(call install,$(EXTRAS))
 	@$(if $(filter lint,$@),$(PYTHON) -m ruff check && $(PYTHON) -m ruff format --check)
-	@$(if $(filter lint,$@),$(PYTHON) -m raycaster.verif.rtl_lint,$(PYTHON) -m raycaster.sim.ensure_icarus)
+	@$(if $(filter lint,$@),$(PYTHON) -m raycaster.verif.rtl_lint,$(PYTHON) -m raycaster.ensure_tools icarus chromium)
 	@$(if $(filter test,$@),$(PYTHON) -m pytest -q -n 2 --dist worksteal -m 'not slow' --durations=10 verif/tests)
 
 clean:

@@ -29,6 +29,7 @@ COMMANDS: Mapping[str, Command] = {
     "options": Command("raycaster.cli.design_options", "list the options of a design, such as --engine"),
     "play": Command("raycaster.play.window", "play the game, or walk through a scene, in a window", "play"),
     "game": Command("raycaster.play.game", "run a recorded game and check every frame", "play"),
+    "web": Command("raycaster.web.site", "write a page in which the hardware runs", "play"),
     "trace": Command("raycaster.debug.trace", "follow one pixel through the hardware"),
     "wave": Command("raycaster.debug.wave", "write the waveform of some rows"),
     "verilog": Command("raycaster.fpga.verilog", "write the hardware as Verilog"),
@@ -61,11 +62,10 @@ def overview(*, from_make: bool = False) -> str:
     checks = [name.removeprefix("verify ") for name in COMMANDS if name.startswith("verify ")]
     lines = [(name, command.purpose) for name, command in COMMANDS.items() if not name.startswith("verify ")]
     if from_make:
-        head = "make sim SCENE=mirror_room ENGINE=beam      (arguments are NAME=value)"
+        head = "make sim SCENE=mirror_room ENGINE=beam PYTHON3=python3.12"
         lines += [
             (", ".join("verify-all" if check == "all" else check for check in checks), ""),
-            ("test, lint", "run the tests but those that take long; check the sources"),
-            ("clean", "remove what was made; PYTHON3= is the Python to install with"),
+            ("test, lint, clean", "run most tests; check the sources; remove what was made"),
         ]
     else:
         head = "raycaster sim mirror_room      raycaster COMMAND --help explains a command"

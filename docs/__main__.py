@@ -11,6 +11,7 @@ from pathlib import Path
 
 from sphinx.cmd.build import build_main
 
+from raycaster import ensure_tools
 from raycaster.configuration import Configuration
 from raycaster.docs import timing
 from raycaster.docs.drawings import draw_all
@@ -18,8 +19,8 @@ from raycaster.errors import UserError
 from raycaster.options import CommandParser
 from raycaster.output import replaced
 from raycaster.register_views import write_page
-from raycaster.sim import ensure_icarus
 from raycaster.sim.simulator import BUILD, SimulationError
+from raycaster.web.site import main as build_page
 
 HERE = Path(__file__).parent
 REFERENCE = (
@@ -53,11 +54,18 @@ def draw_timing(build: Path) -> None:
         partial.replace(timing.SOURCES / f"{name}.json")
 
 
-def write_site(output: Path) -> Path:
+EMBEDDED = """```{raw} html
+<iframe src="web/index.html?embedded#walk" title="The hardware in the browser" class="embedded"></iframe>
+```"""
+"""The page that runs the hardware, on the first page."""
+
+
+def write_site(output: Path, web: Path | None = None) -> Path:
     """Write all pages.
 
     Args:
         output: replaced as a whole, once everything is there.
+        web: the page that runs the hardware, to be a part of them.
 
     Returns:
         The first page.
@@ -69,6 +77,10 @@ def write_site(output: Path) -> Path:
         pages = Path(scratch) / "pages"
         shutil.copytree(HERE, pages, ignore=shutil.ignore_patterns("__pycache__", "timing"))
         _add_what_forges_would_not_show(pages)
+        if web:
+            shutil.copytree(web, pages / "extra" / "web")
+            index = pages / "index.md"
+            index.write_text(re.sub(r"^!\[.*\]\(.*\)$", EMBEDDED, index.read_text(), count=1, flags=re.MULTILINE))
         write_page(Configuration().rectangles, pages / "extra" / "register_map")
         if build_main(["-q", "-W", "--keep-going", "-d", f"{scratch}/doctrees", str(pages), str(written)]):
             raise UserError("the pages have faults, which stand above")
@@ -81,6 +93,9 @@ def command_parser() -> CommandParser:
     parser.add_argument("--output", type=Path, default=BUILD / "docs", help="(default: %(default)s)")
     parser.add_argument(
         "--keep-timing", action="store_true", help="take the timing diagrams as they are, without a simulation"
+    )
+    parser.add_argument(
+        "--no-web", action="store_true", help="leave out the page that runs the hardware, which takes minutes to build"
     )
     return parser
 
@@ -107,9 +122,13 @@ def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
     arguments = command_parser().parse_args(argv)
     if not arguments.keep_timing:
-        ensure_icarus.main()
+        ensure_tools.ensure("icarus")
         BUILD.mkdir(exist_ok=True)
         draw_timing(BUILD)
     for path in draw_all():
         print(f"drawn anew: {path}")
-    print(f"documentation: {write_site(arguments.output)}")
+    web = None
+    if not arguments.no_web:
+        web = BUILD / "web"
+        build_page(["--output", str(web)])
+    print(f"documentation: {write_site(arguments.output, web)}")

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster game`: a recorded game on the simulated system, every pixel checked, as an animation."""
+"""`raycaster game`: a recorded game on the simulated system, or a look around in a scene, as an animation; every pixel
+is checked."""
 
 from __future__ import annotations
 
+import argparse
+import math
+import shutil
 import sys
 import time
 from collections.abc import Sequence
@@ -11,14 +15,25 @@ from pathlib import Path
 
 from PIL import Image
 from rich.console import Console
-from rich.progress import Progress
+from rich.progress import Progress, track
 from rich.table import Table
 
 from raycaster.configuration import configure
+from raycaster.design import Design, design_for
 from raycaster.errors import UserError
-from raycaster.options import CommandParser, add_build_option, add_configuration_options, given_options
+from raycaster.golden import exact
+from raycaster.golden.picture import count_wrong, shown
+from raycaster.options import (
+    CommandParser,
+    add_build_option,
+    add_configuration_options,
+    add_scene_argument,
+    given_options,
+)
 from raycaster.outcomes import add_keep_option, keep, scope_of
+from raycaster.play.machine import Machine, build_machine
 from raycaster.play.system import FASTEST, play
+from raycaster.play.walk import Walker
 from raycaster.sim.contact_sheet import write_contact_sheet
 from raycaster.sim.simulator import SYSTEM_BENCH, SimulationError, build_model
 from raycaster.sw.firmware import build_firmware
@@ -34,6 +49,9 @@ SHEET_COLUMNS = 3
 SHEET_FRAMES = 9
 """Of the game, evenly spread."""
 
+LOOK = 35
+"""Degrees that a camera looks to each side."""
+
 POLL_SECONDS = 0.5
 
 
@@ -43,9 +61,47 @@ def write_animation(frames: list[Path], path: Path) -> None:
     first.save(path, save_all=True, append_images=others, duration=1000 // SHOWN_HZ, loop=0, lossless=True)
 
 
+def look_around(design: Design, frames: int, build: Path, output: Path, console: Console) -> int:
+    """Turn a scene's camera to both sides and back, and write each frame.
+
+    Args:
+        design: the scene, and what draws it.
+        frames: of all that, after which it could begin anew.
+        build: the directory that holds `model/`.
+        output: replaced; gets `frame_*.png`.
+        console: for the progress bar.
+
+    Returns:
+        How many pixels of all frames are unlike exact arithmetic.
+
+    Raises:
+        SimulationError: the design could not be compiled.
+    """
+    config, scene, wrong = design.configuration, design.shown, 0
+    walker = Walker(scene, config)
+    yaws = [LOOK * math.sin(2 * math.pi * number / frames) for number in range(frames + 1)]
+    command = build_machine(config, build, processor=False)
+    shutil.rmtree(output, ignore_errors=True)
+    output.mkdir(parents=True)
+    with Machine(command, config) as machine:
+        machine.frame(writes=walker.load())
+        for number in track(range(frames), "frames", console=console, transient=True):
+            walker.turn(yaws[number + 1] - yaws[number])
+            frame = machine.frame(writes=walker.writes())
+            live = frame.scene
+            perfect = exact.picture(
+                config.screen_geometry, live.rectangles, live.camera, live.background, live.reflections,
+                basis=live.basis,
+            )  # fmt: skip
+            wrong += count_wrong(frame.picture, shown(perfect, config))
+            Image.fromarray(frame.picture).save(output / f"frame_{number:04}.png")
+    return wrong
+
+
 def command_parser() -> CommandParser:
     """What the command takes."""
     parser = CommandParser("game", __doc__, "--frames 24")
+    add_scene_argument(parser, "look to the left and to the right in this scene instead of the game")
     parser.add_argument("--script", type=Path, default=DEMO, help="the buttons of each frame (default: %(default)s)")
     parser.add_argument("--frames", type=int, default=FRAMES, help="of the script, at most (default: %(default)s)")
     add_build_option(parser)
@@ -64,6 +120,33 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = command_parser().parse_args(argv)
     if arguments.frames < 1:
         raise UserError(f"frames: at least 1, not {arguments.frames}")
+    return _film_scene(arguments) if arguments.scene else _film_game(arguments)
+
+
+def _film_scene(arguments: argparse.Namespace) -> int:
+    console = Console()
+    design = design_for(arguments.scene, given_options(arguments), FASTEST | {"turn": True})
+    if not design.configuration.turn:
+        raise UserError("turn: the camera must be one that turns, TURN=1")
+    output = arguments.output or arguments.build / "look" / design.name
+    try:
+        wrong = look_around(design, arguments.frames, arguments.build, output, console)
+    except SimulationError as error:
+        raise UserError(str(error)) from None
+    write_animation(sorted(output.glob("frame_*.png")), output / ANIMATION)
+    screen = design.configuration.screen_geometry
+    figures = {"frames": arguments.frames, "pixels": arguments.frames * screen.columns * screen.rows, "wrong": wrong}
+    keep(arguments, figures, scope_of(design.configuration))
+    console.print(
+        f"{design.configuration.name}: {arguments.frames} frames, {wrong:,} pixels unlike exact arithmetic; "
+        f"{output / ANIMATION}, with each frame beside it",
+        highlight=False,
+        soft_wrap=True,
+    )
+    return int(wrong > 0)
+
+
+def _film_game(arguments: argparse.Namespace) -> int:
     buttons = load(arguments.script)[: arguments.frames]
     configuration = configure(**FASTEST | given_options(arguments))
     console = Console()
@@ -92,8 +175,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     for column in table.columns[1:]:
         column.justify = "right"
     speed = rate / configuration.screen_geometry.frame_cycles
-    shown = str(result["frames"]), str(result["shown"]), "0", f"{rate:,}", f"{speed:.2f}"
-    table.add_row(configuration.name, *shown)
+    table.add_row(configuration.name, str(result["frames"]), str(result["shown"]), "0", f"{rate:,}", f"{speed:.2f}")
     console.print(table)
     pixels = result["frames"] * configuration.screen_geometry.columns * configuration.screen_geometry.rows
     figures = {"frames": result["frames"], "pixels": pixels, "wrong": 0, "frames_a_second": round(speed, 2)}

@@ -20,7 +20,10 @@ from raycaster.sim.register_model import LiveScene, SceneFollower
 from raycaster.sim.simulator import BUILD, SimulationError, build_program, convert
 
 TOP = "machine"
-BENCH, LOOP = (Path(__file__).with_name(f"{TOP}.{kind}") for kind in ("v", "cpp"))
+BENCH, LOOP, MACHINE = (Path(__file__).with_name(f"{TOP}.{kind}") for kind in ("v", "cpp", "h"))
+SIGNS = Path(__file__).with_name("signs.h")
+"""What the compiler includes before a design."""
+
 EVENT_WORDS = 6
 """Of 32 bits, that the loop writes for what happens in a clock."""
 
@@ -86,10 +89,10 @@ class Machine:
         self._process.stdin.write(struct.pack(f"<{len(words)}I", *words))
         self._process.stdin.flush()
         clocks, busy, count, events, characters = struct.unpack("<5I", self._read(20))
-        pixels = np.frombuffer(self._read(3 * count), dtype=np.uint8) << self._lost_bits
+        pixels = np.frombuffer(self._read(4 * count), dtype=np.uint8).reshape(-1, 4)[:, :3] << self._lost_bits
         width, height = self._screen.horizontal.visible, self._screen.vertical.visible
         picture = np.zeros((height * width, 3), dtype=np.uint8)
-        shown = pixels.reshape(-1, 3)[-height * width :]
+        shown = pixels[-height * width :]
         picture[len(picture) - len(shown) :] = shown
         words = np.frombuffer(self._read(4 * EVENT_WORDS * events), dtype="<u4").reshape(-1, EVENT_WORDS).tolist()
         for clock, start_screen, written, address, data, lanes in words:
@@ -108,6 +111,40 @@ class Machine:
         return data
 
 
+@dataclass(frozen=True)
+class MachineSources:
+    """What a machine is compiled from."""
+
+    name: str
+    files: tuple[Path, ...]
+    """Of Verilog; their top is `TOP`."""
+
+    flags: tuple[str, ...]
+    """For Verilator."""
+
+    defines: tuple[str, ...]
+    """For the compiler."""
+
+
+def machine_sources(config: Configuration, build: Path = BUILD, *, processor: bool) -> MachineSources:
+    """Convert a design; the arguments are those of `build_machine`."""
+    files = convert(config, build, system=processor)
+    screen = config.screen_geometry
+    flags = (
+        # A table of constants would hide from the optimiser that the camera's rays have no mirror behind them.
+        "-O3", "-fno-table", "--x-assign", "fast", "--x-initial", "fast", "--no-timing", "--noassert",
+        "-Wno-lint", "-Wno-style",
+        *((f"-DSYSTEM={files[-1].stem}",) if processor else ()), f"-GBUTTONS={len(BUTTON_NAMES)}",
+        f"-GCOLOUR_BITS={config.colour_bits}", f"-GADDRESS_BITS={address_bits(config.table)}",
+    )  # fmt: skip
+    defines = (
+        f"-DVS_ACTIVE={int(screen.vertical.active_high)}",
+        f"-DCLOCKS_PER_BIT={clocks_per_bit(screen.clock_hz) if processor else 0}",
+    )
+    name = f"{config.name}-{'processor' if processor else 'driven'}"
+    return MachineSources(name, (*files, BENCH), flags, defines)
+
+
 def build_machine(config: Configuration, build: Path = BUILD, *, processor: bool) -> list[str]:
     """Compile a design, or find it compiled.
 
@@ -123,16 +160,8 @@ def build_machine(config: Configuration, build: Path = BUILD, *, processor: bool
         UserError: Verilator, or what it needs, is missing, or PicoRV32.
         SimulationError: it could not be compiled.
     """
-    files = convert(config, build, system=processor)
-    screen = config.screen_geometry
-    flags = (
-        "-O3", "--x-assign", "fast", "-Wno-lint", "-Wno-style",
-        *((f"-DSYSTEM={files[-1].stem}",) if processor else ()), f"-GBUTTONS={len(BUTTON_NAMES)}",
-        f"-GCOLOUR_BITS={config.colour_bits}", f"-GADDRESS_BITS={address_bits(config.table)}",
+    made_of = machine_sources(config, build, processor=processor)
+    return build_program(
+        made_of.name, TOP, made_of.files, [LOOP, MACHINE, SIGNS], build=build, flags=made_of.flags,
+        compiler=("-O2", "-include", str(SIGNS), *made_of.defines),
     )  # fmt: skip
-    defines = (
-        f"-DVS_ACTIVE={int(screen.vertical.active_high)}",
-        f"-DCLOCKS_PER_BIT={clocks_per_bit(screen.clock_hz) if processor else 0}",
-    )
-    name = f"{config.name}-{'processor' if processor else 'driven'}"
-    return build_program(name, TOP, [*files, BENCH], [LOOP], build=build, flags=flags, compiler=("-O2", *defines))

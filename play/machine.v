@@ -2,7 +2,8 @@
 // What is played, for a loop in C++, with what happens on the ray tracer's bus brought out: a system with a processor,
 // or the ray tracer alone, whose bus the loop drives.
 //
-// SYSTEM: the system's module, where there is a processor.
+// SYSTEM: the system's module, where there is a processor. TAPS: how many signals of a ray unit a module `taps` brings
+// out, of 32 bits each, where there is one.
 
 module machine #(
     parameter BUTTONS = 5,
@@ -12,9 +13,13 @@ module machine #(
     input  wire                    clk,
     input  wire                    ready,
     input  wire [BUTTONS-1:0]      buttons,         // of a system
-    input  wire                    host_write,      // of the ray tracer alone, held until it is taken
+    input  wire                    host_read,       // of the ray tracer alone; both are held until they are taken
+    input  wire                    host_write,
     input  wire [ADDRESS_BITS-1:0] host_address,
     input  wire [31:0]             host_writedata,
+    output wire                    host_waitrequest,
+    output wire                    host_readdatavalid,
+    output wire [31:0]             host_readdata,
     output wire                    uart_tx,
     output wire [COLOUR_BITS-1:0]  vga_r,
     output wire [COLOUR_BITS-1:0]  vga_g,
@@ -28,6 +33,11 @@ module machine #(
     output wire [ADDRESS_BITS-1:0] address,
     output wire [3:0]              byteenable,
     output wire [31:0]             writedata
+`ifdef TAPS
+    ,
+    input  wire [7:0]              tapped_unit,
+    output wire [32*`TAPS-1:0]     tapped
+`endif
 );
 
 wire vga_hs, vga_sync_n, reset;
@@ -35,6 +45,9 @@ wire vga_hs, vga_sync_n, reset;
 `ifdef SYSTEM
 `define MODULE system.ray_caster_module_i
 assign reset = system.reset;
+assign host_waitrequest = 1'b0;
+assign host_readdatavalid = 1'b0;
+assign host_readdata = 32'b0;
 
 `SYSTEM system (
     .clk(clk),
@@ -59,13 +72,13 @@ ray_caster_module ray_caster_module_i (
     .clk(clk),
     .reset(reset),
     .avs_s0_address(host_address),
-    .avs_s0_read(1'b0),
+    .avs_s0_read(host_read),
     .avs_s0_write(host_write),
     .avs_s0_writedata(host_writedata),
     .avs_s0_byteenable(4'b1111),
-    .avs_s0_readdata(),
-    .avs_s0_readdatavalid(),
-    .avs_s0_waitrequest(),
+    .avs_s0_readdata(host_readdata),
+    .avs_s0_readdatavalid(host_readdatavalid),
+    .avs_s0_waitrequest(host_waitrequest),
     .irq(),
     .vga_r(vga_r),
     .vga_g(vga_g),
@@ -84,5 +97,12 @@ assign written = `MODULE.avs_s0_write && !`MODULE.avs_s0_waitrequest && !reset;
 assign address = `MODULE.avs_s0_address;
 assign byteenable = `MODULE.avs_s0_byteenable;
 assign writedata = `MODULE.avs_s0_writedata;
+
+`ifdef TAPS
+taps taps (
+    .unit(tapped_unit),
+    .values(tapped)
+);
+`endif
 
 endmodule

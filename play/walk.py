@@ -59,7 +59,7 @@ class Walker:
         if self._config.turn:
             yaw = TURN * (("turn right" in held) - ("turn left" in held)) + DRAG * drag[0]
             pitch = TURN * (("look up" in held) - ("look down" in held)) - DRAG * drag[1]
-            self._yaw = math.remainder(self._yaw + yaw, 360)
+            self.turn(yaw)
             self._pitch = max(-STEEPEST, min(STEEPEST, self._pitch + pitch))
         angle = math.radians(self._yaw)
         along, across, upwards = (
@@ -73,6 +73,10 @@ class Walker:
         self._place = [
             max(0, min(WORLD_SIZE - 1, place + step)) for place, step in zip(self._place, steps, strict=True)
         ]
+
+    def turn(self, degrees: float) -> None:
+        """Turn to the right."""
+        self._yaw = math.remainder(self._yaw + degrees, 360)
 
     def load(self) -> list[tuple[int, int]]:
         """Word addresses and words that load the scene and start it."""

@@ -292,7 +292,7 @@ def build_model(
     if any(flag.startswith("--coverage") for flag in arguments):
         made_with.append([source.resolve() for source in sources])  # which the counts name
     name = "-".join((configuration.name, bench.top, simulator))
-    with _made(models(build), name, sources, made_with) as (directory, fresh):
+    with made(models(build), name, sources, made_with) as (directory, fresh):
         if fresh:
             log = directory.with_suffix(".log")
             with _building(tool, models(build), arguments):
@@ -345,7 +345,7 @@ def build_program(
     """
     tool = find_tool(simulator)
     made_with = (tool, top, flags, compiler)
-    with _made(models(build), f"{name}-{simulator}", [*sources, *main], made_with) as (place, fresh):
+    with made(models(build), f"{name}-{simulator}", [*sources, *main], made_with) as (place, fresh):
         directory = place.resolve()
         executable = directory / top
         if fresh:
@@ -353,16 +353,10 @@ def build_program(
             if simulator == "icarus":
                 _call(tool, directory, "iverilog", "-g2005", "-s", top, "-o", executable, *files)
             else:
-                _call(
-                    tool, directory, "verilator", "--cc", *(() if main else ("--main", "--timing")), "-Wno-fatal",
-                    "--prefix", f"V{top}", "--Mdir", ".", "--top-module", top, *flags, *files,
-                )  # fmt: skip
-                # As one text it compiles several times as fast as file by file, and the clock's two edges inline.
-                parts = [*sorted(path.name for path in directory.glob("*.cpp")), *(path.resolve() for path in main[:1])]
-                (directory / "all.cc").write_text("".join(f'#include "{part}"\n' for part in parts))
+                verilate(tool, directory, top, files, flags if main else ("--main", "--timing", *flags), main[:1])
                 library, include = _runtime(tool, models(build), ())
                 _call(
-                    tool, directory, "g++", "-std=gnu++20", "-fcoroutines", "-pthread", *_DEFINITIONS, "-I.",
+                    tool, directory, "g++", "-std=gnu++20", "-fcoroutines", "-pthread", *VERILATED_DEFINITIONS, "-I.",
                     f"-I{include}", f"-I{include / 'vltstd'}", *compiler, "all.cc", *sorted(library.glob("*.o")),
                     "-o", executable,
                 )  # fmt: skip
@@ -370,7 +364,34 @@ def build_program(
     return ["vvp", "-n", str(executable)] if simulator == "icarus" else [str(executable)]
 
 
-_DEFINITIONS = tuple(f"-DVM_{name}=0" for name in ("COVERAGE", "SC", "TRACE", "TRACE_FST", "TRACE_VCD", "TRACE_SAIF"))
+def verilate(
+    tool: Tool, directory: Path, top: str, files: Sequence[Path], flags: Sequence[str], main: Sequence[Path] = ()
+) -> None:
+    """Make `all.cc` of a design in a directory, with everything in it but Verilator's library.
+
+    Args:
+        tool: Verilator, as `find_tool` has it.
+        directory: where the C++ goes; no path in it is relative.
+        top: the top module; the model's class is `V` and this.
+        files: its Verilog.
+        flags: for Verilator.
+        main: C++ that comes after the design.
+
+    Raises:
+        SimulationError: it could not be made.
+    """
+    _call(
+        tool, directory, "verilator", "--cc", "-Wno-fatal", "--prefix", f"V{top}", "--Mdir", ".", "--top-module", top,
+        *flags, *files,
+    )  # fmt: skip
+    # As one text it compiles several times as fast as file by file, and the clock's two edges inline.
+    parts = [*sorted(path.name for path in directory.glob("*.cpp")), *(path.resolve() for path in main)]
+    (directory / "all.cc").write_text("".join(f'#include "{part}"\n' for part in parts))
+
+
+VERILATED_DEFINITIONS = tuple(
+    f"-DVM_{name}=0" for name in ("COVERAGE", "SC", "TRACE", "TRACE_FST", "TRACE_VCD", "TRACE_SAIF")
+)
 """What Verilator's own makefile would define."""
 
 _FEATURES = ("--trace", "--coverage")
@@ -386,7 +407,7 @@ def models(build: Path) -> Path:
 
 
 @contextlib.contextmanager
-def _made(parent: Path, name: str, sources: Sequence[Path], made_with: object) -> Iterator[tuple[Path, bool]]:
+def made(parent: Path, name: str, sources: Sequence[Path], made_with: object) -> Iterator[tuple[Path, bool]]:
     """The directory of what is made of these sources in this way, and whether it is still to be made.
 
     Others wait meanwhile; what was not used for `KEPT_DAYS` days goes when something new comes.
@@ -451,7 +472,7 @@ def _runtime(tool: Tool, parent: Path, features: Sequence[str]) -> tuple[Path, P
     Returns:
         The directory of its objects, and that of its headers.
     """
-    with _made(parent, "runtime", (), (tool, features)) as (place, fresh):
+    with made(parent, "runtime", (), (tool, features)) as (place, fresh):
         directory = place.resolve()
         if fresh:
             (directory / "runtime.v").write_text(_RUNTIME)
@@ -461,10 +482,13 @@ def _runtime(tool: Tool, parent: Path, features: Sequence[str]) -> tuple[Path, P
             )  # fmt: skip
             for path in directory.glob("Vruntime*.o"):
                 path.unlink()
-        root = _output(
-            "verilator", "--getenv", "VERILATOR_ROOT", environment=os.environ | dict(tool.environment)
-        ).strip()
-    return directory, Path(root) / "include"
+    return directory, library_sources(tool)
+
+
+def library_sources(tool: Tool) -> Path:
+    """The directory of the sources and headers of Verilator's library."""
+    root = _output("verilator", "--getenv", "VERILATOR_ROOT", environment=os.environ | dict(tool.environment))
+    return Path(root.strip()) / "include"
 
 
 def _build_failure(name: str, simulator: str, log: Path) -> Exception:

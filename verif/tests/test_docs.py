@@ -372,7 +372,7 @@ def test_pages(tmp_path: Path):
     """All of them, without a warning, in a directory that appears whole; the fonts may be others elsewhere."""
     output = tmp_path / "site"
     done = subprocess.run(
-        [sys.executable, "-m", "raycaster.cli", "docs", "--keep-timing", "--output", str(output)],
+        [sys.executable, "-m", "raycaster.cli", "docs", "--keep-timing", "--no-web", "--output", str(output)],
         cwd=ROOT, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
@@ -397,7 +397,11 @@ def test_pages_with_a_fault(tmp_path: Path):
         "docs.HERE = Path('docs'); docs.draw_all = list; run_command(docs.main)"
     )
     done = subprocess.run(
-        [sys.executable, "-c", script, "--keep-timing"], cwd=tmp_path, capture_output=True, text=True, check=False
+        [sys.executable, "-c", script, "--keep-timing", "--no-web"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 2
     assert "scenes.md" in done.stderr

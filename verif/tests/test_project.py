@@ -34,9 +34,10 @@ MAY_IMPORT = {
     "sim": ("raycaster", "golden", "rtl", "convert", "fit", "fpga"),
     "debug": ("raycaster", "golden", "rtl", "convert", "sim"),
     "play": ("raycaster", "golden", "rtl", "sw", "convert", "sim"),
+    "web": ("raycaster", "sw", "convert", "sim", "debug", "play"),
     "verif": ("raycaster", "golden", "rtl", "sw", "convert", "fit", "fpga", "sim"),
     "report": ("raycaster", "golden", "rtl", "convert", "fit", "fpga", "sim", "verif"),
-    "docs": ("raycaster", "golden", "rtl", "convert", "sim", "debug", "play", "verif", "report"),
+    "docs": ("raycaster", "golden", "rtl", "convert", "sim", "debug", "play", "web", "verif", "report"),
 }
 """By folder, the folders that it may import of beside itself: no two of each other, however many between them."""
 

@@ -14,7 +14,7 @@ from PIL import Image
 from raycaster.configuration import configure
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES
-from raycaster.play import window
+from raycaster.play import game, window
 from raycaster.play.machine import Machine, build_machine
 from raycaster.play.walk import Walker
 from raycaster.scene import UNTURNED, Camera, load_scene
@@ -70,6 +70,17 @@ def test_a_walk_is_judged(engine, turn):
     judge.look(replace(frame, picture=torn))
     judge.finish()
     assert judge.wrong == judge.all_wrong == 1
+
+
+def test_a_camera_looks_around(tmp_path, capsys):
+    """To the right, ahead, to the left and ahead again, by the design that the walk has."""
+    output = tmp_path / "look"
+    design = ["--engine", "beam", "--screen", "tiny", "--colour-bits", "5"]
+    assert game.main(["mirror_room", "--frames", "4", *design, "--build", str(BUILD), "--output", str(output)]) == 0
+    assert "4 frames, 0 pixels unlike exact arithmetic" in capsys.readouterr().out
+    right, ahead, left, again = ((output / f"frame_{number:04}.png").read_bytes() for number in range(4))
+    assert ahead == again and len({right, ahead, left}) == 3
+    assert (output / "game.webp").exists()
 
 
 def test_a_walk_goes_where_it_looks():

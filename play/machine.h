@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+// A design in a loop without a test bench: clocks, the pixels that a monitor would take, what happens on the ray tracer's
+// bus, and what the serial port says.
+//
+// VS_ACTIVE: level of VS in its pulse; CLOCKS_PER_BIT: of the serial port, 0 where there is none.
+
+#ifndef MACHINE_H
+#define MACHINE_H
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "Vmachine.h"
+
+// A StartScreen, a write, or both in a clock.
+struct Event {
+    uint32_t clock, start_screen, written, address, writedata, byteenable;
+};
+
+// The receiving half: samples a byte in the middle of its bits.
+class SerialPort {
+public:
+    std::string text;
+
+    void clock(bool line) {
+        if (wait == 0) {
+            if (line) return;
+            wait = CLOCKS_PER_BIT + CLOCKS_PER_BIT / 2;
+            bits = 0;
+        }
+        if (--wait != 0) return;
+        if (bits == 8) {
+            text.push_back(static_cast<char>(byte));
+            return;
+        }
+        byte = static_cast<uint8_t>(byte >> 1 | line << 7);
+        bits++;
+        wait = CLOCKS_PER_BIT;
+    }
+
+private:
+    int wait = 0;
+    int bits = 0;
+    uint8_t byte = 0;
+};
+
+class Machine {
+public:
+    std::vector<uint32_t> pixels; // red, green, blue and 255 in the order of their bytes; since the last vertical sync
+    std::vector<Event> events;
+    std::string text;
+    uint64_t clocks = 0;
+    uint32_t busy = 0; // clocks in which a picture was computed
+
+    virtual ~Machine() = default;
+    explicit Machine(VerilatedContext *context) : top{context} {
+        top.ready = 0;
+        top.host_read = top.host_write = 0;
+        top.buttons = 0;
+        top.clk = 0;
+        for (int count = 0; count < RESET_CLOCKS; count++) clock();
+        top.ready = 1;
+    }
+
+    void hold(uint32_t buttons) { top.buttons = buttons; }
+
+    // A write over the ray tracer's bus, where no processor has it.
+    void write(uint32_t address, uint32_t word) {
+        top.host_write = 1;
+        top.host_address = address;
+        top.host_writedata = word;
+        request();
+        top.host_write = 0;
+    }
+
+    uint32_t read(uint32_t address) {
+        top.host_read = 1;
+        top.host_address = address;
+        request();
+        top.host_read = 0;
+        while (!top.host_readdatavalid) clock();
+        return top.host_readdata;
+    }
+
+    // Runs until the vertical sync begins.
+    void run_frame() {
+        pixels.clear();
+        while (!clock()) {
+        }
+#if CLOCKS_PER_BIT
+        text = std::move(serial.text);
+        serial.text.clear();
+#endif
+    }
+
+protected:
+    Vmachine top;
+
+    // Called before each rising edge of the clock, for those who look at more.
+    virtual void see() {}
+
+private:
+    static const int RESET_CLOCKS = 8;
+
+    bool vga_clk = false, vs = true;
+#if CLOCKS_PER_BIT
+    SerialPort serial;
+#endif
+
+    // Holds a request until it is taken.
+    void request() {
+        for (bool waits = true; waits; clock()) {
+            top.eval();
+            waits = top.host_waitrequest;
+        }
+    }
+
+    // Returns whether the vertical sync begins.
+    bool clock() {
+        bool sync = false;
+        busy += top.busy;
+        see();
+        if (top.start_screen || top.written)
+            events.push_back({static_cast<uint32_t>(clocks), top.start_screen, top.written, top.address, top.writedata,
+                              top.byteenable});
+        for (int level = 1; level >= 0; level--) {
+            top.clk = level;
+            top.eval();
+            if (top.vga_clk && !vga_clk) {
+                if (top.vga_blank_n) pixels.push_back(top.vga_r | top.vga_g << 8 | top.vga_b << 16 | 0xff000000u);
+                sync = top.vga_vs == VS_ACTIVE && !vs;
+                vs = top.vga_vs == VS_ACTIVE;
+            }
+            vga_clk = top.vga_clk;
+        }
+#if CLOCKS_PER_BIT
+        if (top.ready) serial.clock(top.uart_tx);
+#endif
+        clocks++;
+        return sync;
+    }
+};
+
+#endif

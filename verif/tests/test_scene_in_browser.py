@@ -1,0 +1,322 @@
+# SPDX-License-Identifier: MIT
+"""Scene files in the browser: the scene that the shell reads, or the line that it says."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import math
+import operator
+import random
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator
+
+import pytest
+import test_scene
+from conftest import ROOT
+from playwright.sync_api import Page
+
+from raycaster.scene import Camera, Scene, SceneError, load_scene, packaged_scenes
+from raycaster.verif.browser import browser_page
+from raycaster.verif.seeds import repeat, seed
+from raycaster.web.scene_schema import scene_schema
+
+PAGE = ROOT / "web" / "page"
+
+FULL = """\
+title = "All keys"
+rows = 200
+reflections = 2
+background = "#0A0b0c"
+[camera]
+position = [20, 256, 100]
+yaw = 30
+pitch = -12.5
+roll = 0.0
+[[rect]]
+corners = [[0, 0, 0], [511, 511, 0]]
+colour = "#c8c8b4"
+name = "floor"
+mirror = 0.25
+pattern = "columns"
+colour2 = "#010203"
+cell = 128
+[[rect]]
+corners = [[1, 2, 3], [1, 2, 3]]
+colour = "#ffffff"
+"""
+
+VALUES = r"""
+0 1 2 3 -1 180 200 240 360 361 -360 511 512 8 32 256 0x10 0b11 1_0 99999999999999999999999 +7
+0.0 1.0 2.0 240.0 32.0 -0.0 0.25 0.5 0.3 -12.5 360.0 360.5 1e3 1e400 -1e400 1e-5 0.0001 1.5e-7 123456789012345680.0
+1e15 1e16 1e22 5e-324 0.1 nan -nan inf +inf true false
+"" "plain" "rows" "dots" "240" "#123456" "#12345" "#1234567" "#12345g" "#ABCDEF\n" '\a"' "\u0001\u00e9\u007f"
+[] [1] [1,2,3] [1,2,3.0] [true,2,3] [1,2,3,4] [[1,2,3]] [[1,2,3],[1,5,6]] [[1,2,3],[4,5,6]] [[1,2,3],[1,2]] [[],{}]
+{} {a=1} {a.b=1,"c\td"=[true,nan]} [{}] [{position=[1,2,3]}] {position=[1,2,3]} {position=[1,2,3],tilt=1}
+2020-01-01 07:32:00 07:32:00.5 2020-01-01T07:32:00 2020-01-01T07:32:00Z 2020-01-01T07:32:00-07:00
+2020-01-01T07:32:00.25+05:30 2020-01-01T07:32:00-00:00
+"""
+"""Of each kind, in TOML."""
+
+LONG_TEXTS = [f'"{character * count}"' for character in "x\u00e9\U0001f600" for count in (58, 59)]
+"""The longest that are shown, and the shortest that are not."""
+
+
+def _parts() -> Iterator[str]:
+    """`FULL` with 999 in place of each of its numbers and points."""
+    for part in [*re.finditer(r"\d+", FULL), *re.finditer(r"\[\d+, \d+, \d+\]", FULL)]:
+        yield FULL[: part.start()] + "999" + FULL[part.end() :]
+
+
+def _variants() -> Iterator[str]:
+    """`FULL` with each of its lines left out, its key mistyped, and its value replaced by each of the above."""
+    lines = FULL.splitlines()
+    for index, line in enumerate(lines):
+        key, equals, _ = line.partition(" = ")
+        others = ["", line.replace("]", ".a]", 1), line.replace("]", "s]", 1)]
+        if equals:
+            others = ["", f"{key}s = 1", f'"{key} \u00e9\\u007f" = 1', f"{line}\nconstructor = 1\n__proto__ = 2"]
+            others += [f"{key} = {value}" for value in VALUES.split() + LONG_TEXTS]
+        for other in others:
+            yield "\n".join([*lines[:index], other, *lines[index + 1 :]])
+
+
+def _broken(rng: random.Random) -> Iterator[str]:
+    """Scenes in which some characters or lines are left out, put in or doubled; most are not TOML any more."""
+    texts = [FULL, *(re.sub("^#.*\n", "", path.read_text(), flags=re.M) for path in packaged_scenes().values())]
+    while True:
+        text = rng.choice(texts)
+        for _ in range(rng.choice((1, 1, 2, 3))):
+            at = rng.randrange(len(text) + 1)
+            lines = text.split("\n")
+            line = rng.randrange(len(lines))
+            text = rng.choice(
+                (
+                    text[:at] + text[at + rng.randrange(1, 8) :],
+                    text[:at] + rng.choice("[]{}\"'=.,#\n\r-_0e+ \t:x\x01é\u2028") + text[at:],
+                    text[:at],
+                    "\n".join(lines[:line] + lines[line + 1 :]),
+                    "\n".join([*lines[:line], rng.choice(lines), *lines[line:]]),
+                    "\n".join([*lines[:line], rng.choice(FULL.split("\n")), *lines[line:]]),
+                )
+            )
+        yield text
+
+
+def _as_told(scene: Scene) -> dict[str, object]:
+    """A scene as `RayCasterScene.read` is to give it."""
+    camera = scene.camera
+    return {
+        "title": scene.title,
+        "rows": scene.rows,
+        "reflections": scene.reflections,
+        "background": list(scene.background),
+        "camera": {"position": list(camera.position), "yaw": camera.yaw, "pitch": camera.pitch, "roll": camera.roll},
+        "rect": [
+            {
+                "name": rectangle.name,
+                "corners": [list(corner) for corner in rectangle.corners],
+                "colour": list(rectangle.colour),
+                "quarters": rectangle.quarters,
+                "kind": rectangle.kind,
+                "cell": rectangle.cell,
+                "colour2": list(rectangle.colour2 or (0, 0, 0)),
+            }
+            for rectangle in scene.rect
+        ],
+        "needs": scene.needs,
+    }
+
+
+@pytest.fixture(scope="module")
+def page():
+    with browser_page() as page:
+        for script in ("vendor/smol-toml.js", "scene.js"):
+            page.add_script_tag(path=PAGE / script)
+        yield page
+
+
+@pytest.fixture
+def in_browser(page, tmp_path):
+    """Reads texts in the browser, as the file that `in_shell` writes."""
+
+    def read(texts: Iterable[str], rectangles: int | None = None, schema: dict | None = None) -> list[dict]:
+        script = "([texts, ...rest]) => texts.map((text) => RayCasterScene.read(text, ...rest))"
+        path, limit = str(tmp_path / "scene.toml"), math.inf if rectangles is None else rectangles
+        return page.evaluate(script, [list(texts), path, schema or scene_schema(), limit])
+
+    return read
+
+
+@pytest.fixture
+def in_shell(tmp_path):
+    """Reads a text in Python."""
+
+    def read(text: str, rectangles: int | None = None) -> dict:
+        path = tmp_path / "scene.toml"
+        path.write_bytes(text.encode())
+        try:
+            return {"scene": _as_told(load_scene(path, rectangles)), "error": None}
+        except SceneError as error:
+            return {"scene": None, "error": str(error)}
+
+    return read
+
+
+def _is_syntax(told: dict) -> bool:
+    return told["error"] is not None and "scene.toml: is not TOML" in told["error"]
+
+
+def _agree(told: dict, expected: dict) -> bool:
+    """Whether both are the same, but for the reason of a syntax error; smol-toml's are without brackets."""
+    if _is_syntax(told):
+        return _is_syntax(expected) and expected["error"].startswith(told["error"].rpartition(" (")[0] + " (")
+    return told == expected
+
+
+def _number_of_line(told: dict) -> int:
+    return int(re.search(r"is not TOML at line (\d+)", told["error"])[1])
+
+
+def test_packaged_scenes(in_browser):
+    scenes = packaged_scenes()
+    told = in_browser(path.read_text(encoding="utf-8") for path in scenes.values())
+    for path, result in zip(scenes.values(), told, strict=True):
+        assert result == {"scene": _as_told(load_scene(path)), "error": None}, path
+    assert {tuple(result["scene"]["needs"].values()) for result in told} >= {(True,) * 3, (False,) * 3}
+
+
+def _mistakes() -> list[tuple[str, str]]:
+    """Of the tests of scene files in the shell: texts, and what is to be said of them."""
+    [mark] = [mark for mark in test_scene.test_mistake.pytestmark if mark.name == "parametrize"]
+    return [(test_scene.changed(old, new), expected) for old, new, expected in mark.args[1]]
+
+
+def test_mistakes_of_the_shell(in_browser, tmp_path):
+    """The lines are those that the shell's tests expect."""
+    texts, expected = zip(*_mistakes(), strict=True)
+    assert len(texts) > 50
+    for text, line, told in zip(texts, expected, in_browser(texts), strict=True):
+        assert _agree(told, {"scene": None, "error": f"{tmp_path}/scene.toml: {line}"}), text
+
+
+def test_every_value_at_every_key(in_browser, in_shell):
+    texts = [*_variants(), *_parts()]
+    kinds = Counter()
+    for text, told in zip(texts, in_browser(texts), strict=True):
+        expected = in_shell(text)
+        assert _agree(told, expected), f"{text}\n{told}\n{expected}"
+        kinds[told["error"] is None] += 1
+    assert kinds[True] > 50
+    assert kinds[False] > 1000
+
+
+def _words(part: object, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str | int, ...]]:
+    """Where in the schema there are words that are said to a user."""
+    for key, value in part.items() if isinstance(part, dict) else enumerate(part) if isinstance(part, list) else ():
+        if key == "expected" or path == ("complaints",):
+            yield (*path, key)
+        yield from _words(value, (*path, key))
+
+
+def test_no_word_of_the_schema_is_left_unsaid(in_browser):
+    """If one is changed, one of the mistakes is told in other words."""
+    texts = [text for text, _ in _mistakes()] + list(_parts()) + ["rect = 999"]
+    usual = in_browser(texts, rectangles=1)
+    words = list(_words(scene_schema()))
+    assert len(words) > 30
+    for path in words:
+        schema = scene_schema()
+        part = functools.reduce(operator.getitem, path[:-1], schema)
+        part[path[-1]] += " indeed"
+        if path[-1] != "encoding":
+            assert in_browser(texts, rectangles=1, schema=schema) != usual, path
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "rect = []\n" + FULL[: FULL.index("[[rect]]")],
+        "rect = [3, {}, 'a']\n" + FULL[: FULL.index("[[rect]]")],
+        FULL.replace("\n", "\r\n"),
+        FULL.replace("\n", "\r"),
+        "\ufeff" + FULL,
+        "",
+        " \n",
+        "rows" + ".a" * 2000 + " = 1",
+        "rows = 0x" + "f" * 4000,
+        FULL.replace('"floor"', "'fl\u00f6\u2028\U0001f600\"'").replace("colour =", "color ="),
+        FULL + FULL[FULL.rindex("[[rect]]") :] * 11,
+    ],
+    ids=itertools.count(),
+)
+def test_other_texts(in_browser, in_shell, text):
+    [told] = in_browser([text], rectangles=12)
+    assert told == in_shell(text, rectangles=12)
+
+
+@pytest.mark.parametrize("text", ["rows = " + "9" * 5000, "rows = " + "[" * 5000])
+def test_monstrous_toml_is_refused_too(in_browser, in_shell, text):
+    assert in_browser([text])[0]["error"]
+    assert in_shell(text)["error"]
+
+
+def test_bytes(page):
+    script = """([bytes, schema]) => RayCasterScene.read(new Uint8Array(bytes).buffer, "dropped.toml", schema)"""
+    told = page.evaluate(script, [list(b"\xef\xbb\xbf" + FULL.encode()), scene_schema()])
+    assert told["scene"]["title"] == "All keys"
+    told = page.evaluate(script, [[0xFF, 0xFE], scene_schema()])
+    assert told == {"scene": None, "error": "dropped.toml: is not UTF-8 text; a scene is a TOML file"}
+
+
+def test_broken_texts(in_browser, in_shell):
+    """Both read the same ones; of those that are not TOML both tell the same line, but for what scene.js names."""
+    texts = list(itertools.islice(_broken(random.Random(seed())), 1000))
+    kinds = Counter()
+    for text, told in zip(texts, in_browser(texts), strict=True):
+        expected = in_shell(text)
+        note = f"{text}\n{told['error']}\n{expected['error']}\n{repeat()}"
+        assert _is_syntax(told) == _is_syntax(expected), note
+        if _agree(told, expected):
+            kinds["same line" if _is_syntax(told) else "same"] += 1
+        else:
+            assert _is_syntax(told), note
+            kinds["other line"] += 1
+            assert re.search(r" \((unfinished|control characters|trying to redefine) .*\)$", told["error"]), note
+            assert _number_of_line(told) < _number_of_line(expected), note
+    assert kinds["same"] > 200, f"{kinds} {repeat()}"
+    assert kinds["same line"] > 400, f"{kinds} {repeat()}"
+    assert kinds["other line"] < 20, f"{kinds} {repeat()}"
+
+
+def _bases(page: Page, angles: list[list[float]]) -> list[list[list[int]]]:
+    return page.evaluate("(all) => all.map((angles) => RayCasterScene.basis(...angles))", angles)
+
+
+def _expected_basis(yaw: float, pitch: float, roll: float) -> list[list[int]]:
+    return [list(vector) for vector in Camera(position=(0, 0, 0), yaw=yaw, pitch=pitch, roll=roll).basis]
+
+
+def test_basis(page):
+    rng = random.Random(seed())
+    steps = [15.0 * step for step in range(-24, 25)]
+    angles = [[rng.choice(steps) for _ in range(3)] for _ in range(2000)]
+    angles += [[rng.uniform(-360, 360) for _ in range(3)] for _ in range(2000)]
+    for three, basis in zip(angles, _bases(page, angles), strict=True):
+        assert basis == _expected_basis(*three), f"{three} {repeat()}"
+
+
+def test_halves_of_a_basis_are_rounded_to_even(page):
+    """At angles whose cosines are such halves, in the browser too: libraries may differ in a cosine's last bit."""
+    near = [math.degrees(math.acos((part + 0.5) / 256)) for part in range(-256, 256)]
+    angles = [angle + step * math.ulp(angle) for angle in near for step in range(-50, 50)]
+    cosines = page.evaluate("(angles) => angles.map((angle) => Math.cos(angle * (Math.PI / 180)))", angles)
+    halves = [
+        angle
+        for angle, cosine in zip(angles, cosines, strict=True)
+        if cosine * 256 % 1 == 0.5 and math.cos(math.radians(angle)) == cosine
+    ]
+    assert len(halves) > 50
+    for angle, basis in zip(halves, _bases(page, [[angle, 0, 0] for angle in halves]), strict=True):
+        assert basis[0][0] == _expected_basis(angle, 0, 0)[0][0], angle

@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: MIT
+"""The page in Chromium: what it draws, counts and says."""
+
+import json
+import math
+from collections.abc import Sequence
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from threading import Thread
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from raycaster.configuration import configure
+from raycaster.golden import exact, seed_engine
+from raycaster.golden.world import Rectangles
+from raycaster.play.machine import Machine, build_machine
+from raycaster.scene import Camera, SceneError, load_scene, packaged_scenes
+from raycaster.sim.simulator import BUILD
+from raycaster.sw.firmware import build_firmware
+from raycaster.sw.play_script import DEMO, load
+from raycaster.verif.browser import browser_page
+from raycaster.web.site import MODELS, write_site
+
+SHOWN = "RayCaster.state.walk?.frames > 2 && RayCaster.state.walk.wrong !== null"
+TIMEOUT_MS = 60_000
+MOST_BYTES = 2_000_000
+"""Of the whole page, compressed."""
+
+TOUR = """async ([model, source, cameras]) => {
+    const machine = await Machine.start(model);
+    await machine.call("load", readScene(source, "scene", machine.design.rectangles));
+    const frames = [await machine.frame()];
+    for (const camera of cameras) frames.push(await machine.frame({ camera }));
+    machine.end();
+    return frames.map((frame) => pictureHash(frame.pixels));
+}"""
+
+
+def picture_hash(picture: np.ndarray) -> str:
+    """FNV-1a of the words of red, green, blue and 255, by its definition."""
+    value = 2166136261
+    for red, green, blue in picture.reshape(-1, 3).tolist():
+        value = (value ^ (red | green << 8 | blue << 16 | 255 << 24)) * 16777619 % (1 << 32)
+    return f"{value:08x}"
+
+
+def golden_hash(scene, camera: Camera | None = None) -> str:
+    """Of what exact arithmetic shows on the page's screen."""
+    screen = configure(engine="beam", screen="play").screen_geometry
+    camera = camera or scene.camera
+    return picture_hash(
+        exact.picture(
+            screen, Rectangles.of_scene(scene), camera.position, scene.background, scene.reflections, basis=camera.basis
+        )
+    )
+
+
+def cameras_around(camera: Camera, count: int) -> list[Camera]:
+    """A walk from a scene's camera, turning all the way."""
+    x, y, z = camera.position
+    return [
+        Camera(
+            position=(min(511, x + 2 * step), max(0, y - step), z),
+            yaw=math.remainder(camera.yaw + 360 / count * step, 360), pitch=camera.pitch + step % 7, roll=camera.roll,
+        )
+        for step in range(1, count)
+    ]  # fmt: skip
+
+
+def tour_of(page, model: str, name: str, cameras: Sequence[Camera]) -> list[str]:
+    """The hashes of a scene's own frame and of those from other cameras, drawn by a model in the browser."""
+    source = packaged_scenes()[name].read_text()
+    views = [{"position": camera.position, "basis": camera.basis} for camera in cameras]
+    return page.evaluate(TOUR, [model, source, views])
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory) -> Path:
+    """A page with the walk's fastest model alone."""
+    output = tmp_path_factory.mktemp("site") / "web"
+    write_site(output, BUILD, Console(quiet=True), models=MODELS[:1], test=True)
+    return output
+
+
+@pytest.fixture(scope="module")
+def whole_site(tmp_path_factory) -> tuple[Path, int]:
+    """The page with all models, and its size."""
+    output = tmp_path_factory.mktemp("site") / "web"
+    return output, write_site(output, BUILD, Console(quiet=True), test=True)
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """One for all tests; what its pages write on the console is kept."""
+    with browser_page() as page:
+        page.set_default_timeout(TIMEOUT_MS)
+        page.said = []
+        page.on("console", lambda message: page.said.append(message.text))
+        yield page
+
+
+@pytest.fixture
+def page(browser):
+    """Which must not have complained."""
+    browser.said.clear()
+    browser.goto("about:blank")
+    yield browser
+    assert browser.said == []
+
+
+def opened(page, site: Path, place: str = "") -> dict:
+    """The state of the walk once it shows frames."""
+    page.goto(f"{(site / 'index.html').as_uri()}{place}")
+    page.wait_for_function(SHOWN)
+    return page.evaluate("RayCaster.state.walk")
+
+
+def test_draws_from_a_disk(page, site):
+    scene = load_scene(packaged_scenes()["mirror_room"])
+    state = opened(page, site)
+    assert state["hash"] == golden_hash(scene)
+    assert state["wrong"] == 0
+    assert "0 wrong pixels of 76,800" in page.text_content("#walk-status")
+
+
+def test_draws_from_a_server(page, site):
+    handler = partial(SimpleHTTPRequestHandler, directory=site)
+    handler.log_message = lambda *_: None
+    server = ThreadingHTTPServer(("127.0.0.1", 0), handler)
+    Thread(target=server.serve_forever, daemon=True).start()
+    try:
+        page.goto(f"http://127.0.0.1:{server.server_port}/index.html")
+        page.wait_for_function(SHOWN)
+    finally:
+        server.shutdown()
+
+
+def test_keys_move_the_camera(page, site):
+    opened(page, site)
+    start = page.evaluate("RayCaster.state.walk.camera")
+    for key in ("w", "ArrowRight"):
+        page.keyboard.down(key)
+    moved = "({ position: [x], basis: [[fx]] }) => RayCaster.state.walk.camera.position[0] > x + 20"
+    page.wait_for_function(f"(start) => ({moved})(start)", arg=start)
+    for key in ("w", "ArrowRight"):
+        page.keyboard.up(key)
+    page.wait_for_function("RayCaster.state.walk.wrong === 0")
+    state = page.evaluate("RayCaster.state.walk")
+    assert state["camera"]["basis"] != start["basis"]
+    scene = load_scene(packaged_scenes()["mirror_room"])
+    screen = configure(engine="beam", screen="play").screen_geometry
+    golden = exact.picture(
+        screen, Rectangles.of_scene(scene), state["camera"]["position"], scene.background, scene.reflections,
+        basis=tuple(map(tuple, state["camera"]["basis"])),
+    )  # fmt: skip
+    assert state["hash"] == picture_hash(golden)
+
+
+def test_a_bad_scene_shows_its_line(page, site, tmp_path):
+    opened(page, site)
+    page.click("summary")
+    good = page.input_value("#walk-text")
+    bad = good.replace("colour = ", "color = ", 1)
+    page.fill("#walk-text", bad)
+    page.click("#walk-use")
+    path = tmp_path / "scene"
+    path.write_text(bad)
+    with pytest.raises(SceneError) as error:
+        load_scene(path)
+    assert page.text_content("#walk-error") == str(error.value).replace(str(path), "scene")
+    page.fill("#walk-text", good)
+    page.click("#walk-use")
+    assert page.text_content("#walk-error") == ""
+
+
+def test_a_planted_pixel_is_counted_and_marked(page, site):
+    state = opened(page, site, "?plant=100,50")
+    assert state["wrong"] == 1
+    assert "1 wrong pixel of 76,800" in page.text_content("#walk-status .wrong")
+    page.wait_for_function(
+        "[...find('walk-picture').getContext('2d').getImageData(100, 50, 1, 1).data].join() === '255,0,255,255'"
+    )
+
+
+def test_hashes_equal_golden(page, site):
+    """Frames of turning cameras."""
+    opened(page, site)
+    name = "boxes"
+    scene = load_scene(packaged_scenes()[name])
+    cameras = cameras_around(scene.camera, 5)
+    expected = [golden_hash(scene, camera) for camera in (scene.camera, *cameras)]
+    assert len(set(expected)) == 5
+    assert tour_of(page, MODELS[0].name, name, cameras) == expected
+
+
+def test_a_hundred_hashes_equal_golden(page, whole_site):
+    """Over five scenes that need all that a design can have."""
+    site, _ = whole_site
+    opened(page, site)
+    for name in ("checkered_hall", "kaleidoscope", "periscope", "pool", "rooftops"):
+        scene = load_scene(packaged_scenes()[name])
+        cameras = cameras_around(scene.camera, 20)
+        expected = [golden_hash(scene, camera) for camera in (scene.camera, *cameras)]
+        assert len(set(expected)) > 10
+        assert tour_of(page, "walk-looks", name, cameras) == expected, name
+
+
+def test_the_size(whole_site):
+    site, size = whole_site
+    assert {path.stem for path in (site / "models").iterdir()} == {model.name for model in MODELS} | {"golden"}
+    assert size <= MOST_BYTES
+
+
+def test_the_game_is_the_native_one(page, whole_site):
+    site, _ = whole_site
+    held = load(DEMO)[:40]
+    program = build_firmware((BUILD / "firmware").absolute()).words
+    config = next(model.configuration for model in MODELS if model.processor)
+    with Machine(build_machine(config, processor=True), config, program) as machine:
+        # Its first frame is over when it is there.
+        expected = [picture_hash(machine.frame(buttons).picture) for buttons in held]
+    page.goto((site / "index.html").as_uri() + "#game")
+    page.wait_for_function("RayCaster.state.game?.frames > 2 && RayCaster.state.game.wrong === 0")
+    assert "engine beam" in page.text_content("#game-text")
+    found = page.evaluate(
+        """async (held) => {
+            const machine = await Machine.start("game"), hashes = [];
+            for (const buttons of held) {
+                const frame = await machine.frame({ buttons });
+                hashes.push(pictureHash(frame.pixels));
+            }
+            return hashes;
+        }""",
+        held,
+    )
+    assert found == expected
+    assert len(set(expected)) > 10
+
+
+@pytest.mark.parametrize("fraction_bits", [0, 4])
+def test_the_engines_side_by_side(page, whole_site, fraction_bits):
+    site, _ = whole_site
+    page.goto((site / "index.html").as_uri() + "#engines")
+    page.wait_for_function("RayCaster.state.engines?.done")
+    page.select_option("#engines-fraction", str(fraction_bits))
+    page.wait_for_function(f"RayCaster.state.engines.fraction === '{fraction_bits}'")
+    state = page.evaluate("RayCaster.state.engines")
+    scene = load_scene(packaged_scenes()["mirror_room"])
+    screen = configure(engine="seed").screen_geometry
+    perfect = exact.render(scene, screen)
+    rounded = seed_engine.render(scene, screen, fraction_bits)
+    assert state["exact"] == {"hash": picture_hash(perfect), "wrong": 0}
+    assert state["seed"] == {"hash": picture_hash(rounded), "wrong": 0}
+    assert state["differs"] == np.any(perfect != rounded, axis=2).sum() > 0
+
+
+def test_settings_are_json(site):
+    """What the page is told is one assignment."""
+    text = (site / "settings.js").read_text()
+    settings = json.loads(text.removeprefix("Object.assign(RayCaster, ").removesuffix(");\n"))
+    assert set(settings["scenes"]) == set(packaged_scenes())

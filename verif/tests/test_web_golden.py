@@ -1,0 +1,346 @@
+# SPDX-License-Identifier: MIT
+"""The page's own golden check against the golden models, compiled for this machine and as WebAssembly."""
+
+from __future__ import annotations
+
+import ctypes
+import subprocess
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from conftest import BUILD
+from hard_scenes import scene_of
+from wasmtime import Instance, Module, Store
+
+from raycaster.configuration import Configuration, configure
+from raycaster.golden import engines
+from raycaster.golden.catalogue import catalogue
+from raycaster.golden.picture import shown
+from raycaster.golden.random_world import random_basis, random_grid, random_looks
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import Rectangles
+from raycaster.program import basis_fields, scene_words
+from raycaster.registers import register_map
+from raycaster.scene import UNTURNED, load_scene
+from raycaster.screens import SCREENS, Screen
+from raycaster.sim.register_model import COMMIT_CLOCKS, LiveScene, SceneFollower
+from raycaster.sim.simulator import made, models
+from raycaster.verif.seeds import repeat, seed
+from raycaster.web.wasm import DRIVER_HEADERS, GOLDEN, GOLDEN_FLAGS, golden_wasm
+
+WORDS = 1024
+BOUNCE = 8
+"""Numbers that tell of one."""
+
+LOOKS = ("turn", "materials", "patterns")
+QUOTIENTS = [(bits, rounding) for bits in (0, 3, 8) for rounding in ("truncate", "nearest")]
+ENGINES = [
+    *({"engine": engine, **dict.fromkeys(LOOKS, True)} for engine in ("exact", "beam")),
+    *(
+        {"engine": "seed", "fraction_bits": bits, "rounding": rounding, "materials": True, "patterns": True}
+        for bits, rounding in QUOTIENTS
+    ),
+]
+WORLDS = 30
+"""Random ones for each engine."""
+
+_VGA = SCREENS["vga", 240]
+WIDE, TALL = replace(_VGA, rows=24, horizon_row=12), replace(_VGA, columns=32)
+"""With the full screen's steepest rays to the sides, and up and down."""
+
+of_each_engine = pytest.mark.parametrize("options", ENGINES, ids=lambda options: "-".join(map(str, options.values())))
+
+
+def design(**options: object) -> Configuration:
+    return configure(screen="tiny", reflections=2, allow_underrun=True, **options)
+
+
+class Golden:
+    """The check as a page calls it; `call`, `read` and `write` are those of what runs it."""
+
+    def load(self, words: Iterable[tuple[int, int]]) -> None:
+        table = np.zeros(WORDS, dtype="<u4")
+        for address, word in words:
+            table[address] = word
+        self.write(self.call("golden_words"), table.tobytes())
+
+    def draw(self, config: Configuration, screen: Screen | None = None) -> np.ndarray:
+        """The picture of a design, or of one like it with another screen."""
+        screen = screen or config.screen_geometry
+        self.call(
+            "golden_draw", config.facts.code, config.rectangles, config.materials, config.patterns, config.turn,
+            screen.columns, screen.rows, screen.horizon_row, screen.scale, config.fraction_bits,
+            config.rounding == "nearest", config.colour_bits,
+        )  # fmt: skip
+        data = self.read(self.call("golden_picture"), 3 * screen.columns * screen.rows)
+        return np.frombuffer(data, dtype=np.uint8).reshape(screen.rows, screen.columns, 3)
+
+    def bounces(self, column: int, row: int) -> np.ndarray:
+        count = self.call("golden_ray", column, row)
+        data = self.read(self.call("golden_bounces"), 8 * BOUNCE * count)
+        return np.frombuffer(data, dtype="<i8").reshape(count, BOUNCE)
+
+
+class Native(Golden):
+    def __init__(self):
+        command = ("g++", *GOLDEN_FLAGS, "-O2", "-fvisibility=hidden", "-shared", "-fPIC")
+        with made(models(BUILD), "golden-native", [GOLDEN, *DRIVER_HEADERS], command) as (directory, fresh):
+            if fresh:
+                subprocess.run([*command, GOLDEN, "-o", directory / "golden.so"], check=True)
+            self._library = ctypes.CDLL(directory / "golden.so")
+        for name in ("words", "picture", "shown", "bounces"):
+            getattr(self._library, f"golden_{name}").restype = ctypes.c_void_p
+
+    def call(self, name: str, *arguments: int) -> int:
+        return getattr(self._library, name)(*map(int, arguments))
+
+    def read(self, address: int, size: int) -> bytes:
+        return ctypes.string_at(address, size)
+
+    def write(self, address: int, data: bytes) -> None:
+        ctypes.memmove(address, data, len(data))
+
+
+class Wasm(Golden):
+    def __init__(self):
+        self._store = Store()
+        module = Module.from_file(self._store.engine, str(golden_wasm(BUILD)))
+        self.imports = list(module.imports)
+        self._exports = Instance(self._store, module, []).exports(self._store)
+
+    def call(self, name: str, *arguments: int) -> int:
+        return self._exports[name](self._store, *map(int, arguments))
+
+    def read(self, address: int, size: int) -> bytes:
+        return bytes(self._exports["memory"].read(self._store, address, address + size))
+
+    def write(self, address: int, data: bytes) -> None:
+        self._exports["memory"].write(self._store, data, address)
+
+
+@pytest.fixture(scope="module")
+def golden() -> Golden:
+    return Native()
+
+
+def world_words(
+    table: Rectangles, camera: Sequence[int], basis, background: Sequence[int], reflections: int
+) -> list[tuple[int, int]]:
+    """What a scene file cannot say too: entries without a plane, or disabled with all else in place."""
+    registers = register_map(len(table))
+    fields = [
+        ("background", dict(zip(("red", "green", "blue"), background, strict=True))),
+        ("camera", dict(zip("xyz", map(int, camera), strict=True))),
+        *basis_fields(basis),
+    ]
+    for index in range(len(table)):
+        entry = f"rectangle[{index}]"
+        for corner, position in enumerate(table.corners[index].tolist()):
+            fields.append((f"{entry}.corner_{corner}", dict(zip("xyz", position, strict=True))))
+        for name, colours, more in (
+            ("surface", table.colours, {"enable": int(table.enabled[index]), "mirror": int(table.mirrors[index])}),
+            (
+                "pattern", table.colours_2,
+                {"kind": int(table.kinds[index]), "cell": int(table.cells[index]).bit_length() - 4},
+            ),
+        ):  # fmt: skip
+            red, green, blue = colours[index].tolist()
+            fields.append((f"{entry}.{name}", {"red": red, "green": green, "blue": blue, **more}))
+    fields.append(("control", {"run": 1, "commit": 1, "reflections": reflections}))
+    return [(registers[name].address, registers[name].pack(**values)) for name, values in fields]
+
+
+def random_words(rng: np.random.Generator, config: Configuration) -> list[tuple[int, int]]:
+    """A world of any kind with all looks, whether the design has them or not."""
+    count, basis = config.rectangles, random_basis(rng)
+    if rng.random() < 0.3 and count >= 7:
+        corners, camera = random_grid(rng, count)
+        table = Rectangles(corners, rng.integers(256, size=(count, 3)).astype(np.uint8), np.ones(count, dtype=bool))
+    else:
+        slopes = primary_slopes(config.screen_geometry, basis if config.turn else UNTURNED)
+        camera, table = scene_of(rng, slopes.reshape(-1, 3), count)
+    table = random_looks(rng, table)
+    # More than 4 counts as 4.
+    table = replace(table, mirrors=np.where((table.mirrors == 4) & (rng.random(count) < 0.5), 7, table.mirrors))
+    background = rng.integers(256, size=3).tolist()
+    return world_words(table, camera, basis, background, int(rng.integers(3)))
+
+
+def live(config: Configuration, words: Iterable[tuple[int, int]]) -> LiveScene:
+    """What the design's registers make of them."""
+    follower = SceneFollower(config)
+    for address, word in words:
+        follower.write(0, address, word, 0b1111)
+    follower.start_screen(COMMIT_CLOCKS)
+    return follower.live
+
+
+def expected(config: Configuration, screen: Screen, scene: LiveScene) -> np.ndarray:
+    """The picture at the pins, a pixel a ray."""
+    slopes = primary_slopes(screen, scene.basis)
+    traced = engines.trace(
+        config, scene.rectangles, scene.camera, scene.background, slopes.reshape(-1, 3), scene.reflections
+    )
+    doubling = config.screen_geometry.doubling
+    return shown(traced.colours.reshape(slopes.shape), config)[::doubling, ::doubling]
+
+
+def assert_drawn(
+    golden: Golden, config: Configuration, words: list[tuple[int, int]], context: str, screen: Screen | None = None
+) -> np.ndarray:
+    """What is drawn of these words, which must be what the golden models draw."""
+    golden.load(words)
+    drawn = golden.draw(config, screen)
+    wrong = np.argwhere((drawn != expected(config, screen or config.screen_geometry, live(config, words))).any(axis=-1))
+    assert not len(wrong), f"{len(wrong)} wrong pixels, the first at row, column {wrong[0]}: {config.name}, {context}"
+    return drawn
+
+
+@of_each_engine
+def test_packaged_scenes(golden, scenes, options):
+    config = design(rectangles=16, **options)
+    drawn = 0
+    for path in sorted(scenes.glob("*.toml")):
+        scene = load_scene(path)
+        if not scene.lacks(config.looks):
+            picture = assert_drawn(golden, config, scene_words(scene, config), path.name)
+            assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 1, path.name
+            drawn += 1
+    assert drawn > 10
+
+
+@of_each_engine
+def test_stiff_catalogue(golden, options):
+    config = design(**options)
+    cases = catalogue(config.looks)
+    assert len(cases) > 80
+    for case in cases:
+        for screen in (WIDE, TALL):
+            assert_drawn(golden, config, scene_words(case.scene, config), case.name, screen)
+
+
+@of_each_engine
+def test_random_worlds(golden, options):
+    rng = np.random.default_rng([seed(), ENGINES.index(options)])
+    colourful = 0
+    for number in range(WORLDS):
+        # Without what it may lack, too: it then ignores what the words say of that.
+        looks = {name: has and rng.random() < 0.7 for name, has in options.items() if name in LOOKS}
+        rectangles, colour_bits = int(rng.integers(1, 33)), int(rng.integers(1, 9))
+        config = design(rectangles=rectangles, colour_bits=colour_bits, **{**options, **looks})
+        drawn = assert_drawn(golden, config, random_words(rng, config), f"world {number}; {repeat()}")
+        colourful += len(np.unique(drawn.reshape(-1, 3), axis=0)) > 2
+    assert colourful > WORLDS / 6, repeat()
+
+
+@pytest.mark.parametrize("rows", [240, 200, 180])
+def test_every_screen(golden, rows):
+    """At its finest."""
+    rng = np.random.default_rng(seed())
+    config = configure(engine="beam", rows=rows, turn=True, materials=True, patterns=True, reflections=2)
+    if rows == 180:
+        config = replace(config, scale=2)
+    assert_drawn(golden, config, random_words(rng, config), repeat())
+
+
+def test_does_not_run(golden, scenes):
+    """Black; the ray of a pixel has no bounces."""
+    config = design(engine="exact")
+    words = dict(scene_words(load_scene(scenes / "floor.toml"), config))
+    control = register_map(config.rectangles)["control"]
+    golden.load(words.items())
+    assert golden.draw(config).any()
+    assert len(golden.bounces(0, 0))
+    words[control.address] &= ~control.fields["run"].mask
+    golden.load(words.items())
+    assert not golden.draw(config).any()
+    assert not len(golden.bounces(0, 0))
+
+
+@of_each_engine
+def test_explains_a_pixel(golden, options):
+    rng = np.random.default_rng([seed(), 2])
+    config = design(**options)
+    screen = config.screen_geometry
+    longest, misses = 0, 0
+    for number in range(WORLDS):
+        words = random_words(rng, config)
+        golden.load(words)
+        golden.draw(config)
+        scene = live(config, words)
+        table = scene.rectangles
+        pixels = rng.integers((screen.rows, screen.columns), size=(20, 2))
+        slopes = primary_slopes(screen)[tuple(pixels.T)]
+        if config.turn:
+            # Times the basis even where that is not turned, as t is for these very slopes.
+            slopes = slopes @ np.array(scene.basis)
+        trace = engines.trace(config, table, scene.camera, scene.background, slopes, scene.reflections)
+        for ray, (row, column) in enumerate(pixels.tolist()):
+            context = f"world {number}, row {row}, column {column}; {repeat()}"
+            bounces = golden.bounces(column, row)
+            winners = [int(winner[ray]) for winner in trace.winners]
+            assert bounces[:, 0].tolist() == winners[: len(bounces)], context
+            assert set(winners[len(bounces) :]) <= {-1}, context
+            longest = max(longest, len(bounces))
+            eye, slope = np.array(scene.camera), slopes[ray].copy()
+            for depth, (winner, numerator, denominator, *point, colour, quarters) in enumerate(bounces.tolist()):
+                assert colour == int.from_bytes(trace.seen[depth][ray].tobytes(), "big"), context
+                if winner < 0:
+                    misses += 1
+                    continue
+                assert quarters == table.mirrors[winner], context
+                assert point == trace.points[depth][ray].tolist(), context
+                if config.engine == "seed":
+                    start = trace.points[depth - 1][ray, 0] if depth else scene.camera[0] << config.fraction_bits
+                    assert (numerator, denominator) == (abs(point[0] - start), 1 << config.fraction_bits), context
+                else:
+                    assert denominator == trace.denominators[depth][ray], context
+                    assert point == (eye * denominator + slope * numerator).tolist(), context
+                    axis = table.axes[winner]
+                    eye[axis] = 2 * table.low[winner, axis] - eye[axis]
+                    slope[axis] *= -1
+    assert longest == 3, repeat()
+    assert misses, repeat()
+
+
+def test_counts_pixels_that_differ(golden, scenes):
+    rng = np.random.default_rng(seed())
+    config = design(engine="exact")
+    golden.load(scene_words(load_scene(scenes / "boxes.toml"), config))
+    picture = golden.draw(config).copy()
+    pixels = picture.shape[0] * picture.shape[1]
+    golden.write(golden.call("golden_shown"), picture.tobytes())
+    assert golden.call("golden_compare", pixels) == 0
+    places = rng.choice(pixels, 100, replace=False)
+    for number, place in enumerate(places, 1):
+        picture.reshape(-1, 3)[place, rng.integers(3)] ^= int(rng.integers(1, 256))
+        golden.write(golden.call("golden_shown"), picture.tobytes())
+        assert golden.call("golden_compare", pixels) == number, repeat()
+    assert golden.call("golden_compare", int(places.min())) == 0, repeat()
+
+
+@pytest.fixture(scope="module")
+def wasm() -> Wasm:
+    return Wasm()
+
+
+def test_wasm_imports_nothing(wasm):
+    assert wasm.imports == []
+
+
+@of_each_engine
+def test_wasm_draws_the_same(golden, wasm, options):
+    rng = np.random.default_rng([seed(), 3])
+    for _ in range(10):
+        config = design(**options)
+        words = random_words(rng, config)
+        pictures = []
+        for one in (golden, wasm):
+            one.load(words)
+            picture = one.draw(config)
+            one.write(one.call("golden_shown"), picture.tobytes())
+            assert one.call("golden_compare", picture.size // 3) == 0, repeat()
+            pictures.append((picture.tobytes(), one.bounces(20, 30).tobytes()))
+        assert pictures[0] == pictures[1], repeat()

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT
+// What the scene in the registers must look like, drawn from the image contract with integers alone: no part of the
+// hardware or of its Verilog is in it. The page runs it beside the design, and compares.
+//
+// The caller puts the live words into golden_words(), each at its register's word address, and calls golden_draw;
+// golden_picture() then has red, green and blue of each pixel. golden_compare counts the differences from what the
+// caller put into golden_shown(), in the same layout. golden_ray explains one pixel of the last drawing in
+// golden_bounces(): a struct Bounce, eight numbers of 64 bits, for the camera's ray and for each reflection.
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "raycaster.h"
+#include "raycaster_regs.h"
+
+#ifdef __wasm__
+#define EXPORT(name) extern "C" __attribute__((export_name(#name)))
+#else
+#define EXPORT(name) extern "C" __attribute__((visibility("default")))
+#endif
+
+#define WORD(name) words[offsetof(ray_caster_t, name) / sizeof(uint32_t)]
+#define FIELD(word, field) ((int)(((word) & RAY_CASTER__##field##_bm) >> RAY_CASTER__##field##_bp))
+#define VECTOR(word, name) {FIELD(word, name##__X), FIELD(word, name##__Y), FIELD(word, name##__Z)}
+#define COLOUR(word, name) \
+    (FIELD(word, name##__RED) << 16 | FIELD(word, name##__GREEN) << 8 | FIELD(word, name##__BLUE))
+
+namespace {
+
+constexpr int MOST_PIXELS = 1280 * 960;
+constexpr int MOST_RECTANGLES = 32;
+constexpr int MOST_BOUNCES = 1 << RAY_CASTER__CONTROL__REFLECTIONS_bw;
+constexpr int VIEW_DISTANCE = 100; // slope along x of a primary ray at scale 1
+constexpr int OTHER_AXES[3][2] = {{1, 2}, {0, 2}, {0, 1}}; // u and v of a rectangle, by the axis of its plane
+
+typedef int64_t Vector[3];
+
+// Lengths are in units of 2^-F, where F is 0 but for the seed engine; bounds are inclusive.
+struct Rectangle {
+    Vector low, high;
+    int index, axis;
+    int colour, colour_2; // red above green above blue
+    int quarters;         // how much of it is a mirror, 0 to 4
+    int kind, cell_bits;  // enum raycaster_pattern; log2 of its cells' width
+};
+
+// What a ray meets. The point is given over the denominator, in world units, and so is the numerator: of the exact
+// engines it is the ray's parameter t since the camera, of the seed engine the way along x since the last mirror.
+struct Bounce {
+    int64_t winner; // index of what is hit, -1 for none; then only the colour, the background's, means something
+    int64_t numerator, denominator;
+    Vector point;
+    int64_t colour; // red above green above blue
+    int64_t quarters;
+};
+
+// It starts at the camera mirrored in all mirrors so far (exact), or where the last mirror was hit (seed).
+struct Ray {
+    Vector start, slope;
+    int64_t mirror_n, mirror_e; // exact: t of the last mirror
+    int met;                    // exact: axes, a bit each, on which a plane through the mirror's very point is not hit
+};
+
+struct Scene {
+    bool run, seed, nearest;
+    int fraction_bits, reflections, background;
+    Vector camera;
+    Vector corner, right, up; // slope of the ray of row 0 and column 0, and what a column and a row change it by
+    int visible;
+    Rectangle rectangles[MOST_RECTANGLES];
+};
+
+uint32_t words[1024];
+uint8_t picture[3 * MOST_PIXELS], shown[3 * MOST_PIXELS];
+Scene scene;
+Bounce path[MOST_BOUNCES];
+
+int64_t magnitude(int64_t value) { return value < 0 ? -value : value; }
+
+// No division and no rounding: bounds and parameters t = n / e are compared by cross-multiplication, and a reflected
+// ray is the straight one from the mirrored eye, on which t runs on.
+const Rectangle *meet_exactly(const Ray &ray, Bounce &bounce) {
+    const Rectangle *winner = nullptr;
+    int64_t best_n = 1, best_e = 0; // 1 / 0 lies beyond every t
+    for (const Rectangle *r = scene.rectangles; r != scene.rectangles + scene.visible; r++) {
+        const int axis = r->axis, u = OTHER_AXES[axis][0], v = OTHER_AXES[axis][1];
+        const int64_t slope = ray.slope[axis], way = r->low[axis] - ray.start[axis];
+        const int64_t e = magnitude(slope), n = slope < 0 ? -way : way;
+        // On a tie the lower index wins.
+        if (e == 0 || n * best_e >= best_n * e) continue;
+        const int64_t beyond = n * ray.mirror_e - ray.mirror_n * e;
+        // A ray that meets two planes in one point reflects off both, or closed rooms have holes.
+        if (beyond < 0 || (beyond == 0 && ray.met >> axis & 1)) continue;
+        const int64_t way_u = ray.slope[u] * n, way_v = ray.slope[v] * n;
+        if (way_u < (r->low[u] - ray.start[u]) * e || way_u > (r->high[u] - ray.start[u]) * e) continue;
+        if (way_v < (r->low[v] - ray.start[v]) * e || way_v > (r->high[v] - ray.start[v]) * e) continue;
+        winner = r, best_n = n, best_e = e;
+    }
+    bounce.numerator = best_n, bounce.denominator = best_e;
+    for (int axis = 0; axis < 3; axis++) bounce.point[axis] = ray.start[axis] * best_e + ray.slope[axis] * best_n;
+    return winner;
+}
+
+// The ways to the point are rounded quotients of magnitudes; one too large for the divider leads out of the world.
+const Rectangle *meet_rounded(const Ray &ray, Bounce &bounce) {
+    const Rectangle *winner = nullptr;
+    bounce.denominator = 1 << scene.fraction_bits;
+    for (const Rectangle *r = scene.rectangles; r != scene.rectangles + scene.visible; r++) {
+        const int axis = r->axis;
+        const int64_t slope = ray.slope[axis], way = r->low[axis] - ray.start[axis];
+        if (slope == 0 || way == 0 || (slope < 0) != (way < 0)) continue;
+        Vector point;
+        point[axis] = r->low[axis];
+        bool hit = true;
+        for (int u : OTHER_AXES[axis]) {
+            const uint32_t dividend = magnitude(ray.slope[u] * way), divisor = magnitude(slope);
+            const uint32_t quotient = scene.nearest ? (2 * dividend + divisor) / (2 * divisor) : dividend / divisor;
+            point[u] = ray.slope[u] < 0 ? ray.start[u] - quotient : ray.start[u] + quotient;
+            hit = hit && r->low[u] <= point[u] && point[u] <= r->high[u];
+        }
+        const int64_t depth = magnitude(point[0] - ray.start[0]);
+        // On a tie the lower index wins.
+        if (!hit || (winner && depth >= bounce.numerator)) continue;
+        winner = r, bounce.numerator = depth;
+        for (int a = 0; a < 3; a++) bounce.point[a] = point[a];
+    }
+    return winner;
+}
+
+int colour_at(const Rectangle &hit, const Bounce &bounce) {
+    if (hit.kind == RAYCASTER_PLAIN) return hit.colour;
+    const int64_t cell = bounce.denominator << hit.cell_bits;
+    const bool odd_u = bounce.point[OTHER_AXES[hit.axis][0]] / cell & 1;
+    const bool odd_v = bounce.point[OTHER_AXES[hit.axis][1]] / cell & 1;
+    const bool other =
+        hit.kind == RAYCASTER_CHECKER ? odd_u != odd_v : hit.kind == RAYCASTER_ROWS ? odd_v : odd_u;
+    return other ? hit.colour_2 : hit.colour;
+}
+
+void reflect(Ray &ray, const Rectangle &hit, const Bounce &bounce) {
+    const int axis = hit.axis;
+    ray.slope[axis] = -ray.slope[axis];
+    if (scene.seed) {
+        for (int a = 0; a < 3; a++) ray.start[a] = bounce.point[a];
+        return;
+    }
+    ray.start[axis] = 2 * hit.low[axis] - ray.start[axis];
+    const bool same_point = bounce.numerator * ray.mirror_e == ray.mirror_n * bounce.denominator;
+    ray.met = (same_point ? ray.met : 0) | 1 << axis;
+    ray.mirror_n = bounce.numerator, ray.mirror_e = bounce.denominator;
+}
+
+// Fill the path of a pixel's ray, and tell how many bounces it has: none while the design does not run.
+int follow(int column, int row) {
+    if (!scene.run) return 0;
+    Ray ray;
+    for (int axis = 0; axis < 3; axis++) {
+        ray.start[axis] = scene.camera[axis];
+        ray.slope[axis] = scene.corner[axis] + column * scene.right[axis] - row * scene.up[axis];
+    }
+    // A ray from the camera never hits a plane that it starts on.
+    ray.mirror_n = 0, ray.mirror_e = 1, ray.met = 0b111;
+    for (int count = 1;; count++) {
+        Bounce &bounce = path[count - 1];
+        const Rectangle *hit = scene.seed ? meet_rounded(ray, bounce) : meet_exactly(ray, bounce);
+        bounce.winner = hit ? hit->index : -1;
+        bounce.colour = hit ? colour_at(*hit, bounce) : scene.background;
+        bounce.quarters = hit ? hit->quarters : 0;
+        if (bounce.quarters == 0 || count > scene.reflections) return count;
+        reflect(ray, *hit, bounce);
+    }
+}
+
+// A channel of the path's pixel. What is seen in a mirror weighs as many quarters as it mirrors, the mirror's own
+// colour the others; the last hit shows its own alone. Nothing is rounded before the end.
+int blended(int count, int shift) {
+    if (count == 0) return 0;
+    int total = path[count - 1].colour >> shift & 0xff;
+    for (int after = 0; after < count - 1; after++) {
+        const Bounce &mirror = path[count - 2 - after];
+        const int own = mirror.colour >> shift & 0xff;
+        total = (int)(4 - mirror.quarters) * (own << 2 * after) + (int)mirror.quarters * total;
+    }
+    return total >> 2 * (count - 1);
+}
+
+// Keep the entries of the table that are enabled and have a plane: on the first axis on which both corners agree.
+void read_rectangles(int count, bool materials, bool patterns) {
+    scene.visible = 0;
+    for (int index = 0; index < count; index++) {
+        ray_caster__rectangle_t entry;
+        __builtin_memcpy(&entry, &WORD(rectangle) + index * sizeof entry / sizeof(uint32_t), sizeof entry);
+        const int first[] = VECTOR(entry.corner_0, RECTANGLE__CORNER);
+        const int second[] = VECTOR(entry.corner_1, RECTANGLE__CORNER);
+        Rectangle &r = scene.rectangles[scene.visible];
+        r.index = index, r.axis = -1;
+        for (int axis = 2; axis >= 0; axis--) {
+            const bool ordered = first[axis] < second[axis];
+            r.low[axis] = (ordered ? first : second)[axis] << scene.fraction_bits;
+            r.high[axis] = (ordered ? second : first)[axis] << scene.fraction_bits;
+            if (first[axis] == second[axis]) r.axis = axis;
+        }
+        r.colour = COLOUR(entry.surface, RECTANGLE__SURFACE);
+        r.colour_2 = COLOUR(entry.pattern, RECTANGLE__PATTERN);
+        const int mirror = FIELD(entry.surface, RECTANGLE__SURFACE__MIRROR);
+        r.quarters = !materials ? 2 : mirror > 4 ? 4 : mirror;
+        r.kind = patterns ? FIELD(entry.pattern, RECTANGLE__PATTERN__KIND) : RAYCASTER_PLAIN;
+        r.cell_bits = FIELD(entry.pattern, RECTANGLE__PATTERN__CELL) + 3;
+        if (FIELD(entry.surface, RECTANGLE__SURFACE__ENABLE) && r.axis >= 0) scene.visible++;
+    }
+}
+
+void read_camera(bool turn, int columns, int horizon_row, int scale) {
+    const int camera[] = VECTOR(WORD(camera), CAMERA);
+    const int vectors[3][3] = {VECTOR(WORD(forward), FORWARD), VECTOR(WORD(right), RIGHT), VECTOR(WORD(up), UP)};
+    const int sign = 1 << (RAY_CASTER__FORWARD__X_bw - 1);
+    for (int axis = 0; axis < 3; axis++) {
+        int basis[3];
+        // Only ratios of a slope's components count, so vectors that are not turned need no scale.
+        for (int i = 0; i < 3; i++) basis[i] = turn ? (vectors[i][axis] ^ sign) - sign : i == axis;
+        scene.camera[axis] = camera[axis] << scene.fraction_bits;
+        scene.right[axis] = basis[1];
+        scene.up[axis] = basis[2];
+        scene.corner[axis] = VIEW_DISTANCE * scale * basis[0] - columns / 2 * basis[1] + horizon_row * basis[2];
+    }
+}
+
+} // namespace
+
+EXPORT(golden_words) uint32_t *golden_words() { return words; }
+EXPORT(golden_picture) uint8_t *golden_picture() { return picture; }
+EXPORT(golden_shown) uint8_t *golden_shown() { return shown; }
+EXPORT(golden_bounces) int64_t *golden_bounces() { return &path[0].winner; }
+
+// Draw what a design must show.
+//
+// engine: enum raycaster_engine. rectangles: entries of its table. materials, patterns, turn: whether it has them; what
+// it lacks it ignores. columns, rows, horizon_row: of its picture, at its scale. fraction_bits, nearest: the seed
+// engine's. colour_bits: of a channel at its pins; the lower ones are 0. Reflections are those of the control register,
+// which must be no more than the design computes.
+EXPORT(golden_draw)
+void golden_draw(
+    int engine, int rectangles, int materials, int patterns, int turn, int columns, int rows, int horizon_row,
+    int scale, int fraction_bits, int nearest, int colour_bits) {
+    if (columns * rows > MOST_PIXELS || rectangles > MOST_RECTANGLES) __builtin_trap();
+    scene.run = FIELD(WORD(control), CONTROL__RUN);
+    scene.reflections = FIELD(WORD(control), CONTROL__REFLECTIONS);
+    scene.background = COLOUR(WORD(background), BACKGROUND);
+    scene.seed = engine == RAYCASTER_SEED;
+    scene.fraction_bits = scene.seed ? fraction_bits : 0;
+    scene.nearest = nearest;
+    read_rectangles(rectangles, materials, patterns);
+    read_camera(turn, columns, horizon_row, scale);
+    const int kept = 0xff00 >> colour_bits & 0xff;
+    uint8_t *channel = picture;
+    for (int row = 0; row < rows; row++)
+        for (int column = 0; column < columns; column++) {
+            const int count = follow(column, row);
+            for (int shift = 16; shift >= 0; shift -= 8) *channel++ = blended(count, shift) & kept;
+        }
+}
+
+// How many of the first pixels of golden_shown() are not golden_picture()'s.
+EXPORT(golden_compare) int golden_compare(int pixels) {
+    int wrong = 0;
+    for (int i = 0; i < 3 * pixels; i += 3)
+        wrong += shown[i] != picture[i] || shown[i + 1] != picture[i + 1] || shown[i + 2] != picture[i + 2];
+    return wrong;
+}
+
+// Fill golden_bounces() for a pixel of the last drawing, and tell how many there are: none while the design does not
+// run.
+EXPORT(golden_ray) int golden_ray(int column, int row) { return follow(column, row); }

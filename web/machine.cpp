@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+// A design in a page: the driver's functions and frames, called from JavaScript.
+//
+// Colours are 0xRRGGBB. What the driver refuses is told by enum raycaster_error, 0 for what it does not.
+
+#include <cstdlib>
+#include <cstring>
+#include <type_traits>
+
+#include "bus.h"
+#include "machine.h"
+#include "raycaster.h"
+#include "raycaster_regs.h"
+
+#define EXPORT(name) extern "C" __attribute__((export_name(#name)))
+
+namespace {
+
+// From the clock in which a write that commits is taken to the first in which StartScreen shows it.
+constexpr uint32_t COMMIT_CLOCKS = 3;
+constexpr uint32_t CONTROL = offsetof(ray_caster_t, control) / sizeof(uint32_t);
+constexpr int MOST_WORDS = 1024;
+
+// The register words that the renderer is told, from nothing but the writes that the ray tracer took.
+class Follower {
+public:
+    uint32_t live[MOST_WORDS] = {};
+
+    void see(const Event &event) {
+        if (event.start_screen && waiting && commit_clock + COMMIT_CLOCKS <= event.clock) {
+            std::memcpy(live, committed, sizeof live);
+            waiting = false;
+        }
+        // What is written in StartScreen's clock is too late for it.
+        if (!event.written) return;
+        uint32_t mask = 0;
+        for (int lane = 0; lane < 4; lane++)
+            if (event.byteenable >> lane & 1) mask |= 0xffu << 8 * lane;
+        uint32_t &word = shadow[event.address];
+        word = (word & ~mask) | (event.writedata & mask);
+        if (event.address == CONTROL && event.writedata & mask & RAY_CASTER__CONTROL__COMMIT_bm) {
+            std::memcpy(committed, shadow, sizeof committed);
+            commit_clock = event.clock;
+            waiting = true;
+        }
+    }
+
+private:
+    uint32_t shadow[MOST_WORDS] = {};
+    uint32_t committed[MOST_WORDS] = {};
+    uint32_t commit_clock = 0;
+    bool waiting = false;
+};
+
+#ifdef TAPS
+// Records the tapped signals of a unit in each clock in which it computes a pixel.
+class WatchedMachine : public Machine {
+public:
+    std::vector<uint32_t> samples; // TAPS numbers a clock
+
+    explicit WatchedMachine(VerilatedContext *context) : Machine{context} { top.tapped_unit = NONE; }
+
+    // Records a unit's next computation of its pixel in this row and group.
+    void watch(uint32_t unit, uint32_t row, uint32_t group) {
+        top.tapped_unit = unit;
+        watched_row = row;
+        watched_group = group;
+        records = false;
+        samples.clear();
+    }
+
+protected:
+    void see() override {
+        if (top.tapped_unit == NONE) return;
+        const uint32_t *taps = top.tapped.data();
+        if (taps[SCREEN_TO_RAY]) records = taps[ROW] == watched_row && taps[GROUP] == watched_group;
+        if (!records) return;
+        samples.insert(samples.end(), taps, taps + TAPS);
+        if (taps[DONE]) top.tapped_unit = NONE;
+    }
+
+private:
+    static constexpr uint8_t NONE = 0xff;
+    enum { ROW, GROUP, SCREEN_TO_RAY, DONE }; // the first of taps.py
+
+    uint32_t watched_row, watched_group;
+    bool records = false;
+};
+
+WatchedMachine *machine;
+#else
+Machine *machine;
+#endif
+Follower follower;
+struct raycaster device;
+
+raycaster_colour colour(uint32_t rgb) {
+    return {static_cast<uint8_t>(rgb >> 16), static_cast<uint8_t>(rgb >> 8), static_cast<uint8_t>(rgb)};
+}
+
+raycaster_vector vector(int x, int y, int z) {
+    return {static_cast<int16_t>(x), static_cast<int16_t>(y), static_cast<int16_t>(z)};
+}
+
+raycaster_point point(int x, int y, int z) {
+    return {static_cast<uint16_t>(x), static_cast<uint16_t>(y), static_cast<uint16_t>(z)};
+}
+
+} // namespace
+
+uint32_t bus_read(uint32_t offset) { return machine->read(offset / sizeof(uint32_t)); }
+void bus_write(uint32_t offset, uint32_t word) { machine->write(offset / sizeof(uint32_t), word); }
+
+// Where the page puts the processor's program, before it starts the machine.
+EXPORT(program) char *program(uint32_t size) { return program_text = static_cast<char *>(std::calloc(size + 1, 1)); }
+
+// Come up, and see what is on the bus.
+EXPORT(start) int start() {
+    static VerilatedContext context;
+    machine = new std::remove_pointer_t<decltype(machine)>{&context};
+    machine->run_frame();
+    return CLOCKS_PER_BIT ? RAYCASTER_OK : raycaster_probe(&device, nullptr);
+}
+
+EXPORT(error_text) const char *error_text(int error) { return raycaster_error_text((enum raycaster_error)error); }
+
+EXPORT(set_rectangle)
+int set_rectangle(int index, int x0, int y0, int z0, int x1, int y1, int z1, uint32_t rgb) {
+    return raycaster_set_rectangle(&device, index, point(x0, y0, z0), point(x1, y1, z1), colour(rgb));
+}
+
+EXPORT(set_mirror) int set_mirror(int index, int quarters) { return raycaster_set_mirror(&device, index, quarters); }
+
+EXPORT(set_pattern) int set_pattern(int index, int kind, int cell, uint32_t rgb) {
+    return raycaster_set_pattern(&device, index, (enum raycaster_pattern)kind, cell, colour(rgb));
+}
+
+EXPORT(disable_rectangle) int disable_rectangle(int index) { return raycaster_enable_rectangle(&device, index, false); }
+
+EXPORT(set_camera) int set_camera(int x, int y, int z) { return raycaster_set_camera(&device, point(x, y, z)); }
+
+EXPORT(set_basis) int set_basis(int fx, int fy, int fz, int rx, int ry, int rz, int ux, int uy, int uz) {
+    const struct raycaster_basis basis = {vector(fx, fy, fz), vector(rx, ry, rz), vector(ux, uy, uz)};
+    return raycaster_set_basis(&device, &basis);
+}
+
+EXPORT(set_background) int set_background(uint32_t rgb) { return raycaster_set_background(&device, colour(rgb)); }
+
+EXPORT(set_reflections) int set_reflections(int count) { return raycaster_set_reflections(&device, count); }
+
+EXPORT(set_run) void set_run(int run) { raycaster_set_run(&device, run); }
+
+EXPORT(commit) int commit() { return raycaster_commit(&device); }
+
+// Run to the next vertical sync while these buttons are held; returns the clocks that it took.
+EXPORT(frame) uint32_t frame(uint32_t buttons) {
+    static uint64_t before;
+    machine->busy = 0;
+    machine->hold(buttons);
+    machine->run_frame();
+    for (const Event &event : machine->events) follower.see(event);
+    machine->events.clear();
+    const uint32_t taken = machine->clocks - before;
+    before = machine->clocks;
+    return taken;
+}
+
+// Clocks of the last frame in which a picture was computed.
+EXPORT(busy) uint32_t busy() { return machine->busy; }
+
+// What the last frame showed: red, green, blue and 255 of each pixel.
+EXPORT(pixels) const uint32_t *pixels() { return machine->pixels.data(); }
+EXPORT(pixel_count) uint32_t pixel_count() { return machine->pixels.size(); }
+
+// The register words that it is a picture of.
+EXPORT(live_words) const uint32_t *live_words() { return follower.live; }
+
+// What the serial port said.
+EXPORT(text) const char *text() { return machine->text.data(); }
+EXPORT(text_size) uint32_t text_size() { return machine->text.size(); }
+
+#ifdef TAPS
+// Record what a ray unit does for its pixel of a row and group, when it computes it next.
+EXPORT(watch) void watch(uint32_t unit, uint32_t row, uint32_t group) { machine->watch(unit, row, group); }
+
+// TAPS numbers for each of its clocks.
+EXPORT(samples) const uint32_t *samples() { return machine->samples.data(); }
+EXPORT(sample_count) uint32_t sample_count() { return machine->samples.size(); }
+#endif

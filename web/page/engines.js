@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// The tab with the seed engine beside the exact one.
+"use strict";
+
+tabs.engines = {
+  async open() {
+    const { scenes, fractions } = RayCaster.engines;
+    const selects = { scene: find("engines-scene"), fraction: find("engines-fraction") };
+    fill(selects.scene, scenes, RayCaster.walk.first);
+    fill(selects.fraction, fractions.map(String), "0");
+    const box = find("engines-mark");
+    const canvases = { seed: find("engines-seed"), exact: find("engines-exact") };
+    const statuses = { seed: find("engines-seed-status"), exact: find("engines-exact-status") };
+    const judge = await Judge.start();
+    const machines = {}, drawn = {};
+    let differs = null;
+
+    const paint = () => {
+      for (const [side, frame] of Object.entries(drawn)) draw(canvases[side], frame.pixels, machines[side].design);
+      if (differs && box.checked) mark(canvases.seed, differs.wrong, "#ff00ff");
+    };
+
+    const compute = async (side, name) => {
+      statuses[side].textContent = "computing";
+      if (machines[side]?.name !== name) {
+        machines[side]?.end();
+        machines[side] = await Machine.start(name);
+      }
+      const machine = machines[side];
+      await machine.call("load", readScene(RayCaster.scenes[selects.scene.value], "", machine.design.rectangles));
+      drawn[side] = await machine.frame();
+    };
+
+    const tell = async (side, more) => {
+      const { design } = machines[side];
+      const { count } = await judge.look(drawn[side], design);
+      const frame = drawn[side];
+      const parts = [
+        `${side} engine`, `${counted(frame.busy, "clock")} computing`, ...more, counted(count, "wrong pixel"),
+      ];
+      statuses[side].textContent = parts.join(", ");
+      return { hash: pictureHash(frame.pixels), wrong: count };
+    };
+
+    const all = async () => {
+      RayCaster.state.engines = {};
+      differs = null;
+      await Promise.all([compute("exact", "exact"), compute("seed", `seed-${selects.fraction.value}`)]);
+      const exact = await tell("exact", []);
+      // What the exact engine must show of these registers, against what the seed engine did.
+      differs = await judge.call("judge", drawn.exact.words, drawn.seed.pixels, machines.exact.design);
+      const share = ((100 * differs.count) / differs.wrong.length).toFixed(2);
+      const seed = await tell("seed", [`${counted(differs.count, "pixel")} (${share}%) unlike the exact engine`]);
+      paint();
+      RayCaster.state.engines = { done: true, fraction: selects.fraction.value, exact, seed, differs: differs.count };
+    };
+
+    // One after the other, however fast someone chooses.
+    let queue = Promise.resolve();
+    const ask = () => (queue = queue.then(all).catch((error) => tellFailure("engines", error)));
+    selects.scene.addEventListener("change", ask);
+    selects.fraction.addEventListener("change", ask);
+    box.addEventListener("change", paint);
+    ask();
+    return {};
+  },
+};

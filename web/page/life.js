@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// A pixel's life, from what its ray unit's signals were in each clock.
+//
+// Signals and moments are those of the project's debugger (debug/probes), which the taps of a design name: a probe says
+// at which event of the control, and how many clocks late, which taps hold a quantity.
+"use strict";
+
+const RayCasterLife = (() => {
+  // The taps of a design (see tap_facts), and their values.
+  class Recording {
+    constructor(taps, samples) {
+      this.taps = taps;
+      this.samples = samples;
+      this.clocks = samples.length / taps.count;
+    }
+
+    control(name, clock) {
+      return this.samples[clock * this.taps.count + this.taps.controls[name]];
+    }
+
+    // The values of a probe a number of clocks after an event's; null where nothing was recorded any more.
+    values(probe, clock) {
+      if (clock >= this.clocks) return null;
+      return probe.taps.map((tap) => {
+        const word = this.samples[clock * this.taps.count + tap];
+        return probe.signed ? word | 0 : word;
+      });
+    }
+
+    probe(quantity) {
+      return this.taps.probes.find((probe) => probe.quantity === quantity);
+    }
+  }
+
+  // What became of rectangles, {clock, rectangle} each, that a ray was tried against before its end.
+  function followed(recording, tried, bounce, end) {
+    const events = [];
+    const note = (kind, clock, rectangle) => events.push({ kind, clock, bounce, rectangle });
+    const divides = "steps_store_quotient" in recording.taps.controls;
+    const waiting = { start: [...tried], load: [], store: [] };
+    for (let clock = tried[0]?.clock ?? end; clock < end; clock++) {
+      const strobe = (name) => recording.control(name, clock) === 1;
+      const move = (kind, from, to) => {
+        const one = from.shift();
+        if (!one) return;
+        note(kind, clock, one.rectangle);
+        to?.push(one);
+      };
+      // What is written has been found before: a rectangle may wait in the divider while another one is loaded.
+      if (divides) {
+        if (strobe("steps_write_z_buf")) move("write", waiting.store);
+        if (strobe("steps_store_quotient")) move("store", waiting.load, waiting.store);
+        if (strobe("steps_load_divider") && waiting.start[0]?.clock <= clock) move("load", waiting.start, waiting.load);
+        if (strobe("early_out")) waiting.load.pop();
+      } else if (strobe("steps_write_z_buf")) {
+        move("write", waiting.start);
+      }
+    }
+    return [...tried.map(({ clock, rectangle }) => ({ kind: "find", clock, bounce, rectangle })), ...events];
+  }
+
+  function eventsOf(recording) {
+    const events = [{ kind: "start", clock: 0, bounce: 0 }, { kind: "ray", clock: 0, bounce: 0 }];
+    let bounce = 0, atHand = null, tried = [];
+    for (let clock = 0; clock < recording.clocks; clock++) {
+      const strobe = (name) => recording.control(name, clock) === 1;
+      if (strobe("steps_find_intersection") && atHand !== null) tried.push({ clock, rectangle: atHand });
+      if (strobe("rects_fetch")) atHand = recording.control("rects_index", clock);
+      if (strobe("steps_add_colour")) {
+        events.push(...followed(recording, tried, bounce, clock), { kind: "blend", clock, bounce });
+        if (strobe("steps_store_ray")) events.push({ kind: "ray", clock, bounce: bounce + 1 });
+        bounce++;
+        tried = [];
+      }
+      if (strobe("done")) events.push({ kind: "done", clock, bounce: Math.max(0, bounce - 1) });
+    }
+    return events;
+  }
+
+  // Whether what is offered at a clock is kept, as it is the nearest so far; and whether anything is.
+  function verdict(recording, clock) {
+    const found = recording.probe("found"), nearest = recording.probe("nearest t") ?? recording.probe("nearest");
+    const kept = (at) => [recording.values(found, at), recording.values(nearest, at)];
+    const before = kept(clock), after = kept(clock + 1);
+    const isFound = after[0]?.[0] === 1;
+    return { kept: isFound && String(before) !== String(after), found: isFound };
+  }
+
+  // Where a ray of the exact engine hits: the eye E, and D n / e from there; over e.
+  function pointOnRay(bounce, magnitudes, [n, e]) {
+    const { eye, signs } = bounce.values;
+    return eye.map((start, axis) => start * e + (signs[axis] ? -1 : 1) * magnitudes[axis] * n);
+  }
+
+  /**
+   * @param {object} taps of the design, as tap_facts in taps.py has it
+   * @param {Uint32Array} samples taps.count numbers for each clock in which the pixel was computed
+   * @param {number} fractionBits of the seed engine; 0 of the exact one
+   * @returns {{clocks, bounces, values}} values: by quantity, of the pixel. bounces: {slope, values, tried, winner,
+   *   distance, point, denominator, colour} of the camera's ray and of each reflection that there was: tried is a list of
+   *   {rectangle, values, kept, found} (kept: as the nearest so far; found: there is a nearest by then), winner the
+   *   rectangle seen or -1, distance what it was chosen by (t as [n, e], or [depth]), point its coordinates over the
+   *   denominator, colour a number
+   */
+  function read(taps, samples, fractionBits = 0) {
+    const recording = new Recording(taps, samples);
+    const life = { clocks: recording.clocks, bounces: [], values: {} };
+    if (!recording.clocks) return life;
+    for (const { kind, clock, bounce, rectangle } of eventsOf(recording)) {
+      const ray = (life.bounces[bounce] ??= { values: {}, tried: [] });
+      let values = kind === "done" ? life.values : ray.values;
+      if (rectangle !== undefined) {
+        let one = ray.tried.find((other) => other.rectangle === rectangle);
+        if (!one) ray.tried.push((one = { rectangle, values: {}, kept: false, found: false }));
+        if (kind === "write") Object.assign(one, verdict(recording, clock));
+        values = one.values;
+      }
+      for (const probe of taps.probes) {
+        if (probe.event === kind) values[probe.quantity] = recording.values(probe, clock + probe.late);
+      }
+    }
+    // What the unit goes on to find when its ray has ended is of no use to anyone.
+    life.bounces = life.bounces.filter((bounce) => bounce.values["ended before"]?.[0] === 0);
+    const magnitudes = life.bounces[0]?.values["slope, magnitudes"];
+    for (const bounce of life.bounces) {
+      const seen = bounce.tried.findLast((one) => one.kept);
+      bounce.winner = seen ? seen.rectangle : -1;
+      const { signs } = bounce.values;
+      bounce.slope = magnitudes.map((magnitude, axis) => (signs[axis] && magnitude ? -magnitude : magnitude));
+      [bounce.colour] = bounce.values["colour seen"];
+      if (!seen) continue;
+      bounce.distance = seen.values["nearest t"] ?? seen.values.nearest;
+      const isExact = "nearest t" in seen.values;
+      bounce.denominator = isExact ? bounce.distance[1] : 1 << fractionBits;
+      bounce.point = isExact ? pointOnRay(bounce, magnitudes, bounce.distance) : seen.values["nearest point"];
+    }
+    return life;
+  }
+
+  return { read };
+})();

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+// The tabs of the page.
+"use strict";
+
+const find = (id) => document.getElementById(id);
+
+// What a test, or a curious reader, can ask the page in the console: the last frame of each tab.
+RayCaster.state = {};
+
+function fill(select, names, chosen) {
+  select.replaceChildren(...names.map((name) => new Option(name, name, false, name === chosen)));
+}
+
+const counted = (count, noun) => `${count.toLocaleString("en")} ${noun}${count === 1 ? "" : "s"}`;
+
+// The scene of a file's text, as the hardware of a design takes it.
+function readScene(text, name, rectangles) {
+  const { scene, error } = RayCasterScene.read(text, name, RayCaster.schema, rectangles);
+  if (error) throw new Error(error);
+  const { yaw, pitch, roll } = scene.camera;
+  return { ...scene, basis: RayCasterScene.basis(yaw, pitch, roll) };
+}
+
+// Keys and buttons of the page that are held.
+class Held {
+  constructor(names, keys, canvas, pad) {
+    this.names = new Set();
+    const byKey = new Map(Object.entries(keys).flatMap(([name, of]) => of.map((key) => [key, name])));
+    const set = (name, held) => (held ? this.names.add(name) : this.names.delete(name));
+    const isWriting = (event) => event.target.matches("textarea, select, input");
+    const active = () => !canvas.closest("section").hidden;
+    document.addEventListener("keydown", (event) => {
+      const name = byKey.get(event.key.toLowerCase());
+      if (!name || isWriting(event) || !active() || event.ctrlKey || event.metaKey || event.altKey) return;
+      event.preventDefault();
+      set(name, true);
+    });
+    document.addEventListener("keyup", (event) => set(byKey.get(event.key.toLowerCase()), false));
+    addEventListener("blur", () => this.names.clear());
+    for (const name of names) {
+      const button = document.createElement("button");
+      button.textContent = name;
+      button.addEventListener("pointerdown", () => set(name, true));
+      for (const end of ["pointerup", "pointerleave", "pointercancel"]) {
+        button.addEventListener(end, () => set(name, false));
+      }
+      pad.append(button);
+    }
+  }
+
+  has(name) {
+    return this.names.has(name);
+  }
+}
+
+// Frame after frame of a machine while its tab is shown, with what the check says of them.
+class Show {
+  constructor(id, canvas, status) {
+    Object.assign(this, { id, canvas, status, rate: 0, frames: 0, verdict: null, running: false });
+  }
+
+  shows() {
+    return !this.canvas.closest("section").hidden && !document.hidden;
+  }
+
+  // Has frames made by `next`, a function that returns a promise of one, until the tab is left.
+  async run(machine, judge, next) {
+    if (this.running) return;
+    this.running = true;
+    let before = performance.now();
+    while (this.shows()) {
+      const frame = await next();
+      if (!frame.pixels) continue;
+      draw(this.canvas, frame.pixels, machine.design);
+      if (this.verdict?.count) mark(this.canvas, this.verdict.wrong, "#ff00ff");
+      this.frames++;
+      const now = performance.now(), rate = 1000 / (now - before);
+      before = now;
+      this.rate = this.rate ? 0.9 * this.rate + 0.1 * rate : rate;
+      const { clocks, milliseconds, camera } = frame;
+      this.last = { hash: pictureHash(frame.pixels), clocks, milliseconds, camera };
+      judge.look(frame, machine.design).then((verdict) => (this.verdict = verdict ?? this.verdict));
+      this.say(machine.design, frame);
+    }
+    this.running = false;
+  }
+
+  say(design, frame) {
+    const parts = [`${this.rate.toFixed(1)} frames a second`, counted(frame.clocks, "clock") + " a frame"];
+    this.status.textContent = parts.join(", ");
+    const wrong = this.verdict?.count ?? null;
+    if (wrong !== null) {
+      const told = document.createElement("span");
+      if (wrong) told.className = "wrong";
+      told.textContent = `, ${counted(wrong, "wrong pixel")} of ${(design.columns * design.rows).toLocaleString("en")}`;
+      this.status.append(told);
+    }
+    RayCaster.state[this.id] = { ...this.last, frames: this.frames, rate: this.rate, wrong };
+  }
+}
+
+function tellFailure(id, error) {
+  const status = find(`${id}-status`) ?? find(`${id}-exact-status`);
+  status.textContent = error.message;
+  status.className = "error";
+  RayCaster.state[id] = { error: error.message };
+}
+
+// The camera of a walk: the same steps and turns as in the window on a desk.
+class Walker {
+  constructor(scene) {
+    this.place = [...scene.camera.position];
+    ({ yaw: this.yaw, pitch: this.pitch, roll: this.roll } = scene.camera);
+  }
+
+  move(held, [right, down], turns) {
+    const { step, turn, drag, steepest, world_size: size } = RayCaster.walk;
+    const pair = (more, less) => held.has(more) - held.has(less);
+    if (turns) {
+      this.yaw += turn * pair("turn right", "turn left") + drag * right;
+      this.yaw -= 360 * Math.round(this.yaw / 360);
+      const pitch = this.pitch + turn * pair("look up", "look down") - drag * down;
+      this.pitch = Math.max(-steepest, Math.min(steepest, pitch));
+    }
+    const angle = (this.yaw * Math.PI) / 180;
+    const along = step * pair("forward", "back"), across = step * pair("right", "left");
+    const steps = [
+      along * Math.cos(angle) - across * Math.sin(angle),
+      along * Math.sin(angle) + across * Math.cos(angle),
+      step * pair("rise", "sink"),
+    ];
+    this.place = this.place.map((place, axis) => Math.max(0, Math.min(size - 1, place + steps[axis])));
+  }
+
+  get camera() {
+    return { position: this.place.map(Math.round), basis: RayCasterScene.basis(this.yaw, this.pitch, this.roll) };
+  }
+}
+
+const tabs = {
+  walk: {
+    async open() {
+      const canvas = find("walk-picture"), select = find("walk-scene"), text = find("walk-text");
+      const show = new Show("walk", canvas, find("walk-status"));
+      const held = new Held(RayCaster.walk.buttons, RayCaster.walk.keys, canvas, find("walk-pad"));
+      let walker = null, drag = [0, 0], machine = null, next = null, scene = null;
+      canvas.addEventListener("pointermove", (event) => {
+        if (event.buttons & 1) drag = [drag[0] + event.movementX, drag[1] + event.movementY];
+      });
+      canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
+      const judge = await Judge.start();
+
+      const use = async (source, name) => {
+        find("walk-error").textContent = "";
+        try {
+          next = readScene(source, name, RayCaster.walk.rectangles);
+        } catch (error) {
+          find("walk-error").textContent = error.message;
+        }
+      };
+      const choose = () => {
+        text.value = RayCaster.scenes[select.value];
+        use(text.value, `${select.value}.toml`);
+      };
+      select.addEventListener("change", choose);
+      find("walk-use").addEventListener("click", () => use(text.value, "scene"));
+      text.addEventListener("dragover", (event) => event.preventDefault());
+      text.addEventListener("drop", async (event) => {
+        const [file] = event.dataTransfer.files;
+        if (!file) return;
+        event.preventDefault();
+        text.value = await file.text();
+        use(text.value, file.name);
+      });
+      fill(select, Object.keys(RayCaster.scenes), RayCaster.walk.first);
+      choose();
+
+      // The smallest design that has what the scene needs is the fastest.
+      const frame = async () => {
+        if (next) {
+          scene = next;
+          next = null;
+          const name = RayCaster.walk.models.find(
+            ({ looks, reflections }) => (looks || !(scene.needs.materials || scene.needs.patterns)) &&
+              reflections >= scene.reflections,
+          ).name;
+          if (machine?.name !== name) {
+            machine?.end();
+            machine = await Machine.start(name);
+          }
+          await machine.call("load", scene);
+          walker = new Walker(scene);
+          return { ...(await machine.frame()), camera: walker.camera };
+        }
+        walker.move(held, drag, machine.design.turn);
+        drag = [0, 0];
+        return { ...(await machine.frame({ camera: walker.camera })), camera: walker.camera };
+      };
+      return { run: () => show.run({ get design() { return machine.design; } }, judge, frame) };
+    },
+  },
+
+  game: {
+    async open() {
+      const canvas = find("game-picture"), said = find("game-text");
+      const show = new Show("game", canvas, find("game-status"));
+      const { buttons, keys } = RayCaster.game;
+      const held = new Held(buttons, keys, canvas, find("game-pad"));
+      const judge = await Judge.start();
+      const machine = await Machine.start("game");
+      const frame = async () => {
+        const bits = buttons.reduce((sum, name, bit) => sum | (held.has(name) << bit), 0);
+        const frame = await machine.frame({ buttons: bits });
+        if (frame.text) {
+          said.append(frame.text);
+          said.scrollTop = said.scrollHeight;
+        }
+        return frame;
+      };
+      return { run: () => show.run(machine, judge, frame) };
+    },
+  },
+};
+
+const opened = {};
+
+async function open(id) {
+  for (const tab of document.querySelectorAll("[role=tab]")) {
+    const chosen = tab.id === `tab-${id}`;
+    tab.setAttribute("aria-selected", chosen);
+    tab.tabIndex = chosen ? 0 : -1;
+    find(tab.getAttribute("aria-controls")).hidden = !chosen;
+  }
+  try {
+    opened[id] ??= tabs[id].open();
+    await (await opened[id]).run?.();
+  } catch (error) {
+    tellFailure(id, error);
+  }
+}
+
+addEventListener("DOMContentLoaded", () => {
+  const list = [...document.querySelectorAll("[role=tab]")];
+  for (const tab of list) {
+    tab.addEventListener("click", () => (location.hash = tab.id.slice(4)));
+    tab.addEventListener("keydown", ({ key }) => {
+      const step = { ArrowRight: 1, ArrowLeft: -1 }[key];
+      if (step) list[(list.indexOf(tab) + step + list.length) % list.length].focus();
+    });
+  }
+  const parameters = new URLSearchParams(location.search);
+  document.body.classList.toggle("embedded", parameters.has("embedded"));
+  const planted = parameters.get("plant")?.split(",").map(Number);
+  if (RayCaster.test && planted) {
+    RayCaster.plant = (pixels, columns) => (pixels[4 * (planted[1] * columns + planted[0])] ^= 0x80);
+  }
+  const go = () => open(location.hash.slice(1) in tabs ? location.hash.slice(1) : "walk");
+  addEventListener("hashchange", go);
+  document.addEventListener("visibilitychange", () => document.hidden || go());
+  go();
+});

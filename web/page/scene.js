@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+// Scene files in the browser: RayCasterScene.read gives the scene, or the line with which `load_scene` of
+// raycaster/scene.py refuses it. Rules and words come from there by web/scene_schema.py; here is what each kind of rule
+// means. Needs vendor/smol-toml.js.
+//
+// Differences, as smol-toml is not Python's tomllib:
+// - The reason in brackets of a syntax error is in its words. It tells what is never closed, and a key that is given
+//   twice with a value of several lines, where they begin; Python where they end.
+// - It reads TOML 1.1: \e and \x in texts, times without seconds, line breaks and a last comma in inline tables.
+// - Keys that are whole numbers come first in their table. Fractions of a second end with the millisecond.
+"use strict";
+
+const RayCasterScene = (() => {
+  const BASIS_SCALE = 256; // A whole vector of a camera's basis.
+  const UNTURNED = [[BASIS_SCALE, 0, 0], [0, BASIS_SCALE, 0], [0, 0, BASIS_SCALE]];
+
+  // What TOML has as an integer is a BigInt, until the scene is known to be right; what it has as a float is a Number.
+  const isNumber = (value) => typeof value === "bigint" || typeof value === "number";
+  const isTable = (value) => typeof value === "object" && !Array.isArray(value) && !(value instanceof Date);
+
+  // By the kind of a rule, whether a value keeps it: the functions of these names in raycaster/scene.py.
+  const HOLDS = {
+    whole: (value, { lowest, highest }) => typeof value === "bigint" && value >= lowest && value <= highest,
+    items: (value, { count }) => Array.isArray(value) && (count === null ? value.length > 0 : value.length === count),
+    choice: (value, { choices, whole }) =>
+      typeof value === "bigint" ? choices.includes(Number(value)) : !whole && choices.includes(value),
+    angle: (value, { largest }) => isNumber(value) && value >= -largest && value <= largest,
+    colour: (value, { pattern }) => typeof value === "string" && new RegExp(`^(?:${pattern})$`).test(value),
+    plane: ([first, second]) => first.some((coordinate, axis) => coordinate === second[axis]),
+  };
+
+  const length = (text) => [...text].length; // In characters, as Python counts them.
+  const fill = (template, values) => template.replace(/\{(\w+)\}/g, (_, name) => values[name]);
+
+  // A part of the model's JSON schema: what it refers to, and of a value or null the value.
+  function resolve(part, schema) {
+    const rule = part.anyOf?.[0] ?? part;
+    return rule.$ref ? schema.model.$defs[rule.$ref.split("/").pop()] : rule;
+  }
+
+  // As Python writes it: 2.0, 1e-05, 1e+16.
+  function floatText(value) {
+    const [digits, exponent] = value.toExponential().split("e");
+    if (Object.is(value, -0)) return "-0.0";
+    if (exponent < -4 || exponent >= 16) return `${digits}e${exponent[0]}${exponent.slice(1).padStart(2, "0")}`;
+    return Number.isInteger(value) ? `${value}.0` : `${value}`;
+  }
+
+  // As Python's str: 2020-01-01 07:32:00+00:00.
+  const dateText = (date) =>
+    date.toISOString().replace("T", " ").replace(/Z$|-00:00$/, "+00:00").replace(".000", "").replace(/\.\d+/, "$&000");
+
+  // As Python's json.dumps writes it.
+  function jsonText(value) {
+    if (typeof value === "number") return floatText(value);
+    if (value instanceof Date) return JSON.stringify(dateText(value));
+    if (Array.isArray(value)) return `[${value.map(jsonText).join(", ")}]`;
+    if (typeof value !== "object") return typeof value === "string" ? JSON.stringify(value) : `${value}`;
+    return `{${Object.entries(value).map(([key, item]) => `${JSON.stringify(key)}: ${jsonText(item)}`).join(", ")}}`;
+  }
+
+  // What stood there, for the end of a complaint.
+  function given(value, schema) {
+    try {
+      const text = jsonText(value);
+      return length(text) <= schema.longest_shown ? `, not ${text}` : "";
+    } catch {
+      return ""; // Too deeply nested.
+    }
+  }
+
+  // Keys and indices that lead to the mistake, with the rectangle's name: rect[0] ("floor") corners[1].
+  function placeText(place, contents) {
+    let text = "";
+    let separator = "";
+    place.forEach((key, depth) => {
+      if (typeof key === "number") text += `[${key}]`;
+      else if (/^[A-Za-z0-9_-]+$/.test(key)) text += separator + key;
+      else text += separator + JSON.stringify(key).replace(/[^ -~]/g, (unit) =>
+        `\\u${unit.charCodeAt(0).toString(16).padStart(4, "0")}`);
+      separator = ".";
+      if (depth === 1 && place[0] === "rect" && typeof contents.rect[key].name === "string") {
+        text += ` (${JSON.stringify(contents.rect[key].name)})`;
+        separator = " ";
+      }
+    });
+    return text;
+  }
+
+  // All that is wrong in a value, in pydantic's order: a list of {place, expected, isKey}, where isKey says that the
+  // mistake is the key.
+  function mistakes(value, part, place, schema) {
+    const rule = resolve(part, schema);
+    const wrong = (expected) => [{ place, expected: expected + given(value, schema) }];
+    const broken = (after) =>
+      (rule.checks ?? []).find((check) => check.after === after && !HOLDS[check.kind](value, check));
+    if (broken(false)) return wrong(broken(false).expected);
+    if (rule.type === "object" && !isTable(value)) return wrong(schema.complaints.model_type);
+    if (rule.type === "string" && typeof value !== "string") return wrong(schema.complaints.string_type);
+    let within = [];
+    if (rule.type === "object") within = mistakesOfTable(value, rule, place, schema);
+    if (rule.type === "array") {
+      const partOf = (index) => rule.prefixItems?.[index] ?? rule.items;
+      within = value.flatMap((item, index) => mistakes(item, partOf(index), [...place, index], schema));
+    }
+    if (within.length) return within;
+    if (broken(true)) return wrong(broken(true).expected);
+    if (rule.properties?.pattern) {
+      const pattern = value.pattern ?? rule.properties.pattern.default;
+      const isPlain = pattern === schema.patterns[0];
+      if (!isPlain && !("colour2" in value)) return wrong(fill(schema.complaints.no_colour2, { pattern }));
+      if (isPlain && "colour2" in value) return wrong(schema.complaints.no_pattern);
+    }
+    return [];
+  }
+
+  function mistakesOfTable(table, rule, place, schema) {
+    const keys = Object.keys(rule.properties);
+    const ofKnown = keys.flatMap((key) => {
+      if (key in table) return mistakes(table[key], rule.properties[key], [...place, key], schema);
+      return rule.required.includes(key) ? [{ place: [...place, key], expected: schema.complaints.missing }] : [];
+    });
+    const expected = fill(schema.complaints.extra_forbidden, { keys: keys.join(", ") });
+    const unknown = Object.keys(table).filter((key) => !keys.includes(key));
+    return [...ofKnown, ...unknown.map((key) => ({ place: [...place, key], expected, isKey: true }))];
+  }
+
+  function syntaxComplaint(error, text, schema) {
+    const [reason] = error.message.replace("Invalid TOML document: ", "").split("\n");
+    if (!error.line) return `is not TOML: ${reason}`;
+    const lines = text.replace(/[ \t\n]+$/, "").split("\n");
+    const number = Math.min(error.line, lines.length);
+    const line = lines[number - 1].replace(/^[ \t]+|[ \t]+$/g, "");
+    const isShown = length(line) <= schema.longest_shown && !/(?! )[\p{C}\p{Z}]/u.test(line);
+    return fill(schema.complaints.syntax, { number, line: isShown ? `: ${line}` : "", reason });
+  }
+
+  const channels = (colour) =>
+    typeof colour === "string" ? [1, 3, 5].map((digit) => parseInt(colour.slice(digit, digit + 2), 16)) : colour;
+
+  // Python's round: halves go to the even neighbour; + 0 makes 0 of -0.
+  const rounded = (value) => (Math.abs(value % 1) === 0.5 ? 2 * Math.round(value / 2) : Math.round(value)) + 0;
+
+  /**
+   * The camera's forward, right and up as the registers have them: integers, a whole vector being 256. As Camera.basis,
+   * unless the browser's cosine differs from Python's in its last bit, and that decides how a part is rounded.
+   * @param {number} yaw in degrees, as pitch and roll
+   * @returns {number[][]} three vectors of x, y, z
+   */
+  function basis(yaw, pitch, roll) {
+    const angles = [yaw, pitch, roll].map((angle) => angle * (Math.PI / 180));
+    const [[cy, sy], [cp, sp], [cr, sr]] = angles.map((angle) => [Math.cos(angle), Math.sin(angle)]);
+    const vectors = [
+      [cy * cp, sy * cp, sp],
+      [-sy * cr - cy * sp * sr, cy * cr - sy * sp * sr, cp * sr],
+      [sy * sr - cy * sp * cr, -cy * sr - sy * sp * cr, cp * cr],
+    ];
+    return vectors.map((vector) => vector.map((part) => rounded(part * BASIS_SCALE)));
+  }
+
+  // A value without mistakes: each key of its tables, given or by default, and Numbers in place of BigInts.
+  function filled(value, part, schema) {
+    const rule = resolve(part, schema);
+    if (typeof value === "bigint") return Number(value);
+    if (Array.isArray(value)) return value.map((item) => filled(item, rule.items ?? {}, schema));
+    if (rule.type !== "object") return value;
+    return Object.fromEntries(Object.entries(rule.properties).map(([key, { default: usual, ...property }]) =>
+      [key, key in value ? filled(value[key], property, schema) : usual]));
+  }
+
+  function built(contents, schema) {
+    const { background, camera, rect, ...rest } = filled(contents, schema.model, schema);
+    const usual = resolve(schema.model.properties.rect.items, schema).properties;
+    const turned = basis(camera.yaw, camera.pitch, camera.roll).flat().join() !== UNTURNED.flat().join();
+    return {
+      ...rest,
+      background: channels(background),
+      camera,
+      rect: rect.map(({ name, corners, colour, mirror, pattern, colour2, cell }) => ({
+        name,
+        corners,
+        colour: channels(colour),
+        quarters: 4 * mirror,
+        kind: schema.patterns.indexOf(pattern),
+        cell,
+        colour2: channels(colour2 ?? "#000000"),
+      })),
+      needs: {
+        turn: turned,
+        materials: rect.some(({ mirror }) => mirror !== usual.mirror.default),
+        patterns: rect.some(({ pattern }) => pattern !== usual.pattern.default),
+      },
+    };
+  }
+
+  /**
+   * Reads a scene file.
+   * @param {string|ArrayBuffer} source its text, or its bytes
+   * @param {string} name of the file, for the error
+   * @param {object} schema what web/scene_schema.py makes
+   * @param {number} [rectangles] how many the hardware holds
+   * @returns {{scene: ?object, error: ?string}} one of both is null. The scene: title, rows, reflections, background,
+   *   camera {position, yaw, pitch, roll}, rect [{name, corners, colour, quarters, kind, cell, colour2}] and
+   *   needs {turn, materials, patterns}; colours are [r, g, b], quarters the mirror's 0..4, kind the registers' code.
+   */
+  function read(source, name, schema, rectangles = Infinity) {
+    const refuse = (complaint) => ({ scene: null, error: `${name}: ${complaint}` });
+    let text = source;
+    try {
+      if (typeof source !== "string") text = new TextDecoder("utf-8", { fatal: true }).decode(source);
+    } catch {
+      return refuse(schema.complaints.encoding);
+    }
+    text = text.replace(/^\ufeff/, "").replace(/\r\n?/g, "\n");
+    let contents;
+    try {
+      contents = SmolToml.parse(text, { integersAsBigInt: true });
+    } catch (error) {
+      return refuse(syntaxComplaint(error, text, schema));
+    }
+    const found = mistakes(contents, schema.model, [], schema);
+    // A mistyped key leaves the right one missing; the mistake itself is the better thing to tell.
+    const first = found.find((mistake) => mistake.isKey) ?? found[0];
+    if (first) return refuse(`${placeText(first.place, contents)}: ${first.expected}`);
+    const count = contents.rect.length;
+    if (count > rectangles) return refuse(fill(schema.complaints.too_many, { count, rectangles }));
+    return { scene: built(contents, schema), error: null };
+  }
+
+  return { basis, read };
+})();

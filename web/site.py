@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: MIT
+"""`raycaster web`: a static page in which the hardware runs, for any browser and without a server."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import json
+import shutil
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+
+from raycaster.configuration import WORLD_SIZE, Configuration, configure
+from raycaster.engines import ENGINES
+from raycaster.errors import UserError
+from raycaster.jobs import run_jobs
+from raycaster.memory_map import BUTTON_NAMES
+from raycaster.options import CommandParser, add_build_option
+from raycaster.output import replaced
+from raycaster.play.walk import DRAG, STEEPEST, STEP, TURN, TURNS, WALKS
+from raycaster.play.window import GAME_KEYS, TURN_KEYS, WALK_KEYS
+from raycaster.scene import load_scene, packaged_scenes
+from raycaster.sim.simulator import SimulationError
+from raycaster.sw.firmware import build_firmware
+from raycaster.web.scene_schema import scene_schema
+from raycaster.web.taps import tap_facts
+from raycaster.web.wasm import golden_wasm, machine_wasm
+
+PAGE = Path(__file__).with_name("page")
+SCRIPTS = (
+    "vendor/smol-toml.js",
+    "scene.js",
+    "hardware.js",
+    "settings.js",
+    "page.js",
+    "engines.js",
+    "life.js",
+    "pixel.js",
+)
+"""In the order in which they are loaded; the settings are generated."""
+
+FIRST_SCENE = "mirror_room"
+FRACTIONS = (0, 1, 2, 4, 8)
+"""Fraction bits of the seed engines that can be chosen."""
+
+BROWSER_KEYS = {name: f"arrow{name}" for name in ("left", "right", "up", "down")} | {"space": " ", "return": "enter"}
+"""Keys that a browser calls otherwise than the window does."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """A design that the page runs."""
+
+    name: str
+    options: Mapping[str, Any]
+    processor: bool = False
+    taps: bool = False
+    """Whether a ray unit can be watched in it."""
+
+    @property
+    def configuration(self) -> Configuration:
+        """The design."""
+        return configure(**self.options)
+
+
+_BEAM = {"engine": "beam", "screen": "play"}
+_LOOKS = {"materials": True, "patterns": True, "reflections": 2}
+WALKS_MODELS = (
+    Model("walk", {**_BEAM, "turn": True}),
+    Model("walk-looks", {**_BEAM, "turn": True, **_LOOKS}),
+)
+"""For the walk, the fastest first."""
+
+MODELS = (
+    *WALKS_MODELS,
+    Model("game", _BEAM, processor=True),
+    Model("exact", {"engine": "exact", "turn": True, **_LOOKS}, taps=True),
+    *(Model(f"seed-{bits}", {"engine": "seed", "fraction_bits": bits, **_LOOKS}, taps=bits == 0) for bits in FRACTIONS),
+)
+
+
+def described(config: Configuration) -> dict[str, int]:
+    """What the page must know of a design."""
+    screen = config.screen_geometry
+    return {
+        "engine": list(ENGINES).index(config.engine),
+        **{name: int(getattr(config, name)) for name in ("materials", "patterns", "turn")},
+        **{name: getattr(config, name) for name in ("rectangles", "reflections", "fraction_bits")},
+        **{name: getattr(screen, name) for name in ("columns", "rows", "horizon_row", "scale", "doubling")},
+    }
+
+
+def packed(contents: bytes) -> str:
+    """For a script: compressed, as letters."""
+    return base64.b64encode(gzip.compress(contents, 9, mtime=0)).decode()
+
+
+def _build(model: Model, build: Path) -> tuple[bytes, dict[str, Any]]:
+    """What a page runs of a model, and what it must know of it."""
+    config = model.configuration
+    wasm = machine_wasm(config, processor=model.processor, taps=model.taps, build=build).read_bytes()
+    return wasm, described(config) | ({"taps": tap_facts(config)} if model.taps else {})
+
+
+def _settings(*, test: bool) -> dict[str, Any]:
+    """What the page knows of the rest of the project."""
+    scenes = {name: path.read_text() for name, path in packaged_scenes().items()}
+    plain = [name for name, path in packaged_scenes().items() if not load_scene(path).camera.turned]
+    keys = {name: [BROWSER_KEYS.get(key, key) for key in held] for name, held in (WALK_KEYS | TURN_KEYS).items()}
+    return {
+        "test": test,
+        "worker": (PAGE / "machine.js").read_text(),
+        "schema": scene_schema(),
+        "scenes": scenes,
+        "walk": {
+            "step": STEP, "turn": TURN, "drag": DRAG, "steepest": STEEPEST, "world_size": WORLD_SIZE,
+            "buttons": [*WALKS, *TURNS], "keys": keys, "first": FIRST_SCENE,
+            "rectangles": WALKS_MODELS[0].configuration.rectangles,
+            "models": [
+                {
+                    "name": model.name, "looks": model.configuration.materials,
+                    "reflections": model.configuration.reflections,
+                }
+                for model in WALKS_MODELS
+            ],
+        },
+        "game": {
+            "buttons": list(BUTTON_NAMES),
+            "keys": {name: [BROWSER_KEYS.get(key, key) for key in held] for name, held in GAME_KEYS.items()},
+        },
+        "engines": {"scenes": plain, "fractions": list(FRACTIONS)},
+    }  # fmt: skip
+
+
+def write_site(
+    output: Path, build: Path, console: Console, *, models: Sequence[Model] = MODELS, test: bool = False
+) -> int:
+    """Write the page.
+
+    Args:
+        output: replaced as a whole, once everything is there.
+        build: the directory that holds `model/`.
+        console: for the progress bar.
+        models: designs that it can run.
+        test: whether its address may plant a wrong pixel, as in `index.html?plant=100,50`.
+
+    Returns:
+        Bytes of all its files, compressed as servers do.
+
+    Raises:
+        UserError: a tool is missing.
+        SimulationError: a design could not be compiled.
+    """
+    firmware = build_firmware((build / "firmware").absolute()).words.read_text()
+    built = run_jobs(
+        "models", partial(_build, build=build), models, partial(ProcessPoolExecutor, 2), console,
+        label=lambda model: model.name,
+    )  # fmt: skip
+    with replaced(output) as site:
+        (site / "models").mkdir()
+        contents = {
+            model.name: (*of, firmware if model.processor else None) for model, of in zip(models, built, strict=True)
+        }
+        contents["golden"] = golden_wasm(build).read_bytes(), {}, None
+        for name, (wasm, design, program) in contents.items():
+            value = {"design": design, "wasm": packed(wasm)}
+            if program:
+                value["program"] = packed(program.encode())
+            text = f"RayCaster.models[{json.dumps(name)}] = {json.dumps(value)};\n"
+            (site / "models" / f"{name}.js").write_text(text)
+        for path in PAGE.iterdir():
+            copy = shutil.copytree if path.is_dir() else shutil.copyfile
+            copy(path, site / path.name)
+        settings = json.dumps(_settings(test=test), separators=(",", ":"))
+        (site / "settings.js").write_text(f"Object.assign(RayCaster, {settings});\n")
+        page = site / "index.html"
+        tags = "\n".join(f'<script src="{name}"></script>' for name in SCRIPTS)
+        page.write_text(page.read_text().replace("<!-- SCRIPTS -->", tags))
+    return sum(len(gzip.compress(path.read_bytes(), 9)) for path in output.rglob("*") if path.is_file())
+
+
+def command_parser() -> CommandParser:
+    """What the command takes."""
+    parser = CommandParser("web", __doc__, "")
+    add_build_option(parser)
+    parser.add_argument("--output", type=Path, help="where the page goes (default: web/ in there)")
+    parser.add_argument(
+        "--test", action="store_true", help="let the address plant a wrong pixel, as in index.html?plant=100,50"
+    )
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """The command.
+
+    Args:
+        argv: its arguments, those of the process by default.
+    """
+    arguments = command_parser().parse_args(argv)
+    console = Console()
+    output = arguments.output or arguments.build / "web"
+    try:
+        size = write_site(output, arguments.build, console, test=arguments.test)
+    except SimulationError as error:
+        raise UserError(str(error)) from None
+    console.print(
+        f"The page is {output / 'index.html'}; {size / 1e6:.2f} MB compressed. A browser opens it as it is, and any "
+        "web server serves it.",
+        highlight=False,
+        soft_wrap=True,
+    )
