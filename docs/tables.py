@@ -126,6 +126,26 @@ def families() -> str:
     return _with_source(table(["family", "logic", "shared", "one unit", "registers", "multipliers"], rows), "area")
 
 
+def features() -> str:
+    """What a camera that turns, mirrors and patterns take of each engine."""
+    designs = outcome("features")["figures"]["designs"]
+    plain = {row["engine"]: row["tables"] for row in designs if not row["options"]}
+    rows = []
+    for row in designs:
+        units = configure(engine=row["engine"], **row["options"]).units
+        part = ", one ray unit" if row["module"] == "ray_unit" else f", {units} units" if units > 1 else ""
+        switches = " ".join(f"{name.upper()}=1" for name in row["options"])
+        more = row["tables"] / plain[row["engine"]] - 1
+        rows.append(
+            [
+                f"`ENGINE={row['engine']}`{part}", f"`{switches}`" if switches else "", row["tables"],
+                f"{more:+.0%}" if switches else "", row["registers"], row["multipliers"],
+            ]
+        )  # fmt: skip
+    headings = ["engine", "with", "LUT4", "more", "registers", "multipliers"]
+    return _with_source(table(headings, rows), "features")
+
+
 ROUTED = ("seed", "exact", "beam-320x240", "beam-640x480", "beam-1280x720")
 CELLS = ("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD")
 
@@ -284,7 +304,7 @@ def not_mutated() -> str:
 def tables() -> dict[str, str]:
     """All of them, by the names that pages use."""
     made = (
-        engines, work, scenes, families, routed, routed_again, link_short, game_board, one_scene, error_and_time,
-        checks, not_mutated,
+        engines, work, scenes, families, features, routed, routed_again, link_short, game_board, one_scene,
+        error_and_time, checks, not_mutated,
     )  # fmt: skip
     return {each.__name__: each() for each in made}
