@@ -21,7 +21,7 @@ def rect_slot(clk, reset, bus, number, shadow, live, usable, bad, config: Config
     corner_bits, surface_bits = tied(CORNER.implemented, WORD_BITS), tied(surface_mask(config), WORD_BITS)
     corner_0, corner_1, surface, live_corner_0, live_corner_1, live_surface = (unsigned(WORD_BITS) for _ in range(6))
     select_corner_0, select_corner_1, select_surface = (bit() for _ in range(3))
-    flat, live_flat, changed = bit(), bit(), bit()
+    flat, live_flat = bit(), bit()
 
     word_0 = scene_word(clk, reset, bus, select_corner_0, implemented=corner_bits, shadow=corner_0, live=live_corner_0)
     word_1 = scene_word(clk, reset, bus, select_corner_1, implemented=corner_bits, shadow=corner_1, live=live_corner_1)
@@ -67,12 +67,9 @@ def rect_slot(clk, reset, bus, number, shadow, live, usable, bad, config: Config
     def judge():
         bad.next = shadow.enable and not flat
 
-    # The register's cycle costs nothing: a row starts later than that after go_live. It is judged only where live may
-    # have changed, so that a simulator need not do it in every clock.
+    # The register's cycle costs nothing: a row starts later than that after go_live.
     @always(clk.posedge)
     def qualify():
-        changed.next = bus.go_live or reset
-        if changed:
-            usable.next = live.enable and live_flat
+        usable.next = live.enable and live_flat
 
     return instances()

@@ -116,7 +116,7 @@ FAULTS = {
     "mirror-again": (FOLD, "fold_tester", "facet_distance > fold_distance", "facet_distance >= fold_distance"),
     "one-too-few": (FOLD, "ray_fold", "sum_xz_1 = x_by_z - not_z_by_x", "sum_xz_1 = x_by_z + z_by_x"),
     "bounds-swapped": (FOLD, "fold_tester", "(under_low_q || at_low_q) && (over_high_q || at_high_q)", "1'b0"),
-    "bounds-unsorted": (TABLE, "rect_sorter", "if (u_0 > u_1) begin", "if (1'b0) begin"),
+    "bounds-unsorted": (TABLE, "rect_sorter", "if (written_y_0 > written_y_1) begin", "if (1'b0) begin"),
     "not-held": (TABLE, "rect_rom", "if (rects_fetch) begin", "if (1'b1) begin"),
     "overflow-missed": (DIVIDER, "divider", "overflow <= too_large;", "overflow <= too_large && (quotient != 0);"),
 }  # fmt: skip

@@ -200,7 +200,7 @@ def test_every_row_of_a_turned_camera_is_set_up_in_its_blanking(screen, rows, mo
     config = beam_config(screen=screen, rows=rows, reflections=most, turn=True, materials=True, patterns=True)
     assert blanking_left(config) >= 0
     with pytest.raises(
-        ConfigurationError, match=r"^rectangles: with 32 of them, 2 reflections .* is 39 cycles short of a line's"
+        ConfigurationError, match=r"^rectangles: with 32 of them, 2 reflections .* is 31 cycles short of a line's"
     ):
         check_blanking(beam_config(screen="play", rectangles=32, reflections=2, turn=True))
 

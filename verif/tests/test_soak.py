@@ -83,9 +83,9 @@ def test_a_wrong_scene_shrinks(tmp_path):
     files = []
     for source in convert(SMALL, BUILD):
         copy = tmp_path / source.name
-        copy.write_text(source.read_text().replace("(u_0 > u_1)", "(u_0 <= u_1)"))
+        copy.write_text(source.read_text().replace("(written_y_0 > written_y_1)", "(written_y_0 <= written_y_1)"))
         files.append(copy)
-    assert any("(u_0 <= u_1)" in file.read_text() for file in files)
+    assert any("(written_y_0 <= written_y_1)" in file.read_text() for file in files)
     model = build_model(SMALL, "icarus", build=BUILD, verilog=files)
     seeds = (0, 1, 5)
     with pytest.raises(SimulationError, match="wrong pixels in the scenes of seeds"):
