@@ -37,7 +37,7 @@ $(COMMANDS) $(CHECKS): $(VENV)/base
 lint test: $(VENV)/base
 	@$(call install,$(EXTRAS))
 	@$(if $(filter lint,$@),$(PYTHON) -m ruff check && $(PYTHON) -m ruff format --check)
-	@$(if $(filter lint,$@),$(PYTHON) -m raycaster.verif.rtl_lint,$(PYTHON) -m raycaster.ensure_tools icarus chromium)
+	@$(if $(filter lint,$@),$(PYTHON) -m raycaster.verif.rtl_lint,$(PYTHON) -m raycaster.ensure_tools icarus chromium tcl)
 	@$(if $(filter test,$@),$(PYTHON) -m pytest -q -n 2 --dist worksteal -m 'not slow' --durations=10 verif/tests)
 
 clean:

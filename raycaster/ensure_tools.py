@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.ensure_tools icarus chromium`: see to it that the tools are there that pip does not have."""
+"""`python -m raycaster.ensure_tools icarus chromium tcl`: see to it that the tools are there that pip does not have."""
 
 from __future__ import annotations
 
@@ -59,6 +59,7 @@ TOOLS = {
         dict.fromkeys(INSTALL, ("chromium",)) | {"brew": ("--cask", "google-chrome")},
         "chromium.org",
     ),
+    "tcl": Tool("Tcl", ("tclsh",), dict.fromkeys(INSTALL, ("tcl",)) | {"brew": ("tcl-tk",)}, "tcl-lang.org"),
 }
 
 

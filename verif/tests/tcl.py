@@ -1,29 +1,24 @@
 # SPDX-License-Identifier: MIT
-"""A real Tcl for what Intel's tools would run: the one that Python has in it for tkinter."""
+"""A real Tcl for what Intel's tools would run."""
 
 from __future__ import annotations
 
 import subprocess
-import sys
 from pathlib import Path
 
-import pytest
-
-INTERPRETER = """
-import sys, tkinter
-tcl = tkinter.Tcl()
-tcl.eval(f"set argv {{{' '.join(sys.argv[2:])}}}")
-try:
-    tcl.call("source", sys.argv[1])
-except tkinter.TclError as error:
-    sys.exit(str(error))
-"""
+from raycaster import ensure_tools
 
 
 def run_tcl(directory: Path, script: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run a script in a directory, with arguments that have no blanks; skips the test where Python has no Tcl."""
-    pytest.importorskip("tkinter", reason="Python has no tkinter here, and so no Tcl: Debian's package python3-tk")
+    """Run a script in a directory, with arguments.
+
+    Raises:
+        UserError: Tcl is missing.
+    """
+    program = ensure_tools.find("tcl")
+    if program is None:
+        raise ensure_tools.missing("tcl")
     main = directory / "main.tcl"
     main.write_text(script)
-    command = [sys.executable, "-c", INTERPRETER, main.name, *arguments]
+    command = [program, main.name, *arguments]
     return subprocess.run(command, cwd=directory, capture_output=True, text=True, check=False)

@@ -42,7 +42,8 @@ def test_how_a_tool_is_installed(tmp_path, monkeypatch, tool, manager, uid, expe
 
 
 @pytest.mark.parametrize(
-    ("tool", "program"), [("icarus", "iverilog"), ("chromium", "chromium"), ("chromium", "google-chrome")]
+    ("tool", "program"),
+    [("icarus", "iverilog"), ("chromium", "chromium"), ("chromium", "google-chrome"), ("tcl", "tclsh")],
 )
 def test_what_is_there_is_taken(tmp_path, monkeypatch, tool, program):
     monkeypatch.setenv("PATH", str(tmp_path))
@@ -77,7 +78,7 @@ def test_it_cannot_be_installed(tmp_path, monkeypatch, reason):
         ensure("icarus")
 
 
-@pytest.mark.parametrize(("tool", "program"), [("icarus", "iverilog"), ("chromium", "chromium")])
+@pytest.mark.parametrize(("tool", "program"), [("icarus", "iverilog"), ("chromium", "chromium"), ("tcl", "tclsh")])
 def test_it_is_installed(tmp_path, monkeypatch, capsys, tool, program):
     """As root, after an update where the first attempt fails, as in a fresh container."""
     tools = tmp_path / "bin"
