@@ -22,6 +22,9 @@ WORLD_SIZE = 1 << COORDINATE_BITS
 MOST_RECTANGLES = 32
 """Entries that the largest rectangle table has."""
 
+MOST_REFLECTIONS = 4
+"""That a ray may have."""
+
 CHANNEL_BITS = 8
 """Bits a colour channel has until it leaves for the monitor."""
 
@@ -54,7 +57,7 @@ class Configuration:
         None, ge=1, description="ray units in parallel, a divisor of the columns: 32; the fewest of the exact engine; 1"
     )
     rectangles: int = Field(12, ge=1, le=MOST_RECTANGLES, description="rectangles that the scene memory holds")
-    reflections: int = Field(1, ge=0, le=2, description="reflections a ray may have")
+    reflections: int = Field(1, ge=0, le=MOST_REFLECTIONS, description="reflections a ray may have")
     rows: int | None = Field(
         None, description="rows of rays: 240 (640x480@60), 200 (640x400@70) or, beam only, 180 (1280x720@60)"
     )
@@ -94,6 +97,7 @@ class Configuration:
         self._choose_scale()
         if not self.facts.divides:
             self._refuse_quotients()
+        self._refuse_depth()
         self._choose_culling()
         self._choose_looks()
         if self.units is None:
@@ -134,6 +138,10 @@ class Configuration:
             beam = "; scales need the beam engine, ENGINE=beam" if self.engine != "beam" else ""
             shown = f"the {self.engine} engine shows {self.rows} rows at {scales}"
             raise ValueError(f"scale: {shown}, not {self.scale}{beam}")
+
+    def _refuse_depth(self) -> None:
+        if self.reflections > 2 and not self.facts.line_buffered:
+            raise ValueError(f"reflections: the {self.engine} engine has 2 at most, not {self.reflections}")
 
     def _refuse_quotients(self) -> None:
         if self.fraction_bits:

@@ -26,7 +26,7 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema, ErrorDetails
 
-from raycaster.configuration import WORLD_SIZE
+from raycaster.configuration import MOST_REFLECTIONS, WORLD_SIZE
 from raycaster.errors import UserError
 
 BASIS_SCALE = 256
@@ -242,7 +242,7 @@ class Scene(_Strict):
 
     title: str = ""
     rows: Rows = 240
-    reflections: Annotated[int, _integer(0, 2)] = 1
+    reflections: Annotated[int, _integer(0, MOST_REFLECTIONS)] = 1
     background: Colour = (0, 0, 0)
     camera: Camera
     rect: Annotated[

@@ -251,8 +251,7 @@ class UnitProbes(Description):
         """From what a ray has found to the pins; given are the signal of its colour, and what golden says of that."""
         combiner, bits = f"{self.unit}.colour_combiner_i", 3 * self.config.colour_bits
         buffer = f"{RENDERER}.{unit_name('line_buffer', self.config, self.number)}"
-        channel = "colour_sum" if self.config.materials else "colour_channel"
-        channels = tuple(f"{combiner}.{channel}_{number}_i.blended" for number in range(3))
+        channels = tuple(f"{combiner}.colour_sum_{number}_i.blended" for number in range(3))
         return [
             Probe("ended before", (f"{combiner}.missed",), "blend", ended_before, shown=False),
             Probe("found", (kept_colour.rpartition(".")[0] + ".found",), "blend", found),

@@ -6,6 +6,7 @@ from raycaster.rtl.common.records import rect_of
 from raycaster.rtl.common.widths import (
     CYCLE_BITS,
     LANES,
+    REFLECTION_BITS,
     RGB_BITS,
     SLOPE_BITS,
     WORD_BITS,
@@ -54,7 +55,7 @@ class Picture(Interface):
 
     def __init__(self):
         self.run = bit()
-        self.reflections = unsigned(2)
+        self.reflections = unsigned(REFLECTION_BITS)
         self.background = unsigned(RGB_BITS)
 
 

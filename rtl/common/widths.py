@@ -27,6 +27,9 @@ BASIS_BITS = 10
 MIRROR_BITS = 3
 """How much a rectangle mirrors, in quarters: 0..4."""
 
+REFLECTION_BITS = 3
+"""How many reflections a scene asks for."""
+
 KIND_BITS = 2
 CELL_BITS = 3
 """Of a pattern: its kind, and log2 of a cell's size in world units, less three."""
@@ -109,8 +112,8 @@ def fold_bits(config: Configuration) -> int:
 
 
 def share_bits(config: Configuration) -> int:
-    """How much a ray's colour weighs in its pixel, in units of 4 ** -reflections: each mirror splits into quarters."""
-    return 2 * config.reflections + 1
+    """How much a ray's colour weighs in its pixel: each mirror splits it into quarters, or all split it into halves."""
+    return (2 if config.materials else 1) * config.reflections + 1
 
 
 def unit_bits(config: Configuration) -> int:

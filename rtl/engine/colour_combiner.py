@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The colour of a pixel: what its ray and the reflections of it saw, one after the other."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.records import Colour
 from raycaster.rtl.common.widths import share_bits, unsigned
-from raycaster.rtl.engine.colour_channel import colour_channel
 from raycaster.rtl.engine.colour_share import colour_share
 from raycaster.rtl.engine.colour_sum import colour_sum
 
@@ -21,47 +20,23 @@ def colour_combiner(clk, steps, found, found_colour, found_mirror, picture, miss
     """
     seen = Colour()
     red, green, blue = (unsigned(config.colour_bits) for _ in range(3))
-    lit = ((seen.red, red), (seen.green, green), (seen.blue, blue))
 
-    if config.materials:
-        share = unsigned(share_bits(config))
-        sharing = colour_share(
-            clk=clk, steps=steps, found=found, found_mirror=found_mirror, share=share, missed=missed, config=config
-        )
-        channels = [
-            colour_sum(clk=clk, steps=steps, seen=one, share=share, blended=blended, config=config)
-            for one, blended in lit
-        ]
+    share = unsigned(share_bits(config))
+    sharing = colour_share(
+        clk=clk, steps=steps, found=found, found_mirror=found_mirror, share=share, missed=missed, config=config
+    )
+    channels = [
+        colour_sum(clk=clk, steps=steps, seen=one, share=share, blended=blended, config=config)
+        for one, blended in ((seen.red, red), (seen.green, green), (seen.blue, blue))
+    ]
 
-        @always_comb
-        def look():
-            if found:
-                seen.word.next = found_colour
-            else:
-                seen.word.next = picture.background
-
-    else:
-        channels = [
-            colour_channel(
-                clk=clk, steps=steps, seen=one, reflections=picture.reflections, blended=blended, config=config
-            )
-            for one, blended in lit
-        ]
-
-        # Of a ray that hit nothing there is no reflection, whatever the units go on to find.
-        @always(clk.posedge)
-        def remember_miss():
-            if steps.reset_colour:
-                missed.next = False
-            elif steps.add_colour and not found:
-                missed.next = True
-
-        @always_comb
-        def look():
-            if found and not missed:
-                seen.word.next = found_colour
-            else:
-                seen.word.next = picture.background
+    # Of a ray that hit nothing there is no reflection, whatever the units go on to find.
+    @always_comb
+    def look():
+        if found and not missed:
+            seen.word.next = found_colour
+        else:
+            seen.word.next = picture.background
 
     @always_comb
     def join():

@@ -14,29 +14,48 @@ def colour_sum(clk, steps, seen, share, blended, config: Configuration):
     seen: what the ray saw, unsigned, 8 bits; share: a `colour_share`; blended: the top colour_bits of the sum, from the
     cycle after the last addition.
 
-    A share is a product of at most two numbers 0 to 4, a mirror's quarters or what they leave. So of its bits at even
-    places at most one is set, and of those at odd places too: two summands make the product.
+    Without config.materials a share has one bit. With them and at most two reflections it is a product of at most two
+    numbers 0 to 4, a mirror's quarters or what they leave, so of its bits at even places at most one is set, and of
+    those at odd places too: two summands make the product.
     """
     places = share_bits(config)
     sum_bits = CHANNEL_BITS + places - 1  # all shares make one, which is 1 << (places - 1)
     low = sum_bits - config.colour_bits
 
-    at_even, at_odd, weighted, total, next_total = (unsigned(sum_bits) for _ in range(5))
+    weighted, total, next_total = (unsigned(sum_bits) for _ in range(3))
 
-    @always_comb
-    def weigh():
-        at_even.next = 0
-        at_odd.next = 0
-        for place in range(0, places, 2):
-            if share[place]:
-                at_even.next = seen << place
-        for place in range(1, places, 2):
-            if share[place]:
-                at_odd.next = seen << place
+    if not config.materials:
 
-    @always_comb
-    def join():
-        weighted.next = (at_even + at_odd) % (1 << sum_bits)
+        @always_comb
+        def weigh():
+            weighted.next = seen
+            for place in range(1, places):
+                if share[place]:
+                    weighted.next = seen << place
+
+    elif config.reflections > 2:
+
+        @always_comb
+        def weigh():
+            weighted.next = seen * share
+
+    else:
+        at_even, at_odd = unsigned(sum_bits), unsigned(sum_bits)
+
+        @always_comb
+        def weigh():
+            at_even.next = 0
+            at_odd.next = 0
+            for place in range(0, places, 2):
+                if share[place]:
+                    at_even.next = seen << place
+            for place in range(1, places, 2):
+                if share[place]:
+                    at_odd.next = seen << place
+
+        @always_comb
+        def join():
+            weighted.next = (at_even + at_odd) % (1 << sum_bits)
 
     @always_comb
     def accumulate():

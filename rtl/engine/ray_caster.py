@@ -28,8 +28,8 @@ def ray_caster(clk, reset_ray_caster, enable, place, camera, picture, rects, don
     together = side_by_side([pixel.word for pixel in unit_pixels])
     alive = side_by_side([fate.alive for fate in fates])
     towards = side_by_side([fate.towards for fate in fates])
-    if config.materials and not config.facts.divides:
-        steps.initial_ray = unconnected(1)  # a unit that shares colours out asks for the last ray alone
+    if not config.facts.divides:
+        steps.initial_ray = unconnected(1)  # a mirrored eye is where it is, whichever ray is traced
     fate = GroupFate(config)
     # The prediction is for slopes of which the column changes y alone.
     predicts = config.culling and not config.turn

@@ -4,7 +4,7 @@
 from myhdl import Signal, always, always_comb, block, enum, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.widths import bit, unsigned
+from raycaster.rtl.common.widths import REFLECTION_BITS, bit, unsigned
 from raycaster.rtl.engine.rect_sequencer import rect_sequencer
 
 EARLY_OUT_AT = 2
@@ -45,11 +45,13 @@ def ray_sequencer(
     write_at, dropped = len(in_flight) - 1, EARLY_OUT_AT
 
     state = Signal(RayState.IDLE)
-    bounce = unsigned(2)
+    bounce = unsigned(REFLECTION_BITS)
     start_ray, fetched, starting = bit(), bit(), bit()
     wanted = unsigned(config.rectangles)
     if config.fixed:
-        first, second, third = (config.passes + 2 * (0,))[:3]
+        first, *reflected = config.passes
+        masks = tuple(reflected + [0] * ((1 << REFLECTION_BITS) - len(reflected)))
+        wanted_next = unsigned(config.rectangles)
 
     sequencer = rect_sequencer(
         clk=clk, reset_ray_caster=reset_ray_caster, start_ray=start_ray, wanted=wanted, early_out=early_out,
@@ -108,13 +110,14 @@ def ray_sequencer(
     if config.fixed:
 
         @always_comb
+        def look_ahead():
+            wanted_next.next = masks[bounce]
+
+        @always_comb
         def choose_wanted():
             wanted.next = first
             if state == RayState.TRACE:
-                if bounce == 0:
-                    wanted.next = second
-                else:
-                    wanted.next = third
+                wanted.next = wanted_next
 
     else:
 

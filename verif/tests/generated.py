@@ -64,6 +64,7 @@ ENGINE_OPTIONS = {
     },
     "exact": {
         "units": st.sampled_from([1, 2, 4, 8, 16, 32, 64]),
+        "reflections": st.integers(0, 4),
         "culling": st.booleans(),
         "turn": st.booleans(),
         "screen": st.sampled_from(["vga", "tiny"]),
@@ -93,7 +94,7 @@ ODD = {
 def options(draw: st.DrawFn, odd: bool = False) -> dict[str, Any]:
     """A configuration's options, most of which go together; now and then with an odd one."""
     engine = draw(st.sampled_from(list(ENGINE_OPTIONS)))
-    chosen = draw(st.fixed_dictionaries({}, optional=ENGINE_OPTIONS[engine] | ANY_OPTIONS))
+    chosen = draw(st.fixed_dictionaries({}, optional=ANY_OPTIONS | ENGINE_OPTIONS[engine]))
     chosen |= {"engine": engine, "allow_underrun": draw(st.booleans())}
     if odd and draw(st.integers(0, 3)) == 0:
         name = draw(st.sampled_from(list(ODD)))

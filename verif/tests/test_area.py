@@ -20,9 +20,9 @@ from raycaster.fpga.area import CHIPS, FAMILIES, Area, Chip, Model, measure, mea
 YOSYS = "0.70.0.0.post1259"
 SMALL = configure(screen="tiny", units=2, rectangles=2, divider_bits=1, allow_underrun=True, culling=False)
 AREAS = {
-    "ecp5": Area(tables=2464, registers=1808, elements=2464, multipliers=4, memories=0),
-    "cycloneive": Area(tables=2854, registers=1742, elements=3286, multipliers=4, memories=2),
-    "cyclonev": Area(tables=1954, registers=1808, elements=1008, multipliers=4, memories=2),
+    "ecp5": Area(tables=2592, registers=1808, elements=2592, multipliers=4, memories=0),
+    "cycloneive": Area(tables=2955, registers=1748, elements=3387, multipliers=4, memories=2),
+    "cyclonev": Area(tables=1912, registers=1814, elements=996, multipliers=4, memories=2),
 }
 
 families = pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES)
@@ -40,8 +40,8 @@ INSTANCES = {
     "ray_control": 1, "ray_sequencer": 1, "rect_sequencer": 1, "ray_unit": 2, "ray_generator": 2,
     "magnitude": 8,
     "intersection_finder": 2, "intersection_helper": 4,
-    "divider": 4, "divider_step": 4, "z_buffer": 2, "ray_mem": 2, "colour_combiner": 2, "colour_channel": 6,
-    "colour_average": 6,
+    "divider": 4, "divider_step": 4, "z_buffer": 2, "ray_mem": 2, "colour_combiner": 2, "colour_share": 2,
+    "colour_sum": 6,
 }  # fmt: skip
 
 

@@ -104,6 +104,8 @@ def test_tiny_in_icarus(engine):
         {"units": 8, "fraction_bits": 4, "rounding": "nearest", "divider_bits": 2},
         {"units": 8, "fraction_bits": 8, "rounding": "nearest", "reflections": 2},
         {"engine": "exact", "reflections": 2},
+        {"engine": "exact", "reflections": 4},
+        {"engine": "exact", "reflections": 4, "materials": True},
         {"engine": "exact", "reflections": 0, "rectangles": 1, "colour_bits": 4},
         {"engine": "exact", "rectangles": 32, "units": 16},
         {"engine": "beam", "reflections": 2, "scale": 1},
@@ -114,7 +116,7 @@ def test_tiny_in_icarus(engine):
 )
 def test_configurations(bench: Bench, tmp_path, options):
     """Each option at its ends, on Icarus, which builds at once."""
-    scene = SMALL_SCENE.read_text()
+    scene = f"reflections = {options.get('reflections', 1)}\n{SMALL_SCENE.read_text()}"
     if options.get("rectangles") == 1:
         scene = scene[: scene.index("[[rect]]", scene.index("[[rect]]") + 1)]
     path = tmp_path / "scene.toml"

@@ -821,6 +821,7 @@ def held_inputs(camera, background, reflections) -> dict[str, int]:
         exact_config(screen=screen, units=units, rectangles=rectangles, reflections=reflections, colour_bits=bits)
         for screen, units, rectangles, reflections, bits in (
             ("vga", 4, 8, 1, 8), ("vga", 5, 8, 2, 4), ("tiny", 2, 8, 0, 1), ("vga", 320, 8, 2, 8), ("vga", 1, 4, 2, 8),
+            ("vga", 8, 8, 4, 8),
         )
     ]
     + [exact_config(units=8, rectangles=8, reflections=2, culling=True)]
@@ -828,7 +829,8 @@ def held_inputs(camera, background, reflections) -> dict[str, int]:
         exact_config(units=units, rectangles=8, reflections=reflections, **dict.fromkeys(switches, True))
         for units, reflections, *switches in (
             (4, 1, "turn"), (8, 2, "turn"), (5, 1, "patterns"), (8, 2, "materials"),
-            (5, 2, "turn", "materials", "patterns"), (4, 0, "turn", "materials", "patterns"),
+            (5, 2, "turn", "materials", "patterns"), (8, 4, "turn", "materials", "patterns"),
+            (4, 0, "turn", "materials", "patterns"),
         )
     ],
     ids=config_id,

@@ -73,7 +73,7 @@ def test_ray_unit(unit):
     ("cell", "name", "sound", "broken"),
     [
         ("LUT4", "divider_i.remainder", "INIT(16'h", "INIT(~16'h"),
-        ("CCU2C", "colour_channel_0_i.total", 'INJECT1_0("NO")', 'INJECT1_0("YES")'),
+        ("CCU2C", "colour_sum_0_i.total", 'INJECT1_0("NO")', 'INJECT1_0("YES")'),
         ("TRELLIS_FF", "z_buffer_i.found_colour", 'CEMUX("CE")', 'CEMUX("1")'),
     ],
 )

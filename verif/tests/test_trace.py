@@ -95,7 +95,7 @@ FAULTS = {
         ("ray_mem", "dy = ray_dy != (found_axis == 1)", "dy = ray_dy"),
         ("rect_sequencer", "offered <= candidates != 0", "offered <= 0"),
         ("ray_sequencer", "bounce == picture_reflections", "bounce == 0"),
-        ("colour_channel", "total + weighted", "total - weighted"),
+        ("colour_sum", "total + weighted", "total - weighted"),
         ("colour_combiner", "seen_word = found_colour", "seen_word = ~found_colour"),
         ("line_buffer", "read_address = read_offset", "read_address = 1 + read_offset"),
         ("video_generator", "vga_g <= pixel_green", "vga_g <= pixel_red"),
