@@ -273,7 +273,9 @@ class Model:
 
 
 def unit_counts(config: Configuration) -> list[int]:
-    """Units of the designs that are synthesised: the asked for, and up to three times half of them."""
+    """Units of the designs that are synthesised: the asked for, and of those that may be fewer up to three halves."""
+    if not config.facts.line_buffered:
+        return [config.units]
     return [config.units >> times for times in range(4) if config.units % (1 << times) == 0]
 
 
