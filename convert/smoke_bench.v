@@ -6,9 +6,9 @@
 
 module smoke_bench #(
     parameter ADDRESS_BITS = 6,     // of the bus's word address
-    parameter COLOUR_BITS = 8,      // of a channel
-    parameter H_TOTAL = 800,        // pixels a line, blanking included
-    parameter H_SYNC = 96,          // pixels of HS's pulse
+    parameter COLOUR_BITS = 8,      // of a channel, of all pixels of a clock
+    parameter H_TOTAL = 800,        // pixel clocks a line, blanking included
+    parameter H_SYNC = 96,          // pixel clocks of HS's pulse
     parameter HS_ACTIVE = 0,        // level of HS in its pulse
     parameter SIZE = 0              // what the register with the design's size must hold
 ) ();

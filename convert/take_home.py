@@ -47,12 +47,12 @@ def write_take_home(config: Configuration, modules: Sequence[Module], directory:
 
 
 def _description(config: Configuration) -> str:
-    """The configuration as comment lines; without a scale where there is only one, and a fixed scene where none is."""
+    """The configuration as comment lines, without what its engine has no choice of, and a fixed scene where none is."""
     values = {name: getattr(config, name) for name in OPTION_NAMES}
     if config.fixed:
         values["fixed"] = config.fixed.name
     if config.facts.line_buffered:
-        del values["scale"]
+        del values["scale"], values["pixels"]
     pad = max(map(len, values))
     return "".join(f"//     {name:<{pad}}  {value}\n" for name, value in values.items())
 
@@ -81,10 +81,10 @@ create_generated_clock -name vga_clk -source [get_ports clk] {relation} [get_por
 
 def _core(config: Configuration, sources: Sequence[str]) -> str:
     """A FuseSoC core (CAPI2) that lints, simulates and synthesises the files where they are."""
-    horizontal = config.screen_geometry.horizontal
+    horizontal = config.screen_geometry.beats
     parameters = {
         "ADDRESS_BITS": address_bits(config.table),
-        "COLOUR_BITS": config.colour_bits,
+        "COLOUR_BITS": config.colour_bits * config.pixels,
         "H_TOTAL": horizontal.total,
         "H_SYNC": horizontal.sync,
         "HS_ACTIVE": int(horizontal.active_high),

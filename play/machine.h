@@ -2,7 +2,8 @@
 // A design in a loop without a test bench: clocks, the pixels that a monitor would take, what happens on the ray tracer's
 // bus, and what the serial port says.
 //
-// VS_ACTIVE: level of VS in its pulse; CLOCKS_PER_BIT: of the serial port, 0 where there is none.
+// VS_ACTIVE: level of VS in its pulse; PIXELS: of a clock, the left one in the low half of each colour; COLOUR_BITS: of a
+// pixel's channel; CLOCKS_PER_BIT: of the serial port, 0 where there is none.
 
 #ifndef MACHINE_H
 #define MACHINE_H
@@ -108,6 +109,9 @@ private:
     SerialPort serial;
 #endif
 
+    // A pixel's part of a colour, whose lowest bit that is.
+    static uint32_t channel(uint32_t colour, int low) { return colour >> low & ((1u << COLOUR_BITS) - 1); }
+
     // Holds a request until it is taken.
     void request() {
         for (bool waits = true; waits; clock()) {
@@ -128,7 +132,10 @@ private:
             top.clk = level;
             top.eval();
             if (top.vga_clk && !vga_clk) {
-                if (top.vga_blank_n) pixels.push_back(top.vga_r | top.vga_g << 8 | top.vga_b << 16 | 0xff000000u);
+                if (top.vga_blank_n)
+                    for (int low = 0; low < PIXELS * COLOUR_BITS; low += COLOUR_BITS)
+                        pixels.push_back(channel(top.vga_r, low) | channel(top.vga_g, low) << 8 |
+                                         channel(top.vga_b, low) << 16 | 0xff000000u);
                 sync = top.vga_vs == VS_ACTIVE && !vs;
                 vs = top.vga_vs == VS_ACTIVE;
             }

@@ -135,10 +135,12 @@ def machine_sources(config: Configuration, build: Path = BUILD, *, processor: bo
         "-O3", "-fno-table", "--x-assign", "fast", "--x-initial", "fast", "--no-timing", "--noassert",
         "-Wno-lint", "-Wno-style",
         *((f"-DSYSTEM={files[-1].stem}",) if processor else ()), f"-GBUTTONS={len(BUTTON_NAMES)}",
-        f"-GCOLOUR_BITS={config.colour_bits}", f"-GADDRESS_BITS={address_bits(config.table)}",
+        f"-GCOLOUR_BITS={config.colour_bits * config.pixels}", f"-GADDRESS_BITS={address_bits(config.table)}",
     )  # fmt: skip
     defines = (
         f"-DVS_ACTIVE={int(screen.vertical.active_high)}",
+        f"-DPIXELS={config.pixels}",
+        f"-DCOLOUR_BITS={config.colour_bits}",
         f"-DCLOCKS_PER_BIT={clocks_per_bit(screen.clock_hz) if processor else 0}",
     )
     name = f"{config.name}-{'processor' if processor else 'driven'}"

@@ -45,9 +45,10 @@ class Configuration:
 
     `rows`, `scale`, `units` and `divider_bits` may be left to the default (`None`, `"auto"`); a constructed
     configuration holds the numbers that were chosen, so that equal designs compare equal. An engine without quotients
-    has no fraction, no rounding and no divider bits; the beam engine has one unit, a pixel a clock and every scale that
-    its monitor has pixels for. With a fixed scene, `rectangles` are the scene's, and the seed engine too takes as few
-    units as do. Culling saves cycles in most groups and none in the worst case, so the row budget does not know of it.
+    has no fraction, no rounding and no divider bits; the beam engine has a unit for each pixel of a clock, and every
+    scale that its monitor has pixels for. With a fixed scene, `rectangles` are the scene's, and the seed engine too
+    takes as few units as do. Culling saves cycles in most groups and none in the worst case, so the row budget does not
+    know of it.
 
     Raises `ConfigurationError` through `configure`; constructed directly, pydantic's `ValidationError`.
     """
@@ -59,11 +60,15 @@ class Configuration:
     rectangles: int = Field(12, ge=1, le=MOST_RECTANGLES, description="rectangles that the scene memory holds")
     reflections: int = Field(1, ge=0, le=MOST_REFLECTIONS, description="reflections a ray may have")
     rows: int | None = Field(
-        None, description="rows of rays: 240 (640x480@60), 200 (640x400@70) or, beam only, 180 (1280x720@60)"
+        None,
+        description="rows of rays: 240 (640x480@60), 200 (640x400@70) or, beam only, 180 (1280x720@60, or SCALE=6)",
     )
     scale: int | None = Field(
-        None, description="resolution scale: 1; beam: 1, 2 or 4, and as fine as the monitor where it is left out"
+        None,
+        description="resolution scale: 1; beam: 1, 2 or 4, and as fine as the monitor where it is left out; "
+        "of 180 rows 3 or 6 too (1920x1080)",
     )
+    pixels: int = Field(1, ge=1, le=2, description="pixels a clock: 1, or 2 (beam) where each has a column of its own")
     fraction_bits: int = Field(0, ge=0, le=8, description="fraction bits of origins, planes and quotients")
     rounding: Literal["truncate", "nearest"] = Field("truncate", description="of quotients")
     divider_bits: int | Literal["auto"] = Field("auto", description="quotient bits a cycle: auto, 1, 2 or 3")
@@ -95,6 +100,7 @@ class Configuration:
                 raise ValueError(f"fixed: is for {len(self.fixed.passes) - 1} reflections, not {self.reflections}")
         self._choose_rows()
         self._choose_scale()
+        self._check_pixels()
         if not self.facts.divides:
             self._refuse_quotients()
         self._refuse_depth()
@@ -102,8 +108,10 @@ class Configuration:
         self._choose_looks()
         if self.units is None:
             self._choose_units()
-        elif not self.facts.line_buffered and self.units != 1:
-            raise ValueError(f"units: the beam engine is one unit that draws a pixel a clock, not {self.units}")
+        elif not self.facts.line_buffered and self.units != self.pixels:
+            raise ValueError(
+                f"units: the beam engine has one for each of PIXELS={self.pixels} a clock, not {self.units}"
+            )
         if self.screen_geometry.columns % self.units:
             columns = self.screen_geometry.columns
             divisors = ", ".join(str(n) for n in range(1, columns + 1) if columns % n == 0)
@@ -130,11 +138,12 @@ class Configuration:
 
     def _choose_scale(self) -> None:
         """The finest that the monitor shows, where the engine is one that has scales."""
-        finest = self.facts.screens[self.screen, self.rows].doubling if not self.facts.line_buffered else 1
+        screen = self.facts.screens[self.screen, self.rows]
+        allowed = [1] if self.facts.line_buffered else screen.scales
         if self.scale is None:
-            object.__setattr__(self, "scale", finest)
-        elif self.scale < 1 or finest % self.scale:
-            scales = " or ".join(str(scale) for scale in range(1, finest + 1) if finest % scale == 0)
+            object.__setattr__(self, "scale", 1 if self.facts.line_buffered else screen.doubling)
+        elif self.scale not in allowed:
+            scales = " or ".join(map(str, allowed))
             beam = "; scales need the beam engine, ENGINE=beam" if self.engine != "beam" else ""
             shown = f"the {self.engine} engine shows {self.rows} rows at {scales}"
             raise ValueError(f"scale: {shown}, not {self.scale}{beam}")
@@ -142,6 +151,24 @@ class Configuration:
     def _refuse_depth(self) -> None:
         if self.reflections > 2 and not self.facts.line_buffered:
             raise ValueError(f"reflections: the {self.engine} engine has 2 at most, not {self.reflections}")
+
+    def _check_pixels(self) -> None:
+        """Two pixels a clock are two neighbouring columns, and both edges of each sync are between two clocks."""
+        if self.pixels == 1:
+            return
+        if self.facts.line_buffered:
+            raise ValueError(f"pixels: 2 a clock need the beam engine, ENGINE=beam, not {self.engine}")
+        screen = self.facts.screens[self.screen, self.rows].scaled(self.scale)
+        if screen.doubling != 1:
+            finest = self.scale * screen.doubling
+            raise ValueError(
+                f"pixels: 2 a clock need a column for each of the monitor's pixels, SCALE={finest}, not {self.scale}"
+            )
+        line = screen.horizontal
+        if any(part % 2 for part in (line.visible, line.front, line.sync, line.back)):
+            raise ValueError(
+                f"pixels: 2 a clock need an even width and blanking, and the {self.screen} screen's are not"
+            )
 
     def _refuse_quotients(self) -> None:
         if self.fraction_bits:
@@ -172,9 +199,9 @@ class Configuration:
             )
 
     def _choose_units(self) -> None:
-        """The seed's 32; one beam; otherwise as few as meet the row budget."""
+        """The seed's 32; a beam for each pixel of a clock; otherwise as few as meet the row budget."""
         if not self.facts.line_buffered:
-            object.__setattr__(self, "units", 1)
+            object.__setattr__(self, "units", self.pixels)
         elif not self.facts.divides:
             object.__setattr__(self, "units", self._fewest_units(0))
         elif self.fixed is None:
@@ -239,8 +266,9 @@ class Configuration:
 
     @cached_property
     def screen_geometry(self) -> Screen:
-        """The screen of this name, these rows and this scale."""
-        return self.facts.screens[self.screen, self.rows].scaled(self.scale)
+        """The screen of this name, these rows and this scale, and with so many pixels a clock."""
+        screen = self.facts.screens[self.screen, self.rows].scaled(self.scale)
+        return screen if self.pixels == 1 else screen.paired()
 
     @property
     def groups(self) -> int:

@@ -47,6 +47,12 @@ class Screen:
     pixel_hz: int = 25_000_000
     scale: int = 1
     """Samples a unit of slope: the resolution scale."""
+    pixels_per_clock: int = 1
+    """Pixels of the monitor a system clock; two are side by side, the left one in an even column."""
+    for_pairs: Screen | None = None
+    """What takes its place where a clock has two pixels: as many of them, at scale 1."""
+    finer: Screen | None = None
+    """The monitor of those scales for which this one has no whole pixels."""
 
     @property
     def centre_column(self) -> int:
@@ -61,22 +67,42 @@ class Screen:
     @property
     def clock_hz(self) -> int:
         """Of the system clock."""
-        return self.pixel_hz * self.clocks_per_pixel
+        return self.pixel_hz * self.clocks_per_pixel // self.pixels_per_clock
+
+    @property
+    def beats(self) -> Span:
+        """The horizontal timing in steps of `pixels_per_clock` pixels, as the video timing counts."""
+        one, pixels = self.horizontal, self.pixels_per_clock
+        parts = (part // pixels for part in (one.visible, one.front, one.sync, one.back))
+        return Span(*parts, active_high=one.active_high)
+
+    @property
+    def line_cycles(self) -> int:
+        """System cycles of a line of the monitor, blanking included."""
+        return self.beats.total * self.clocks_per_pixel
 
     @property
     def row_cycles(self) -> int:
         """System cycles in which one row of rays is shown, and the next must be ready."""
-        return self.doubling * self.horizontal.total * self.clocks_per_pixel
+        return self.doubling * self.line_cycles
 
     @property
     def frame_cycles(self) -> int:
         """System cycles of a frame, blanking included."""
-        return self.horizontal.total * self.vertical.total * self.clocks_per_pixel
+        return self.line_cycles * self.vertical.total
+
+    @property
+    def scales(self) -> list[int]:
+        """Those at which a sample is a whole number of the monitor's pixels, or of the finer one's."""
+        own = [scale for scale in range(1, self.doubling + 1) if self.doubling % scale == 0]
+        return sorted({*own, *(self.finer.scales if self.finer else ())})
 
     def scaled(self, scale: int) -> Screen:
-        """The same view on the same monitor, sampled `scale` times finer in both directions."""
+        """The same view, sampled `scale` times finer in both directions: one of `scales`."""
         if scale == 1:
             return self
+        if self.doubling % scale:
+            return self.finer.scaled(scale)
         return replace(
             self,
             columns=self.columns * scale,
@@ -86,19 +112,34 @@ class Screen:
             scale=scale,
         )
 
+    def paired(self) -> Screen:
+        """The same with two pixels a clock, in half as many clocks."""
+        screen = self.for_pairs.scaled(self.scale) if self.for_pairs else self
+        return replace(screen, pixels_per_clock=2)
+
 
 _VGA_LINE = Span(visible=640, front=16, sync=96, back=48, active_high=False)
 _VGA_240 = Screen(320, 240, 190, 2, _VGA_LINE, Span(480, 10, 2, 33, active_high=False))
 _VGA_200 = Screen(320, 200, 150, 2, _VGA_LINE, Span(400, 12, 2, 35, active_high=True))
+_FULL_HD_60 = Screen(
+    320, 180, 130, 6, Span(1920, 88, 44, 148, active_high=True), Span(1080, 4, 5, 36, active_high=True),
+    clocks_per_pixel=1, pixel_hz=148_500_000,
+)  # fmt: skip
+# At one clock, two pixels in each make twice as many frames.
+_FULL_HD_30 = replace(_FULL_HD_60, pixel_hz=74_250_000, for_pairs=_FULL_HD_60)
 _HD_180 = Screen(
     320, 180, 130, 4, Span(1280, 110, 40, 220, active_high=True), Span(720, 5, 5, 20, active_high=True),
-    pixel_hz=74_250_000,
+    pixel_hz=74_250_000, finer=_FULL_HD_30,
 )  # fmt: skip
 _TINY_LINES = Span(96, 2, 2, 4, active_high=False)
 # The line is just long enough for 32 units to have the same 320 cycles a group as on the full screen.
 _TINY_48 = Screen(64, 48, 38, 2, Span(128, 8, 16, 8, active_high=False), _TINY_LINES)
 # And this one for the beam engine to take up to 32 rectangles in its blanking.
-_TINY_BEAM_48 = replace(_TINY_48, horizontal=Span(128, 16, 32, 64, active_high=False))
+_TINY_BEAM_48 = replace(
+    _TINY_48,
+    horizontal=Span(128, 16, 32, 64, active_high=False),
+    for_pairs=replace(_TINY_48, horizontal=Span(128, 32, 64, 192, active_high=False), clocks_per_pixel=1),
+)
 
 # A pixel a ray, for programs that are simulated, at 60 frames a second. The blanking is the shortest in which the beam
 # engine takes two reflections and 32 rectangles, or 12 before a camera that turns.

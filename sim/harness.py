@@ -96,10 +96,10 @@ class Harness(Viewer):
         Raises:
             AssertionError: HS or VS came too early or too late.
         """
-        horizontal, vertical = self.screen.horizontal, self.screen.vertical
-        line_ns = horizontal.total * self.screen.clocks_per_pixel * CLOCK_NS
+        vertical = self.screen.vertical
+        line_ns = self.screen.line_cycles * CLOCK_NS
         porch_end = await self.monitor.line()
-        late = (porch_end.end_ns - released_ns) // CLOCK_NS - horizontal.front * self.screen.clocks_per_pixel
+        late = (porch_end.end_ns - released_ns) // CLOCK_NS - self.screen.beats.front * self.screen.clocks_per_pixel
         assert 0 <= late <= RESET_TOLERANCE, f"HS's leading edge came {late} clocks after the front porch since reset"
         frame = await self.monitor.frame(on_row)
         lines = (self.monitor.frame_lines[0].end_ns - line_ns - porch_end.end_ns) / line_ns

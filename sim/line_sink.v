@@ -10,17 +10,28 @@ module line_sink #(
     parameter COLOUR_BITS = 8,      // of a channel
     parameter H_TOTAL = 800,        // pixels a line, blanking included
     parameter HS_ACTIVE = 0,        // level of HS in its pulse
-    parameter CLOCKS_PER_PIXEL = 2  // 1 or 2
+    parameter CLOCKS_PER_PIXEL = 2, // 1 or 2
+    parameter PIXELS = 1            // of a pixel clock, 1 or 2: the left one in the low half of each colour
 ) (
     input wire clk,
     input wire reset,
-    input wire [COLOUR_BITS-1:0] vga_r, vga_g, vga_b,
+    input wire [PIXELS*COLOUR_BITS-1:0] vga_r, vga_g, vga_b,
     input wire vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_clk
 );
     localparam SAMPLE_BITS = 4 + 3 * COLOUR_BITS;
-    localparam CAPACITY = H_TOTAL + 1;      // one more, so that a line that is too long shows
+    localparam CAPACITY = H_TOTAL + PIXELS;     // more by a clock, so that a line that is too long shows
 
-    wire [SAMPLE_BITS-1:0] sample = {vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_r, vga_g, vga_b};
+    // What a pixel clock brings: a sample for each pixel, the left one's in the lowest bits.
+    wire [PIXELS*SAMPLE_BITS-1:0] sample;
+    genvar pixel;
+    generate
+        for (pixel = 0; pixel < PIXELS; pixel = pixel + 1) begin : pixels
+            assign sample[pixel*SAMPLE_BITS +: SAMPLE_BITS] = {
+                vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_r[pixel*COLOUR_BITS +: COLOUR_BITS],
+                vga_g[pixel*COLOUR_BITS +: COLOUR_BITS], vga_b[pixel*COLOUR_BITS +: COLOUR_BITS]
+            };
+        end
+    endgenerate
 
     // A line runs from HS's leading edge to the next; its sample number 0 is in the lowest bits.
     reg [CAPACITY*SAMPLE_BITS-1:0] filling;
@@ -47,14 +58,14 @@ module line_sink #(
         end
         hs_was_active = hs_active;
         if (filled < CAPACITY)
-            filling[filled*SAMPLE_BITS +: SAMPLE_BITS] = sample;
-        filled = filled + 1;
+            filling[filled*SAMPLE_BITS +: PIXELS*SAMPLE_BITS] = sample;
+        filled = filled + PIXELS;
     end
 
     // A monitor samples at the pixel clock's rising edge, so there the data must not change.
     reg [31:0] unstable_samples /*verilator public_flat_rw*/;
     reg [31:0] clock_faults /*verilator public_flat_rw*/;     // vga_clk must be clk halved, or inverted
-    reg [SAMPLE_BITS-1:0] sample_before;
+    reg [PIXELS*SAMPLE_BITS-1:0] sample_before;
     reg vga_clk_before;
     initial begin
         unstable_samples = 0;

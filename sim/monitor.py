@@ -32,10 +32,10 @@ class Line:
     """What the monitor saw from one leading edge of HS to the next."""
 
     bits: str
-    """One character a bit, the last sample first; a sample is HS, VS, BLANK_N, SYNC_N, red, green, blue."""
+    """One character a bit, the last sample first; a sample is HS, VS, BLANK_N, SYNC_N, red, green, blue of a pixel."""
 
     samples: int
-    """Pixel clocks."""
+    """Pixels."""
 
     end_ns: int
     """Simulation time at which the line ended."""
@@ -73,7 +73,7 @@ class Monitor:
         Raises:
             VideoError: HS did not come in three line times.
         """
-        wait_ns = 3 * self._screen.horizontal.total * self._screen.clocks_per_pixel * CLOCK_NS
+        wait_ns = 3 * self._screen.line_cycles * CLOCK_NS
         try:
             return await with_timeout(self._lines.get(), wait_ns, "ns")
         except SimTimeoutError:
@@ -147,7 +147,7 @@ def decode_frame(lines: Sequence[Line], screen: Screen, colour_bits: int) -> np.
     for number, line in enumerate(lines):
         if line.samples != horizontal.total:
             raise VideoError(
-                f"line {number}: {line.samples} pixel clocks between leading edges of HS, expected {horizontal.total}"
+                f"line {number}: {line.samples} pixels between leading edges of HS, expected {horizontal.total}"
             )
     sample_bits = _CONTROL_BITS + 3 * colour_bits
     characters = np.frombuffer("".join(line.bits for line in lines).encode(), np.uint8)

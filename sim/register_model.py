@@ -356,7 +356,7 @@ class RegisterFile:
         self.camera = CameraWords(config)
         screen = config.screen_geometry
         lines = screen.vertical.blank - screen.doubling
-        self.start_screen_clock = lines * screen.horizontal.total * screen.clocks_per_pixel
+        self.start_screen_clock = lines * screen.line_cycles
         """From the end of reset to the first StartScreen."""
         self._frame_cycles = screen.frame_cycles
         self.clocks = 0

@@ -249,9 +249,13 @@ def show_pictures(outcomes: list[Outcome], path: Path, console: Console) -> None
 
 
 def show_traces(outcomes: list[Outcome], options: Mapping[str, Any], simulator: str, console: Console) -> None:
-    """Print what to ask next of each scene that has a wrong pixel; a scene that is built in has no trace."""
+    """Print what to ask next of each scene that has a wrong pixel; a scene that is built in has no trace, and two
+    pixels a clock neither."""
     for outcome in outcomes:
-        if outcome.result is None or not outcome.result["wrong_vs_golden"] or outcome.run.configuration.fixed:
+        configuration = outcome.run.configuration
+        if outcome.result is None or not outcome.result["wrong_vs_golden"]:
+            continue
+        if configuration.fixed or configuration.pixels > 1:
             continue
         column, row = outcome.result["first_wrong_ray"]
         asked = {"pixel": f"{column},{row}", **options}

@@ -123,6 +123,7 @@ class Bench:
             "H_TOTAL": screen.horizontal.total,
             "HS_ACTIVE": int(screen.horizontal.active_high),
             "CLOCKS_PER_PIXEL": screen.clocks_per_pixel,
+            "PIXELS": configuration.pixels,
         }
         if self.system:
             parameters |= {"BUTTONS": len(BUTTON_NAMES), "CLOCKS_PER_BIT": clocks_per_bit(screen.clock_hz)}

@@ -13,7 +13,8 @@ module system_bench #(
     parameter COLOUR_BITS = 8,      // of a channel
     parameter H_TOTAL = 800,        // pixels a line, blanking included
     parameter HS_ACTIVE = 0,        // level of HS in its pulse
-    parameter CLOCKS_PER_PIXEL = 2  // 1 or 2
+    parameter CLOCKS_PER_PIXEL = 2, // 1 or 2
+    parameter PIXELS = 1            // of a pixel clock, 1 or 2
 ) ();
     // 50 MHz
     reg clk /*verilator public_flat_rw*/;
@@ -29,7 +30,7 @@ module system_bench #(
     end
 
     wire uart_tx;
-    wire [COLOUR_BITS-1:0] vga_r, vga_g, vga_b;
+    wire [PIXELS*COLOUR_BITS-1:0] vga_r, vga_g, vga_b;
     wire vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_clk;
 
     processor_system dut (
@@ -56,7 +57,8 @@ module system_bench #(
         .COLOUR_BITS(COLOUR_BITS),
         .H_TOTAL(H_TOTAL),
         .HS_ACTIVE(HS_ACTIVE),
-        .CLOCKS_PER_PIXEL(CLOCKS_PER_PIXEL)
+        .CLOCKS_PER_PIXEL(CLOCKS_PER_PIXEL),
+        .PIXELS(PIXELS)
     ) sink (
         .clk(clk),
         .reset(was_reset),

@@ -38,7 +38,7 @@ from raycaster.debug.probes.units import (
 )
 from raycaster.debug.waves import Samples, signed
 from raycaster.golden.rays import primary_slopes
-from raycaster.rtl.beam import beam_caster as beam
+from raycaster.rtl.beam import beam_lane as beam
 from raycaster.rtl.beam import beam_pass
 from raycaster.rtl.beam import fold_tester as tester
 from raycaster.rtl.beam import nearest_of_two as contest
@@ -48,7 +48,8 @@ from raycaster.rtl.common.widths import factor_bits, index_bits, walk_bits
 RENDERER = f"{DUT}.beam_renderer_i"
 CASTER = f"{RENDERER}.beam_caster_i"
 SETUP = f"{CASTER}.rect_setup_i"
-BLEND = f"{CASTER}.colour_blend_i"
+LANE = f"{CASTER}.beam_lane_i"
+BLEND = f"{LANE}.colour_blend_i"
 VIDEO = f"{RENDERER}.video_generator_i"
 
 EXTENT = ((1, 2), (0, 2), (1, 0))
@@ -156,15 +157,15 @@ class BeamProbes(Description):
         """A signal of the instances that a place has."""
         config, bounce, rectangle = self.config, place.bounce, place.rectangle or 0
         passes, count = len(self.starts), config.rectangles
-        one = f"{CASTER}.{numbered('beam_pass', bounce, passes)}"
+        one = f"{LANE}.{numbered('beam_pass', bounce, passes)}"
         delays = [number for number in range(passes) for _ in range(number + 1, passes)]
         late = max((i for i, number in enumerate(delays) if number == bounce), default=0)
         return signal.format(
             beam=one,
             walker=f"{one}.{numbered('rect_walker', rectangle, count)}",
             tester=f"{one}.{numbered('fold_tester', rectangle, count)}",
-            fold=f"{CASTER}.{numbered('ray_fold', max(0, bounce - 1), passes - 1)}",
-            kept=f"{CASTER}.{numbered('winner_delay', late, len(delays))}",
+            fold=f"{LANE}.{numbered('ray_fold', max(0, bounce - 1), passes - 1)}",
+            kept=f"{LANE}.{numbered('winner_delay', late, len(delays))}",
             bounce=bounce,
             seen=SEEN[bounce],
             mirror="only" if bounce == 0 else "last",
@@ -254,7 +255,7 @@ class BeamProbes(Description):
                 shown=False),
         ]  # fmt: skip
         kept = [
-            Probe("mirror", fields(CASTER, "{mirror}", ("axis", "distance"), reflector), "winner",
+            Probe("mirror", fields(LANE, "{mirror}", ("axis", "distance"), reflector), "winner",
                 of_mirrors(passes, met), late=1, signed=(1,), shown=False),
             Probe("kept", fields("{kept}", "late", ("valid", "index"), winner), "kept",
                 of_mirrors(passes, nearest_of(0)), shown=False),
@@ -267,7 +268,7 @@ class BeamProbes(Description):
                 shown=False),
             Probe("products of the first column", fields(SETUP, "start", walk.layout, walk), "load", setup_start,
                 signed=True, shown=False),
-            Probe("in the pipeline", (f"{CASTER}.steps",), "ray", lambda ray, place: (1,), shown=False,
+            Probe("in the pipeline", (f"{LANE}.steps",), "ray", lambda ray, place: (1,), shown=False,
                 decode=lambda ray, place, steps: (steps >> (self.starts[place.bounce] - 1) & 1,)),
             Probe("slope along y", ("{beam}.straight_y",), "ray", lambda ray, _: ray.of_ray(0, "slopes")[1:2],
                 signed=True),
@@ -283,8 +284,8 @@ class BeamProbes(Description):
             Probe("nearest", fields("{beam}", f"{{round_{last}}}", ("valid", "index"), candidate), "winner",
                 nearest_of(0)),
             *(kept if passes > 1 else []),
-            Probe("found", (f"{CASTER}.found_{{bounce}}",), "blend", found),
-            Probe("its colour", fields(CASTER, "look_{bounce}", ("colour",), Look()), "blend", found_colour,
+            Probe("found", (f"{LANE}.found_{{bounce}}",), "blend", found),
+            Probe("its colour", fields(LANE, "look_{bounce}", ("colour",), Look()), "blend", found_colour,
                 colour=True),
             Probe("colour seen", tuple(f"{BLEND}.{{seen}}_{name}" for name in COLOURS), "blend",
                 lambda ray, place: channels_of(seen_colour(ray, place)[0], CHANNEL_BITS), late=1),

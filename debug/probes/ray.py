@@ -196,9 +196,11 @@ class Ray:
         """Trace it.
 
         Raises:
-            UserError: there is no such pixel.
+            UserError: there is no such pixel, or a clock has two.
         """
         self.design, self.config, self.scene = design, design.configuration, design.scene
+        if self.config.pixels > 1:
+            raise UserError("pixels: a trace follows a pixel a clock, as both lanes compute theirs alike; leave 2 out")
         screen = self.config.screen_geometry
         if not (0 <= row < screen.rows and 0 <= column < screen.columns):
             raise UserError(

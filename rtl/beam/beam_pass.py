@@ -14,7 +14,7 @@ from raycaster.rtl.beam.rect_walker import rect_walker
 from raycaster.rtl.beam.slope_walker import ray_slope, slope_walker
 from raycaster.rtl.common.interfaces import Slope
 from raycaster.rtl.common.magnitude import magnitude
-from raycaster.rtl.common.records import Signs, candidate_of, facet_of, growth_of, walk_of
+from raycaster.rtl.common.records import Signs, candidate_of, facet_of, stride_of, walk_of
 from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import exact_slope_bits, index_bits, side_by_side
 
@@ -37,8 +37,8 @@ def beam_pass(
 ):  # fmt: skip
     """A column at each step; winner follows winner_latency cycles later, and nearest, the Candidate, or None for none.
 
-    facets, growths: each rectangle's `Facet`, and what a column adds to its `Walk`, side by side, the first in the
-    lowest bits; load: a bit for each, high where start is its own, or None where the camera turns and start_line loads
+    facets, growths: each rectangle's `Facet`, and what a step adds to its `Walk`, side by side, the first in the lowest
+    bits; load: a bit for each, high where start is its own, or None where the camera turns and start_line loads
     all. step_bounds: step a cycle later, for what is read then. fold: the ray's, `fold_lead` cycles before its step;
     tested: numbers of the rectangles that it may meet. start_line, aim: as in `slope_walker`.
     """
@@ -46,7 +46,7 @@ def beam_pass(
     straight, signs = ray_slope(aim, config), Signs()
     size, size_1 = Slope(slope_bits), Slope(slope_bits)
     seen = [facet_of(config).cut(facets, i) for i in tested]
-    grown = [growth_of(config).cut(growths, i) for i in tested]
+    grown = [stride_of(config).cut(growths, i) for i in tested]
     walks, hits = [walk_of(config) for _ in tested], [candidate_of(config) for _ in tested]
 
     walkers = [

@@ -14,9 +14,10 @@ AIM_LATENCY = 5
 def start_cycles(config: Configuration) -> int:
     """Cycles from start_line until the first column may come."""
     if not config.turn:
-        return setup.LATENCY + config.rectangles
-    # A sweep reads its slope from the third cycle on, and the second one starts with the first one's last load.
-    return AIM_LATENCY - 3 + 2 * (setup.LATENCY + config.rectangles - 1) + 1
+        # The second lane starts a cycle later.
+        return setup.LATENCY + config.rectangles + config.pixels - 1
+    # A sweep reads its slope from the third cycle on, and the next one starts with its last load.
+    return AIM_LATENCY - 3 + (config.pixels + 1) * (setup.LATENCY + config.rectangles - 1) + 1
 
 
 @block
@@ -27,33 +28,61 @@ def line_starter(clk, reset, start_line, camera, row_slope, loaded, aim, start_s
     second cycle after enter on right. start_sweep: strobe, rect_setup starts; loaded: its last load; enter: strobe with
     the first sweep's, so that in the cycle after it all that walks along the row may take its start. row_slope: rows
     above the horizon, constant from the third cycle after start_line on.
+
+    Where a clock has two pixels there are three sweeps: with the first ray's slope, the second one's, and what two
+    columns add. enter then has a bit for each of the first two, and aim goes on with each.
     """
     slope_bits = exact_slope_bits(config) + 1
     view_distance, first_column = config.screen_geometry.view_distance, -config.screen_geometry.centre_column
 
     ages = unsigned(AIM_LATENCY - 1)
-    first_sweep, entered = bit(), bit()
     factor = signed(factor_bits(config))
     x, y, z = (signed(BASIS_BITS) for _ in range(3))
     x_product, y_product, z_product = (signed(slope_bits) for _ in range(3))
 
-    # Bit i: the line started i + 1 cycles ago.
-    @always(clk.posedge)
-    def follow():
-        ages.next = concat(ages[AIM_LATENCY - 2 :], start_line)
-        entered.next = enter
-        if reset:
-            ages.next = 0
-            first_sweep.next = False
-        elif start_line:
-            first_sweep.next = True
-        elif loaded:
-            first_sweep.next = False
+    if config.pixels == 1:
+        first_sweep, entered = bit(), bit()
 
-    @always_comb
-    def sweep():
-        enter.next = loaded and first_sweep
-        start_sweep.next = ages[AIM_LATENCY - 4] or enter
+        # Bit i: the line started i + 1 cycles ago.
+        @always(clk.posedge)
+        def follow():
+            ages.next = concat(ages[AIM_LATENCY - 2 :], start_line)
+            entered.next = enter
+            if reset:
+                ages.next = 0
+                first_sweep.next = False
+            elif start_line:
+                first_sweep.next = True
+            elif loaded:
+                first_sweep.next = False
+
+        @always_comb
+        def sweep():
+            enter.next = loaded and first_sweep
+            start_sweep.next = ages[AIM_LATENCY - 4] or enter
+
+    else:
+        sweeps, entered = unsigned(2), unsigned(2)
+
+        # Bit 0: the first sweep is not over; bit 1: the second one, while it is next or goes on.
+        @always(clk.posedge)
+        def follow():
+            ages.next = concat(ages[AIM_LATENCY - 2 :], start_line)
+            entered.next = enter
+            if reset:
+                ages.next = 0
+                sweeps.next = 0
+            elif start_line:
+                sweeps.next = 1
+            elif loaded:
+                sweeps.next = concat(sweeps[0], False)
+
+        @always_comb
+        def sweep():
+            enter.next = 0
+            if loaded:
+                enter.next = sweeps
+            start_sweep.next = ages[AIM_LATENCY - 4] or (loaded and sweeps != 0)
 
     @always_comb
     def choose():
@@ -79,19 +108,42 @@ def line_starter(clk, reset, start_line, camera, row_slope, loaded, aim, start_s
         y_product.next = factor * y
         z_product.next = factor * z
 
-    @always(clk.posedge)
-    def accumulate():
-        if ages[0]:
-            aim.x.next = 0
-            aim.y.next = 0
-            aim.z.next = 0
-        elif ages[AIM_LATENCY - 1 : 1] != 0:
-            aim.x.next = aim.x + x_product
-            aim.y.next = aim.y + y_product
-            aim.z.next = aim.z + z_product
-        elif entered:
-            aim.x.next = camera.right_x
-            aim.y.next = camera.right_y
-            aim.z.next = camera.right_z
+    if config.pixels == 1:
+
+        @always(clk.posedge)
+        def accumulate():
+            if ages[0]:
+                aim.x.next = 0
+                aim.y.next = 0
+                aim.z.next = 0
+            elif ages[AIM_LATENCY - 1 : 1] != 0:
+                aim.x.next = aim.x + x_product
+                aim.y.next = aim.y + y_product
+                aim.z.next = aim.z + z_product
+            elif entered:
+                aim.x.next = camera.right_x
+                aim.y.next = camera.right_y
+                aim.z.next = camera.right_z
+
+    else:
+
+        @always(clk.posedge)
+        def accumulate():
+            if ages[0]:
+                aim.x.next = 0
+                aim.y.next = 0
+                aim.z.next = 0
+            elif ages[AIM_LATENCY - 1 : 1] != 0:
+                aim.x.next = aim.x + x_product
+                aim.y.next = aim.y + y_product
+                aim.z.next = aim.z + z_product
+            elif entered[0]:
+                aim.x.next = aim.x + camera.right_x
+                aim.y.next = aim.y + camera.right_y
+                aim.z.next = aim.z + camera.right_z
+            elif entered[1]:
+                aim.x.next = camera.right_x + camera.right_x
+                aim.y.next = camera.right_y + camera.right_y
+                aim.z.next = camera.right_z + camera.right_z
 
     return instances()

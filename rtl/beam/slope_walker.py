@@ -21,8 +21,9 @@ def slope_walker(clk, start_line, step, aim, slope, config: Configuration):
     """slope: D, of the first column after start_line; step: of the next.
 
     aim: D of the first column, where the camera does not turn; only D[y] changes. Otherwise what a step adds to what is
-    0 after start_line.
+    0 after start_line. A step is as many columns as a clock has pixels.
     """
+    columns = config.pixels
     if config.turn:
 
         @always(clk.posedge)
@@ -43,6 +44,6 @@ def slope_walker(clk, start_line, step, aim, slope, config: Configuration):
             if start_line:
                 slope.y.next = aim.y
             elif step:
-                slope.y.next = slope.y + 1
+                slope.y.next = slope.y + columns
 
     return instances()

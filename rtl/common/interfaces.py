@@ -28,12 +28,18 @@ class Interface:
 class Vga(Interface):
     """To a monitor or its converter: colours, syncs, blanking (low), composite sync (unused, low), the pixel clock.
 
-    Data changes at the falling edge of clk.
+    Data changes at the falling edge of clk. Where a clock has two pixels, each colour is two channels, of which the low
+    half is the left pixel's, of an even column.
     """
 
     def __init__(self, colour_bits: int):
         self.r, self.g, self.b = (unsigned(colour_bits) for _ in range(3))
         self.hs, self.vs, self.blank_n, self.sync_n, self.clk = (bit() for _ in range(5))
+
+
+def vga_of(config: Configuration) -> Vga:
+    """A design's."""
+    return Vga(config.colour_bits * config.pixels)
 
 
 class AvalonPort(Interface):

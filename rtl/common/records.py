@@ -174,6 +174,11 @@ class Pixel(Record):
         super().__init__(dict.fromkeys(("red", "green", "blue"), colour_bits))
 
 
+def shown_of(config: Configuration) -> Pixel:
+    """What a design's monitor is given in a clock, as its `Vga` has it: a pixel, or the halves of each colour."""
+    return Pixel(config.colour_bits * config.pixels)
+
+
 class Look(Record):
     """How a rectangle looks.
 
@@ -297,6 +302,11 @@ def walk_of(config: Configuration) -> Walk:
 def growth_of(config: Configuration) -> Walk:
     """What a column adds to it: of a camera that turns products too, and otherwise distances."""
     return walk_of(config) if config.turn else Walk(DISTANCE_BITS)
+
+
+def stride_of(config: Configuration) -> Walk:
+    """The same of as many columns as a clock has pixels."""
+    return walk_of(config) if config.turn else Walk(DISTANCE_BITS + config.pixels - 1)
 
 
 class Reflector(Record):

@@ -8,7 +8,7 @@ from myhdl import ResetSignal
 from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.registers import address_bits
-from raycaster.rtl.common.interfaces import AvalonPort, Vga
+from raycaster.rtl.common.interfaces import AvalonPort, Vga, vga_of
 from raycaster.rtl.common.widths import bit, unsigned
 from raycaster.rtl.dvi.tmds_encoder import SYMBOL_BITS
 from raycaster.rtl.system.scene_player import BUTTONS
@@ -17,12 +17,12 @@ from raycaster.rtl.system.scene_player import BUTTONS
 def module_ports(config: Configuration) -> dict[str, Any]:
     """Those of ray_caster_module; Verilog has avs_s0_* and vga_*."""
     reset, avs_s0 = ResetSignal(0, active=1, isasync=False), AvalonPort(address_bits(config.table))
-    return {"clk": bit(), "reset": reset, "avs_s0": avs_s0, "irq": bit(), "vga": Vga(config.colour_bits)}
+    return {"clk": bit(), "reset": reset, "avs_s0": avs_s0, "irq": bit(), "vga": vga_of(config)}
 
 
 def system_ports(config: Configuration) -> dict[str, Any]:
     """Those of ray_caster_system."""
-    return {"clk": bit(), "ready": bit(), "buttons": unsigned(len(BUTTONS)), "vga": Vga(config.colour_bits)}
+    return {"clk": bit(), "ready": bit(), "buttons": unsigned(len(BUTTONS)), "vga": vga_of(config)}
 
 
 def processor_ports(config: Configuration) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from raycaster.screens import Screen
 @block
 def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0):
     """Free-running sync, whatever the inputs; a pixel takes screen.clocks_per_pixel, 1 or 2, and reaches the outputs a
-    pixel after its turn.
+    pixel after its turn. Where a clock has two pixels, a pixel means both of them here, and a column too.
 
     Screen coordinates are signed: negative in the blanking, which comes first, so that visible means >= 0. Lines and
     frames are front porch, sync, back porch, picture. VS changes together with HS. Reset restarts at the first pixel
@@ -24,7 +24,7 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0)
     each column there; both are lead pixels early where a pixel takes a clock, at most the horizontal blanking.
     pixel: the column's colour, sampled at the end of each of its pixels. vga changes at the falling edge of vga.clk.
     """
-    horizontal, vertical, doubling = screen.horizontal, screen.vertical, screen.doubling
+    horizontal, vertical, doubling = screen.beats, screen.vertical, screen.doubling
     first_pixel, first_line = -horizontal.blank, -vertical.blank
     last_pixel, last_line = horizontal.visible - 1, vertical.visible - 1
     hsync_first = first_pixel + horizontal.front

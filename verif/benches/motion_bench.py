@@ -97,9 +97,9 @@ async def start_screen_interrupts(bench: HierarchyObject) -> None:
     assert not raised.done(), "irq before the second StartScreen"
 
     await monitor.frame()
-    line_ns = screen.horizontal.total * screen.clocks_per_pixel * CLOCK_NS
+    line_ns = screen.line_cycles * CLOCK_NS
     first_visible_hs_ns = monitor.frame_lines[screen.vertical.sync + screen.vertical.back - 1].end_ns
-    first_visible_ns = first_visible_hs_ns - screen.horizontal.front * screen.clocks_per_pixel * CLOCK_NS
+    first_visible_ns = first_visible_hs_ns - screen.beats.front * screen.clocks_per_pixel * CLOCK_NS
     late = (await raised - first_visible_ns + screen.doubling * line_ns) / CLOCK_NS
     assert abs(late) <= START_SCREEN_TOLERANCE, f"StartScreen came {late} clocks late"
 

@@ -8,6 +8,7 @@ from raycaster.fit.fixing import fixed_rectangle
 from raycaster.fixed import FixedScene
 from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
+from raycaster.rtl.beam.beam_lane import beam_latency
 from raycaster.rtl.bus.avalon_interface import engine_word, size_word
 from raycaster.rtl.common.records import rect_of
 from raycaster.rtl.common.widths import (
@@ -37,7 +38,8 @@ def _signed_bits(least: int, beyond: int) -> int:
 
 def _video(design: Configuration | Screen, label: str, small: bool) -> Property:
     screen = design if isinstance(design, Screen) else design.screen_geometry
-    spans = {"H": screen.horizontal, "V": screen.vertical}
+    beam = not isinstance(design, Screen) and not design.facts.line_buffered
+    spans = {"H": screen.beats, "V": screen.vertical}
     parameters = {}
     for letter, span in spans.items():
         parameters |= {
@@ -50,15 +52,17 @@ def _video(design: Configuration | Screen, label: str, small: bool) -> Property:
     parameters |= {
         "DOUBLING": screen.doubling,
         "ROWS": screen.rows,
-        "COLOUR_BITS": 8 if isinstance(design, Screen) else design.colour_bits,
-        "X_BITS": _signed_bits(-screen.horizontal.blank, screen.horizontal.visible),
+        "COLOUR_BITS": 8 if isinstance(design, Screen) else design.colour_bits * design.pixels,
+        "CLOCKS": screen.clocks_per_pixel,
+        "LEAD": beam_latency(design) if beam else 0,
+        "X_BITS": _signed_bits(-screen.beats.blank, screen.beats.visible),
         "Y_BITS": _signed_bits(-screen.vertical.blank, screen.vertical.visible),
         "REPEAT_BITS": bits_for(screen.doubling),
     }
     return Property(
         "video-timing",
         "sync, blanking and strobes exactly at the standard's counts, whatever the inputs",
-        design, label, ("video_generator",), parameters, induction=1, small=small,
+        design, label, ("video_generator", *(["pixel_clock"] if beam else [])), parameters, induction=1, small=small,
     )  # fmt: skip
 
 
@@ -310,6 +314,8 @@ PROPERTIES: list[Property] = [
     _video(_one_unit(rows=200), "vga200", small=True),
     _video(_one_unit(screen="tiny"), "tiny48", small=True),
     _video(TOY_SCREEN, "toy", small=True),
+    _video(configure(engine="beam", screen="tiny", rectangles=2, scale=1), "beam tiny48", small=True),
+    _video(configure(engine="beam", rows=180, scale=6, rectangles=2, pixels=2), "beam 1080, 2 pixels", small=True),
     _avalon(_one_unit(rectangles=2), small=True),
     _avalon(_one_unit(rectangles=2, reflections=2, rounding="nearest", fraction_bits=4, rows=200), small=False),
     _host(address_bits(DEFAULT.table), 1, 2, small=True),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The video generator against a reference that knows the standard only: a half, a column and a line of the total
-// frame, with the blanking first, and the sync pulses as pixel counts from its start.
+// frame, with the blanking first, and the sync pulses as pixel counts from its start. Where a clock has two pixels a
+// column is both of them, and where a pixel takes one clock there is one half only: vga_clk is the clock itself then.
 //
 // Nothing is assumed of the inputs: reset may come at any time, the colours are whatever they are. The frame's strobes
 // are functions of the reference position, which visits every place of the frame once; that start_row comes ROWS times
@@ -13,6 +14,7 @@ module video_timing #(
     parameter V_VISIBLE = 480, parameter V_FRONT = 10, parameter V_SYNC = 2, parameter V_BACK = 33,
     parameter V_HIGH = 0,
     parameter DOUBLING = 2, parameter ROWS = 240, parameter COLOUR_BITS = 8,
+    parameter CLOCKS = 2, parameter LEAD = 0,   // a pixel; pixels by which columns are announced early
     parameter X_BITS = 11, parameter Y_BITS = 10, parameter REPEAT_BITS = 1
 ) (
     input clk, input reset,
@@ -40,6 +42,7 @@ always @* if (!known) assume (reset);
 
 // The position that is prepared, and the one that the outputs show, a pixel behind; none of it since reset.
 reg half;
+wire first_half = CLOCKS == 1 || !half, last_half = CLOCKS == 1 || half;
 reg [11:0] column, line, shown_column, shown_line;
 reg showing;
 always @(posedge clk) begin
@@ -53,7 +56,7 @@ always @(posedge clk) begin
     end
     else begin
         half <= !half;
-        if (half) begin
+        if (last_half) begin
             column <= column == H_TOTAL - 1 ? 0 : column + 1;
             if (column == H_TOTAL - 1) line <= line == V_TOTAL - 1 ? 0 : line + 1;
             showing <= 1;
@@ -72,7 +75,7 @@ wire picture = showing && shown_column >= H_BLANK && shown_line >= V_BLANK;
 
 // The colours that were there when the shown pixel was taken.
 reg [COLOUR_BITS-1:0] taken_red, taken_green, taken_blue;
-always @(posedge clk) if (half) begin
+always @(posedge clk) if (last_half) begin
     taken_red <= red;
     taken_green <= green;
     taken_blue <= blue;
@@ -86,7 +89,7 @@ always @* if (known) begin
     assert (vga_g == (picture ? taken_green : 0));
     assert (vga_b == (picture ? taken_blue : 0));
     assert (!vga_sync_n);
-    assert (vga_clk == half);
+    assert (CLOCKS == 1 || vga_clk == half);
 end
 
 // Outputs change at the falling edge of the pixel clock only, reset aside.
@@ -98,17 +101,19 @@ always @(posedge clk) begin
     last_clk <= vga_clk;
     last_reset <= reset;
 end
-always @* if (known && !last_reset && !(last_clk && !vga_clk)) assert (outputs == last_outputs);
+always @* if (known && CLOCKS == 2 && !last_reset && !(last_clk && !vga_clk)) assert (outputs == last_outputs);
 
 // The renderer's strobes: StartScreen a row ahead of the picture, start_row at each row's first line, next_column at
 // each column's end.
-wire line_begins = !half && column == 0;
-wire [11:0] picture_line = line - V_BLANK, picture_column = column - H_BLANK;
+wire line_begins = first_half && column == 0;
+wire [11:0] picture_line = line - V_BLANK, column_ahead = column + LEAD;
+wire [11:0] picture_column = column_ahead - H_BLANK;
+wire in_columns = column_ahead >= H_BLANK && column_ahead < H_TOTAL;
 always @* if (known) begin
     assert (start_screen == (line_begins && line == V_BLANK - DOUBLING));
     assert (start_row == (line_begins && line >= V_BLANK && picture_line % DOUBLING == 0));
-    assert (visible_line == (column >= H_BLANK));
-    assert (next_column == (half && column >= H_BLANK && picture_column % DOUBLING == DOUBLING - 1));
+    assert (visible_line == in_columns);
+    assert (next_column == (last_half && in_columns && picture_column % DOUBLING == DOUBLING - 1));
 end
 
 // Rows since StartScreen: all of them when the next one comes.
@@ -134,6 +139,7 @@ end
 // position says.
 (* hierconn *) wire signed [X_BITS-1:0] \dut.x ;
 (* hierconn *) wire signed [Y_BITS-1:0] \dut.y ;
+(* hierconn *) wire \dut.pixel_end ;
 (* hierconn *) wire [REPEAT_BITS-1:0] \dut.pixel_repeat , \dut.line_repeat ;
 wire signed [15:0] x = \dut.x , y = \dut.y ;
 wire signed [15:0] position_x = $signed({4'b0, column}) - H_BLANK, position_y = $signed({4'b0, line}) - V_BLANK;
@@ -150,7 +156,8 @@ always @* if (known) begin
     else assert (column == 0 && line == 0);
     assert (x == position_x && x >= -H_BLANK && x < H_VISIBLE);
     assert (y == position_y && y >= -V_BLANK && y < V_VISIBLE);
-    assert (\dut.pixel_repeat == (x < 0 ? 0 : picture_column % DOUBLING));
+    assert (\dut.pixel_end == last_half);
+    assert (\dut.pixel_repeat == (in_columns ? picture_column % DOUBLING : 0));
     assert (\dut.line_repeat == (y < 0 ? 0 : picture_line % DOUBLING));
     if (screen_seen) begin
         if (line >= V_BLANK) assert (rows_seen == row_of_line + !row_begins);

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -126,6 +127,60 @@ def test_features(tmp_path, monkeypatch, capsys):
     shown = capsys.readouterr().out
     assert "seed MATERIALS=1 PATTERNS=1" in shown
     assert shown.count("+31.0%") == 2
+
+
+def test_each_pin_has_a_register(tmp_path):
+    """Of each port but the clocks a register of its width, on the way in or out; Icarus takes it with the design."""
+    config = configure(engine="beam", screen="tiny", rectangles=1, reflections=0, colour_bits=5, pixels=2)
+    files = write_verilog(config, tmp_path)
+    [module] = [path.read_text() for path in files if path.name == "ray_caster_module.v"]
+    top = tmp_path / "top.v"
+    top.write_text(area.registered_pins(module))
+    text = top.read_text()
+    widths = {"reset": "", "avs_s0_writedata": "[31:0]", "vga_g": "[9:0]", "vga_hs": "", "irq": ""}
+    for name, width in widths.items():
+        given = name in ("reset", "avs_s0_writedata")
+        assert re.search(rf"{'input wire' if given else 'output reg'} +{re.escape(width)} *{name}\b", text), name
+        taken = (f"{name}_inside", name) if given else (name, f"{name}_inside")
+        assert f"always @(posedge clk) {taken[0]} <= {taken[1]};" in text
+    assert text.count("always") == 17
+    sources = [top, *(path for path in files if path.suffix == ".v")]
+    call = ["iverilog", "-g2005", "-Wall", "-Wno-timescale", "-s", "registered_pins", "-o", tmp_path / "top", *sources]
+    assert not subprocess.run(call, capture_output=True, text=True, check=True).stderr
+
+
+def test_placing_and_routing_alone(tmp_path, monkeypatch, capsys):
+    """What nextpnr reports is kept, with the seed that it was given."""
+    calls = []
+
+    def place_and_route(command, directory, timeout):
+        calls.append(command)
+        report = {
+            "fmax": {"$glbnet$clk": {"achieved": 81.256, "constraint": 74.25}},
+            "utilization": {
+                "TRELLIS_COMB": {"used": 41_000, "available": 83_640},
+                "DCCA": {"used": 0, "available": 56},
+            },
+        }
+        (directory / "report.json").write_text(json.dumps(report))
+        return subprocess.CompletedProcess(command, 0, "", "")
+
+    monkeypatch.setattr(area, "find_program", lambda name: name)
+    monkeypatch.setattr(area, "prepare_wasm", lambda name: None)
+    monkeypatch.setattr(area, "run_program", place_and_route)
+    monkeypatch.setattr(area, "_synthesise", lambda config, family, directory, top: directory.mkdir(parents=True))
+    options = ("--engine", "beam", "--rows", "180", "--scale", "6", "--pixels", "2", "--route-only", "--seed", "3")
+    kept = tmp_path / "routed.json"
+    area.main([*options, "--output", str(tmp_path / "area"), "--keep", str(kept)])
+    [command] = calls
+    assert command[command.index("--seed") + 1] == "3"
+    assert command[command.index("--freq") + 1] == "74.25"
+    figures = json.loads(kept.read_text())["figures"]
+    assert figures == {
+        "configuration": "beam-vga180-s6-u2-r12-m1-c8", "seed": 3, "clock_mhz": 74.25, "routed_mhz": 81.26,
+        "cells": {"TRELLIS_COMB": [41_000, 83_640]},
+    }  # fmt: skip
+    assert "81.26 MHz of 74.25, 41,000 of 83,640 TRELLIS_COMB" in " ".join(capsys.readouterr().out.split())
 
 
 def test_every_chip_belongs_to_a_family():

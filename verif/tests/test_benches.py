@@ -69,6 +69,7 @@ def test_traffic(bench: Bench, simulator: str, configuration: Configuration, sce
         pytest.param("verilator", {"units": 4}, id="seed"),
         pytest.param("verilator", {"engine": "exact", "units": 2}, id="exact"),
         pytest.param("verilator", {"engine": "beam", "allow_underrun": False}, id="beam"),
+        pytest.param("verilator", {"engine": "beam", "pixels": 2, "allow_underrun": False}, id="beam-pairs"),
         pytest.param("icarus", {"units": 4, "rectangles": 3, "divider_bits": 1, "culling": False}, id="icarus"),
     ],
 )

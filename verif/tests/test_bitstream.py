@@ -208,6 +208,10 @@ def test_too_slow_gets_one_line(tmp_path, monkeypatch, capsys, clk, shift_clk, c
             (str(SMALL_SCENE), "--engine", "beam", "--screen", "play"),
             "error: screen: play is for simulation only; leave it out, or choose vga",
         ),
+        (
+            (str(SMALL_SCENE), "--engine", "beam", "--rows", "180", "--scale", "6", "--pixels", "2"),
+            "error: pixels: the board's link sends one pixel a clock; leave 2 out, or take make verilog",
+        ),
     ],
 )
 @pytest.mark.parametrize("words", [("bitstream",), ("verify", "dvi")], ids=" ".join)

@@ -22,6 +22,7 @@ def chosen(name: str, label: str) -> Property:
 
 
 TIMING = chosen("video-timing", "tiny48")
+PAIRS = chosen("video-timing", "beam 1080, 2 pixels")
 AGENT = chosen("avalon-agent", "vga240-u1-r2-m1-f0t-d3-c8")
 HOST = chosen("host-transfers", "6 bits, 1 and 2 cycles")
 ORDER = chosen("ray-order", "tiny48-u2-r2-m1-f0t-d3-c8")
@@ -45,6 +46,7 @@ FAULTS = {
     "colour-in-blanking": (TIMING, "video_generator", "if ((x >= 0) && (y >= 0)) begin", "if (x >= 0) begin"),
     "colour-between-pixels": (TIMING, "video_generator", "vga_r <= pixel_red;\n",
                               "vga_r <= pixel_red;\n end if (x >= 0) begin\n"),
+    "a-pair-announced-late": (PAIRS, "video_generator", "(x >= -18)", "(x >= -17)"),
     "start-screen-late": (TIMING, "video_generator", "(y == -2)", "(y == -1)"),
     "start-row-each-line": (TIMING, "video_generator", " && (line_repeat == 0)", ""),
     "wait-in-traffic": (AGENT, "avalon_interface", "wait_request <= 1'b0;", "wait_request <= avs_s0_write;"),
@@ -124,7 +126,22 @@ FAULTS = {
 
 @pytest.mark.parametrize(
     "proof",
-    [TIMING, AGENT, HOST, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS, TESTER, CORNERS, FOLD, TABLE],
+    [
+        TIMING,
+        PAIRS,
+        AGENT,
+        HOST,
+        ORDER,
+        EARLY_OUT,
+        NO_EARLY_OUT,
+        PIPELINED,
+        SECTIONS,
+        COUNTERS,
+        TESTER,
+        CORNERS,
+        FOLD,
+        TABLE,
+    ],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )
 def test_holds(proof, output):

@@ -47,15 +47,18 @@ def test_full_size_exact(bench: Bench):
     assert result["wrong_vs_exact"] == 0
 
 
-@pytest.mark.parametrize(("rows", "scale", "shown"), [(240, 1, 640 * 480), (200, 2, 640 * 400), (180, 4, 1280 * 720)])
-def test_full_size_beam(bench: Bench, rows, scale, shown):
-    """As `make sim ENGINE=beam` shows it: doubled, native, and at 720 lines; a line takes a clock a pixel."""
-    configuration = configure(engine="beam", rows=rows, scale=scale)
+@pytest.mark.parametrize(
+    ("rows", "scale", "pixels", "shown"),
+    [(240, 1, 1, 640 * 480), (200, 2, 1, 640 * 400), (180, 4, 1, 1280 * 720), (180, 6, 2, 1920 * 1080)],
+)
+def test_full_size_beam(bench: Bench, rows, scale, pixels, shown):
+    """As `make sim ENGINE=beam` shows it: doubled, native, at 720 lines, and at 1080 with two pixels a clock."""
+    configuration = configure(engine="beam", rows=rows, scale=scale, pixels=pixels)
     scene = ROOT / "scenes" / "mirror_room.toml"
     directory = bench("sim.frame_bench", configuration, "verilator", scene)
     result = json.loads((directory / "result.json").read_text())
     assert (result["pixels"], result["wrong_vs_golden"], result["wrong_vs_exact"]) == (shown, 0, 0)
-    assert result["worst_row_cycles"] == configuration.screen_geometry.horizontal.visible
+    assert result["worst_row_cycles"] == configuration.screen_geometry.horizontal.visible // pixels
     assert result["worst_group_cycles"] == 1
     # The same view, sampled finer: what the coarse picture has is in it.
     coarse = exact.render(load_scene(scene), configure(engine="beam", rows=rows, scale=1).screen_geometry)
@@ -111,6 +114,8 @@ def test_tiny_in_icarus(engine):
         {"engine": "beam", "reflections": 2, "scale": 1},
         {"engine": "beam", "reflections": 0, "rectangles": 1, "colour_bits": 4},
         {"engine": "beam", "rectangles": 32},
+        {"engine": "beam", "rectangles": 1, "reflections": 0, "colour_bits": 5, "pixels": 2},
+        {"engine": "beam", "reflections": 2, "turn": True, "patterns": True, "pixels": 2},
     ],
     ids=lambda options: "-".join(f"{name}={value}" for name, value in options.items()),
 )

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The beam engine's blocks: MyHDL's simulator, the converted Verilog and exact arithmetic on one set of vectors."""
 
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from math import gcd
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -18,12 +20,14 @@ from raycaster.rtl.beam import fold_tester as tester
 from raycaster.rtl.beam import hit_cells as hit_cells_module
 from raycaster.rtl.beam import nearest_of_two as contest
 from raycaster.rtl.beam import ray_fold as folder
-from raycaster.rtl.beam.beam_caster import beam_caster, beam_latency
+from raycaster.rtl.beam.beam_caster import beam_caster
+from raycaster.rtl.beam.beam_lane import beam_lane, beam_latency
 from raycaster.rtl.beam.beam_pass import winner_latency
 from raycaster.rtl.beam.beam_renderer import blanking_left, check_blanking
 from raycaster.rtl.beam.cell_step import cell_step
 from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.hit_cells import hit_cells
+from raycaster.rtl.beam.lane_start import lane_start
 from raycaster.rtl.beam.line_starter import AIM_LATENCY, line_starter, start_cycles
 from raycaster.rtl.beam.nearest_of import nearest_of
 from raycaster.rtl.beam.nearest_of_two import nearest_of_two
@@ -32,6 +36,7 @@ from raycaster.rtl.beam.rect_walker import rect_walker
 from raycaster.rtl.beam.row_register import row_register
 from raycaster.rtl.beam.slope_walker import slope_walker
 from raycaster.rtl.beam.winner_delay import winner_delay
+from raycaster.rtl.beam.word_of import word_of
 from raycaster.rtl.common.interfaces import Direction, Picture, Rects, Slope
 from raycaster.rtl.common.records import (
     CellDivision,
@@ -46,6 +51,8 @@ from raycaster.rtl.common.records import (
     facet_of,
     fold_of,
     growth_of,
+    shown_of,
+    stride_of,
     walk_of,
     winner_of,
 )
@@ -115,6 +122,8 @@ by_screen = pytest.mark.parametrize(
         beam_config(reflections=1, rows=180, turn=True),
         beam_config(reflections=2, rows=240, turn=True, materials=True, patterns=True),
         beam_config(reflections=2, screen="tiny", turn=True),
+        beam_config(reflections=1, rows=180, scale=6, pixels=2),
+        beam_config(reflections=1, screen="tiny", pixels=2, turn=True),
     ],
     ids=config_id,
 )
@@ -147,39 +156,83 @@ def direction_ports(name: str, config: Configuration, slope) -> dict[str, int]:
         ({"rows": 180, "scale": 1}, (320, 180, 1, 4, 74_250_000)),
         ({"screen": "tiny"}, (128, 96, 2, 1, 25_000_000)),
         ({"screen": "play"}, (320, 240, 1, 1, 6_120_000)),
+        ({"rows": 180, "scale": 3}, (960, 540, 3, 2, 74_250_000)),
+        ({"rows": 180, "scale": 6}, (1920, 1080, 6, 1, 74_250_000)),
+        ({"rows": 180, "scale": 6, "pixels": 2}, (1920, 1080, 6, 1, 74_250_000)),
+        ({"rows": 180, "pixels": 2}, (1280, 720, 4, 1, 37_125_000)),
+        ({"pixels": 2}, (640, 480, 2, 1, 12_500_000)),
     ],
 )
 def test_a_beam_is_as_fine_as_its_monitor(options, shown):
     config = beam_config(**options)
     screen = config.screen_geometry
     assert (screen.columns, screen.rows, screen.scale, screen.doubling, screen.clock_hz) == shown
-    assert (config.scale, config.units, config.group_cycles) == (screen.scale, 1, 1)
+    assert (config.scale, config.units, config.group_cycles) == (screen.scale, options.get("pixels", 1), 1)
 
 
-@pytest.mark.parametrize("options", [{"rows": 240}, {"rows": 200}, {"rows": 180}, {"screen": "tiny"}])
+@pytest.mark.parametrize(("pixels", "rate"), [(1, 30), (2, 60)])
+def test_full_hd_at_a_clock_that_chips_reach(pixels, rate):
+    """As CEA-861 has it: 2200 x 1125, both syncs high; two pixels a clock are as many clocks, and twice the frames."""
+    screen = beam_config(rows=180, scale=6, pixels=pixels).screen_geometry
+    horizontal, vertical = screen.horizontal, screen.vertical
+    assert (horizontal.visible, horizontal.front, horizontal.sync, horizontal.back) == (1920, 88, 44, 148)
+    assert (vertical.visible, vertical.front, vertical.sync, vertical.back) == (1080, 4, 5, 36)
+    assert horizontal.active_high and vertical.active_high
+    assert screen.clock_hz == 74_250_000
+    assert screen.clock_hz / screen.frame_cycles == rate
+    assert screen.frame_cycles == 2200 * 1125 // pixels
+
+
+@pytest.mark.parametrize(
+    "options", [{"rows": 240}, {"rows": 200}, {"rows": 180}, {"rows": 180, "scale": 6}, {"screen": "tiny"}]
+)
 def test_a_finer_view_is_the_same_view(options):
     """The pixel (s row, s column) at scale s is the pixel (row, column) at scale 1."""
     fine = beam_config(**options)
     scale = fine.scale
-    coarse = primary_slopes(beam_config(**options, scale=1).screen_geometry)
+    coarse = primary_slopes(beam_config(**options | {"scale": 1}).screen_geometry)
     assert np.array_equal(primary_slopes(fine.screen_geometry)[::scale, ::scale], scale * coarse)
 
 
 @pytest.mark.parametrize(
     ("options", "complaint"),
     [
-        ({"units": 4}, "^units: the beam engine is one unit that draws a pixel a clock, not 4$"),
+        ({"units": 4}, "^units: the beam engine has one for each of PIXELS=1 a clock, not 4$"),
         ({"scale": 3}, "^scale: the beam engine shows 240 rows at 1 or 2, not 3$"),
-        ({"rows": 180, "scale": 8}, "^scale: the beam engine shows 180 rows at 1 or 2 or 4, not 8$"),
+        ({"rows": 180, "scale": 8}, "^scale: the beam engine shows 180 rows at 1 or 2 or 3 or 4 or 6, not 8$"),
         ({"fraction_bits": 1}, "^fraction_bits: the beam engine has none, not 1$"),
         ({"engine": "seed", "scale": 2}, "^scale: the seed engine shows 240 rows at 1, not 2; scales need the beam"),
         ({"engine": "exact", "screen": "play"}, "^screen: play needs the beam engine, ENGINE=beam, not exact$"),
         ({"engine": "exact", "rows": 180}, "180 rows need the beam engine, ENGINE=beam$"),
+        ({"pixels": 3}, "^pixels: Input should be less than or equal to 2, not 3$"),
+        ({"pixels": 2, "units": 1}, "^units: the beam engine has one for each of PIXELS=2 a clock, not 1$"),
+        ({"engine": "seed", "pixels": 2}, "^pixels: 2 a clock need the beam engine, ENGINE=beam, not seed$"),
+        (
+            {"pixels": 2, "scale": 1},
+            "^pixels: 2 a clock need a column for each of the monitor's pixels, SCALE=2, not 1$",
+        ),
+        (
+            {"pixels": 2, "rows": 180, "scale": 3},
+            "^pixels: 2 a clock need a column for each of the monitor's pixels, SCALE=6, not 3$",
+        ),
     ],
 )
 def test_what_the_beam_engine_has_not(options, complaint):
     with pytest.raises(ConfigurationError, match=complaint):
         configure(**{"engine": "beam"} | options)
+
+
+@pytest.mark.parametrize("part", ["visible", "front", "sync", "back"])
+def test_two_pixels_a_clock_take_an_even_line(part):
+    screen = BEAM_SCREENS["play", 240]
+    line = replace(screen.horizontal, **{part: getattr(screen.horizontal, part) + 1})
+    with (
+        mock.patch.dict(BEAM_SCREENS, {("play", 240): replace(screen, horizontal=line)}),
+        pytest.raises(
+            ConfigurationError, match=r"^pixels: 2 a clock need an even width and blanking, and the play screen"
+        ),
+    ):
+        beam_config(screen="play", pixels=2)
 
 
 @pytest.mark.parametrize("place", BEAM_SCREENS, ids=str)
@@ -203,6 +256,33 @@ def test_every_row_of_a_turned_camera_is_set_up_in_its_blanking(screen, rows, mo
         ConfigurationError, match=r"^rectangles: with 32 of them, 2 reflections .* is 31 cycles short of a line's"
     ):
         check_blanking(beam_config(screen="play", rectangles=32, reflections=2, turn=True))
+
+
+@pytest.mark.parametrize(
+    ("options", "fits"),
+    [
+        ({"rows": 180, "scale": 6, "reflections": 1}, True),
+        ({"rows": 180, "scale": 6, "reflections": 2, "turn": True}, False),
+        ({"rows": 180, "scale": 6, "reflections": 1, "turn": True}, True),
+        ({"screen": "tiny", "reflections": 2, "turn": True, "rectangles": 8}, True),
+        ({"screen": "play", "reflections": 1}, True),
+        ({"screen": "play", "reflections": 2}, False),
+    ],
+)
+def test_two_pixels_a_clock_halve_the_blanking(options, fits):
+    """There is one set-up for both lanes, which the shorter blanking must be long enough for."""
+    config = beam_config(pixels=2, **options)
+    assert (blanking_left(config) >= 0) == fits
+    if not fits:
+        with pytest.raises(ConfigurationError, match=r"^rectangles: .* at two pixels a clock, the .*PIXELS=1$"):
+            check_blanking(config)
+
+
+def pixels_of(config: Configuration, channels: list[int]) -> list[int]:
+    """The pixels of a clock, the left one first, as words of what their red, green and blue ports have."""
+    bits = config.colour_bits
+    lanes = [[channel >> bits * lane & (1 << bits) - 1 for channel in channels] for lane in range(config.pixels)]
+    return [(red << bits | green) << bits | blue for red, green, blue in lanes]
 
 
 # rect_setup -----------------------------------------------------------------------------------------------------------
@@ -338,14 +418,15 @@ def test_rect_walker(config, tmp_path):
             "step_way": bit(),
             "step_bounds": bit(),
             "start": walk_of(config),
-            "growth": growth_of(config),
+            "growth": stride_of(config),
             "walk": walk_of(config),
         },
         tmp_path,
     )
     random = np.random.default_rng(seed())
-    width, columns, names = walk_bits(config), config.screen_geometry.columns, list(walk_of(config).layout)
-    growth_width = int(growth_of(config).layout["way_p"])
+    width, names = walk_bits(config), list(walk_of(config).layout)
+    columns = config.screen_geometry.columns // config.pixels
+    growth_width = int(stride_of(config).layout["way_p"])
     stimulus, expected = [], {}
     for line in range(300):
         steps = columns if line < 3 else 8
@@ -370,13 +451,59 @@ def test_rect_walker(config, tmp_path):
         assert [outputs[cycle][f"walk_{name}"] for name in names] == values, (cycle, repeat())
 
 
+@pytest.mark.parametrize("config", [beam_config(screen="tiny", pixels=2), beam_config(rows=180, scale=6, pixels=2)])
+def test_lane_start(config, tmp_path):
+    """A rectangle's products of a row's second column, of those of the first and what a column adds."""
+    leaf = Leaf(
+        lane_start,
+        lambda: {
+            "clk": bit(),
+            "load": unsigned(config.rectangles),
+            "start": walk_of(config),
+            "growth": growth_of(config),
+            "late_load": unsigned(config.rectangles),
+            "late_start": walk_of(config),
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    slopes, width = primary_slopes(config.screen_geometry), walk_bits(config)
+    stimulus, expected = [], []
+    for _ in range(300):
+        row, table = int(random.integers(len(slopes))), flat_tables(random, 1)
+        camera = np.array([any_place(random) for _ in AXES])
+        now, then = (products(table, 0, camera, slope) for slope in slopes[row, :2])
+        load = int(random.integers(1 << config.rectangles))
+        inputs = {f"start_{name}": word(now[name], width) for name in WALK}
+        inputs |= {f"growth_{name}": word(then[name] - now[name], DISTANCE_BITS) for name in WALK}
+        stimulus.append({**inputs, "load": load})
+        expected.append({f"late_start_{name}": word(then[name], width) for name in WALK} | {"late_load": load})
+    outputs = leaf.run_both([*stimulus, {}], settled=1)
+    for output, wanted in zip(outputs[1:], expected, strict=True):
+        assert {name: output[name] for name in wanted} == wanted, repeat()
+
+
+def test_word_of(tmp_path):
+    config = beam_config(screen="tiny")
+    bits = len(facet_of(config).word)
+    leaf = Leaf(word_of, lambda: {"record": facet_of(config), "word": unsigned(bits)}, tmp_path)
+    random = np.random.default_rng(seed())
+    words = [int.from_bytes(random.bytes(8)) % (1 << bits) for _ in range(50)]
+    layout = facet_of(config)
+    stimulus = [
+        {f"record_{name}": w >> layout.slice(name)[1] & (1 << int(b)) - 1 for name, b in layout.layout.items()}
+        for w in words
+    ]
+    assert [output["word"] for output in leaf.run_both(stimulus)] == words, repeat()
+
+
 def row_slopes(random: np.random.Generator, config: Configuration, columns: int) -> tuple[np.ndarray, np.ndarray]:
-    """The slope of a column that so many columns of the screen follow, and what a column adds."""
+    """The slope of a column that a lane takes so many steps from, and what a step adds."""
     screen = config.screen_geometry
-    row, column = int(random.integers(screen.rows)), int(random.integers(screen.columns - columns + 1))
+    row, column = int(random.integers(screen.rows)), int(random.integers(screen.columns - columns * config.pixels + 1))
     basis = np.array(random_basis(random) if config.turn else np.eye(3), dtype=np.int64)
     factors = [screen.view_distance, column - screen.centre_column, screen.horizon_row - row]
-    return factors @ basis, basis[1]
+    return factors @ basis, config.pixels * basis[1]
 
 
 @by_screen
@@ -395,7 +522,7 @@ def test_slope_walker(config, tmp_path):
         tmp_path,
     )
     random = np.random.default_rng(seed())
-    columns, walked = config.screen_geometry.columns, AXES if config.turn else "y"
+    columns, walked = config.screen_geometry.columns // config.pixels, AXES if config.turn else "y"
     stimulus, expected = [], []
     for _ in range(3):
         first, more = row_slopes(random, config, columns)
@@ -414,11 +541,16 @@ def test_slope_walker(config, tmp_path):
 
 @pytest.mark.parametrize(
     "config",
-    [beam_config(screen="tiny", turn=True, rectangles=3), beam_config(rows=180, turn=True, rectangles=1)],
+    [
+        beam_config(screen="tiny", turn=True, rectangles=3),
+        beam_config(rows=180, turn=True, rectangles=1),
+        beam_config(screen="tiny", turn=True, rectangles=3, pixels=2),
+        beam_config(rows=180, scale=6, turn=True, rectangles=1, pixels=2),
+    ],
     ids=config_id,
 )
 def test_line_starter(config, tmp_path):
-    """The first ray's slope from its latency on, until the first sweep's end; the second sweep's ends nothing."""
+    """The first rays' slopes from their latency on, each until its sweep's end; the last sweep's ends nothing."""
     slope_bits, screen, basis_names = (
         exact_slope_bits(config) + 1,
         config.screen_geometry,
@@ -435,7 +567,7 @@ def test_line_starter(config, tmp_path):
             "loaded": bit(),
             "aim": Direction(slope_bits),
             "start_sweep": bit(),
-            "enter": bit(),
+            "enter": unsigned(2) if config.pixels == 2 else bit(),
             "config": config,
         },
         tmp_path,
@@ -452,28 +584,24 @@ def test_line_starter(config, tmp_path):
         start, ended = len(stimulus), random.random() < 0.2
         sweep = setup.LATENCY + config.rectangles - 1
         first_end = AIM_LATENCY - 3 + sweep
+        ends = [first_end + sweep * lane for lane in range(config.pixels)]
         stimulus += [
             {**held, "start_line": 1},
             {**held, "reset": int(ended)},
             {**held, "row_slope": word(screen.horizon_row - row, factor_bits(config))},
         ]
         stimulus += [held] * (first_end - 3)
-        stimulus += [
-            {**held, "loaded": 1},
-            *[held] * (sweep - 1),
-            {**held, "loaded": 1},
-            *[held] * int(random.integers(1, 4)),
-        ]
-        first = direction_ports(
-            "aim", config, [screen.view_distance, -screen.centre_column, screen.horizon_row - row] @ basis
-        )
-        column = direction_ports("aim", config, basis[1])
+        stimulus += [{**held, "loaded": 1}, *[held] * (sweep - 1)] * config.pixels
+        stimulus += [{**held, "loaded": 1}, *[held] * int(random.integers(1, 4))]
+        first = [screen.view_distance, -screen.centre_column, screen.horizon_row - row] @ basis
+        aims = [first + lane * basis[1] for lane in range(config.pixels)] + [config.pixels * basis[1]]
         for cycle in range(start, len(stimulus)):
             age = cycle - start
-            sweeps = age in (AIM_LATENCY - 3, first_end) and not ended
-            strobes = {"start_sweep": int(sweeps), "enter": int(age == first_end and not ended)}
-            aim = {} if age < AIM_LATENCY or ended else first if age < first_end + 2 else column
-            expected[cycle] = strobes | aim
+            sweeps = age in (AIM_LATENCY - 3, *ends) and not ended
+            entering = sum(1 << lane for lane, end in enumerate(ends) if age == end and not ended)
+            aim = direction_ports("aim", config, aims[sum(age >= end + 2 for end in ends)])
+            expected[cycle] = {"start_sweep": int(sweeps), "enter": entering}
+            expected[cycle] |= {} if age < AIM_LATENCY or ended else aim
     outputs = leaf.run_both([*stimulus, {}], settled=6 + AIM_LATENCY)
     for cycle, fields in expected.items():
         assert {name: outputs[cycle][name] for name in fields} == fields, (cycle, repeat())
@@ -1103,6 +1231,10 @@ def race(random: np.random.Generator, config: Configuration, slopes) -> tuple[np
         (beam_config(screen="tiny", rectangles=3, reflections=1, scale=1, materials=True, patterns=True), 24),
         (beam_config(screen="tiny", rectangles=8, reflections=2, turn=True, materials=True, patterns=True), 12),
         (beam_config(screen="tiny", rectangles=2, reflections=0, scale=1, materials=True, patterns=True), 24),
+        (beam_config(screen="tiny", rectangles=1, reflections=0, colour_bits=4, pixels=2), 12),
+        (beam_config(screen="tiny", rectangles=3, reflections=2, pixels=2), 100),
+        (beam_config(rows=180, scale=6, rectangles=5, reflections=1, pixels=2), 4),
+        (beam_config(screen="tiny", rectangles=3, reflections=2, pixels=2, turn=True, patterns=True), 60),
     ],
     ids=config_id,
 )
@@ -1119,15 +1251,18 @@ def test_beam_caster(config, lines, tmp_path):
             "camera": camera_of(config),
             "picture": Picture(),
             "rects": Rects(config),
-            "pixel": Pixel(config.colour_bits),
+            "pixel": shown_of(config),
             "config": config,
         },
         tmp_path,
     )
     random = np.random.default_rng(seed())
     slopes, basis, horizon_row = primary_slopes(config.screen_geometry), UNTURNED, config.screen_geometry.horizon_row
-    # Of a camera that turns, the rectangles are set up twice.
-    sweeps = [AIM_LATENCY - 3, AIM_LATENCY - 4 + setup.LATENCY + config.rectangles] if config.turn else [0]
+    # Of a camera that turns, the rectangles are set up for each lane, and once more.
+    turns = range(config.pixels + 1)
+    sweeps = (
+        [AIM_LATENCY - 3 + (setup.LATENCY + config.rectangles - 1) * turn for turn in turns] if config.turn else [0]
+    )
     # Until no column is on its way, whatever the registers started from.
     stimulus, expected, fates = [{"reset": 1}] * beam_latency(config), {}, set()
     flat = [horizon_row + slope for slope in (-3, -1, 1, 3)]
@@ -1139,7 +1274,8 @@ def test_beam_caster(config, lines, tmp_path):
         if number % 8:
             camera, table, column = race(random, config, slopes[row])
             background, reflections = random.integers(256, size=3), config.reflections
-            line = slopes[row, : column + 1 + int(random.integers(4))]
+            columns = column + 1 + int(random.integers(4))
+            line = slopes[row, : columns + columns % config.pixels]
         else:
             camera, table, background, reflections, _ = traced_scene(random, config, random.permutation(slopes[row]))
             line = slopes[row]
@@ -1163,20 +1299,86 @@ def test_beam_caster(config, lines, tmp_path):
         for cycle in range(3, start_cycles(config) + int(random.integers(4))):
             rect = sorted_rect(table, given[cycle], "rects_rect", config) if cycle in given else {}
             stimulus.append({**held, **rect})
-        for colour in traced.colours:
+        for colours in traced.colours.reshape(-1, config.pixels, 3):
             stimulus += [held] * int(random.random() < 0.5 * (config.scale == 1 and number % 8 == 0))
             expected[len(stimulus) + beam_latency(config)] = (
-                pixel_word(config, colour),
+                [pixel_word(config, colour) for colour in colours],
                 (camera, table.corners, repeat()),
             )
             stimulus.append({**held, "next_column": 1})
         stimulus += [held] * beam_latency(config)
     outputs = leaf.run_both([*stimulus, {}], settled=min(expected))
     assert len(fates) >= config.reflections + 2
-    shift = config.colour_bits
+    for cycle, (pixels, case) in expected.items():
+        channels = [outputs[cycle][f"pixel_{name}"] for name in ("red", "green", "blue")]
+        assert pixels_of(config, channels) == pixels, (cycle, case)
+
+
+@pytest.mark.parametrize(
+    ("config", "first", "lines"),
+    [
+        # Small enough for every rectangle to matter in every pass.
+        (beam_config(screen="tiny", rectangles=3, reflections=2, scale=1), 0, 300),
+        (beam_config(screen="tiny", rectangles=3, reflections=2, pixels=2), 0, 40),
+        (beam_config(screen="tiny", rectangles=3, reflections=2, pixels=2), 1, 40),
+    ],
+    ids=config_id,
+)
+def test_beam_lane(config, first, lines, tmp_path):
+    """Rows of which a set-up knows the products: every column, or every other one from the first or the second on."""
+    facet, growth, width = facet_of(config), stride_of(config), walk_bits(config)
+    leaf = Leaf(
+        beam_lane,
+        lambda: {
+            "clk": bit(),
+            "start_line": bit(),
+            "next_column": bit(),
+            "enter": None,
+            "load": unsigned(config.rectangles),
+            "start": walk_of(config),
+            "aim": Direction(exact_slope_bits(config) + 1),
+            "facets": unsigned(config.rectangles * len(facet.word)),
+            "growths": unsigned(config.rectangles * len(growth.word)),
+            "camera": camera_of(config),
+            "picture": Picture(),
+            "pixel": Pixel(config.colour_bits),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    slopes, step = primary_slopes(config.screen_geometry), config.pixels
+    stimulus, expected = [{"next_column": 0}] * beam_latency(config), {}
+    for _ in range(lines):
+        row = int(random.integers(len(slopes)))
+        camera, table, column = race(random, config, slopes[row])
+        background = random.integers(256, size=3)
+        line = slopes[row, : column + 1 + int(random.integers(4))]
+        traced = exact.trace(table, camera, background, line[first::step], config.reflections)
+        sets = [
+            [products(table, index, camera, slope) for slope in slopes[row, first : first + 2]]
+            for index in range(config.rectangles)
+        ]
+        facets = growths = 0
+        for index, (now, then) in enumerate(sets):
+            seen = {"usable": 1, "axis": table.axes[index], "distance": now["distance"], "way_q": now["way_q"]}
+            seen["colour"] = int.from_bytes(bytes(table.colours[index]))
+            more = {name: step * (then[name] - now[name]) for name in WALK}
+            facets |= facet.pack(seen) << index * len(facet.word)
+            growths |= growth.pack(more) << index * len(growth.word)
+        held = direction_ports("aim", config, slopes[row, first])
+        held |= {"facets": facets, "growths": growths, "start_line": 0, "next_column": 0, "load": 0}
+        held |= {"picture_reflections": config.reflections}
+        held["picture_background"] = int.from_bytes(bytes(background.astype(np.uint8)))
+        stimulus.append({**held, "start_line": 1})
+        for index, (now, _) in enumerate(sets):
+            start = {f"start_{name}": word(now[name], width) for name in WALK}
+            stimulus.append({**held, **start, "load": 1 << index})
+        for colour in traced.colours:
+            expected[len(stimulus) + beam_latency(config)] = pixel_word(config, colour), repeat()
+            stimulus.append({**held, "next_column": 1})
+        stimulus += [held] * beam_latency(config)
+    outputs = leaf.run_both([*stimulus, {}], settled=min(expected))
     for cycle, (pixel, case) in expected.items():
-        output = outputs[cycle]
-        assert (output["pixel_red"] << shift | output["pixel_green"]) << shift | output["pixel_blue"] == pixel, (
-            cycle,
-            case,
-        )
+        channels = [outputs[cycle][f"pixel_{name}"] for name in ("red", "green", "blue")]
+        assert pixels_of(config, channels)[:1] == [pixel], (cycle, case)

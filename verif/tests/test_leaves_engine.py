@@ -19,7 +19,7 @@ from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.program import basis_fields
 from raycaster.registers import register_map
-from raycaster.rtl.common.interfaces import Picture, Place, Progress, RayFate, Rects, Steps, Vga
+from raycaster.rtl.common.interfaces import Picture, Place, Progress, RayFate, Rects, Steps, vga_of
 from raycaster.rtl.common.records import Pixel, Point, camera_of, rect_of
 from raycaster.rtl.common.widths import bit, pixel_bits, unit_bits, unsigned
 from raycaster.rtl.cull.group_culler import LATENCY
@@ -64,7 +64,9 @@ def small_config(screen: Screen = SMALL_SCREEN, **options) -> Configuration:
     screen = replace(screen, clocks_per_pixel=1) if beam else screen
     with mock.patch.dict(BEAM_SCREENS if beam else SCREENS, {("tiny", screen.rows): screen}):
         config = configure(screen="tiny", rows=screen.rows, **options)
-        assert config.screen_geometry == screen.scaled(config.scale)  # looked up once, and kept from here on
+        shown = screen.scaled(config.scale)
+        # Looked up once, and kept from here on.
+        assert config.screen_geometry == (shown if config.pixels == 1 else shown.paired())
     return config
 
 
@@ -453,14 +455,17 @@ def test_ray_caster(config, tmp_path):
 def monitored(outputs: list[dict[str, int]], config: Configuration) -> list[np.ndarray]:
     """The frames that a monitor sees, as rows of pixel words; it samples where its clock has risen.
 
-    With a clock a pixel that is before each clock, where outputs are recorded.
+    Of two pixels in a clock, the left one is in the low half of each colour. With a clock a pixel that is before each
+    clock, where outputs are recorded.
     """
     every_cycle = config.screen_geometry.clocks_per_pixel == 1
     horizontal, vertical = config.screen_geometry.horizontal, config.screen_geometry.vertical
     words, shift = [], config.colour_bits
     for before, output in pairwise(outputs):
         if output["vga_clk"] and (every_cycle or not before["vga_clk"]) and output["vga_blank_n"]:
-            words.append((output["vga_r"] << shift | output["vga_g"]) << shift | output["vga_b"])
+            for low in range(0, shift * config.pixels, shift):
+                red, green, blue = (output[f"vga_{channel}"] >> low & (1 << shift) - 1 for channel in "rgb")
+                words.append((red << shift | green) << shift | blue)
     size = horizontal.visible * vertical.visible
     return [
         np.array(words[start : start + size]).reshape(vertical.visible, horizontal.visible)
@@ -480,7 +485,7 @@ def doubled(config: Configuration, words: np.ndarray) -> np.ndarray:
 
 def start_screen_cycle(screen: Screen) -> int:
     """Cycles from the end of reset to the first StartScreen."""
-    return (screen.vertical.blank - screen.doubling) * screen.horizontal.total * screen.clocks_per_pixel
+    return (screen.vertical.blank - screen.doubling) * screen.line_cycles
 
 
 def renderer_leaf(config: Configuration, directory) -> Leaf:
@@ -493,7 +498,7 @@ def renderer_leaf(config: Configuration, directory) -> Leaf:
             "camera": Point(),
             "rects": Rects(config),
             "progress": Progress(),
-            "vga": Vga(config.colour_bits),
+            "vga": vga_of(config),
             "config": config,
         },
         directory,
@@ -593,6 +598,9 @@ TINY_SCREEN = Screen(
 )
 """With many frames in little time."""
 
+LONG_LINE = replace(TINY_SCREEN, horizontal=Span(16, 8, 24, 60, active_high=False))
+"""In which two pixels a clock leave time to set up a line."""
+
 
 def scene_in_view(random: np.random.Generator, config: Configuration, axis: int) -> tuple:
     """Camera, table, background, reflections and the picture; most show several colours and a plane of this axis, and
@@ -625,6 +633,7 @@ def scene_in_view(random: np.random.Generator, config: Configuration, axis: int)
     [
         small_config(TINY_SCREEN, units=2, rectangles=1, reflections=1, divider_bits=1),
         small_config(TINY_SCREEN, engine="beam", rectangles=1, reflections=1, scale=1),
+        small_config(LONG_LINE, engine="beam", rectangles=1, reflections=1, pixels=2),
     ],
     ids=config_id,
 )

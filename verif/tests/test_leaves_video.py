@@ -72,7 +72,10 @@ def test_line_buffer(units, colour_bits, tmp_path):
 
 def video_model(screen: Screen, lead: int, cycle: int, colours: list[tuple[int, int, int]]) -> dict[str, int]:
     """Every output, from the number of cycles since reset alone; `colours` are those at the inputs so far."""
-    horizontal, vertical, doubling = screen.horizontal, screen.vertical, screen.doubling
+    pixels = screen.pixels_per_clock
+    line = [part // pixels for part in (screen.horizontal.visible, screen.horizontal.front, screen.horizontal.sync)]
+    horizontal = Span(*line, screen.horizontal.back // pixels, active_high=screen.horizontal.active_high)
+    vertical, doubling = screen.vertical, screen.doubling
 
     def position(pixel: int) -> tuple[int, int]:
         line, x = divmod(pixel, horizontal.total)
@@ -120,8 +123,12 @@ BEAMS = {
     "early": (replace(SMALL_SCREENS["mixed"], clocks_per_pixel=1), 9),
     "early-doubled": (replace(SMALL_SCREENS["both-high"], clocks_per_pixel=1), 5),
     "early-threefold": (replace(SMALL_SCREENS["threefold"], clocks_per_pixel=1), 4),
+    "pairs": (
+        Screen(10, 2, 1, 1, Span(10, 2, 4, 6, active_high=True), Span(2, 1, 2, 1, active_high=False), 1).paired(),
+        5,
+    ),
 }
-"""Screens, and how many pixels before their turn the columns are announced."""
+"""Screens, and how many pixel clocks before their turn the columns are announced."""
 
 
 @pytest.mark.parametrize("colour_bits", [1, 8])
@@ -129,14 +136,15 @@ BEAMS = {
 def test_video_generator(name, colour_bits, tmp_path):
     screen, lead = BEAMS[name] if name in BEAMS else (SMALL_SCREENS[name], 0)
     channels = ("pixel_red", "pixel_green", "pixel_blue")
+    width = colour_bits * screen.pixels_per_clock
     leaf = Leaf(
         video_generator,
         lambda: {
             "clk": bit(),
             "reset": reset_signal(),
             "scan": Scan(),
-            "pixel": Pixel(colour_bits),
-            "vga": Vga(colour_bits),
+            "pixel": Pixel(width),
+            "vga": Vga(width),
             "screen": screen,
             "lead": lead,
         },
@@ -149,7 +157,7 @@ def test_video_generator(name, colour_bits, tmp_path):
     stimulus, positions = [], []
     for length in lengths:
         for cycle in (None, None, *range(length)):
-            colours = dict(zip(channels, map(int, random.integers(1 << colour_bits, size=3)), strict=True))
+            colours = dict(zip(channels, map(int, random.integers(1 << width, size=3)), strict=True))
             stimulus.append({**colours, "reset": int(cycle is None)})
             positions.append(cycle)
     outputs = leaf.run_both(stimulus, settled=1)

@@ -25,6 +25,7 @@ from raycaster.tools import run_yosys
 CONFIGURATIONS = [
     configure(screen="tiny", units=2, rectangles=2, allow_underrun=True),
     configure(screen="tiny", units=1, rectangles=32, colour_bits=4, fraction_bits=8, allow_underrun=True),
+    configure(engine="beam", screen="tiny", rectangles=2, pixels=2),
     *(
         fix(
             ROOT / "scenes/boxes.toml", {"screen": "tiny", "units": 2, "allow_underrun": True}, scope

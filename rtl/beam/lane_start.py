@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: MIT
+"""What the second lane's columns start from: those of the first, a column further."""
+
+from myhdl import always, always_comb, block, concat, instances
+
+from raycaster.rtl.common.widths import signed
+
+
+@block
+def lane_start(clk, load, start, growth, late_load, late_start):
+    """late_start is start and a column's growth, and late_load is load, a cycle later."""
+    product_bits = len(start.way_p)
+    way_p, low_p, high_p, low_q, high_q = (signed(product_bits) for _ in range(5))
+
+    @always(clk.posedge)
+    def advance():
+        late_load.next = load
+        way_p.next = start.way_p + growth.way_p
+        low_p.next = start.low_p + growth.low_p
+        high_p.next = start.high_p + growth.high_p
+        low_q.next = start.low_q + growth.low_q
+        high_q.next = start.high_q + growth.high_q
+
+    @always_comb
+    def join():
+        late_start.word.next = concat(way_p[product_bits:], low_p, high_p, low_q, high_q)
+
+    return instances()
