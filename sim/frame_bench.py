@@ -11,7 +11,6 @@ import cocotb
 from cocotb.handle import HierarchyObject
 from PIL import Image
 
-from raycaster.golden import exact
 from raycaster.golden.picture import count_wrong, diff_picture, first_wrong
 from raycaster.scene import load_scene
 from raycaster.sim.harness import Harness
@@ -36,8 +35,7 @@ async def one_frame(bench: HierarchyObject) -> None:
     seconds = time.perf_counter() - started
     harness.monitor.check_pins()
 
-    golden = harness.golden(scene, reflections)
-    perfect = harness.shown(exact.render(scene, harness.screen, reflections=reflections))
+    golden, perfect = harness.golden_and_exact(scene, reflections)
     output = Path(job.output)
     pictures = {"frame": frame, "golden": golden, "exact": perfect, "diff": diff_picture(frame, golden)}
     for name, picture in pictures.items():

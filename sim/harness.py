@@ -10,7 +10,7 @@ import numpy as np
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import FallingEdge, RisingEdge
 
-from raycaster.golden import engines
+from raycaster.golden import engines, exact
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.scene import Scene
 from raycaster.sim.avalon import AvalonBus
@@ -40,6 +40,13 @@ class Viewer:
     def golden(self, scene: Scene, reflections: int) -> np.ndarray:
         """The visible screen that this design must show of a scene; uint8, visible lines x visible pixels x 3."""
         return self.shown(engines.render(self.configuration, scene, reflections))
+
+    def golden_and_exact(self, scene: Scene, reflections: int) -> tuple[np.ndarray, np.ndarray]:
+        """The same, and that of exact arithmetic, which of an engine without quotients is the same picture."""
+        golden = self.golden(scene, reflections)
+        if not self.configuration.facts.divides:
+            return golden, golden
+        return golden, self.shown(exact.render(scene, self.screen, reflections))
 
     def golden_live(self, scene: LiveScene | None) -> np.ndarray:
         """The same of what the registers say, or nothing, for the time before the first StartScreen."""

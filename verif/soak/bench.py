@@ -9,7 +9,6 @@ from pathlib import Path
 import cocotb
 from cocotb.handle import HierarchyObject
 
-from raycaster.golden import exact
 from raycaster.golden.catalogue import catalogue
 from raycaster.golden.picture import count_wrong
 from raycaster.scene import Scene, dump_scene
@@ -48,11 +47,11 @@ async def show(harness: Harness, scene: Scene) -> dict[str, int]:
     await harness.bus.load_scene(scene)
     await harness.bus.commit(reflections=scene.reflections)
     frame = await harness.monitor.frame()
-    perfect = harness.shown(exact.render(scene, harness.screen))
+    golden, perfect = harness.golden_and_exact(scene, scene.reflections)
     return {
         "reflections": scene.reflections,
         "pixels": frame[..., 0].size,
-        "wrong_vs_golden": count_wrong(frame, harness.golden(scene, scene.reflections)),
+        "wrong_vs_golden": count_wrong(frame, golden),
         "wrong_vs_exact": count_wrong(frame, perfect),
     }
 
