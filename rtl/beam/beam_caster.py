@@ -115,7 +115,7 @@ def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture,
     centre_column, view_distance = config.screen_geometry.centre_column, config.screen_geometry.view_distance
     starts = [ENTRY_LATENCY + number * pass_latency(config) for number in range(passes)]
     looked_up = winner_latency(config) + LOOK_UP_LATENCY
-    kept_bits = starts[-1] + (looked_up if config.patterns else 0)
+    kept_bits = starts[-1] + (looked_up if config.patterns else 1)
     every_step = (2 << kept_bits) - 1
 
     load, last_rectangle = unsigned(config.rectangles), config.rectangles - 1
@@ -187,9 +187,9 @@ def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture,
     folds[0].tie({})
     beams = [
         beam_pass(clk, start_line=restart, load=walk_load, step=step_after(first), step_bounds=step_after(first + 1),
-            start=walk_start, aim=aim, facets=all_facets, growths=all_growths, fold=fold, nearest=hit, winner=winner,
-            tested=some, config=config)
-        for first, fold, hit, winner, some in zip(starts, folds, hits, winners, numbers, strict=True)
+            step_slope=step_after(first + 2), start=walk_start, aim=aim, facets=all_facets, growths=all_growths,
+            fold=fold, nearest=hit, winner=winner, tested=some, config=config)
+        for first, fold, hit, winner, some in zip(starts, [None, *folds[1:]], hits, winners, numbers, strict=True)
     ]  # fmt: skip
 
     # The slope of a ray that has just got its winner: for its fold at the mirror, and for the pattern that it sees.
