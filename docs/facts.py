@@ -96,7 +96,7 @@ def beam_latencies() -> str:
     config = configure(engine="beam")
     turned = replace(config, turn=True)
     rows = [
-        ["`fold_tester`", "whether the ray hits, all rectangles at once", fold_tester.LATENCY],
+        ["`ray_tester`, `fold_tester`", "whether the ray hits, all rectangles at once", fold_tester.LATENCY],
         ["`nearest_of_two`", f"a round; {config.rectangles} rectangles take {rounds(config)}", nearest_of_two.LATENCY],
         ["`ray_fold`", "how the ray folds at its mirror", ray_fold.LATENCY],
         ["", "all of it, from a ray to its reflection", pass_latency(config)],

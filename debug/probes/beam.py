@@ -89,6 +89,11 @@ def setup_start(ray: Ray, place: Place) -> Sequence[Value]:
     return way_p, *ends
 
 
+def way_p(ray: Ray, place: Place) -> Sequence[Value]:
+    """The way along p of the column; that of the ray from the camera is read a cycle later, with the bounds."""
+    return products(ray, place.rectangle, ray.of_ray(0, "slopes"))[:1]
+
+
 def walked(ray: Ray, place: Place) -> Sequence[Value]:
     """The ways to the bounds of the column."""
     return products(ray, place.rectangle, ray.of_ray(0, "slopes"))[2]
@@ -163,7 +168,7 @@ class BeamProbes(Description):
         return signal.format(
             beam=one,
             walker=f"{one}.{numbered('rect_walker', rectangle, count)}",
-            tester=f"{one}.{numbered('fold_tester', rectangle, count)}",
+            tester=f"{one}.{numbered('fold_tester' if bounce else 'ray_tester', rectangle, count)}",
             fold=f"{LANE}.{numbered('ray_fold', max(0, bounce - 1), passes - 1)}",
             kept=f"{LANE}.{numbered('winner_delay', late, len(delays))}",
             bounce=bounce,
@@ -274,7 +279,9 @@ class BeamProbes(Description):
                 signed=True),
             *(reflected if passes > 1 else []),
             Probe("way p", ("{walker}.way_p",), "test",
-                lambda ray, place: products(ray, place.rectangle, ray.of_ray(0, "slopes"))[:1], signed=True),
+                lambda ray, place: None if place.bounce else way_p(ray, place), late=1, signed=True),
+            Probe("way p", ("{walker}.way_p",), "test",
+                lambda ray, place: way_p(ray, place) if place.bounce else None, signed=True),
             Probe("bounds p, q", tuple(f"{{walker}}.{name}" for name in BOUNDS), "test", walked, late=1,
                 signed=True),
             Probe("inside", fields("{tester}", "hit", ("valid",), candidate), "test", hit, late=tester.LATENCY),

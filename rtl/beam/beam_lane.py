@@ -75,7 +75,7 @@ def beam_lane(
     passes, reflections = len(numbers), len(numbers) - 1
     starts = [ENTRY_LATENCY + number * pass_latency(config) for number in range(passes)]
     looked_up = winner_latency(config) + LOOK_UP_LATENCY
-    kept_bits = starts[-1] + (looked_up if config.patterns else 0)
+    kept_bits = starts[-1] + (looked_up if config.patterns else 1)
     every_step = (2 << kept_bits) - 1
     facet = facet_of(config)
     facet_words = [facet.twin().word for _ in range(config.rectangles)]
@@ -115,9 +115,9 @@ def beam_lane(
     folds[0].tie({})
     beams = [
         beam_pass(clk, start_line=restart, load=load, step=step_after(first), step_bounds=step_after(first + 1),
-            start=start, aim=aim, facets=facets, growths=growths, fold=fold, nearest=hit, winner=winner,
-            tested=some, config=config)
-        for first, fold, hit, winner, some in zip(starts, folds, hits, winners, numbers, strict=True)
+            step_slope=step_after(first + 2), start=start, aim=aim, facets=facets, growths=growths, fold=fold,
+            nearest=hit, winner=winner, tested=some, config=config)
+        for first, fold, hit, winner, some in zip(starts, [None, *folds[1:]], hits, winners, numbers, strict=True)
     ]  # fmt: skip
 
     # The slope of a ray that has just got its winner: for its fold at the mirror, and for the pattern that it sees.

@@ -2,6 +2,7 @@
 """The primary ray, or one of its reflections: every rectangle at once, a column a clock."""
 
 from collections.abc import Sequence
+from functools import partial
 
 from myhdl import always, always_comb, block, concat, instances
 
@@ -10,6 +11,7 @@ from raycaster.rtl.beam import fold_tester as tester
 from raycaster.rtl.beam import nearest_of_two as contest
 from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.nearest_of import nearest_of
+from raycaster.rtl.beam.ray_tester import ray_tester
 from raycaster.rtl.beam.rect_walker import rect_walker
 from raycaster.rtl.beam.slope_walker import ray_slope, slope_walker
 from raycaster.rtl.common.interfaces import Slope
@@ -32,15 +34,16 @@ def winner_latency(config: Configuration) -> int:
 
 @block
 def beam_pass(
-    clk, start_line, load, step, step_bounds, start, aim, facets, growths, fold, nearest, winner,
+    clk, start_line, load, step, step_bounds, step_slope, start, aim, facets, growths, fold, nearest, winner,
     tested: Sequence[int], config: Configuration,
 ):  # fmt: skip
     """A column at each step; winner follows winner_latency cycles later, and nearest, the Candidate, or None for none.
 
     facets, growths: each rectangle's `Facet`, and what a step adds to its `Walk`, side by side, the first in the lowest
-    bits; load: a bit for each, high where start is its own, or None where the camera turns and start_line loads
-    all. step_bounds: step a cycle later, for what is read then. fold: the ray's, `fold_lead` cycles before its step;
-    tested: numbers of the rectangles that it may meet. start_line, aim: as in `slope_walker`.
+    bits; load: a bit for each, high where start is its own, or None where the camera turns and start_line loads all.
+    step_bounds, step_slope: step one and two cycles later, for what is read and done then. fold: the ray's, `fold_lead`
+    cycles before its step, or None for rays from the camera, whose ways are read with the bounds; tested: numbers of
+    the rectangles that it may meet. start_line, aim: as in `slope_walker`.
     """
     slope_bits = exact_slope_bits(config)
     straight, signs = ray_slope(aim, config), Signs()
@@ -49,8 +52,9 @@ def beam_pass(
     grown = [stride_of(config).cut(growths, i) for i in tested]
     walks, hits = [walk_of(config) for _ in tested], [candidate_of(config) for _ in tested]
 
+    step_way = step_bounds if fold is None else step
     walkers = [
-        rect_walker(clk, load=start_line if config.turn else load(i + 1, i), step_way=step, step_bounds=step_bounds,
+        rect_walker(clk, load=start_line if config.turn else load(i + 1, i), step_way=step_way, step_bounds=step_bounds,
             start=start, growth=growth, walk=walk)
         for i, growth, walk in zip(tested, grown, walks, strict=True)
     ]  # fmt: skip
@@ -66,9 +70,10 @@ def beam_pass(
 
     @always(clk.posedge)
     def follow():
-        size_1.dx.next = size.dx
-        size_1.dy.next = size.dy
-        size_1.dz.next = size.dz
+        if step:
+            size_1.dx.next = size.dx
+            size_1.dy.next = size.dy
+            size_1.dz.next = size.dz
 
     if tester.slope_at(config) == 1:
         tested_size = size_1
@@ -77,13 +82,15 @@ def beam_pass(
 
         @always(clk.posedge)
         def follow_again():
-            tested_size.dx.next = size_1.dx
-            tested_size.dy.next = size_1.dy
-            tested_size.dz.next = size_1.dz
+            if step_bounds:
+                tested_size.dx.next = size_1.dx
+                tested_size.dy.next = size_1.dy
+                tested_size.dz.next = size_1.dz
 
+    tests = ray_tester if fold is None else partial(fold_tester, fold=fold)
     testers = [
-        fold_tester(clk, facet=facet, walk=walk, signs=signs, slope=tested_size, fold=fold,
-            index=tied(i, index_bits(config)), hit=hit)
+        tests(clk, step_way=step, step_bounds=step_bounds, step_slope=step_slope, facet=facet, walk=walk, signs=signs,
+            slope=tested_size, index=tied(i, index_bits(config)), hit=hit)
         for i, facet, walk, hit in zip(tested, seen, walks, hits, strict=True)
     ]  # fmt: skip
     all_hits = side_by_side([hit.word for hit in hits])

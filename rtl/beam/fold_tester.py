@@ -4,8 +4,6 @@
 from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.records import Record
-from raycaster.rtl.common.ties import Signed
 from raycaster.rtl.common.widths import bit, signed, unsigned
 
 LATENCY = 3
@@ -24,16 +22,17 @@ def slope_at(config: Configuration) -> int:
 
 
 @block
-def fold_tester(clk, facet, walk, signs, slope, fold, index, hit):
+def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope, fold, index, hit):
     """A ray a clock, as ray_fold folds it; hit, of the rectangle index, follows LATENCY cycles later.
 
-    Along p the folded ray meets the plane at W = +-n D[p] + fold.p, over D[a]: between the two bounds it hits,
-    whichever of them D[a] and the mirrors make the lesser. It must be beyond its last mirror, on the side that it runs
+    Along p the folded ray meets the plane at W = +-n D[p] + fold.p, over D[a]: between the two bounds it hits, which
+    are compared as in `ray_tester`. It must be beyond its last mirror, on the side that it runs
     to: on another axis W is compared with the mirror's border, on the same axis the planes' distances are. Right at the
     mirror it hits what is on an axis that it has met no mirror on in that point.
 
-    In the ray's cycle are read walk's ways, and signs, which are those of D; fold_lead cycles earlier the fold; in the
-    next cycle the bounds; and slope_at cycles later slope, the magnitudes of D. Widths are the ports'.
+    In the ray's cycle, in which step_way is high, are read walk's ways, and signs, which are those of D; fold_lead
+    cycles earlier the fold; in the next cycle, that of step_bounds, the bounds; and slope_at cycles later slope, the
+    magnitudes of D. step_slope is high in the third cycle. Otherwise a stage keeps what it has. Widths are the ports'.
     """
     turns = "way_q" in walk.layout
     along_q = walk.way_q if turns else facet.way_q
@@ -41,34 +40,29 @@ def fold_tester(clk, facet, walk, signs, slope, fold, index, hit):
     sum_bits, product_bits, turn_bits = len(fold.p_x), len(walk.way_p), len(fold.turn_x)
 
     back, turned, flip_p, flip_q = bit(), bit(), bit(), bit()
-    mirror_on_a, mirror_on_p, mirror_on_q, met = bit(), bit(), bit(), bit()
+    mirror_on_p, mirror_on_q, mirror_back, met = bit(), bit(), bit(), bit()
     offset_p, offset_q = signed(sum_bits), signed(sum_bits)
     border = signed(product_bits)
     turn = signed(turn_bits)
-    flags = "turned", "met", "flip_p", "flip_q", "mirror_on_a", "mirror_on_p", "mirror_on_q", "mirror_back"
-    choice = Record(
-        dict.fromkeys(flags, 1)
-        | dict.fromkeys(("offset_p", "offset_q"), Signed(sum_bits))
-        | {"border": Signed(product_bits), "turn": Signed(turn_bits), "distance": Signed(len(fold.distance))}
-    )
-    held = choice.twin() if turns else choice
+    mirror_distance = signed(len(fold.distance))
     way_p, way_q = signed(product_bits), signed(product_bits)
     folded_p, folded_q = signed(sum_bits), signed(sum_bits)
     distance = signed(turn_bits + 1)
     opposite_distance = signed(turn_bits + 1)
     beyond_plane = bit()
 
-    folded_p_1, folded_q_1 = signed(sum_bits), signed(sum_bits)
+    back_1, folded_p_1, folded_q_1 = bit(), signed(sum_bits), signed(sum_bits)
     distance_1 = signed(turn_bits + 1)
     border_1 = signed(product_bits)
     beyond_plane_1, clip_p_1, clip_q_1, rising_1, met_1 = bit(), bit(), bit(), bit(), bit()
     clipped, folded_clip = signed(sum_bits), signed(sum_bits)
     numerator = unsigned(turn_bits)
+    twice_p, twice_q, edge_p, edge_q = (signed(sum_bits + 1) for _ in range(4))
+    twice_high_p, twice_high_q, low_edge_p, low_edge_q = (signed(product_bits + 1) for _ in range(4))
 
-    under_low_p, at_low_p, over_high_p, at_high_p = bit(), bit(), bit(), bit()
-    under_low_q, at_low_q, over_high_q, at_high_q = bit(), bit(), bit(), bit()
+    under_low_p, over_high_p, under_low_q, over_high_q = (bit() for _ in range(4))
     before_border, at_border = bit(), bit()
-    beyond_plane_2, before_border_2, at_border_2, clips_2, rising_2, met_2 = (bit() for _ in range(6))
+    back_2, beyond_plane_2, before_border_2, at_border_2, clips_2, rising_2, met_2 = (bit() for _ in range(7))
     beyond, at_mirror = bit(), bit()
     numerator_2 = unsigned(numerator_bits)
     inside_p, inside_q, valid = bit(), bit(), bit()
@@ -85,8 +79,9 @@ def fold_tester(clk, facet, walk, signs, slope, fold, index, hit):
             back.next = signs.dz
 
     # turned: a mirror has turned the ray around.
-    @always_comb
     def choose_fold():
+        mirror_back.next = fold.mirror_back
+        mirror_distance.next = fold.distance
         if facet.axis == 0:
             turned.next = fold.back_x
             met.next = fold.met_x
@@ -96,6 +91,8 @@ def fold_tester(clk, facet, walk, signs, slope, fold, index, hit):
             offset_q.next = fold.q_x
             border.next = fold.border_x
             turn.next = fold.turn_x
+            mirror_on_p.next = fold.axis == 1
+            mirror_on_q.next = fold.axis == 2
         elif facet.axis == 1:
             turned.next = fold.back_y
             met.next = fold.met_y
@@ -105,6 +102,8 @@ def fold_tester(clk, facet, walk, signs, slope, fold, index, hit):
             offset_q.next = fold.q_y
             border.next = fold.border_y
             turn.next = fold.turn_y
+            mirror_on_p.next = fold.axis == 0
+            mirror_on_q.next = fold.axis == 2
         else:
             turned.next = fold.back_z
             met.next = fold.met_z
@@ -114,80 +113,61 @@ def fold_tester(clk, facet, walk, signs, slope, fold, index, hit):
             offset_q.next = fold.q_z
             border.next = fold.border_z
             turn.next = fold.turn_z
+            mirror_on_p.next = fold.axis == 1
+            mirror_on_q.next = fold.axis == 0
 
-    # Without a mirror, the camera counts as one on the rectangle's own axis.
-    @always_comb
-    def place_mirror():
-        mirror_on_a.next = (not fold.active) or (fold.axis == facet.axis)
-        if facet.axis == 1:
-            mirror_on_p.next = fold.active and (fold.axis == 0)
-        else:
-            mirror_on_p.next = fold.active and (fold.axis == 1)
-        if facet.axis == 2:
-            mirror_on_q.next = fold.active and (fold.axis == 0)
-        else:
-            mirror_on_q.next = fold.active and (fold.axis == 2)
-
-    @always_comb
-    def take_fold():
-        choice.word.next = concat(
-            turned, met, flip_p, flip_q, mirror_on_a, mirror_on_p, mirror_on_q, fold.mirror_back, offset_p, offset_q,
-            border, turn, fold.distance,
-        )  # fmt: skip
-
-    if turns:
-
-        @always(clk.posedge)
-        def hold():
-            held.word.next = choice.word
+    chooser = always(clk.posedge)(choose_fold) if turns else always_comb(choose_fold)
 
     # On the same axis, the plane must lie on the side that the folded ray runs to.
     @always_comb
     def compare_planes():
-        if back != held.turned:
-            beyond_plane.next = (not held.mirror_on_a) or (facet.distance < held.distance)
+        if back != turned:
+            beyond_plane.next = facet.distance < mirror_distance
         else:
-            beyond_plane.next = (not held.mirror_on_a) or (facet.distance > held.distance)
+            beyond_plane.next = facet.distance > mirror_distance
 
     # ~way is one less than -way; the fold's offset is one more in return.
     @always_comb
     def turn_ways():
         way_p.next = walk.way_p
         way_q.next = along_q
-        if held.flip_p:
+        if flip_p:
             way_p.next = ~walk.way_p
-        if held.flip_q:
+        if flip_q:
             way_q.next = ~along_q
 
     @always_comb
     def fold_ways():
-        folded_p.next = held.offset_p + way_p
-        folded_q.next = held.offset_q + way_q
-        distance.next = facet.distance - held.turn
+        folded_p.next = offset_p + way_p
+        folded_q.next = offset_q + way_q
+        distance.next = facet.distance - turn
 
     @always(clk.posedge)
     def stage_1():
-        folded_p_1.next = folded_p
-        folded_q_1.next = folded_q
-        distance_1.next = distance
-        border_1.next = held.border
-        beyond_plane_1.next = beyond_plane
-        clip_p_1.next = held.mirror_on_p
-        clip_q_1.next = held.mirror_on_q
-        rising_1.next = held.mirror_back == back
-        met_1.next = held.met
+        if step_way:
+            back_1.next = back
+            folded_p_1.next = folded_p
+            folded_q_1.next = folded_q
+            distance_1.next = distance
+            border_1.next = border
+            beyond_plane_1.next = beyond_plane
+            clip_p_1.next = mirror_on_p
+            clip_q_1.next = mirror_on_q
+            rising_1.next = mirror_back == back
+            met_1.next = met
 
     if turns:
 
         @always_comb
         def choose_clipped():
             folded_clip.next = folded_p
-            if held.mirror_on_q:
+            if mirror_on_q:
                 folded_clip.next = folded_q
 
         @always(clk.posedge)
         def hold_clipped():
-            clipped.next = folded_clip
+            if step_way:
+                clipped.next = folded_clip
 
     else:
 
@@ -213,23 +193,32 @@ def fold_tester(clk, facet, walk, signs, slope, fold, index, hit):
         if distance_1 < 0:
             numerator.next = opposite_distance[turn_bits:]
 
+    @always_comb
+    def double():
+        twice_p.next = folded_p_1 << 1
+        twice_q.next = folded_q_1 << 1
+        twice_high_p.next = walk.high_p << 1
+        twice_high_q.next = walk.high_q << 1
+        edge_p.next = (folded_p_1 << 1) | back_1
+        edge_q.next = (folded_q_1 << 1) | back_1
+        low_edge_p.next = (walk.low_p << 1) | back_1
+        low_edge_q.next = (walk.low_q << 1) | back_1
+
     @always(clk.posedge)
     def stage_2():
-        under_low_p.next = folded_p_1 < walk.low_p
-        at_low_p.next = folded_p_1 == walk.low_p
-        over_high_p.next = folded_p_1 > walk.high_p
-        at_high_p.next = folded_p_1 == walk.high_p
-        under_low_q.next = folded_q_1 < walk.low_q
-        at_low_q.next = folded_q_1 == walk.low_q
-        over_high_q.next = folded_q_1 > walk.high_q
-        at_high_q.next = folded_q_1 == walk.high_q
-        beyond_plane_2.next = beyond_plane_1
-        before_border_2.next = before_border
-        at_border_2.next = at_border
-        clips_2.next = clip_p_1 or clip_q_1
-        rising_2.next = rising_1
-        met_2.next = met_1
-        numerator_2.next = numerator[numerator_bits:]
+        if step_bounds:
+            back_2.next = back_1
+            under_low_p.next = twice_p < low_edge_p
+            over_high_p.next = twice_high_p < edge_p
+            under_low_q.next = twice_q < low_edge_q
+            over_high_q.next = twice_high_q < edge_q
+            beyond_plane_2.next = beyond_plane_1
+            before_border_2.next = before_border
+            at_border_2.next = at_border
+            clips_2.next = clip_p_1 or clip_q_1
+            rising_2.next = rising_1
+            met_2.next = met_1
+            numerator_2.next = numerator[numerator_bits:]
 
     @always_comb
     def leave_mirror():
@@ -242,15 +231,10 @@ def fold_tester(clk, facet, walk, signs, slope, fold, index, hit):
             else:
                 beyond.next = before_border_2 != rising_2
 
-    # Where D[a] is negative the bounds have changed places.
     @always_comb
     def judge():
-        inside_p.next = ((not under_low_p) and (not over_high_p)) or (
-            (under_low_p or at_low_p) and (over_high_p or at_high_p)
-        )
-        inside_q.next = ((not under_low_q) and (not over_high_q)) or (
-            (under_low_q or at_low_q) and (over_high_q or at_high_q)
-        )
+        inside_p.next = (under_low_p == back_2) and (over_high_p == back_2)
+        inside_q.next = (under_low_q == back_2) and (over_high_q == back_2)
 
     # e is |D[a]|.
     @always_comb
@@ -266,7 +250,8 @@ def fold_tester(clk, facet, walk, signs, slope, fold, index, hit):
 
         @always(clk.posedge)
         def hold_slope():
-            e_2.next = e
+            if step_bounds:
+                e_2.next = e
 
     else:
         e_2 = e
@@ -279,12 +264,14 @@ def fold_tester(clk, facet, walk, signs, slope, fold, index, hit):
 
         @always(clk.posedge)
         def stage_3():
-            hit.word.next = concat(valid, at_mirror, numerator_2, e_2, facet.axis, facet.cell, index)
+            if step_slope:
+                hit.word.next = concat(valid, at_mirror, numerator_2, e_2, facet.axis, facet.cell, index)
 
     else:
 
         @always(clk.posedge)
         def stage_3():
-            hit.word.next = concat(valid, at_mirror, numerator_2, e_2, index)
+            if step_slope:
+                hit.word.next = concat(valid, at_mirror, numerator_2, e_2, index)
 
     return instances()

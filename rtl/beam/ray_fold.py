@@ -207,12 +207,11 @@ def ray_fold(clk, earlier, last, slope, fold):
         axis_3.next = axis_2
         distance_3.next = distance_2
 
-    # A fold is of a ray that has met a mirror.
     @always_comb
     def join():
         fold.word.next = concat(
-            True, sides_3, turn_x_3, turn_y_3, turn_z_3, p_x_3, p_y_3, p_z_3, q_x_3, q_y_3, q_z_3, border_x_3,
-            border_y_3, border_z_3, axis_3, distance_3,
+            sides_3, turn_x_3, turn_y_3, turn_z_3, p_x_3, p_y_3, p_z_3, q_x_3, q_y_3, q_z_3, border_x_3, border_y_3,
+            border_z_3, axis_3, distance_3,
         )  # fmt: skip
 
     return instances()

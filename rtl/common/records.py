@@ -333,7 +333,7 @@ class Turn(Record):
 class Fold(Record):
     """How a straight ray through all mirrors so far folds back into the room; see `ray_fold`.
 
-    active: there was a mirror; met_x, met_y, met_z: a mirror on that axis was met in the point that the ray left last;
+    met_x, met_y, met_z: a mirror on that axis was met in the point that the ray left last;
     mirror_back: the folded ray runs down from it; back_x ... turn_z: the room's `Turn`; p_x ..., q_x ...: for a
     rectangle on the axis, what is added to its way along p, and q (see `Walk`), one more where that is complemented;
     border_x ...: n D of the last mirror's n; axis, distance: of the last mirror.
@@ -341,7 +341,7 @@ class Fold(Record):
 
     def __init__(self, product_bits: int, walk_width: int, turn_bits: int = TURN_BITS, distance: int = DISTANCE_BITS):
         super().__init__(
-            dict.fromkeys(("active", "met_x", "met_y", "met_z", "mirror_back"), 1)
+            dict.fromkeys(("met_x", "met_y", "met_z", "mirror_back"), 1)
             | Turn(turn_bits).layout
             | dict.fromkeys(("p_x", "p_y", "p_z", "q_x", "q_y", "q_z"), Signed(product_bits))
             | dict.fromkeys(("border_x", "border_y", "border_z"), Signed(walk_width))

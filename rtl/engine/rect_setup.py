@@ -135,16 +135,17 @@ def rect_setup(clk, reset, start_line, rects, camera, slope, load, facet, growth
 
     @always(clk.posedge)
     def hold_distances():
-        axis_2.next = rects.rect.axis
-        look_2.next = look
-        distance_2.next = distance
-        to_low_p_2.next = to_low_p
-        to_high_p_2.next = to_high_p
-        to_low_q_2.next = to_low_q
-        to_high_q_2.next = to_high_q
-        slope_a_2.next = slope_a
-        slope_p_2.next = slope_p
-        slope_q_2.next = slope_q
+        if at_hand:
+            axis_2.next = rects.rect.axis
+            look_2.next = look
+            distance_2.next = distance
+            to_low_p_2.next = to_low_p
+            to_high_p_2.next = to_high_p
+            to_low_q_2.next = to_low_q
+            to_high_q_2.next = to_high_q
+            slope_a_2.next = slope_a
+            slope_p_2.next = slope_p
+            slope_q_2.next = slope_q
 
     @always_comb
     def multiply():
@@ -165,8 +166,9 @@ def rect_setup(clk, reset, start_line, rects, camera, slope, load, facet, growth
 
         @always(clk.posedge)
         def present():
-            facet.word.next = concat(usable_2, axis_2, distance_2, look_2)
-            start.word.next = concat(way_p[product_bits:], way_q, way_low_p, way_high_p, way_low_q, way_high_q)
+            if at_hand_2:
+                facet.word.next = concat(usable_2, axis_2, distance_2, look_2)
+                start.word.next = concat(way_p[product_bits:], way_q, way_low_p, way_high_p, way_low_q, way_high_q)
 
     else:
         more_way_p, more_low_p, more_high_p, more_low_q, more_high_q = (signed(bound_bits) for _ in range(5))
@@ -188,8 +190,9 @@ def rect_setup(clk, reset, start_line, rects, camera, slope, load, facet, growth
 
         @always(clk.posedge)
         def present():
-            facet.word.next = concat(usable_2, axis_2, distance_2, way_q, look_2)
-            start.word.next = concat(way_p[product_bits:], way_low_p, way_high_p, way_low_q, way_high_q)
-            growth.word.next = concat(more_way_p[bound_bits:], more_low_p, more_high_p, more_low_q, more_high_q)
+            if at_hand_2:
+                facet.word.next = concat(usable_2, axis_2, distance_2, way_q, look_2)
+                start.word.next = concat(way_p[product_bits:], way_low_p, way_high_p, way_low_q, way_high_q)
+                growth.word.next = concat(more_way_p[bound_bits:], more_low_p, more_high_p, more_low_q, more_high_q)
 
     return instances()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """One rectangle of the scene."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always_comb, always_seq, block, concat, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.ties import tied
@@ -14,14 +14,14 @@ from raycaster.rtl.scene.written_rect import CORNER, PATTERN, surface_mask
 def rect_slot(clk, reset, bus, number, shadow, live, usable, bad, config: Configuration):
     """The words of a rectangle, each a scene_word; shadow, live: WrittenRect.
 
-    number: constant, the slot's address in units of four words. usable: the live rectangle is enabled and has a plane,
-    a cycle late. bad: the shadow's is enabled and has none.
+    number: constant, the slot's address in units of four words. usable: the live rectangle is enabled and has a plane.
+    bad: the shadow's is enabled and has none.
     """
     address_width = len(bus.address)
     corner_bits, surface_bits = tied(CORNER.implemented, WORD_BITS), tied(surface_mask(config), WORD_BITS)
     corner_0, corner_1, surface, live_corner_0, live_corner_1, live_surface = (unsigned(WORD_BITS) for _ in range(6))
     select_corner_0, select_corner_1, select_surface = (bit() for _ in range(3))
-    flat, live_flat = bit(), bit()
+    flat, pending_usable = bit(), bit()
 
     word_0 = scene_word(clk, reset, bus, select_corner_0, implemented=corner_bits, shadow=corner_0, live=live_corner_0)
     word_1 = scene_word(clk, reset, bus, select_corner_1, implemented=corner_bits, shadow=corner_1, live=live_corner_1)
@@ -61,15 +61,20 @@ def rect_slot(clk, reset, bus, number, shadow, live, usable, bad, config: Config
     @always_comb
     def find_plane():
         flat.next = (shadow.x_0 == shadow.x_1) or (shadow.y_0 == shadow.y_1) or (shadow.z_0 == shadow.z_1)
-        live_flat.next = (live.x_0 == live.x_1) or (live.y_0 == live.y_1) or (live.z_0 == live.z_1)
 
     @always_comb
     def judge():
         bad.next = shadow.enable and not flat
 
-    # The register's cycle costs nothing: a row starts later than that after go_live.
-    @always(clk.posedge)
-    def qualify():
-        usable.next = live.enable and live_flat
+    # What is live was judged in the shadow, when it was committed.
+    @always_seq(clk.posedge, reset=reset)
+    def commit():
+        if bus.commit:
+            pending_usable.next = shadow.enable and flat
+
+    @always_seq(clk.posedge, reset=reset)
+    def go_live():
+        if bus.go_live:
+            usable.next = pending_usable
 
     return instances()

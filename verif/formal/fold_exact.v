@@ -73,7 +73,7 @@ wire signed [WIDE-1:0] walk_low_q = (low_q - camera_q) * slope_a, walk_high_q = 
 wire [1:0] last_axis = two ? axis_2 : axis_1;
 wire signed [WIDE-1:0] last_plane = two ? k_2 : k_1;
 wire signed [WIDE-1:0] last_distance = last_plane - of_three(last_axis, eye_x, eye_y, eye_z);
-localparam FOLD_WORD = 8 + 3 * TURN_BITS + 6 * FOLD_BITS + 3 * WALK_BITS + 2 + COORDINATE_BITS + 1;
+localparam FOLD_WORD = 7 + 3 * TURN_BITS + 6 * FOLD_BITS + 3 * WALK_BITS + 2 + COORDINATE_BITS + 1;
 wire [FOLD_WORD-1:0] fold;
 
 // Words of records, the first field in the highest bits: see `raycaster.rtl.common.records`.
@@ -83,21 +83,29 @@ ray_fold folder (
     .slope_x(dx), .slope_y(dy), .slope_z(dz), .fold_word(fold)
 );
 
+localparam HIT_WORD = 2 + NUMERATOR_BITS + SLOPE_BITS + 1;
+wire [HIT_WORD-1:0] seen_at_once, seen_folded;
 wire hit, hit_at_mirror, hit_index;
 wire [NUMERATOR_BITS-1:0] numerator;
 wire [SLOPE_BITS-1:0] denominator;
 wire signed [WIDE-1:0] size_x = magnitude(view), size_y = magnitude(wide_dy), size_z = magnitude(wide_dz);
 
-// Without a mirror all of the fold is 0, and with one it is active. A colour has 24 bits.
-fold_tester tester (
-    .clk(clk),
-    .facet_word({1'b1, axis, distance[COORDINATE_BITS:0], way_q[WALK_BITS-1:0], 24'd0}),
-    .walk_word({way_p[WALK_BITS-1:0], walk_low_p[WALK_BITS-1:0], walk_high_p[WALK_BITS-1:0], walk_low_q[WALK_BITS-1:0],
-                walk_high_q[WALK_BITS-1:0]}),
-    .signs_word({dx < 0, dy < 0, dz < 0}), .slope_dx(size_x[SLOPE_BITS-1:0]), .slope_dy(size_y[SLOPE_BITS-1:0]),
-    .slope_dz(size_z[SLOPE_BITS-1:0]), .fold_word(one ? fold : {FOLD_WORD{1'b0}}), .index(1'b1),
-    .hit_word({hit, hit_at_mirror, numerator, denominator, hit_index})
+// A colour has 24 bits.
+wire [28+COORDINATE_BITS+WALK_BITS-1:0] facet = {1'b1, axis, distance[COORDINATE_BITS:0], way_q[WALK_BITS-1:0], 24'd0};
+wire [5*WALK_BITS-1:0] walk = {way_p[WALK_BITS-1:0], walk_low_p[WALK_BITS-1:0], walk_high_p[WALK_BITS-1:0],
+                               walk_low_q[WALK_BITS-1:0], walk_high_q[WALK_BITS-1:0]};
+wire [2:0] signs = {dx < 0, dy < 0, dz < 0};
+ray_tester at_once (
+    .clk(clk), .step_way(1'b1), .step_bounds(1'b1), .step_slope(1'b1), .facet_word(facet), .walk_word(walk),
+    .signs_word(signs), .slope_dx(size_x[SLOPE_BITS-1:0]), .slope_dy(size_y[SLOPE_BITS-1:0]),
+    .slope_dz(size_z[SLOPE_BITS-1:0]), .index(1'b1), .hit_word(seen_at_once)
 );
+fold_tester folded (
+    .clk(clk), .step_way(1'b1), .step_bounds(1'b1), .step_slope(1'b1), .facet_word(facet), .walk_word(walk),
+    .signs_word(signs), .slope_dx(size_x[SLOPE_BITS-1:0]), .slope_dy(size_y[SLOPE_BITS-1:0]),
+    .slope_dz(size_z[SLOPE_BITS-1:0]), .fold_word(fold), .index(1'b1), .hit_word(seen_folded)
+);
+assign {hit, hit_at_mirror, numerator, denominator, hit_index} = one ? seen_folded : seen_at_once;
 
 // By the definition: t = n / e, and the whole part and the rest of the way on p and on q from the mirrored eye.
 wire signed [WIDE-1:0] eye_a = of_three(axis, x_2, y_2, z_2), slope = of_three(axis, dx_2, dy_2, dz_2);

@@ -217,10 +217,10 @@ def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: in
     turned = "" if view_distance else ", turned"
     return Property(
         "fold-exact",
-        "a folded ray hits a rectangle where the mirrored eye's, by a division, is within it and beyond the mirror",
+        "a ray hits a rectangle where that from the mirrored eye, by a division, is within it and beyond the mirror",
         widths,
         f"{coordinate_bits} and {slope_bits} bits, {mirrors} mirrors{turned}",
-        ("ray_fold", "fold_tester"),
+        ("ray_fold", "ray_tester", "fold_tester"),
         {
             "COORDINATE_BITS": widths.coordinate,
             "SLOPE_BITS": widths.slope,

@@ -9,7 +9,7 @@ import tempfile
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 from raycaster.configuration import Configuration
@@ -20,6 +20,7 @@ from raycaster.errors import UserError
 from raycaster.registers import address_bits
 from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.ray_fold import ray_fold
+from raycaster.rtl.beam.ray_tester import ray_tester
 from raycaster.rtl.bus.avalon_host import avalon_host
 from raycaster.rtl.common.interfaces import Access, AvalonPort, Direction, Eye, Rects, Scan, SceneBus, Slope, Steps, Vga
 from raycaster.rtl.common.records import Candidate, Facet, Fold, Mirror, Pixel, Rect, Reflector, Signs, Walk
@@ -52,7 +53,7 @@ class TesterWidths:
 
 @dataclass(frozen=True)
 class FoldWidths:
-    """`ray_fold` and `fold_tester` alone, for narrow coordinates and slopes."""
+    """`ray_fold` and both testers alone, for narrow coordinates and slopes."""
 
     coordinate: int
     slope: int
@@ -249,11 +250,15 @@ def _convert_fold(widths: FoldWidths, directory: Path) -> None:
     fold = Fold(widths.fold, product, widths.coordinate + 2, distance)
     with elaboration():
         folder = ray_fold(bit(), earlier=earlier, last=last, slope=Direction(widths.slope + 1), fold=fold)
-        tester = fold_tester(
-            bit(), facet=Facet(product, distance), walk=Walk(product), signs=Signs(), slope=Slope(widths.slope),
-            fold=fold, index=bit(), hit=Candidate(widths.numerator, widths.slope, 1),
-        )  # fmt: skip
-    for top in (folder, tester):
+        testers = [
+            tester(
+                bit(), step_way=bit(), step_bounds=bit(), step_slope=bit(), facet=Facet(product, distance),
+                walk=Walk(product), signs=Signs(), slope=Slope(widths.slope), index=bit(),
+                hit=Candidate(widths.numerator, widths.slope, 1),
+            )
+            for tester in (ray_tester, partial(fold_tester, fold=fold))
+        ]  # fmt: skip
+    for top in (folder, *testers):
         convert_hierarchy(top, directory, "// {module}")
 
 

@@ -21,9 +21,9 @@ from raycaster.fpga.area import CHIPS, FAMILIES, Area, Chip, Model, measure, mea
 YOSYS = "0.70.0.0.post1259"
 SMALL = configure(screen="tiny", units=2, rectangles=2, divider_bits=1, allow_underrun=True, culling=False)
 AREAS = {
-    "ecp5": Area(tables=2592, registers=1808, elements=2592, multipliers=4, memories=0),
-    "cycloneive": Area(tables=2955, registers=1748, elements=3387, multipliers=4, memories=2),
-    "cyclonev": Area(tables=1912, registers=1814, elements=996, multipliers=4, memories=2),
+    "ecp5": Area(tables=2416, registers=1806, elements=2416, multipliers=4, memories=0),
+    "cycloneive": Area(tables=2810, registers=1740, elements=3242, multipliers=4, memories=2),
+    "cyclonev": Area(tables=1911, registers=1806, elements=982, multipliers=4, memories=2),
 }
 
 families = pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES)

@@ -32,6 +32,7 @@ from raycaster.rtl.beam.line_starter import AIM_LATENCY, line_starter, start_cyc
 from raycaster.rtl.beam.nearest_of import nearest_of
 from raycaster.rtl.beam.nearest_of_two import nearest_of_two
 from raycaster.rtl.beam.ray_fold import ray_fold
+from raycaster.rtl.beam.ray_tester import ray_tester
 from raycaster.rtl.beam.rect_walker import rect_walker
 from raycaster.rtl.beam.row_register import row_register
 from raycaster.rtl.beam.slope_walker import slope_walker
@@ -607,7 +608,7 @@ def test_line_starter(config, tmp_path):
         assert {name: outputs[cycle][name] for name in fields} == fields, (cycle, repeat())
 
 
-# ray_fold and fold_tester ---------------------------------------------------------------------------------------------
+# ray_fold and the testers ---------------------------------------------------------------------------------------------
 
 
 def beam_rays(random: np.random.Generator, config: Configuration, count: int):
@@ -636,6 +637,9 @@ def beam_rays(random: np.random.Generator, config: Configuration, count: int):
             if mirrors and random.random() < 0.3:
                 # From corner to corner the image runs as far away as it can.
                 axis, plane = mirrors[-1][0], LAST - mirrors[-1][1]
+            elif mirrors and random.random() < 0.6:
+                # Where the last one was met, if that is on a whole coordinate of this axis too.
+                plane = coordinate(eye, turned, met, axis)
             elif turned[axis] and random.random() < 0.6:
                 plane = coordinate(eye, turned, time_ahead(random, eye, turned, met, axis), axis)
             if not turned[axis]:
@@ -650,7 +654,9 @@ def beam_rays(random: np.random.Generator, config: Configuration, count: int):
         for index in chosen:
             axis, corners = int(table.axes[index]), table.corners.copy()
             if turned[axis] and random.random() < 0.8:
-                corners[index, :, axis] = coordinate(eye, turned, time_ahead(random, eye, turned, met, axis), axis)
+                # A third plane may be in the mirrors' corner.
+                t = met if random.random() < 0.4 else time_ahead(random, eye, turned, met, axis)
+                corners[index, :, axis] = coordinate(eye, turned, t, axis)
                 table = Rectangles(corners, table.colours, table.enabled)
             table = sharpened(random, table, int(index), eye, turned, mirrors[-1] if mirrors else None)
         yield table, set(chosen.tolist()), camera, slope, mirrors
@@ -711,18 +717,32 @@ def folded(config: Configuration, camera, slope, mirrors) -> dict[str, int]:
 
 
 @by_screen
+def test_ray_tester(config, tmp_path):
+    """A ray now and then; what walks comes a cycle later, and its slope's magnitudes then, or a cycle after that."""
+    check_tester(ray_tester, {}, config, tmp_path)
+
+
+@by_screen
 def test_fold_tester(config, tmp_path):
-    """A ray a cycle; its bounds come a cycle later, and its slope's magnitudes then, or two cycles later."""
-    slope_bits, lead = exact_slope_bits(config), tester.fold_lead(config)
+    """A ray now and then; its bounds come a cycle later, and its slope's magnitudes then, or two cycles later."""
+    if config.reflections:
+        check_tester(fold_tester, {"fold": fold_of(config)}, config, tmp_path)
+
+
+def check_tester(block, ports, config: Configuration, tmp_path) -> None:
+    """Rays with mirrors where there is a port for their fold, and otherwise rays from the camera."""
+    slope_bits, lead = exact_slope_bits(config), tester.fold_lead(config) if ports else 0
+    strobes = ("step_way", "step_bounds", "step_slope")
     leaf = Leaf(
-        fold_tester,
+        block,
         lambda: {
             "clk": bit(),
+            **{strobe: bit() for strobe in strobes},
             "facet": facet_of(config),
             "walk": walk_of(config),
             "signs": Signs(),
             "slope": Slope(slope_bits),
-            "fold": fold_of(config),
+            **{name: port.twin() for name, port in ports.items()},
             "index": unsigned(index_bits(config)),
             "hit": candidate_of(config),
         },
@@ -731,6 +751,8 @@ def test_fold_tester(config, tmp_path):
     random = np.random.default_rng(seed())
     stimulus, expected, seen = [], {}, set()
     for table, chosen, camera, slope, mirrors in beam_rays(random, config, 3000):
+        if bool(mirrors) != bool(ports):
+            continue
         fold = {f"fold_{name}": value for name, value in folded(config, camera, slope, mirrors).items()}
         eye, turned = seen_from(camera, slope, mirrors)
         for index in chosen:
@@ -744,14 +766,17 @@ def test_fold_tester(config, tmp_path):
             }
             if config.patterns:
                 facet["facet_cell"] = int(random.integers(8))
-            ray = {"walk_way_p": word(now["way_p"], walk_bits(config)), **way_q}
-            ray |= {f"signs_d{axis}": int(component < 0) for axis, component in zip(AXES, slope, strict=True)}
-            case_stimulus: list[dict[str, int]] = [{} for _ in range(lead + 3)]
-            case_stimulus[0] |= facet | fold | {"fold_active": int(bool(mirrors))}
-            case_stimulus[lead] |= ray
+            ways = {"walk_way_p": word(now["way_p"], walk_bits(config)), **way_q}
+            # Between its strobes a stage keeps what it has.
+            case_stimulus: list[dict[str, int]] = [dict.fromkeys(strobes, 0) for _ in range(lead + 3)]
+            case_stimulus[0] |= facet | (fold if ports else {})
+            case_stimulus[lead] |= {f"signs_d{axis}": int(part < 0) for axis, part in zip(AXES, slope, strict=True)}
+            case_stimulus[lead if ports else 1] |= ways
             case_stimulus[lead + 1] |= bounds
             case_stimulus[lead + tester.slope_at(config)] |= {f"slope_d{AXES[c]}": abs(int(slope[c])) for c in range(3)}
             case_stimulus[lead + 2] |= {"index": index}
+            for cycle, strobe in enumerate(strobes, lead):
+                case_stimulus[cycle] |= {strobe: 1}
             start = len(stimulus) + lead
             stimulus += case_stimulus
             mirror, met = mirrors[-1] if mirrors else None, met_last(camera, slope, mirrors)
@@ -760,9 +785,9 @@ def test_fold_tester(config, tmp_path):
             seen.add((len(met), hit, at_mirror))
             case = table.corners[index].tolist(), camera, slope, mirrors, repeat()
             expected[start + tester.LATENCY] = facet, hit and bool(facet["facet_usable"]), at_mirror, n, e, index, case
-    outputs = leaf.run_both([*stimulus, {}], settled=lead + tester.LATENCY)
-    # With no mirror, one, and two in one point; a third plane may be there too.
-    assert len(seen) == 2 + 3 * config.reflections
+    outputs = leaf.run_both([*stimulus, dict.fromkeys(strobes, 0)], settled=lead + tester.LATENCY)
+    # With no mirror; with one, and two in one point, where a third plane may be too.
+    assert len(seen) == (3 * config.reflections if ports else 2)
     for cycle, (facet, hit, at_mirror, n, e, index, case) in expected.items():
         output = outputs[cycle]
         assert output["hit_valid"] == hit, case
@@ -815,7 +840,7 @@ def test_ray_fold(config, tmp_path):
     outputs = leaf.run_both(stimulus, settled=folder.LATENCY)
     for cycle, (camera, slope, mirrors) in enumerate(rays):
         expected = {f"fold_{name}": value for name, value in folded(config, camera, slope, mirrors).items()}
-        assert outputs[cycle + folder.LATENCY] == expected | {"fold_active": 1}, (camera, slope, mirrors, repeat())
+        assert outputs[cycle + folder.LATENCY] == expected, (camera, slope, mirrors, repeat())
 
 
 # The nearest ----------------------------------------------------------------------------------------------------------

@@ -266,10 +266,10 @@ def test_rect_slot(options, number, tmp_path):
     place = list(table.words)[len(table.names) * number] // 4
     stimulus = [{**cycle, "number": place} for cycle in table_stimulus(random, table, rectangles)]
     outputs = leaf.run_both(stimulus, settled=2)
-    usable = False
     seen = set()
     for cycle, (inputs, output) in enumerate(zip(stimulus, outputs, strict=True)):
         live, shadow = table.rectangles("live"), table.rectangles("shadow")
+        usable = live.visible[number]
         bad = shadow.enabled[number] and shadow.axes[number] < 0
         if cycle >= 2:
             expected = {"usable": int(usable), "bad": int(bad)}
@@ -277,7 +277,6 @@ def test_rect_slot(options, number, tmp_path):
                 expected |= {f"shadow_{name}": word.shadow, f"live_{name}": word.live}
             assert output == expected, (cycle, repeat())
             seen.add((bool(usable), bool(bad)))
-        usable = live.visible[number]
         table.clock(inputs)
     assert len(seen) == 4
 
@@ -316,7 +315,6 @@ def test_rect_mem(rectangles, options, tmp_path):
             "rects_index": int(random.integers(rectangles)),
         }
     outputs = leaf.run_both(stimulus, settled=3)
-    usable = 0
     # What was asked for, and what is at the port; with a latency of two it is in between for a cycle.
     presented, on_the_way = None, None
     checked = 0
@@ -327,7 +325,7 @@ def test_rect_mem(rectangles, options, tmp_path):
             expected = {
                 "readback": word.shadow if word else 0,
                 "bad_rectangle": int(np.any(shadow.enabled & (shadow.axes < 0))),
-                "rects_usable": usable,
+                "rects_usable": bits_of(live.visible),
             }
             if presented is not None:
                 checked += 1
@@ -340,7 +338,6 @@ def test_rect_mem(rectangles, options, tmp_path):
             on_the_way = sorted_rect(live, inputs["rects_index"], "rects_rect", config) if presentable else None
         if latency == 1:
             presented = on_the_way
-        usable = bits_of(live.visible)
         table.clock(inputs)
     assert checked > 50
 

@@ -109,6 +109,7 @@ FAULTS = {
     "beam": [
         ("rect_setup", "way_p = distance_2 * slope_p_2", "way_p = distance_2 + slope_p_2"),
         ("rect_walker", "way_p <= way_p + growth_way_p", "way_p <= way_p - growth_way_p"),
+        ("ray_tester", "valid = ", "valid = 0 && "),
         ("fold_tester", "valid = ", "valid = 0 && "),
         ("nearest_of_two", "second_product < first_product", "second_product > first_product"),
         ("ray_fold", "doubled = last_distance + last_distance", "doubled = last_distance"),
