@@ -274,6 +274,7 @@ def checks() -> str:
          ("soak-exact", "soak-exact-stiff")),
         ("random and stiff scenes, 640x480", of_beam, _pixels("soak-beam", "soak-beam-stiff"),
          ("soak-beam", "soak-beam-stiff")),
+        ("scenes at 1920x1080, two pixels a clock", of_beam, _shown("sim-beam-1920x1080"), ("sim-beam-1920x1080",)),
         ("every scene built in, full size", of_exact, _shown("sim-exact-fixed"), ("sim-exact-fixed",)),
         ("every scene through the ECP5 netlist, tiny, 16 units", before, _shown("sim-netlist"), ("sim-netlist",)),
         ("the recorded game, full RTL", of_beam, f"{game['frames']} frames, {game['pixels']:,} pixels, {game['wrong']} "

@@ -72,10 +72,11 @@ def test_a_walk_is_judged(engine, turn):
     assert judge.wrong == judge.all_wrong == 1
 
 
-def test_a_camera_looks_around(tmp_path, capsys):
+@pytest.mark.parametrize("pixels", [1, 2])
+def test_a_camera_looks_around(tmp_path, capsys, pixels):
     """To the right, ahead, to the left and ahead again, by the design that the walk has."""
     output = tmp_path / "look"
-    design = ["--engine", "beam", "--screen", "tiny", "--colour-bits", "5"]
+    design = ["--engine", "beam", "--screen", "tiny", "--colour-bits", "5", "--pixels", str(pixels)]
     assert game.main(["mirror_room", "--frames", "4", *design, "--build", str(BUILD), "--output", str(output)]) == 0
     assert "4 frames, 0 pixels unlike exact arithmetic" in capsys.readouterr().out
     right, ahead, left, again = ((output / f"frame_{number:04}.png").read_bytes() for number in range(4))
