@@ -36,8 +36,9 @@ def write_take_home(config: Configuration, modules: Sequence[Module], directory:
     (directory / FILE_LIST).write_text("".join(f"{name}\n" for name in sources))
     (directory / f"{TOP}.sdc").write_text(_constraints(config))
     (directory / f"{TOP}.core").write_text(_core(config, sources))
-    (directory / COMPONENT).write_text(component(config, modules[-1].ports, sources))
-    shutil.copyfile(NIOS_SYSTEM, directory / NIOS_SYSTEM.name)
+    if config.bus == "avalon":
+        (directory / COMPONENT).write_text(component(config, modules[-1].ports, sources))
+        shutil.copyfile(NIOS_SYSTEM, directory / NIOS_SYSTEM.name)
     write_header(config.table, directory / HEADER)
     shutil.copyfile(WAIVERS, directory / f"{TOP}.vlt")
     (directory / BENCHES).mkdir()

@@ -85,7 +85,7 @@ def test_most_options_that_are_drawn_make_a_design():
     """Of each engine, or what is said of them all would be of few."""
     engines = Counter()
 
-    @examples(100)
+    @examples(150)
     @given(options(odd=True))
     def draw(chosen):
         config = made(chosen)
