@@ -341,7 +341,7 @@ def _check_names(block: _Block, ports: Mapping[int, str], memories: list[_MemInf
 
 def _fields_read(block: _Block, children: list[_Block]) -> dict[int, Field]:
     """The fields of records that a block's processes and instances read, by identity."""
-    read = [sub.symdict[name] for sub in block.subs if isinstance(sub, _Instantiator) for name in sub.inputs]
+    read = [sub.symdict[name] for sub in block.subs if isinstance(sub, _Instantiator) for name in sorted(sub.inputs)]
     read += [signal for child in children for signal in child.verilog_code.connections.values()]
     return {id(signal): signal for signal in read if isinstance(signal, Field)}
 

@@ -19,24 +19,82 @@ module smoke_bench #(
     reg clk = 1'b0, reset = 1'b1;
     always #10 clk = ~clk;
 
+    // The bus: a read is asked for while its address stands on it, and its word is there when it is answered.
     reg [ADDRESS_BITS-1:0] address = 0;
     reg read = 1'b0;
     wire [31:0] readdata;
-    wire readdatavalid, waitrequest, irq;
+    wire taken, answered, irq;
+`ifdef BUS_AXI4LITE
+    localparam HOLD = 0;        // whether the request stays until the answer
+    wire arready;
+    assign taken = arready;
+`elsif BUS_WISHBONE
+    localparam HOLD = 1;
+    assign taken = 1'b1;
+`elsif BUS_APB
+    localparam HOLD = 1;
+    reg enable = 1'b0;
+    always @(posedge clk) enable <= read && !answered;
+    wire ready;
+    assign taken = 1'b1, answered = enable && ready;
+`else
+    localparam HOLD = 0;
+    wire waitrequest;
+    assign taken = !waitrequest;
+`endif
     wire [COLOUR_BITS-1:0] vga_r, vga_g, vga_b;
     wire vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_clk;
 
     ray_caster_module dut (
         .clk(clk),
         .reset(reset),
+`ifdef BUS_AXI4LITE
+        .s_axi_awaddr({ADDRESS_BITS+2{1'b0}}),
+        .s_axi_awvalid(1'b0),
+        .s_axi_awready(),
+        .s_axi_wdata(32'b0),
+        .s_axi_wstrb(4'b0),
+        .s_axi_wvalid(1'b0),
+        .s_axi_wready(),
+        .s_axi_bresp(),
+        .s_axi_bvalid(),
+        .s_axi_bready(1'b1),
+        .s_axi_araddr({address, 2'b0}),
+        .s_axi_arvalid(read),
+        .s_axi_arready(arready),
+        .s_axi_rdata(readdata),
+        .s_axi_rresp(),
+        .s_axi_rvalid(answered),
+        .s_axi_rready(1'b1),
+`elsif BUS_WISHBONE
+        .wb_cyc(read),
+        .wb_stb(read),
+        .wb_we(1'b0),
+        .wb_ack(answered),
+        .wb_adr(address),
+        .wb_sel(4'b1111),
+        .wb_dat_w(32'b0),
+        .wb_dat_r(readdata),
+`elsif BUS_APB
+        .s_apb_paddr({address, 2'b0}),
+        .s_apb_psel(read),
+        .s_apb_penable(enable),
+        .s_apb_pwrite(1'b0),
+        .s_apb_pready(ready),
+        .s_apb_pslverr(),
+        .s_apb_pwdata(32'b0),
+        .s_apb_pstrb(4'b0),
+        .s_apb_prdata(readdata),
+`else
         .avs_s0_address(address),
         .avs_s0_read(read),
         .avs_s0_write(1'b0),
         .avs_s0_writedata(32'b0),
         .avs_s0_byteenable(4'b1111),
         .avs_s0_readdata(readdata),
-        .avs_s0_readdatavalid(readdatavalid),
+        .avs_s0_readdatavalid(answered),
         .avs_s0_waitrequest(waitrequest),
+`endif
         .irq(irq),
         .vga_r(vga_r),
         .vga_g(vga_g),
@@ -56,13 +114,15 @@ module smoke_bench #(
                 address = at;
                 read = 1'b1;
             end
-            while (waitrequest) @(negedge clk);
-            @(negedge clk) read = 1'b0;
-            while (readdatavalid !== 1'b1) @(negedge clk);
+            #1;
+            while (!taken) @(negedge clk);
+            if (!HOLD) @(negedge clk) read = 1'b0;
+            while (answered !== 1'b1) @(negedge clk);
             if (readdata !== expected) begin
                 $display("FAIL: address %0d reads %h, expected %h", at, readdata, expected);
                 faults = faults + 1;
             end
+            if (HOLD) @(negedge clk) read = 1'b0;
         end
     endtask
 

@@ -9,6 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from raycaster.configuration import OPTION_NAMES, Configuration
+from raycaster.convert import ip_xact
 from raycaster.convert.hierarchy import Module
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM, component
 from raycaster.register_views import HEADER, write_header
@@ -36,12 +37,16 @@ def write_take_home(config: Configuration, modules: Sequence[Module], directory:
     (directory / FILE_LIST).write_text("".join(f"{name}\n" for name in sources))
     (directory / f"{TOP}.sdc").write_text(_constraints(config))
     (directory / f"{TOP}.core").write_text(_core(config, sources))
-    (directory / COMPONENT).write_text(component(config, modules[-1].ports, sources))
-    shutil.copyfile(NIOS_SYSTEM, directory / NIOS_SYSTEM.name)
+    if config.bus == "avalon":
+        (directory / COMPONENT).write_text(component(config, modules[-1].ports, sources))
+        shutil.copyfile(NIOS_SYSTEM, directory / NIOS_SYSTEM.name)
+    elif config.bus in ip_xact.BUS_TYPES:
+        (directory / ip_xact.IP_XACT).write_text(ip_xact.component(config, modules[-1].ports, sources))
     write_header(config.table, directory / HEADER)
     shutil.copyfile(WAIVERS, directory / f"{TOP}.vlt")
     (directory / BENCHES).mkdir()
-    shutil.copyfile(SMOKE_BENCH, directory / BENCHES / SMOKE_BENCH.name)
+    define = "" if config.bus == "avalon" else f"`define BUS_{config.bus.upper()}\n"
+    (directory / BENCHES / SMOKE_BENCH.name).write_text(define + SMOKE_BENCH.read_text())
     top = directory / f"{TOP}.v"
     top.write_text(top.read_text().replace(f"{config.name}\n", f"{config.name}\n{_description(config)}", 1))
 

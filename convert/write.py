@@ -9,7 +9,7 @@ from pathlib import Path
 
 from myhdl._block import _Block
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import Configuration, need_avalon
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import Module, convert_hierarchy
 from raycaster.convert.inside import state_names
@@ -42,7 +42,12 @@ def write_verilog(config: Configuration, directory: Path) -> list[Path]:
 
 
 def write_system(config: Configuration, scene: Scene, directory: Path) -> list[Path]:
-    """Write `ray_caster_system`, which has no processor, with a scene of no more rectangles than the hardware."""
+    """Write `ray_caster_system`, which has no processor, with a scene of no more rectangles than the hardware.
+
+    Raises:
+        UserError: the configuration has another bus than Avalon-MM.
+    """
+    need_avalon(config, "a system without a processor")
     return _write(config, directory, lambda: ray_caster_system(**system_ports(config), config=config, scene=scene))
 
 
@@ -56,8 +61,9 @@ def write_processor_system(config: Configuration, directory: Path, program: str 
             synthesis where it reads the Verilog.
 
     Raises:
-        UserError: PicoRV32 is not installed.
+        UserError: PicoRV32 is not installed, or the configuration has another bus than Avalon-MM.
     """
+    need_avalon(config, "a system with a processor")
     return _write(
         config, directory, lambda: processor_system(**processor_ports(config), config=config, program=program)
     )

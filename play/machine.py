@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from raycaster.configuration import CHANNEL_BITS, Configuration
+from raycaster.configuration import CHANNEL_BITS, Configuration, need_avalon
 from raycaster.memory_map import BUTTON_NAMES, PROGRAM_FILE, clocks_per_bit
 from raycaster.registers import address_bits
 from raycaster.sim.register_model import LiveScene, SceneFollower
@@ -127,7 +127,12 @@ class MachineSources:
 
 
 def machine_sources(config: Configuration, build: Path = BUILD, *, processor: bool) -> MachineSources:
-    """Convert a design; the arguments are those of `build_machine`."""
+    """Convert a design; the arguments are those of `build_machine`.
+
+    Raises:
+        UserError: the configuration has another bus than Avalon-MM.
+    """
+    need_avalon(config, "the simulated machine")
     files = convert(config, build, system=processor)
     screen = config.screen_geometry
     flags = (

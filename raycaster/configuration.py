@@ -90,6 +90,9 @@ class Configuration:
     patterns: bool | None = Field(
         None, description="rectangles with a pattern of two colours, 1 or 0: 1 where the scene has them"
     )
+    bus: Literal["avalon", "axi4lite", "wishbone", "apb"] = Field(
+        "avalon", description="what the registers are behind: avalon, axi4lite, wishbone or apb"
+    )
     fixed: FixedScene | None = Field(None, description="what of a scene is built in")
 
     @model_validator(mode="after")
@@ -327,10 +330,21 @@ class Configuration:
         # Only what is not the default is told.
         culling = "" if self.fixed or self.culling == self.facts.divides else f"-k{int(self.culling)}"
         looks = "".join(f"-{name}" for name in self.looks)
+        bus = "" if self.bus == "avalon" else f"-{self.bus}"
         return (
             f"{self.engine}-{self.screen}{self.rows}{scale}-u{self.units}-r{self.rectangles}-m{self.reflections}"
-            f"{quotients}-c{self.colour_bits}{culling}{looks}{fixed}"
+            f"{quotients}-c{self.colour_bits}{culling}{looks}{bus}{fixed}"
         )
+
+
+def need_avalon(config: Configuration, what: str) -> None:
+    """Refuse another bus where what drives the registers is part of the design.
+
+    Raises:
+        ConfigurationError: one line that says of what.
+    """
+    if config.bus != "avalon":
+        raise ConfigurationError(f"bus: {what} drives the registers itself, by Avalon-MM; leave out {config.bus}")
 
 
 OPTION_NAMES = tuple(field.name for field in fields(Configuration) if field.name != "fixed")

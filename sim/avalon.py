@@ -1,32 +1,26 @@
 # SPDX-License-Identifier: MIT
-"""The design's registers by name, over cocotb-bus's Avalon-MM master."""
+"""The design's registers over cocotb-bus's Avalon-MM master."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import NextTimeStep, ReadOnly, RisingEdge, Timer
 from cocotb_bus.drivers.avalon import AvalonMaster
 
 from raycaster.configuration import Configuration
-from raycaster.program import basis_fields, rectangle_fields, scene_fields
-from raycaster.registers import Register, register_map
-from raycaster.scene import Basis, Rectangle, Scene
+from raycaster.sim.register_bus import RegisterBus
 
 MAX_WAIT = 4
 """Clocks that waitrequest may last."""
 
 
-class AvalonBus:
-    """Reads and writes registers of a design on a bench whose signals are named `avs_s0_*`.
-
-    Every access returns in a phase in which the next may start at once.
-    """
+class AvalonBus(RegisterBus):
+    """On a bench whose signals are named `avs_s0_*`."""
 
     def __init__(self, bench: HierarchyObject, configuration: Configuration):
-        self.registers: dict[str, Register] = register_map(configuration.table)
-        self._configuration = configuration
+        super().__init__(configuration)
         self._clock = bench.clk
         self._master = AvalonMaster(bench, "avs_s0", bench.clk)
         self._signals = self._master.bus
@@ -51,16 +45,6 @@ class AvalonBus:
         word = await self._master.read(address)
         await NextTimeStep()  # the master returns in the read-only phase
         return int(word)
-
-    async def write(self, name: str, **fields: int) -> None:
-        """Write a register: the named fields, and 0 to the others."""
-        register = self.registers[name]
-        await self.write_word(register.address, register.pack(**fields))
-
-    async def read(self, name: str) -> dict[str, int]:
-        """A register's fields."""
-        register = self.registers[name]
-        return register.unpack(await self.read_word(register.address))
 
     async def read_pipelined(self, addresses: Sequence[int]) -> list[int]:
         """Read words with a new address as soon as the last was accepted, not waiting for the data.
@@ -99,25 +83,3 @@ class AvalonBus:
         if answers is not None and int(self._signals.readdatavalid.value):
             answers.append(int(self._signals.readdata.value))
         return bool(int(self._signals.waitrequest.value))
-
-    async def write_camera(self, position: Sequence[int], basis: Basis | None = None) -> None:
-        """Write the camera's x, y, z to the shadow, and forward, right and up where they are given."""
-        await self.write("camera", **dict(zip("xyz", position, strict=True)))
-        if basis:
-            await self._write_all(basis_fields(basis))
-
-    async def write_rectangle(self, index: int, rectangle: Rectangle) -> None:
-        """Write an enabled rectangle to the shadow."""
-        await self._write_all(rectangle_fields(index, rectangle, self._configuration))
-
-    async def load_scene(self, scene: Scene) -> None:
-        """Write background, camera and rectangles to the shadow, and disable the entries that the scene leaves."""
-        await self._write_all(scene_fields(scene, self._configuration))
-
-    async def _write_all(self, writes: Iterable[tuple[str, dict[str, int]]]) -> None:
-        for name, fields in writes:
-            await self.write(name, **fields)
-
-    async def commit(self, *, run: int = 1, reflections: int) -> None:
-        """Have the shadow shown from the next StartScreen on, with this many reflections."""
-        await self.write("control", run=run, commit=1, reflections=reflections)

@@ -13,7 +13,7 @@ from cocotb.triggers import FallingEdge, RisingEdge
 from raycaster.golden import engines, exact
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.scene import Scene
-from raycaster.sim.avalon import AvalonBus
+from raycaster.sim.buses import BUSES
 from raycaster.sim.job import Job
 from raycaster.sim.monitor import CLOCK_NS, Monitor
 from raycaster.sim.register_model import LiveScene
@@ -78,7 +78,7 @@ class Harness(Viewer):
 
     def __init__(self, bench: HierarchyObject):
         super().__init__(bench)
-        self.bus = AvalonBus(bench, self.configuration)
+        self.bus = BUSES[self.configuration.bus](bench, self.configuration)
 
     async def reset(self) -> None:
         """Reset the design; returns at the first clock edge at which reset is low."""

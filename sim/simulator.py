@@ -109,10 +109,10 @@ class Bench:
         """Its Verilog."""
         return [HERE / f"{module}.v" for module in self.modules]
 
-    @property
-    def defines(self) -> dict[str, int]:
-        """Macros of its Verilog."""
-        return {"WAVE_WINDOW": 1} if self.window else {}
+    def defines(self, configuration: Configuration) -> dict[str, int]:
+        """Macros of its Verilog, for a design."""
+        bus = {} if configuration.bus == "avalon" else {f"BUS_{configuration.bus.upper()}": 1}
+        return bus | ({"WAVE_WINDOW": 1} if self.window else {})
 
     def parameters(self, configuration: Configuration) -> dict[str, int]:
         """Of its Verilog, for a design."""
@@ -284,7 +284,7 @@ def build_model(
     design = verilog if verilog is not None else convert(configuration, build, system=bench.system)
     sources = [*design, *bench.sources]
     parameters = bench.parameters(configuration)
-    defines = {**(defines or {}), **bench.defines}
+    defines = {**(defines or {}), **bench.defines(configuration)}
     # Verilator's main program must know of waveforms for a bench to write one, and Icarus would write all of it.
     built_for_waves = waves or (bench.window and simulator == "verilator")
     wave_format = tool.wave_format if built_for_waves or bench.window else "fst"

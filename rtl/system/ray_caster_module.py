@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""The ray tracer as one Avalon-MM agent with a VGA output: the top of what is generated."""
+"""The ray tracer behind a bus, with a VGA output: the top of what is generated."""
 
 from myhdl import block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.registers import address_bits
+from raycaster.rtl.bus.apb_bridge import apb_bridge
 from raycaster.rtl.bus.avalon_interface import avalon_interface
-from raycaster.rtl.common.interfaces import Picture, Progress, Rects, SceneBus
+from raycaster.rtl.bus.axi4lite_bridge import axi4lite_bridge
+from raycaster.rtl.bus.wishbone_bridge import wishbone_bridge
+from raycaster.rtl.common.interfaces import AvalonPort, Picture, Progress, Rects, SceneBus
 from raycaster.rtl.common.records import camera_of
 from raycaster.rtl.common.ties import tied, unconnected
 from raycaster.rtl.common.widths import WORD_BITS, bit, unsigned
@@ -16,14 +20,15 @@ from raycaster.rtl.scene.rect_rom import rect_rom
 
 
 @block
-def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration):
+def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi=None, wb=None, s_apb=None):
     """Registers, scene memories and renderer in one clock domain, screen.clock_hz; reset is synchronous, active high.
 
-    The bus counts 32-bit words. The interrupt is a level. Video data changes at the falling edge of vga_clk, a pixel's.
+    The bus is avs_s0, s_axi, wb or s_apb, by config.bus; the others are None. avs_s0 and wb count 32-bit words, s_axi
+    and s_apb bytes. The interrupt is a level. Video data changes at the falling edge of vga_clk, a pixel's.
     What config.fixed holds is built in: it has no memory, and writes to its registers do nothing.
     """
     fixed = config.fixed
-    bus = SceneBus(len(avs_s0.address))
+    bus = SceneBus(address_bits(config.table))
     picture, camera, rects, progress = Picture(), camera_of(config), Rects(config), Progress()
     camera_readback, rect_readback = unsigned(WORD_BITS), unsigned(WORD_BITS)
     bad_rectangle = bit()
@@ -43,6 +48,14 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration):
             setattr(bus, name, unconnected(signal))
     else:
         position = camera_mem(clk, reset, bus, camera_readback, camera, config)
+    if config.bus != "avalon":
+        avs_s0 = AvalonPort(len(bus.address))
+    if config.bus == "axi4lite":
+        bridge = axi4lite_bridge(clk, reset, s_axi=s_axi, avm_m0=avs_s0)
+    elif config.bus == "wishbone":
+        bridge = wishbone_bridge(clk, reset, wb=wb, avm_m0=avs_s0)
+    elif config.bus == "apb":
+        bridge = apb_bridge(clk, reset, s_apb=s_apb, avm_m0=avs_s0)
     registers = avalon_interface(
         clk, reset, avs_s0=avs_s0, irq=irq, bus=bus, camera_readback=camera_readback, rect_readback=rect_readback,
         bad_rectangle=bad_rectangle, picture=picture, progress=progress, config=config,

@@ -6,8 +6,8 @@
 // the solver and then stays, so that what holds for it holds for every address.
 
 module avalon_agent #(
-    parameter ADDRESS_BITS = 5, parameter [31:0] ENGINE_WORD = 0, parameter [31:0] SIZE_WORD = 0,
-    parameter REFLECTIONS = 1
+    parameter ADDRESS_BITS = 5, parameter [31:0] VERSION_WORD = 0, parameter [31:0] ENGINE_WORD = 0,
+    parameter [31:0] SIZE_WORD = 0, parameter REFLECTIONS = 1
 ) (
     input clk, input reset,
     input [ADDRESS_BITS-1:0] address, input read, input write, input [31:0] writedata, input [3:0] byteenable,
@@ -137,7 +137,7 @@ reg read_1, read_2, watched_1, watched_2;
 reg [31:0] shadow_1, expected_1, expected_2;
 always @* case (watched)
     ID: expected_1 = 32'h52415943;
-    VERSION: expected_1 = 3;
+    VERSION: expected_1 = VERSION_WORD;
     ENGINE: expected_1 = ENGINE_WORD;
     SIZE: expected_1 = SIZE_WORD;
     CONTROL: expected_1 = shadow_1 | (outstanding << 1);
@@ -160,6 +160,11 @@ always @* if (known && !last_reset) begin
     if (readdatavalid && watched_2) assert (readdata == expected_2);
 end
 always @* if (known && last_reset) assert (!readdatavalid);
+
+// An answer stays on the bus until the next one, which a host may rely on.
+reg [31:0] last_readdata;
+always @(posedge clk) last_readdata <= readdata;
+always @* if (known && !last_reset && !readdatavalid) assert (readdata == last_readdata);
 
 // What the renderer gets is the live word, which changes at StartScreen only.
 (* hierconn *) wire [31:0] \registers.live_control , \registers.live_background , \camera.lives_0 ,

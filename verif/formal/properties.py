@@ -22,7 +22,7 @@ from raycaster.rtl.common.widths import (
 )
 from raycaster.scene import Camera, Rectangle, Scene
 from raycaster.screens import Screen, Span
-from raycaster.verif.formal.prover import FixedTable, FoldWidths, HostWidths, Property, TesterWidths
+from raycaster.verif.formal.prover import BridgeWidths, FixedTable, FoldWidths, HostWidths, Property, TesterWidths
 
 TOY_SCREEN = Screen(3, 2, 1, 3, Span(9, 1, 2, 1, active_high=True), Span(6, 1, 1, 3, active_high=True))
 """Tripled pixels, and a frame short enough to be walked through whole."""
@@ -75,6 +75,7 @@ def _avalon(config: Configuration, small: bool) -> Property:
         ("avalon_interface", "camera_mem", "rect_mem", "rect_slot", "rect_sorter", "scene_word"),
         {
             "ADDRESS_BITS": address_bits(config.table),
+            "VERSION_WORD": register_map(config.table)["version"].reset,
             "ENGINE_WORD": engine_word(config),
             "SIZE_WORD": size_word(config),
             "REFLECTIONS": config.reflections,
@@ -96,6 +97,30 @@ def _host(address_bits: int, most_wait: int, most_latency: int, small: bool) -> 
         {"ADDRESS_BITS": address_bits, "MOST_WAIT": most_wait, "MOST_LATENCY": most_latency},
         induction=1,
         reach=2 * most_wait + most_latency + 5,
+        small=small,
+    )
+
+
+BRIDGES = {
+    "axi4lite": "a write and a read at a time are one transfer each, answered once, in time and held until taken",
+    "wishbone": "each access is one transfer, acknowledged once, in time; a read given up disturbs no other",
+    "apb": "each access is one transfer, held still while it waits, and ready once, in time",
+}
+"""What is claimed of the bridge from each bus."""
+
+
+def _bridge(bus: str, address_bits: int, most_wait: int, most_latency: int, small: bool) -> Property:
+    """In front of an agent that makes wait, and takes for an answer, at most so many cycles."""
+    return Property(
+        f"{bus}-transfers",
+        BRIDGES[bus],
+        BridgeWidths(bus, address_bits),
+        f"{address_bits} bits, {most_wait} and {most_latency} cycles",
+        (f"{bus}_bridge",),
+        {"ADDRESS_BITS": address_bits, "MOST_WAIT": most_wait, "MOST_LATENCY": most_latency},
+        # AXI's two directions wait for each other, and only their bounds say how long.
+        induction=2 * most_wait + most_latency + 5 if bus == "axi4lite" else 2,
+        reach=3 * (most_wait + most_latency) + 8,
         small=small,
     )
 
@@ -320,6 +345,11 @@ PROPERTIES: list[Property] = [
     _avalon(_one_unit(rectangles=2, reflections=2, rounding="nearest", fraction_bits=4, rows=200), small=False),
     _host(address_bits(DEFAULT.table), 1, 2, small=True),
     _host(address_bits(MOST_RECTANGLES), 9, 7, small=False),
+    *(
+        _bridge(bus, address_bits(rectangles), wait, latency, small)
+        for bus in BRIDGES
+        for rectangles, wait, latency, small in ((DEFAULT.table, 1, 2, True), (MOST_RECTANGLES, 3, 4, False))
+    ),
     *(
         _order(
             _ray_control(rectangles, reflections, steps, culling),

@@ -25,9 +25,11 @@ from raycaster.rtl.bus.avalon_host import avalon_host
 from raycaster.rtl.common.interfaces import Access, AvalonPort, Direction, Eye, Rects, Scan, SceneBus, Slope, Steps, Vga
 from raycaster.rtl.common.records import Candidate, Facet, Fold, Mirror, Pixel, Rect, Reflector, Signs, Walk
 from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, unsigned
+from raycaster.rtl.engine.engines import block_named
 from raycaster.rtl.exact.rect_tester import rect_tester
 from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.rtl.scene.rect_rom import rect_rom
+from raycaster.rtl.system.ports import BUS_PORTS
 from raycaster.rtl.video.video_generator import video_generator
 from raycaster.screens import Screen
 from raycaster.tools import TIMEOUT, find_program, run_program, run_yosys
@@ -93,7 +95,15 @@ class HostWidths:
     address: int
 
 
-Design = Configuration | Screen | TesterWidths | FoldWidths | FixedTable | HostWidths
+@dataclass(frozen=True)
+class BridgeWidths:
+    """The bridge from a bus, by its name in a configuration, alone."""
+
+    bus: str
+    address: int
+
+
+Design = Configuration | Screen | TesterWidths | FoldWidths | FixedTable | HostWidths | BridgeWidths
 
 
 @dataclass(frozen=True)
@@ -104,7 +114,7 @@ class Property:
         name: of the claim, and of its wrapper `<name>.v` with dashes for underscores.
         claim: in a few words.
         design: the configuration whose Verilog is read; a screen, for the video generator alone; widths, for a
-            rectangle test or the processor's host alone; or the two places that rectangles may come from.
+            rectangle test, the processor's host or a bridge alone; or the two places that rectangles may come from.
         label: the design in a few characters.
         modules: the generated modules that are part of the proof.
         cut: of these, those whose outputs become arbitrary.
@@ -221,7 +231,7 @@ def _verilog(design: Design) -> dict[str, str]:
             directory.mkdir()
             converters = {
                 TesterWidths: _convert_rect_tester, FoldWidths: _convert_fold, Screen: _convert_video_generator,
-                FixedTable: _convert_tables, HostWidths: _convert_host,
+                FixedTable: _convert_tables, HostWidths: _convert_host, BridgeWidths: _convert_bridge,
             }  # fmt: skip
             converters[type(design)](design, directory)
         return {path.name: path.read_text() for path in directory.glob("*.v")}
@@ -280,6 +290,14 @@ def _convert_host(widths: HostWidths, directory: Path) -> None:
             bit(), reset_signal(), access=Access(), strobe=unsigned(LANES), address=unsigned(widths.address),
             data=unsigned(WORD_BITS), avm_m0=AvalonPort(widths.address),
         )  # fmt: skip
+    convert_hierarchy(top, directory, "// {module}")
+
+
+def _convert_bridge(widths: BridgeWidths, directory: Path) -> None:
+    name, interface = BUS_PORTS[widths.bus]
+    bridge = block_named(f"bus.{widths.bus}_bridge")
+    with elaboration():
+        top = bridge(bit(), reset_signal(), avm_m0=AvalonPort(widths.address), **{name: interface(widths.address)})
     convert_hierarchy(top, directory, "// {module}")
 
 

@@ -82,10 +82,12 @@ ANY_OPTIONS = {
     "colour_bits": st.integers(1, 8),
     "materials": st.booleans(),
     "patterns": st.booleans(),
+    "bus": st.sampled_from(["avalon", "axi4lite", "wishbone", "apb"]),
 }
 ODD = {
     "engine": "none", "units": 7, "rectangles": 33, "reflections": -1, "rows": 100, "scale": 6, "fraction_bits": 9,
     "rounding": "up", "divider_bits": 4, "colour_bits": "x", "screen": "cinema", "culling": 2, "colour": 8,
+    "bus": "pci",
 }  # fmt: skip
 """Of each option something that no engine takes, and one that is none."""
 

@@ -25,6 +25,9 @@ TIMING = chosen("video-timing", "tiny48")
 PAIRS = chosen("video-timing", "beam 1080, 2 pixels")
 AGENT = chosen("avalon-agent", "vga240-u1-r2-m1-f0t-d3-c8")
 HOST = chosen("host-transfers", "6 bits, 1 and 2 cycles")
+AXI4LITE, WISHBONE, APB = (
+    chosen(f"{bus}-transfers", "6 bits, 1 and 2 cycles") for bus in ("axi4lite", "wishbone", "apb")
+)
 ORDER = chosen("ray-order", "tiny48-u2-r2-m1-f0t-d3-c8")
 EARLY_OUT = chosen("ray-order", "tiny48-u2-r2-m1-f3t-d3-c8")
 NO_EARLY_OUT = chosen("ray-order", "tiny48-u2-r2-m1-f3t-d3-c8-k0")
@@ -62,6 +65,33 @@ FAULTS = {
                     "if (progress_underrun && !bus_write) begin"),
     "irq-not-enabled": (AGENT, "avalon_interface", "assign irq = irq_pending && irq_enable;",
                         "assign irq = irq_pending;"),
+    "answer-not-kept": (AGENT, "avalon_interface", "if (reading) begin", "if (!avs_s0_write) begin"),
+    "axi-write-twice": (AXI4LITE, "axi4lite_bridge", "&& !write_taken", ""),
+    "axi-written-without-data": (AXI4LITE, "axi4lite_bridge", "s_axi_awvalid && s_axi_wvalid", "s_axi_awvalid"),
+    "axi-response-dropped": (AXI4LITE, "axi4lite_bridge", "else if (s_axi_bready) begin", "else begin"),
+    "axi-two-responses": (AXI4LITE, "axi4lite_bridge", "&& (s_axi_bready || !responding)", ""),
+    "axi-taken-while-it-waits": (AXI4LITE, "axi4lite_bridge", "write_taken <= writing && !avm_m0_waitrequest;",
+                                 "write_taken <= writing;"),
+    "axi-written-elsewhere": (AXI4LITE, "axi4lite_bridge", "if (writing) begin", "if (s_axi_awvalid) begin"),
+    "axi-answer-dropped": (AXI4LITE, "axi4lite_bridge", "answer_kept <= answered && !s_axi_rready;",
+                           "answer_kept <= 1'b0;"),
+    "axi-read-over-an-answer": (AXI4LITE, "axi4lite_bridge", "&& !answer_kept", ""),
+    "axi-read-overtaken": (AXI4LITE, "axi4lite_bridge", "&& !read_waits", ""),
+    "axi-read-never": (AXI4LITE, "axi4lite_bridge", "reading <= 1'b0;", "reading <= 1'b1;"),
+    "wishbone-another's-answer": (WISHBONE, "wishbone_bridge", "selected && still_wanted && avm", "selected && avm"),
+    "wishbone-read-overtaken": (WISHBONE, "wishbone_bridge", "selected && wb_we && !reading;", "selected && wb_we;"),
+    "wishbone-read-again": (WISHBONE, "wishbone_bridge", "selected && !wb_we && !reading;", "selected && !wb_we;"),
+    "wishbone-write-not-awaited": (WISHBONE, "wishbone_bridge", "selected && wb_we && !avm_m0_waitrequest;",
+                                   "selected && wb_we;"),
+    "wishbone-outside-a-cycle": (WISHBONE, "wishbone_bridge", "selected = wb_cyc && wb_stb;", "selected = wb_stb;"),
+    "apb-written-in-setup": (APB, "apb_bridge", "s_apb_psel && s_apb_penable && s_apb_pwrite",
+                             "s_apb_psel && s_apb_pwrite"),
+    "apb-read-again": (APB, "apb_bridge", "s_apb_psel && !s_apb_pwrite && !reading;", "s_apb_psel && !s_apb_pwrite;"),
+    "apb-write-not-awaited": (APB, "apb_bridge", "s_apb_pready = s_apb_pwrite && !avm_m0_waitrequest;",
+                              "s_apb_pready = s_apb_pwrite;"),
+    "apb-read-not-followed": (APB, "apb_bridge", "!s_apb_pwrite && !avm_m0_waitrequest;\n        end",
+                              "!s_apb_pwrite;\n        end"),
+    "apb-error": (APB, "apb_bridge", "s_apb_pslverr = 1'b0;", "s_apb_pslverr = reading && avm_m0_waitrequest;"),
     "read-again": (HOST, "avalon_host", "avm_m0_read = reading && !waiting;", "avm_m0_read = reading;"),
     "write-not-awaited": (HOST, "avalon_host", "ready = !avm_m0_waitrequest;", "ready = 1'b1;"),
     "read-not-followed": (HOST, "avalon_host", "waiting <= reading && !avm_m0_waitrequest;", "waiting <= reading;"),
@@ -134,6 +164,9 @@ FAULTS = {
         PAIRS,
         AGENT,
         HOST,
+        AXI4LITE,
+        WISHBONE,
+        APB,
         ORDER,
         EARLY_OUT,
         NO_EARLY_OUT,

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from itertools import product
 
 import pytest
 from conftest import SMALL_SCENE
 
 from raycaster.configuration import configure
-from raycaster.convert.write import write_processor_system, write_system
+from raycaster.convert.write import write_processor_system, write_system, write_verilog
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.rtl.common.interfaces import SceneBus
@@ -200,6 +201,8 @@ def test_every_module_is_mutated(tmp_path):
         config = configure(engine=engine, units=1, rectangles=5, reflections=2, allow_underrun=True, **looks)
         files += write_system(config, scene, tmp_path / config.name)
     files += write_processor_system(config, tmp_path / "processor")
+    for bus in ("axi4lite", "wishbone", "apb"):
+        files += write_verilog(replace(config, bus=bus), tmp_path / bus)
     known = expectations()
     # The system's scene is fixed when it is generated, so its leaf test cannot vary what goes over its wires. With a
     # processor they are what a program makes of them, PicoRV32 is given, and the memory reads a file as it starts. Of

@@ -9,6 +9,7 @@ import re
 import shutil
 import subprocess
 import sysconfig
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -20,6 +21,7 @@ from raycaster.convert.write import write_verilog
 from raycaster.fit.fixing import fix
 from raycaster.sim.simulator import find_tool
 
+BUSES = ("axi4lite", "wishbone", "apb")
 CONFIGURATIONS = [
     configure(),
     configure(
@@ -38,6 +40,7 @@ CONFIGURATIONS = [
     configure(engine="beam", rows=180, scale=6, pixels=2),
     configure(engine="beam", screen="tiny", rectangles=2, turn=True, materials=True, patterns=True, pixels=2),
     configure(engine="beam", screen="tiny", reflections=2, rectangles=2, turn=True, materials=True, patterns=True),
+    *(configure(engine="exact", screen="tiny", rectangles=2, bus=bus) for bus in BUSES),
     fix(SMALL_SCENE, {"screen": "tiny"}, "rects").design.configuration,
     *(fix(SMALL_SCENE, {"engine": engine}, "all").design.configuration for engine in ("seed", "exact", "beam")),
 ]
@@ -122,6 +125,14 @@ def fusesoc(folder: Path, *target: str) -> subprocess.CompletedProcess[str]:
 @pytest.mark.parametrize("tool", ["icarus", "verilator"])
 def test_fusesoc_simulates(core, tool):
     done = fusesoc(core, "sim", "--tool", tool)
+    assert done.returncode == 0, done.stderr
+    assert "PASS: " in done.stdout
+
+
+@pytest.mark.parametrize("bus", BUSES)
+def test_fusesoc_simulates_each_bus(bus, tmp_path):
+    write_verilog(replace(SMALL, bus=bus), tmp_path / "cores" / "verilog")
+    done = fusesoc(tmp_path, "sim")
     assert done.returncode == 0, done.stderr
     assert "PASS: " in done.stdout
 

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+"""From APB to an Avalon-MM agent."""
+
+from myhdl import always_comb, always_seq, block, instances
+
+from raycaster.rtl.common.widths import bit
+
+
+@block
+def apb_bridge(clk, reset, s_apb, avm_m0):
+    """APB4 completer, Avalon-MM host: each access is one transfer, and never an error.
+
+    A write goes to the agent in its access phase, and is ready when the agent takes it: without a wait state where
+    waitrequest is low. A read goes there in its setup phase already, and is ready as the agent answers it: one wait
+    state with an agent that takes two cycles. The agent ignores byteenable for reads.
+    """
+    reading = bit()
+
+    @always_comb
+    def request():
+        avm_m0.write.next = s_apb.psel and s_apb.penable and s_apb.pwrite
+        avm_m0.read.next = s_apb.psel and not s_apb.pwrite and not reading
+        avm_m0.address.next = s_apb.paddr[:2]
+        avm_m0.writedata.next = s_apb.pwdata
+        avm_m0.byteenable.next = s_apb.pstrb
+
+    # reading: a read was taken and is not answered.
+    @always_seq(clk.posedge, reset=reset)
+    def follow():
+        if reading:
+            reading.next = not avm_m0.readdatavalid
+        else:
+            reading.next = s_apb.psel and not s_apb.pwrite and not avm_m0.waitrequest
+
+    @always_comb
+    def answer():
+        s_apb.pready.next = s_apb.pwrite and not avm_m0.waitrequest
+        if reading:
+            s_apb.pready.next = avm_m0.readdatavalid
+        s_apb.prdata.next = avm_m0.readdata
+        s_apb.pslverr.next = False
+
+    return instances()

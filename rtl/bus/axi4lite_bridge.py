@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: MIT
+"""From AXI4-Lite to an Avalon-MM agent."""
+
+from myhdl import always_comb, always_seq, block, instances
+
+from raycaster.rtl.common.widths import bit
+
+
+@block
+def axi4lite_bridge(clk, reset, s_axi, avm_m0):
+    """AXI4-Lite subordinate, Avalon-MM host: a write and a read at a time, in either order, each answered with OKAY.
+
+    A write reaches the agent once its address and its data are there, and before a read that comes with it; its
+    response comes two cycles later. A read's data comes with the agent's answer, two cycles after its address with an
+    agent of that latency; a write may go between. A cycle of waitrequest takes one more. No output depends on an input
+    of the same cycle. The agent answers after two cycles or more, and keeps readdata until it answers again; it ignores
+    byteenable for reads, where that is don't care.
+    """
+    writing, write_taken, responding = bit(), bit(), bit()
+    asking, read_taken, reading, read_waits, answered, answer_kept = (bit() for _ in range(6))
+
+    # A read that waits for the agent holds still until it is taken.
+    @always_comb
+    def choose_write():
+        writing.next = (
+            s_axi.awvalid and s_axi.wvalid and not write_taken and not read_waits and (s_axi.bready or not responding)
+        )
+
+    @always_comb
+    def choose_read():
+        asking.next = s_axi.arvalid and not writing and not reading and not answer_kept
+
+    @always_comb
+    def request():
+        avm_m0.write.next = writing
+        avm_m0.read.next = asking
+        avm_m0.writedata.next = s_axi.wdata
+        avm_m0.byteenable.next = s_axi.wstrb
+        avm_m0.address.next = s_axi.araddr[:2]
+        if writing:
+            avm_m0.address.next = s_axi.awaddr[:2]
+
+    # Address and data are taken in the cycle after the agent took them.
+    @always_seq(clk.posedge, reset=reset)
+    def follow_write():
+        write_taken.next = writing and not avm_m0.waitrequest
+        if write_taken:
+            responding.next = True
+        elif s_axi.bready:
+            responding.next = False
+
+    @always_seq(clk.posedge, reset=reset)
+    def follow_read():
+        read_taken.next = asking and not avm_m0.waitrequest
+        read_waits.next = asking and avm_m0.waitrequest
+        if asking and not avm_m0.waitrequest:
+            reading.next = True
+        elif avm_m0.readdatavalid:
+            reading.next = False
+        answer_kept.next = answered and not s_axi.rready
+
+    @always_comb
+    def find_answer():
+        answered.next = avm_m0.readdatavalid or answer_kept
+
+    @always_comb
+    def answer():
+        s_axi.awready.next = write_taken
+        s_axi.wready.next = write_taken
+        s_axi.bvalid.next = responding
+        s_axi.bresp.next = 0
+        s_axi.arready.next = read_taken
+        s_axi.rvalid.next = answered
+        s_axi.rdata.next = avm_m0.readdata
+        s_axi.rresp.next = 0
+
+    return instances()

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: MIT
+"""From Wishbone to an Avalon-MM agent."""
+
+from myhdl import always, always_comb, always_seq, block, instances
+
+from raycaster.rtl.common.widths import bit
+
+
+@block
+def wishbone_bridge(clk, reset, wb, avm_m0):
+    """Wishbone B4 slave for classic cycles, Avalon-MM host: each access is one transfer, and acknowledged once.
+
+    A write is acknowledged in the cycle in which the agent takes it, its first where waitrequest is low; a read as the
+    agent answers it, two cycles after its first with an agent of that latency. Only an access that is there is
+    acknowledged, so a master may give up a read: its answer goes to nobody, and the next access waits for it. The agent
+    ignores byteenable for reads.
+    """
+    selected, reading, still_wanted = bit(), bit(), bit()
+
+    @always_comb
+    def select():
+        selected.next = wb.cyc and wb.stb
+
+    @always_comb
+    def request():
+        avm_m0.write.next = selected and wb.we and not reading
+        avm_m0.read.next = selected and not wb.we and not reading
+        avm_m0.address.next = wb.adr
+        avm_m0.writedata.next = wb.dat_w
+        avm_m0.byteenable.next = wb.sel
+
+    # reading: a read was taken and is not answered.
+    @always_seq(clk.posedge, reset=reset)
+    def follow():
+        if reading:
+            reading.next = not avm_m0.readdatavalid
+        else:
+            reading.next = selected and not wb.we and not avm_m0.waitrequest
+
+    # The access that the read was for has not ended; don't care unless reading.
+    @always(clk.posedge)
+    def follow_master():
+        still_wanted.next = selected and (still_wanted or not reading)
+
+    @always_comb
+    def answer():
+        wb.dat_r.next = avm_m0.readdata
+        if reading:
+            wb.ack.next = selected and still_wanted and avm_m0.readdatavalid
+        else:
+            wb.ack.next = selected and wb.we and not avm_m0.waitrequest
+
+    return instances()

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+"""The design's registers by name, over whichever bus it has."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Sequence
+
+from raycaster.configuration import Configuration
+from raycaster.program import basis_fields, rectangle_fields, scene_fields
+from raycaster.registers import Register, address_bits, register_map
+from raycaster.scene import Basis, Rectangle, Scene
+
+
+class RegisterBus(ABC):
+    """Reads and writes registers of a design; every access returns in a phase in which the next may start at once."""
+
+    def __init__(self, configuration: Configuration):
+        self.registers: dict[str, Register] = register_map(configuration.table)
+        self.address_bits = address_bits(configuration.table)
+        self._configuration = configuration
+
+    @abstractmethod
+    async def write_word(self, address: int, word: int, byteenable: int = 0b1111) -> None:
+        """Write the enabled bytes of a word; `address` counts words."""
+
+    @abstractmethod
+    async def read_word(self, address: int) -> int:
+        """Read a word; `address` counts words."""
+
+    async def write(self, name: str, **fields: int) -> None:
+        """Write a register: the named fields, and 0 to the others."""
+        register = self.registers[name]
+        await self.write_word(register.address, register.pack(**fields))
+
+    async def read(self, name: str) -> dict[str, int]:
+        """A register's fields."""
+        register = self.registers[name]
+        return register.unpack(await self.read_word(register.address))
+
+    async def write_camera(self, position: Sequence[int], basis: Basis | None = None) -> None:
+        """Write the camera's x, y, z to the shadow, and forward, right and up where they are given."""
+        await self.write("camera", **dict(zip("xyz", position, strict=True)))
+        if basis:
+            await self._write_all(basis_fields(basis))
+
+    async def write_rectangle(self, index: int, rectangle: Rectangle) -> None:
+        """Write an enabled rectangle to the shadow."""
+        await self._write_all(rectangle_fields(index, rectangle, self._configuration))
+
+    async def load_scene(self, scene: Scene) -> None:
+        """Write background, camera and rectangles to the shadow, and disable the entries that the scene leaves."""
+        await self._write_all(scene_fields(scene, self._configuration))
+
+    async def _write_all(self, writes: Iterable[tuple[str, dict[str, int]]]) -> None:
+        for name, fields in writes:
+            await self.write(name, **fields)
+
+    async def commit(self, *, run: int = 1, reflections: int) -> None:
+        """Have the shadow shown from the next StartScreen on, with this many reflections."""
+        await self.write("control", run=run, commit=1, reflections=reflections)

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: MIT
+"""The whole design behind each bus: others' drivers write and read its registers, and it draws."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from conftest import BUILD, SMALL_SCENE, Bench
+
+from raycaster.configuration import configure
+from raycaster.sim.simulator import SIMULATORS, SimulationError, convert
+from raycaster.verif.seeds import seed
+
+BUSES = ("axi4lite", "wishbone", "apb")
+
+
+def small(bus: str):
+    return configure(screen="tiny", units=8, rectangles=3, bus=bus)
+
+
+@pytest.mark.parametrize("simulator", SIMULATORS)
+@pytest.mark.parametrize("bus", BUSES)
+def test_bus(bench: Bench, bus, simulator):
+    """Random words with back-pressure, a frame, and the cycles of an access; in Icarus registers start unknown."""
+    first = seed()
+    bench("verif.benches.bus_bench", small(bus), simulator, SMALL_SCENE, seeds=(first, first + 1, first + 2))
+
+
+@pytest.mark.parametrize("start", [1, 2])
+@pytest.mark.parametrize("bus", BUSES)
+def test_random_start(bench: Bench, bus, start):
+    """Registers start with random values, and nothing of them is seen after reset."""
+    values = ("+verilator+rand+reset+2", f"+verilator+seed+{start}")
+    bench("sim.frame_bench", small(bus), "verilator", SMALL_SCENE, plusargs=values)
+
+
+@pytest.mark.parametrize(
+    ("bus", "right", "wrong", "complaint"),
+    [
+        ("axi4lite", "avm_m0_byteenable = s_axi_wstrb;", "avm_m0_byteenable = 15;", "reads 0x"),
+        ("axi4lite", "s_axi_bresp = 0;", "s_axi_bresp = 2;", "got the response"),
+        ("wishbone", "avm_m0_byteenable = wb_sel;", "avm_m0_byteenable = 15;", "reads 0x"),
+        ("wishbone", "avm_m0_address = wb_adr;", "avm_m0_address = wb_adr | 1;", "reads 0x"),
+        ("apb", "avm_m0_byteenable = s_apb_pstrb;", "avm_m0_byteenable = 15;", "reads 0x"),
+        ("apb", "s_apb_paddr[", "s_apb_pwdata[", "reads 0x"),
+    ],
+)
+def test_a_fault_is_noticed(bench: Bench, tmp_path: Path, bus, right, wrong, complaint):
+    files = []
+    for source in convert(small(bus), BUILD):
+        text = source.read_text()
+        if source.stem == f"{bus}_bridge":
+            assert text.count(right) == 1
+            text = text.replace(right, wrong)
+        files.append(tmp_path / source.name)
+        files[-1].write_text(text)
+    with pytest.raises(SimulationError, match=complaint):
+        bench("verif.benches.bus_bench", small(bus), "icarus", SMALL_SCENE, seeds=(seed(),), verilog=files)

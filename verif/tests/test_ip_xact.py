@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: MIT
+"""The IP-XACT component, read back by others' readers and held against the register map and the Verilog."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from ipyxact.ipyxact import Component
+from peakrdl_ipxact import IPXACTImporter
+from systemrdl import RDLCompiler
+from systemrdl.node import RegNode
+
+from raycaster.configuration import Configuration, configure
+from raycaster.convert.ip_xact import IP_XACT, SPIRIT
+from raycaster.convert.take_home import FILE_LIST, TOP
+from raycaster.convert.write import write_verilog
+from raycaster.registers import address_bits, register_map
+
+BUS_PORTS = {
+    "axi4lite": "AWADDR AWVALID AWREADY WDATA WSTRB WVALID WREADY BRESP BVALID BREADY "
+    "ARADDR ARVALID ARREADY RDATA RRESP RVALID RREADY",
+    "apb": "PADDR PSEL PENABLE PWRITE PREADY PSLVERR PWDATA PSTRB PRDATA",
+}
+"""From the buses' specifications, without protection types."""
+
+
+def small(bus: str) -> Configuration:
+    return configure(screen="tiny", units=2, rectangles=3, allow_underrun=True, bus=bus)
+
+
+@pytest.fixture(params=BUS_PORTS)
+def written(request, tmp_path) -> tuple[str, Path]:
+    write_verilog(small(request.param), tmp_path / "verilog")
+    return request.param, tmp_path / "verilog"
+
+
+def read(directory: Path) -> Component:
+    component = Component()
+    component.load(str(directory / IP_XACT))
+    return component
+
+
+def verilog_ports(directory: Path) -> dict[str, tuple[str, int]]:
+    """Direction and width of each port of the top."""
+    found = re.findall(
+        r"^    (input|output) +(?:wire|reg) +(?:\[(\d+):0\] +)?(\w+),?$", (directory / f"{TOP}.v").read_text(), re.M
+    )
+    assert found
+    return {name: (direction.removesuffix("put"), int(left or 0) + 1) for direction, left, name in found}
+
+
+def test_registers(written):
+    """Offsets, and the bits and access of each field."""
+    bus, directory = written
+    compiler = RDLCompiler()
+    IPXACTImporter(compiler).import_file(str(directory / IP_XACT))
+    found = {}
+    for node in compiler.elaborate().descendants():
+        if isinstance(node, RegNode):
+            fields = {field.inst_name: (field.low, field.width) for field in node.fields()}
+            found[node.inst_name] = node.address_offset, fields
+    config = small(bus)
+    expected = {
+        re.sub(r"\[(\d+)\]\.", r"_\1_", name): (
+            4 * register.address,
+            {field: (place.lsb, place.width) for field, place in register.fields.items()},
+        )
+        for name, register in register_map(config.table).items()
+    }
+    assert found == expected
+    text = (directory / IP_XACT).read_text()
+    assert f"<spirit:range>{4 << address_bits(config.table):#x}</spirit:range>" in text
+    pending = text[text.index("<spirit:name>irq_pending<") :]
+    assert "<spirit:modifiedWriteValue>oneToClear<" in pending[: pending.index("</spirit:register>")]
+
+
+def test_ports_and_interfaces(written):
+    """Each port of the Verilog is there as it is, and but for the picture belongs to one interface."""
+    bus, directory = written
+    component, ports = read(directory), verilog_ports(directory)
+    said = {}
+    for port in ElementTree.parse(directory / IP_XACT).iter(f"{{{SPIRIT}}}port"):
+        texts = {element.tag.partition("}")[2]: element.text for element in port.iter()}
+        said[texts["name"]] = texts["direction"], int(texts.get("left", 0)) - int(texts.get("right", 0)) + 1
+    assert said == ports
+    mapped = {
+        interface.name: {one.logicalPort.name: one.physicalPort.name for one in interface.portMaps.portMap}
+        for interface in component.busInterfaces.busInterface
+    }
+    name = {"axi4lite": "S_AXI", "apb": "S_APB"}[bus]
+    assert set(mapped) == {name, "clk", "reset", "irq"}
+    assert mapped[name] == {one: f"{name}_{one}".lower() for one in BUS_PORTS[bus].split()}
+    owned = [physical for one in mapped.values() for physical in one.values()]
+    assert sorted(owned) == sorted(port for port in ports if not port.startswith("vga_"))
+
+
+def test_files(written):
+    _, directory = written
+    files = [file.name for one in read(directory).fileSets.fileSet for file in one.file]
+    assert files == (directory / FILE_LIST).read_text().split()
+
+
+def test_other_buses_have_none(tmp_path):
+    for bus in ("avalon", "wishbone"):
+        write_verilog(small(bus), tmp_path / bus)
+        assert not (tmp_path / bus / IP_XACT).exists()
+        assert (tmp_path / bus / "raycaster_hw.tcl").exists() == (bus == "avalon")
