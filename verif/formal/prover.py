@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import tempfile
@@ -30,6 +31,7 @@ from raycaster.rtl.scene.rect_rom import rect_rom
 from raycaster.rtl.video.video_generator import video_generator
 from raycaster.screens import Screen
 from raycaster.tools import TIMEOUT, find_program, run_program, run_yosys
+from raycaster.verif.formal.lemmas import SOLVERS, Lemma
 from raycaster.verif.leaf import reset_signal
 
 WRAPPERS = Path(__file__).parent
@@ -107,6 +109,7 @@ class Property:
         label: the design in a few characters.
         modules: the generated modules that are part of the proof.
         cut: of these, those whose outputs become arbitrary.
+        any_product: multiplication becomes an arbitrary function, the same one wherever a product is formed.
         parameters: of the wrapper.
         induction: steps that the induction assumes; the base case is checked for as many from reset.
         reach: steps within which each cover statement of the wrapper must be reached; 0: not tried.
@@ -121,6 +124,7 @@ class Property:
     parameters: Mapping[str, int]
     induction: int
     cut: tuple[str, ...] = ()
+    any_product: bool = False
     reach: int = 0
     small: bool = False
 
@@ -134,7 +138,7 @@ class Property:
 class Result:
     """How a proof ended: `outcome` is "proved", or what went wrong; `trace` a waveform of it, where there is one."""
 
-    proof: Property
+    proof: Property | Lemma
     outcome: str
     depth: int
     seconds: float
@@ -148,7 +152,9 @@ class Result:
 
     @property
     def method(self) -> str:
-        """The depths, as they are published."""
+        """The depths, as they are published; a lemma has none."""
+        if isinstance(self.proof, Lemma):
+            return " and ".join(SOLVERS)
         reach = f", reach {self.proof.reach}" if self.proof.reach else ""
         return f"induction {self.depth}{reach}"
 
@@ -303,6 +309,20 @@ def _make_model(proof: Property, directory: Path) -> None:
         f"write_smt2 -wires {wrapper}.smt2",
     ]
     run_yosys(directory, "model", script)
+    if proof.any_product:
+        _forget_products(directory / f"{wrapper}.smt2")
+
+
+def _forget_products(model: Path) -> None:
+    """Put an uninterpreted function into the place of multiplication; all products have to be of one width."""
+    text = model.read_text()
+    widths = set(re.findall(r"\(_ BitVec (\d+)\) \(bvmul ", text))
+    if len(widths) != 1:
+        raise ProofError(
+            f"{model}: products are {', '.join(sorted(widths)) or 'of no'} bits wide, not all of one width"
+        )
+    word = f"(_ BitVec {widths.pop()})"
+    model.write_text(f"(declare-fun product ({word} {word}) {word})\n{text.replace('(bvmul ', '(product ')}")
 
 
 def _solve(directory: Path, run: str, options: list[str], timeout: float) -> tuple[str, str]:
