@@ -109,7 +109,7 @@ class Property:
         label: the design in a few characters.
         modules: the generated modules that are part of the proof.
         cut: of these, those whose outputs become arbitrary.
-        any_product: multiplication becomes an arbitrary function, the same one wherever a product is formed.
+        any_product: multiplication becomes an arbitrary function, the same one wherever a product of a width is formed.
         parameters: of the wrapper.
         induction: steps that the induction assumes; the base case is checked for as many from reset.
         reach: steps within which each cover statement of the wrapper must be reached; 0: not tried.
@@ -314,15 +314,17 @@ def _make_model(proof: Property, directory: Path) -> None:
 
 
 def _forget_products(model: Path) -> None:
-    """Put an uninterpreted function into the place of multiplication; all products have to be of one width."""
+    """Put an uninterpreted function into the place of multiplication, one for each width of products."""
+    product = re.compile(r"\(_ BitVec (\d+)\) \(bvmul ")
     text = model.read_text()
-    widths = set(re.findall(r"\(_ BitVec (\d+)\) \(bvmul ", text))
-    if len(widths) != 1:
-        raise ProofError(
-            f"{model}: products are {', '.join(sorted(widths)) or 'of no'} bits wide, not all of one width"
-        )
-    word = f"(_ BitVec {widths.pop()})"
-    model.write_text(f"(declare-fun product ({word} {word}) {word})\n{text.replace('(bvmul ', '(product ')}")
+    widths = sorted(set(product.findall(text)), key=int)
+    text = product.sub(r"(_ BitVec \1) (product_\1 ", text)
+    if not widths or "bvmul" in text:
+        raise ProofError(f"{model}: no product, or one that is not an expression of its own")
+    functions = [
+        f"(declare-fun product_{width} ((_ BitVec {width}) (_ BitVec {width})) (_ BitVec {width}))" for width in widths
+    ]
+    model.write_text("\n".join([*functions, text]))
 
 
 def _solve(directory: Path, run: str, options: list[str], timeout: float) -> tuple[str, str]:
