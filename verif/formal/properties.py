@@ -10,9 +10,12 @@ from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.beam.beam_lane import beam_latency
 from raycaster.rtl.bus.avalon_interface import engine_word, size_word
-from raycaster.rtl.common.records import rect_of
+from raycaster.rtl.common.records import camera_of, look_fields, rect_of, surface_of
 from raycaster.rtl.common.widths import (
+    COORDINATE_BITS,
     bits_for,
+    exact_slope_bits,
+    eye_bits,
     index_bits,
     offset_bits,
     pixel_bits,
@@ -237,6 +240,71 @@ def _tester(coordinate_bits: int, reflections: int, small: bool) -> Property:
     )
 
 
+def _look_bits(config: Configuration) -> int:
+    return sum(look_fields(config.materials, config.patterns).values())
+
+
+def _tester_products(config: Configuration) -> Property:
+    return Property(
+        "tester-products",
+        "a rectangle is hit where the cross-multiplied definition says, and no distance is too wide, at full width",
+        config,
+        _label(config),
+        ("rect_tester",),
+        {
+            "COORDINATE_BITS": COORDINATE_BITS,
+            "LOOK_BITS": _look_bits(config),
+            "SLOPE_BITS": exact_slope_bits(config),
+            "EYE_BITS": eye_bits(config),
+            "REFLECTIONS": config.reflections,
+        },
+        induction=4,
+        any_product=True,
+        reach=5,
+    )  # fmt: skip
+
+
+def _nearest_products(config: Configuration, small: bool) -> Property:
+    return Property(
+        "nearest-products",
+        "of all hits offered the first of the nearest is kept, as cross-multiplication orders them, at full width",
+        config,
+        _label(config),
+        ("nearest_hit",),
+        {
+            "SURFACE_BITS": len(surface_of(config).word),
+            "SLOPE_BITS": exact_slope_bits(config),
+            "DISTANCE_BITS": eye_bits(config) - 1,
+            "REFLECTIONS": config.reflections,
+        },
+        induction=2,
+        any_product=True,
+        reach=6,
+        small=small,
+    )
+
+
+def _eye(config: Configuration, small: bool) -> Property:
+    return Property(
+        "eye-exact",
+        "the eye is the camera mirrored in each plane, in range, with the signs and the corner that go with it, at "
+        "full width",
+        config,
+        _label(config),
+        ("eye_register",),
+        {
+            "COORDINATE_BITS": COORDINATE_BITS,
+            "LOOK_BITS": _look_bits(config),
+            "BASIS_BITS": len(camera_of(config).word) - 3 * COORDINATE_BITS,
+            "EYE_BITS": eye_bits(config),
+            "REFLECTIONS": config.reflections,
+        },
+        induction=1,
+        reach=6,
+        small=small,
+    )
+
+
 def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: int, small: bool) -> Property:
     widths = FoldWidths(coordinate_bits, slope_bits, mirrors)
     turned = "" if view_distance else ", turned"
@@ -334,6 +402,13 @@ def _one_unit(**values: int | str) -> Configuration:
     return configure(units=1, allow_underrun=True, **values)
 
 
+EXACT = tuple(
+    _one_unit(engine="exact", reflections=reflections, **options)
+    for reflections in (1, 2)
+    for options in ({}, {"turn": True}, {"turn": True, "materials": True, "patterns": True})
+)
+"""With reflections, the exact engine at every width that it is offered at: the default first, the widest last."""
+
 PROPERTIES: list[Property] = [
     _video(_one_unit(), "vga240", small=True),
     _video(_one_unit(rows=200), "vga200", small=True),
@@ -383,6 +458,9 @@ PROPERTIES: list[Property] = [
     _tester(2, 1, small=True),
     _tester(2, 2, small=False),
     _tester(3, 1, small=False),
+    *(_tester_products(config) for config in EXACT),
+    *(_nearest_products(config, small=config is EXACT[0]) for config in EXACT),
+    *(_eye(config, small=config is EXACT[-1]) for config in EXACT),
     _fold(2, 1, 1, 1, small=True),
     _fold(2, 1, 0, 1, small=False),
     _fold(2, 1, 1, 2, small=False),

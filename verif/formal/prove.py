@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster verify prove`: prove what can be proved of the generated Verilog."""
+"""`raycaster verify prove`: prove what can be proved of the generated Verilog, and the arithmetic that it rests on."""
 
 from __future__ import annotations
 
+import importlib.util
 import sys
+import time
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -12,15 +14,17 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from raycaster.errors import UserError
+from raycaster.errors import UserError, not_installed
 from raycaster.jobs import add_job_options, executors, positive, run_jobs
 from raycaster.options import CommandParser
 from raycaster.outcomes import add_keep_option, keep
 from raycaster.tools import TIMEOUT
+from raycaster.verif.formal.lemmas import LEMMAS, Lemma, prove_lemma
 from raycaster.verif.formal.properties import PROPERTIES
 from raycaster.verif.formal.prover import Property, Result, prove
 
-NAMES = list(dict.fromkeys(proof.name for proof in PROPERTIES))
+PROOFS: list[Property | Lemma] = [*PROPERTIES, *LEMMAS]
+NAMES = list(dict.fromkeys(proof.name for proof in PROOFS))
 
 
 def command_parser() -> CommandParser:
@@ -45,7 +49,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             raise UserError(f"--property: {name} is none of {', '.join(NAMES)}")
     proofs = [
         proof
-        for proof in PROPERTIES
+        for proof in PROOFS
         if (not arguments.property or proof.name in arguments.property) and (proof.small or not arguments.small)
     ]
     # A table of this many columns is read from a log as well as on a screen.
@@ -71,15 +75,21 @@ def main(argv: Sequence[str] | None = None) -> int:
     return 1 if failures else 0
 
 
-def _prove(proof: Property, *, output: Path, depth: int | None, timeout: int) -> Result:
+def _prove(proof: Property | Lemma, *, output: Path, depth: int | None, timeout: int) -> Result:
     try:
         directory = output / f"{proof.name}-{proof.label}".replace(" ", "-")
-        return prove(proof, directory, depth=depth, timeout=timeout)
+        if isinstance(proof, Property):
+            return prove(proof, directory, depth=depth, timeout=timeout)
+        if importlib.util.find_spec("cvc5") is None:
+            raise UserError(not_installed("cvc5", "formal"))
+        start = time.monotonic()
+        outcome, detail = prove_lemma(proof, directory, timeout)
+        return Result(proof, outcome, 0, time.monotonic() - start, detail=detail)
     except UserError as error:
         return Result(proof, "not attempted", proof.induction, 0, detail=str(error))
 
 
-def _list(proofs: list[Property]) -> Table:
+def _list(proofs: list[Property | Lemma]) -> Table:
     table = Table("property", "configuration", "method", "claim")
     for proof in proofs:
         table.add_row(proof.name, proof.label, Result(proof, "", proof.induction, 0).method, proof.claim)

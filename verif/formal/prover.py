@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import tempfile
@@ -33,6 +34,7 @@ from raycaster.rtl.system.ports import BUS_PORTS
 from raycaster.rtl.video.video_generator import video_generator
 from raycaster.screens import Screen
 from raycaster.tools import TIMEOUT, find_program, run_program, run_yosys
+from raycaster.verif.formal.lemmas import SOLVERS, Lemma
 from raycaster.verif.leaf import reset_signal
 
 WRAPPERS = Path(__file__).parent
@@ -118,6 +120,7 @@ class Property:
         label: the design in a few characters.
         modules: the generated modules that are part of the proof.
         cut: of these, those whose outputs become arbitrary.
+        any_product: multiplication becomes an arbitrary function, the same one wherever a product of a width is formed.
         parameters: of the wrapper.
         induction: steps that the induction assumes; the base case is checked for as many from reset.
         reach: steps within which each cover statement of the wrapper must be reached; 0: not tried.
@@ -132,6 +135,7 @@ class Property:
     parameters: Mapping[str, int]
     induction: int
     cut: tuple[str, ...] = ()
+    any_product: bool = False
     reach: int = 0
     small: bool = False
 
@@ -145,7 +149,7 @@ class Property:
 class Result:
     """How a proof ended: `outcome` is "proved", or what went wrong; `trace` a waveform of it, where there is one."""
 
-    proof: Property
+    proof: Property | Lemma
     outcome: str
     depth: int
     seconds: float
@@ -159,7 +163,9 @@ class Result:
 
     @property
     def method(self) -> str:
-        """The depths, as they are published."""
+        """The depths, as they are published; a lemma has none."""
+        if isinstance(self.proof, Lemma):
+            return " and ".join(SOLVERS)
         reach = f", reach {self.proof.reach}" if self.proof.reach else ""
         return f"induction {self.depth}{reach}"
 
@@ -326,6 +332,22 @@ def _make_model(proof: Property, directory: Path) -> None:
         f"write_smt2 -wires {wrapper}.smt2",
     ]
     run_yosys(directory, "model", script)
+    if proof.any_product:
+        _forget_products(directory / f"{wrapper}.smt2")
+
+
+def _forget_products(model: Path) -> None:
+    """Put an uninterpreted function into the place of multiplication, one for each width of products."""
+    product = re.compile(r"\(_ BitVec (\d+)\) \(bvmul ")
+    text = model.read_text()
+    widths = sorted(set(product.findall(text)), key=int)
+    text = product.sub(r"(_ BitVec \1) (product_\1 ", text)
+    if not widths or "bvmul" in text:
+        raise ProofError(f"{model}: no product, or one that is not an expression of its own")
+    functions = [
+        f"(declare-fun product_{width} ((_ BitVec {width}) (_ BitVec {width})) (_ BitVec {width}))" for width in widths
+    ]
+    model.write_text("\n".join([*functions, text]))
 
 
 def _solve(directory: Path, run: str, options: list[str], timeout: float) -> tuple[str, str]:

@@ -36,6 +36,11 @@ SECTIONS = chosen("line-sections", "tiny48-u2-r2-m1-f0t-d3-c8")
 COUNTERS = chosen("render-counters", "vga240-u16-r4-m1-f0t-d1-c8")
 TESTER = chosen("tester-exact", "2 bits, 1 mirrors")
 CORNERS = chosen("tester-exact", "1 bits, 2 mirrors")
+PRODUCTS = chosen("tester-products", "exact-vga240-u1-r12-m1-c8")
+CORNER_PRODUCTS = chosen("tester-products", "exact-vga240-u1-r12-m2-c8-turn")
+NEAREST = chosen("nearest-products", "exact-vga240-u1-r12-m1-c8")
+CORNER_NEAREST = chosen("nearest-products", "exact-vga240-u1-r12-m2-c8-turn-materials-patterns")
+EYE = chosen("eye-exact", "exact-vga240-u1-r12-m2-c8-turn-materials-patterns")
 FOLD = chosen("fold-exact", "2 and 1 bits, 1 mirrors")
 TABLE = chosen("fixed-rects", "seed, different")
 DIVIDER = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d3-c8 digits")
@@ -144,6 +149,27 @@ FAULTS = {
                           "seen_1_passed_v"),
     "edge-missed": (TESTER, "rect_tester", "(way_u_2 <= way_to_far_u_2)", "(way_u_2 < way_to_far_u_2)"),
     "corner-met-again": (CORNERS, "rect_tester", "again = met_2 && in_mirror;", "again = 1'b0;"),
+    "product-a-bit-short": (PRODUCTS, "rect_tester", "wire [17:0] way_to_far_u;", "wire [16:0] way_to_far_u;"),
+    "wrong-operand": (PRODUCTS, "rect_tester", "way_u = seen_1_n * slope_u_1;", "way_u = seen_1_n * slope_v_1;"),
+    "near-edge-missed": (PRODUCTS, "rect_tester", "(way_to_near_v_2 <= way_v_2)", "(way_to_near_v_2 < way_v_2)"),
+    "not-complemented": (PRODUCTS, "rect_tester", "turned_eye_u = ~eye_u;", "turned_eye_u = -eye_u;"),
+    "distance-a-bit-short": (PRODUCTS, "rect_tester", "to_far_v_1 <= to_far_v[9:0];", "to_far_v_1 <= to_far_v[8:0];"),
+    "met-on-another-axis": (CORNER_PRODUCTS, "rect_tester", "met = mirror_met_y;", "met = mirror_met_x;"),
+    "corner-on-one-side": (CORNER_PRODUCTS, "rect_tester", "(to_near_u_1 <= mirror_distance)",
+                           "(to_near_u_1 < mirror_distance)"),
+    "the-last-of-equals": (NEAREST, "nearest_hit", "(offered_product < nearest_product)",
+                           "(offered_product <= nearest_product)"),
+    "crossed-wrongly": (NEAREST, "nearest_hit", "numerator * found_slope", "numerator * denominator"),
+    "slope-a-bit-short": (NEAREST, "nearest_hit", "found_slope <= denominator;", "found_slope <= denominator[6:0];"),
+    "first-hit-lost": (CORNER_NEAREST, "nearest_hit", "hit && (!found || ", "hit && (found && "),
+    "corner-of-another": (CORNER_NEAREST, "nearest_hit", "    if (steps_write_z_buf && nearer) begin\n        found_at",
+                          "    if (steps_write_z_buf) begin\n        found_at"),
+    "mirrored-at-half": (EYE, "eye_register", "twice[9:1] = ", "twice[8:0] = "),
+    "eye-a-bit-short": (EYE, "eye_register", "image = $signed(difference[11:0]);",
+                        "image = $signed(difference[10:0]);"),
+    "mirrored-the-other-way": (EYE, "eye_register", "twice_signed - mirrored", "mirrored - twice_signed"),
+    "corner-forgotten": (EYE, "eye_register", "if (found_at_mirror) begin", "if (1'b0) begin"),
+    "turned-for-good": (EYE, "eye_register", "flipped_y <= !flipped_y;", "flipped_y <= 1'b1;"),
     "corner-missed": (FOLD, "fold_tester", "beyond = !met_2", "beyond = 1'b0"),
     "mirror-again": (FOLD, "fold_tester", "facet_distance > mirror_distance",
                      "facet_distance >= mirror_distance"),
@@ -159,27 +185,10 @@ FAULTS = {
 
 @pytest.mark.parametrize(
     "proof",
-    [
-        TIMING,
-        PAIRS,
-        AGENT,
-        HOST,
-        AXI4LITE,
-        WISHBONE,
-        APB,
-        ORDER,
-        EARLY_OUT,
-        NO_EARLY_OUT,
-        PIPELINED,
-        SECTIONS,
-        COUNTERS,
-        TESTER,
-        CORNERS,
-        FOLD,
-        TABLE,
-    ],
+    [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
+     TESTER, CORNERS, PRODUCTS, NEAREST, EYE, FOLD, TABLE],
     ids=lambda proof: f"{proof.name}-{proof.label}",
-)
+)  # fmt: skip
 def test_holds(proof, output):
     """What the faults below are planted in is proved without them."""
     result = prove(proof, output / "proof", timeout=100)

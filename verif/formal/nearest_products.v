@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// The nearest hit at the engine's own widths, with any function in the place of multiplication: of all hits that were
+// offered since the last reset the one that is kept is the nearest, by cross-multiplication, and of several as near the
+// first. `picked` is any one of them, chosen at any time; so what is asserted of it holds of each.
+//
+// Assumed of products is the lemma kept-is-nearest. Assumed of the engine: a hit's denominator is not 0, and nothing is
+// offered in the cycle of a reset. All else may change in every cycle.
+
+module nearest_products #(
+    parameter SURFACE_BITS = 35, parameter SLOPE_BITS = 8, parameter DISTANCE_BITS = 10, parameter REFLECTIONS = 1
+) (
+    input clk, input reset, input write, input hit, input corner, input [DISTANCE_BITS-1:0] n,
+    input [SLOPE_BITS-1:0] e, input [SURFACE_BITS-1:0] surface, input pick
+);
+localparam WAY_BITS = DISTANCE_BITS + SLOPE_BITS, HIT_BITS = 1 + WAY_BITS + SURFACE_BITS;
+
+wire found, found_corner;
+wire [DISTANCE_BITS-1:0] found_n;
+wire [SLOPE_BITS-1:0] found_e;
+wire [SURFACE_BITS-1:0] found_surface;
+generate
+    if (REFLECTIONS > 1) begin: design
+        nearest_hit dut (
+            .clk(clk), .hit(hit), .at_mirror(corner), .numerator(n), .denominator(e), .found(found),
+            .found_distance(found_n), .found_slope(found_e), .found_at_mirror(found_corner), .steps_reset_z_buf(reset),
+            .steps_write_z_buf(write), .offered_word(surface), .found_surface_word(found_surface)
+        );
+    end
+    else begin: design
+        nearest_hit dut (
+            .clk(clk), .hit(hit), .numerator(n), .denominator(e), .found(found), .found_distance(found_n),
+            .found_slope(found_e), .steps_reset_z_buf(reset), .steps_write_z_buf(write), .offered_word(surface),
+            .found_surface_word(found_surface)
+        );
+        assign found_corner = 0;
+    end
+endgenerate
+
+wire offered = write && hit;
+wire [HIT_BITS-1:0] now = {REFLECTIONS > 1 && corner, n, e, surface};
+wire [HIT_BITS-1:0] kept = {found_corner, found_n, found_e, found_surface};
+always @* begin
+    assume (!(reset && write));
+    if (hit) assume (e != 0);
+end
+
+// What is kept was offered, and is kept as it was.
+reg running = 1'b0, ready = 1'b0, was_found, was_offered, was_reset;
+reg [HIT_BITS-1:0] was_now, was_kept;
+always @(posedge clk) begin
+    ready <= ready || reset;  // from the first reset on
+    running <= ready;
+    was_found <= found;
+    was_offered <= offered;
+    was_reset <= reset;
+    was_now <= now;
+    was_kept <= kept;
+end
+always @* if (running) begin
+    assert (found == (!was_reset && (was_found || was_offered)));
+    if (found) assert (was_found && kept == was_kept || was_offered && kept == was_now);
+    if (found && !was_found) assert (kept == was_now);
+end
+
+// The one that was picked; whether what is kept came before it, after it, or is it.
+reg picked = 1'b0, later, same;
+reg [DISTANCE_BITS-1:0] picked_n;
+reg [SLOPE_BITS-1:0] picked_e;
+wire [WAY_BITS-1:0] way_now = n * found_e, way_kept = found_n * e;
+wire nearer = offered && (!found || way_now < way_kept);
+always @(posedge clk) begin
+    if (reset) picked <= 1'b0;
+    else if (offered && pick && !picked && ready) begin
+        picked <= 1'b1;
+        picked_n <= n;
+        picked_e <= e;
+        same <= nearer;
+        later <= 1'b0;
+    end
+    else if (nearer) begin
+        same <= 1'b0;
+        later <= 1'b1;
+    end
+end
+
+wire [WAY_BITS-1:0] kept_way = found_n * picked_e, picked_way = picked_n * found_e;
+wire [WAY_BITS-1:0] now_way = n * picked_e, picked_way_now = picked_n * e;
+always @* if (offered && picked && way_now < way_kept && kept_way <= picked_way)
+    assume (now_way < picked_way_now);  // kept-is-nearest
+
+always @* if (picked) begin
+    assert (ready && found && picked_e != 0 && found_e != 0);
+    assert (!(same && later));
+    if (same) assert (found_n == picked_n && found_e == picked_e);
+    else if (later) assert (kept_way < picked_way);
+    else assert (kept_way <= picked_way);
+end
+always @* if (ready && found) assert (found_e != 0);
+
+always @* cover (picked && later);
+always @* cover (picked && same);
+always @* cover (picked && !same && !later);
+endmodule
