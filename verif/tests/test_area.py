@@ -102,6 +102,21 @@ def test_the_model_foretells_what_is_linear():
     assert model.fitting(replace(chip, elements=119), 320) == 0
 
 
+def test_bridges(tmp_path, monkeypatch, capsys):
+    """Each one by itself, out of a design that has it."""
+
+    def count(config, family, directory, top):
+        assert (family.name, top) == ("ecp5", f"{config.bus}_bridge")
+        return Area(len(config.bus), 7, 0, 0, 0)
+
+    monkeypatch.setattr(area, "measure", count)
+    kept = tmp_path / "bridges.json"
+    area.main(["--bridges", "--output", str(tmp_path / "area"), "--keep", str(kept)])
+    bridges = json.loads(kept.read_text())["figures"]["bridges"]
+    assert [(row["bus"], row["tables"]) for row in bridges] == [("axi4lite", 8), ("wishbone", 8), ("apb", 3)]
+    assert "axi4lite" in capsys.readouterr().out
+
+
 FEATURES = {
     "seed": [(), ("materials",), ("patterns",), ("materials", "patterns")],
     "exact": [(), ("turn",), ("materials",), ("patterns",), ("turn", "materials", "patterns")],
