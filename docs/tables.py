@@ -11,6 +11,7 @@ from typing import Any
 from raycaster.configuration import configure
 from raycaster.docs.facts import table
 from raycaster.errors import UserError
+from raycaster.verif.benches.bus_bench import CYCLES
 
 RESULTS = Path(__file__).parents[1] / "results"
 
@@ -144,6 +145,26 @@ def features() -> str:
         )  # fmt: skip
     headings = ["engine", "with", "LUT4", "more", "registers", "multipliers"]
     return _with_source(table(headings, rows), "features")
+
+
+BUSES = {
+    "avalon": ("Avalon-MM", "`avs_s0_*`", "words"),
+    "axi4lite": ("AXI4-Lite", "`s_axi_*`", "bytes"),
+    "wishbone": ("Wishbone B4, classic", "`wb_*`", "words"),
+    "apb": ("APB4", "`s_apb_*`", "bytes"),
+}
+
+
+def buses() -> str:
+    """What the registers may be behind; cycles as the bench of the buses measures them."""
+    areas = {row["bus"]: row for row in outcome("bridges")["figures"]["bridges"]}
+    rows = []
+    for bus, (title, ports, unit) in BUSES.items():
+        cycles = CYCLES.get(bus, {"write": 1, "read": 3})
+        cells = [areas[bus][name] if bus in areas else 0 for name in ("tables", "registers")]
+        rows.append([f"`BUS={bus}`", title, ports, unit, cycles["write"], cycles["read"], *cells])
+    headings = ["", "bus", "ports", "addresses count", "cycles a write", "cycles a read", "LUT4", "registers"]
+    return _with_source(table(headings, rows), "bridges")
 
 
 ROUTED = ("seed", "exact", "beam-320x240", "beam-640x480", "beam-1280x720")
@@ -305,7 +326,7 @@ def not_mutated() -> str:
 def tables() -> dict[str, str]:
     """All of them, by the names that pages use."""
     made = (
-        engines, work, scenes, families, features, routed, routed_again, link_short, game_board, one_scene,
+        engines, work, scenes, families, features, buses, routed, routed_again, link_short, game_board, one_scene,
         error_and_time, checks, not_mutated,
     )  # fmt: skip
     return {each.__name__: each() for each in made}

@@ -341,6 +341,32 @@ def show_features(features: Sequence[Mapping[str, Any]], console: Console) -> No
     console.print(table)
 
 
+BUSES = ("axi4lite", "wishbone", "apb")
+"""That a bridge is for."""
+
+
+def measure_bridges(output: Path, console: Console) -> list[dict[str, Any]]:
+    """What the bridge from each bus takes of an ECP5.
+
+    Raises:
+        UserError: as `measure`.
+    """
+    tasks: dict[tuple[str, int], Callable[[Path], Any]] = {}
+    for bus in BUSES:
+        config = configure(engine="exact", bus=bus)
+        tasks[config.name, 0] = lambda path, c=config: measure(c, FAMILIES["ecp5"], path, f"{c.bus}_bridge")
+    results = _run(tasks, output, console)
+    return [{"bus": bus, **asdict(results[key])} for bus, key in zip(BUSES, tasks, strict=True)]
+
+
+def show_bridges(bridges: Sequence[Mapping[str, Any]], console: Console) -> None:
+    """Print them."""
+    table = _table("ECP5, the bridge alone", "bus", "tables", "registers")
+    for row in bridges:
+        table.add_row(row["bus"], f"{row['tables']:,}", f"{row['registers']:,}")
+    console.print(table)
+
+
 def registered_pins(module: str) -> str:
     """Verilog of a top with the module between registers, so that the paths from and to its ports count too.
 
@@ -464,6 +490,7 @@ def command_parser() -> CommandParser:
     parser.add_argument(
         "--features", action="store_true", help="what TURN, MATERIALS and PATTERNS take, of each engine"
     )
+    parser.add_argument("--bridges", action="store_true", help="what the bridge from each BUS takes")
     parser.add_argument("--output", type=Path, default=Path("build/area"), help="(default: %(default)s)")
     add_scene_argument(parser, "what to build in, with --fix")
     add_fix_option(parser)
@@ -478,9 +505,17 @@ def main(argv: Sequence[str] | None = None) -> None:
     if arguments.family and arguments.family not in FAMILIES:
         raise UserError(f"family: {arguments.family} is not known here; choose one of {', '.join(FAMILIES)}")
     console = Console()
+    if arguments.features or arguments.bridges:
+        asked = "features" if arguments.features else "bridges"
+        both = arguments.features and arguments.bridges
+        if both or given_options(arguments) or arguments.scene or arguments.fix or arguments.family or arguments.route:
+            raise UserError(f"{asked}: it has designs of its own, for the ECP5; leave everything else out")
+    if arguments.bridges:
+        bridges = measure_bridges(arguments.output, console)
+        show_bridges(bridges, console)
+        keep(arguments, {"bridges": bridges}, {}, "placing and routing")
+        return
     if arguments.features:
-        if given_options(arguments) or arguments.scene or arguments.fix or arguments.family or arguments.route:
-            raise UserError("features: it has designs of its own, for the ECP5; leave everything else out")
         features = measure_features(arguments.output, console)
         show_features(features, console)
         keep(arguments, {"designs": features}, {"rectangles": configure().rectangles}, "placing and routing")

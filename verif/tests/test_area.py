@@ -21,9 +21,9 @@ from raycaster.fpga.area import CHIPS, FAMILIES, Area, Chip, Model, measure, mea
 YOSYS = "0.70.0.0.post1259"
 SMALL = configure(screen="tiny", units=2, rectangles=2, divider_bits=1, allow_underrun=True, culling=False)
 AREAS = {
-    "ecp5": Area(tables=2416, registers=1806, elements=2416, multipliers=4, memories=0),
-    "cycloneive": Area(tables=2810, registers=1740, elements=3242, multipliers=4, memories=2),
-    "cyclonev": Area(tables=1911, registers=1806, elements=982, multipliers=4, memories=2),
+    "ecp5": Area(tables=2516, registers=1806, elements=2516, multipliers=4, memories=0),
+    "cycloneive": Area(tables=2890, registers=1746, elements=3322, multipliers=4, memories=2),
+    "cyclonev": Area(tables=1882, registers=1812, elements=984, multipliers=4, memories=2),
 }
 
 families = pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES)
@@ -101,6 +101,21 @@ def test_the_model_foretells_what_is_linear():
     assert model.fitting(chip, 320) == 32
     assert model.fitting(replace(chip, multipliers=63), 320) == 20
     assert model.fitting(replace(chip, elements=119), 320) == 0
+
+
+def test_bridges(tmp_path, monkeypatch, capsys):
+    """Each one by itself, out of a design that has it."""
+
+    def count(config, family, directory, top):
+        assert (family.name, top) == ("ecp5", f"{config.bus}_bridge")
+        return Area(len(config.bus), 7, 0, 0, 0)
+
+    monkeypatch.setattr(area, "measure", count)
+    kept = tmp_path / "bridges.json"
+    area.main(["--bridges", "--output", str(tmp_path / "area"), "--keep", str(kept)])
+    bridges = json.loads(kept.read_text())["figures"]["bridges"]
+    assert [(row["bus"], row["tables"]) for row in bridges] == [("axi4lite", 8), ("wishbone", 8), ("apb", 3)]
+    assert "axi4lite" in capsys.readouterr().out
 
 
 FEATURES = {
