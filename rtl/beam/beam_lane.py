@@ -114,7 +114,8 @@ def beam_lane(
     hits = [candidate_of(config) if config.patterns else None for _ in numbers]
     folds[0].tie({})
     beams = [
-        beam_pass(clk, start_line=restart, load=load, step=step_after(first), step_bounds=step_after(first + 1),
+        beam_pass(clk, start_line=restart, load=load, step=step_after(first),
+            step_way=step_after(first + (fold is None)), step_bounds=step_after(first + 1),
             step_slope=step_after(first + 2), start=start, aim=aim, facets=facets, growths=growths, fold=fold,
             nearest=hit, winner=winner, tested=some, config=config)
         for first, fold, hit, winner, some in zip(starts, [None, *folds[1:]], hits, winners, numbers, strict=True)

@@ -34,16 +34,17 @@ def winner_latency(config: Configuration) -> int:
 
 @block
 def beam_pass(
-    clk, start_line, load, step, step_bounds, step_slope, start, aim, facets, growths, fold, nearest, winner,
-    tested: Sequence[int], config: Configuration,
+    clk, start_line, load, step, step_way, step_bounds, step_slope, start, aim, facets, growths, fold, nearest,
+    winner, tested: Sequence[int], config: Configuration,
 ):  # fmt: skip
     """A column at each step; winner follows winner_latency cycles later, and nearest, the Candidate, or None for none.
 
     facets, growths: each rectangle's `Facet`, and what a step adds to its `Walk`, side by side, the first in the lowest
     bits; load: a bit for each, high where start is its own, or None where the camera turns and start_line loads all.
-    step_bounds, step_slope: step one and two cycles later, for what is read and done then. fold: the ray's, `fold_lead`
-    cycles before its step, or None for rays from the camera, whose ways are read with the bounds; tested: numbers of
-    the rectangles that it may meet. start_line, aim: as in `slope_walker`.
+    step_bounds, step_slope: step one and two cycles later, for what is read and done then; step_way: step, or for rays
+    from the camera, which read their ways with the bounds, step_bounds. fold: the ray's, `fold_lead` cycles before its
+    step, or None for rays from the camera; tested: numbers of the rectangles that it may meet. start_line, aim: as in
+    `slope_walker`.
     """
     slope_bits = exact_slope_bits(config)
     straight, signs = ray_slope(aim, config), Signs()
@@ -52,7 +53,6 @@ def beam_pass(
     grown = [stride_of(config).cut(growths, i) for i in tested]
     walks, hits = [walk_of(config) for _ in tested], [candidate_of(config) for _ in tested]
 
-    step_way = step_bounds if fold is None else step
     walkers = [
         rect_walker(clk, load=start_line if config.turn else load(i + 1, i), step_way=step_way, step_bounds=step_bounds,
             start=start, growth=growth, walk=walk)
