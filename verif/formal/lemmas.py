@@ -241,6 +241,16 @@ LEMMAS: tuple[Lemma, ...] = (
         integers=True,
     ),
     Lemma(
+        "product-in-range", "of factors no further from 0 than A and B the product is no further than A B",
+        "x y A B", ("-A <= x <= A", "-B <= y <= B"),
+        "-A*B <= x*y <= A*B",
+    ),
+    Lemma(
+        "slope-in-range", "a slope of parts no further from 0 than M is no further than M times the sum of its factors",
+        "f r u V c h C H M", ("V >= 0", "-C <= c <= C", "-H <= h <= H", "-M <= f <= M", "-M <= r <= M", "-M <= u <= M"),
+        "-M*(V + C + H) <= V*f + c*r + h*u <= M*(V + C + H)",
+    ),
+    Lemma(
         "next-column", "the product at the next column is the product and its growth, R times the distance",
         "n D R now next", ("now == n*D", "next == now + n*R"),
         "next == n*(D + R)",

@@ -12,6 +12,7 @@ from raycaster.rtl.beam.beam_lane import beam_latency
 from raycaster.rtl.bus.avalon_interface import engine_word, size_word
 from raycaster.rtl.common.records import camera_of, look_fields, rect_of, surface_of
 from raycaster.rtl.common.widths import (
+    BASIS_BITS,
     COORDINATE_BITS,
     bits_for,
     exact_slope_bits,
@@ -305,6 +306,38 @@ def _eye(config: Configuration, small: bool) -> Property:
     )
 
 
+def _slope(config: Configuration, small: bool) -> Property:
+    screen = config.screen_geometry
+    turned, plain = ("turned_generator", "slope_component", "magnitude"), ("ray_generator", "magnitude", "magnitude_1")
+    return Property(
+        "slope-exact",
+        "a pixel's slope is the definition's, in sign and magnitude, and fits, at full width",
+        config,
+        _label(config),
+        turned if config.turn else plain,
+        {
+            "TURN": int(config.turn),
+            "SLOPE_BITS": exact_slope_bits(config),
+            "COORDINATE_BITS": COORDINATE_BITS,
+            "BASIS_BITS": BASIS_BITS,
+            "VIEW_DISTANCE": screen.view_distance,
+            "CENTRE": screen.centre_column,
+            "HORIZON": screen.horizon_row,
+            "COLUMNS": screen.columns,
+            "ROWS": screen.rows,
+            "UNITS": config.units,
+            "UNIT_BITS": unit_bits(config),
+            "OFFSET_BITS": offset_bits(config),
+            "ROW_BITS": row_bits(config),
+            "COLUMN_BITS": (screen.columns + config.units).bit_length() + 1,
+        },
+        induction=2,
+        any_product=config.turn,
+        reach=4,
+        small=small,
+    )
+
+
 def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: int, small: bool) -> Property:
     widths = FoldWidths(coordinate_bits, slope_bits, mirrors)
     turned = "" if view_distance else ", turned"
@@ -461,6 +494,10 @@ PROPERTIES: list[Property] = [
     *(_tester_products(config) for config in EXACT),
     *(_nearest_products(config, small=config is EXACT[0]) for config in EXACT),
     *(_eye(config, small=config is EXACT[-1]) for config in EXACT),
+    _slope(configure(engine="exact"), small=False),
+    _slope(configure(engine="exact", rows=200), small=False),
+    _slope(configure(engine="exact", turn=True), small=True),
+    _slope(configure(engine="exact", turn=True, reflections=2), small=False),
     _fold(2, 1, 1, 1, small=True),
     _fold(2, 1, 0, 1, small=False),
     _fold(2, 1, 1, 2, small=False),

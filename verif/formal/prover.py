@@ -120,7 +120,7 @@ class Property:
         label: the design in a few characters.
         modules: the generated modules that are part of the proof.
         cut: of these, those whose outputs become arbitrary.
-        any_product: multiplication becomes an arbitrary function, the same one wherever a product of a width is formed.
+        any_product: multiplication, but by a constant, becomes an arbitrary function, one for each width of products.
         parameters: of the wrapper.
         induction: steps that the induction assumes; the base case is checked for as many from reset.
         reach: steps within which each cover statement of the wrapper must be reached; 0: not tried.
@@ -337,17 +337,17 @@ def _make_model(proof: Property, directory: Path) -> None:
 
 
 def _forget_products(model: Path) -> None:
-    """Put an uninterpreted function into the place of multiplication, one for each width of products."""
-    product = re.compile(r"\(_ BitVec (\d+)\) \(bvmul ")
+    """Put an uninterpreted function into the place of multiplication but by a constant, one for a width of products."""
+    constant = r"#b[01]+"
+    product = re.compile(rf"\(_ BitVec (\d+)\) \(bvmul (?!{constant} )(?!.* {constant}\)\) ; )")
     text = model.read_text()
     widths = sorted(set(product.findall(text)), key=int)
-    text = product.sub(r"(_ BitVec \1) (product_\1 ", text)
-    if not widths or "bvmul" in text:
-        raise ProofError(f"{model}: no product, or one that is not an expression of its own")
+    if not widths:
+        raise ProofError(f"{model}: there is no product")
     functions = [
         f"(declare-fun product_{width} ((_ BitVec {width}) (_ BitVec {width})) (_ BitVec {width}))" for width in widths
     ]
-    model.write_text("\n".join([*functions, text]))
+    model.write_text("\n".join([*functions, product.sub(r"(_ BitVec \1) (product_\1 ", text)]))
 
 
 def _solve(directory: Path, run: str, options: list[str], timeout: float) -> tuple[str, str]:

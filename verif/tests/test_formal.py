@@ -41,6 +41,8 @@ CORNER_PRODUCTS = chosen("tester-products", "exact-vga240-u1-r12-m2-c8-turn")
 NEAREST = chosen("nearest-products", "exact-vga240-u1-r12-m1-c8")
 CORNER_NEAREST = chosen("nearest-products", "exact-vga240-u1-r12-m2-c8-turn-materials-patterns")
 EYE = chosen("eye-exact", "exact-vga240-u1-r12-m2-c8-turn-materials-patterns")
+SLOPE = chosen("slope-exact", "exact-vga240-u4-r12-m1-c8")
+TURNED = chosen("slope-exact", "exact-vga240-u4-r12-m1-c8-turn")
 FOLD = chosen("fold-exact", "2 and 1 bits, 1 mirrors")
 TABLE = chosen("fixed-rects", "seed, different")
 DIVIDER = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d3-c8 digits")
@@ -170,6 +172,12 @@ FAULTS = {
     "mirrored-the-other-way": (EYE, "eye_register", "twice_signed - mirrored", "mirrored - twice_signed"),
     "corner-forgotten": (EYE, "eye_register", "if (found_at_mirror) begin", "if (1'b0) begin"),
     "turned-for-good": (EYE, "eye_register", "flipped_y <= !flipped_y;", "flipped_y <= 1'b1;"),
+    "a-row-too-low": (SLOPE, "ray_generator", "190 - place_row", "189 - place_row"),
+    "sign-of-zero": (SLOPE, "ray_generator", "dy_negative = dy < 0;", "dy_negative = dy <= 0;"),
+    "steepest-too-steep": (TURNED, "slope_component", "size <= component_size;", "size <= component_size[16:0];"),
+    "basis-crossed": (TURNED, "turned_generator", "camera_up_y = camera_word[19:10]",
+                      "camera_up_y = camera_word[29:20]"),
+    "up-is-down": (TURNED, "slope_component", "level + upward", "level - upward"),
     "corner-missed": (FOLD, "fold_tester", "beyond = !met_2", "beyond = 1'b0"),
     "mirror-again": (FOLD, "fold_tester", "facet_distance > mirror_distance",
                      "facet_distance >= mirror_distance"),
@@ -186,7 +194,7 @@ FAULTS = {
 @pytest.mark.parametrize(
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
-     TESTER, CORNERS, PRODUCTS, NEAREST, EYE, FOLD, TABLE],
+     TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, FOLD, TABLE],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+// The primary ray's slope at the engine's own widths, in sign and magnitude: view distance * forward + (column - centre)
+// * right + (horizon - row) * up, and without a basis its factors alone. With a basis, any function is in the place of
+// multiplication, but for two facts of products, which are the lemmas next-column and slope-in-range.
+//
+// Assumed, as the renderer has it: a pixel on the screen, and a place and a basis that hold still from the cycle before
+// the ray is loaded.
+
+module slope_exact #(
+    parameter TURN = 0, parameter SLOPE_BITS = 8, parameter COORDINATE_BITS = 9, parameter BASIS_BITS = 10,
+    parameter VIEW_DISTANCE = 100, parameter CENTRE = 160, parameter HORIZON = 190, parameter COLUMNS = 320,
+    parameter ROWS = 240, parameter UNITS = 4, parameter UNIT_BITS = 2, parameter OFFSET_BITS = 7,
+    parameter ROW_BITS = 8, parameter COLUMN_BITS = 10
+) (
+    input clk, input load, input [ROW_BITS-1:0] row, input [OFFSET_BITS-1:0] offset, input [UNIT_BITS-1:0] base,
+    input [3*COORDINATE_BITS-1:0] position, input [9*BASIS_BITS-1:0] basis
+);
+localparam WIDE = SLOPE_BITS + 4;
+
+wire [2:0] negative;
+wire [SLOPE_BITS-1:0] dx, dy, dz;
+// In numbers that hold any of them: from the centre to the first unit's column, and to this one's; from the horizon up.
+wire signed [WIDE-1:0] first = offset * UNITS - CENTRE, column = first + base, level = HORIZON - row;
+wire [3*WIDE-1:0] slope;
+wire signed [WIDE-1:0] x = slope[0 +: WIDE], y = slope[WIDE +: WIDE], z = slope[2*WIDE +: WIDE];
+
+reg running = 1'b0, loaded = 1'b0;
+reg [ROW_BITS-1:0] last_row;
+reg [OFFSET_BITS-1:0] last_offset;
+reg [UNIT_BITS-1:0] last_base;
+reg [9*BASIS_BITS-1:0] last_basis;
+reg signed [WIDE-1:0] last_x, last_y, last_z;
+always @(posedge clk) begin
+    running <= 1'b1;
+    loaded <= load;
+    last_row <= row;
+    last_offset <= offset;
+    last_base <= base;
+    last_basis <= basis;
+    last_x <= x;
+    last_y <= y;
+    last_z <= z;
+end
+wire still = row == last_row && offset == last_offset && base == last_base && basis == last_basis;
+always @* begin
+    assume (row < ROWS && base < UNITS && offset < COLUMNS / UNITS);
+    if (load) assume (running && still);
+end
+
+generate
+    genvar axis;
+    if (TURN) begin: design
+        turned_generator dut (
+            .clk(clk), .column_base(base), .steps_screen_to_ray(load), .place_row(row), .place_column_offset(offset),
+            .camera_word({position, basis}), .initial_signs_word(negative), .slope_dx(dx), .slope_dy(dy), .slope_dz(dz)
+        );
+        (* hierconn *) wire signed [COLUMN_BITS-1:0] \dut.column ;
+        (* hierconn *) wire signed [ROW_BITS:0] \dut.row ;
+        for (axis = 0; axis < 3; axis = axis + 1) begin: along
+            slope_along #(
+                .BASIS_BITS(BASIS_BITS), .PRODUCT_BITS(SLOPE_BITS + 2), .WIDE(WIDE), .VIEW_DISTANCE(VIEW_DISTANCE),
+                .CENTRE(CENTRE), .HORIZON(HORIZON), .UNIT_BITS(UNIT_BITS), .COLUMN_BITS(COLUMN_BITS),
+                .ROW_BITS(ROW_BITS)
+            ) component (
+                .clk(clk), .load(load), .forward(basis[(8-axis)*BASIS_BITS +: BASIS_BITS]),
+                .right(basis[(5-axis)*BASIS_BITS +: BASIS_BITS]), .up(basis[(2-axis)*BASIS_BITS +: BASIS_BITS]), .first(\dut.column ), .base(base),
+                .row(\dut.row ), .slope(slope[axis*WIDE +: WIDE])
+            );
+        end
+        always @* begin
+            assert (\dut.column  == first && \dut.row  == level);
+            assert (column >= -CENTRE && column <= CENTRE && level >= -HORIZON && level <= HORIZON);
+        end
+    end
+    else begin: design
+        ray_generator dut (
+            .clk(clk), .column_base(base), .steps_screen_to_ray(load), .place_row(row), .place_column_offset(offset),
+            .initial_signs_word(negative), .slope_dx(dx), .slope_dy(dy), .slope_dz(dz)
+        );
+        wire signed [WIDE-1:0] ahead = VIEW_DISTANCE;
+        assign slope = {level, column, ahead};
+    end
+endgenerate
+
+wire signed [WIDE-1:0] size_x = {1'b0, dx}, size_y = {1'b0, dy}, size_z = {1'b0, dz};
+always @* if (loaded) begin
+    assert ((negative[2] ? -size_x : size_x) == last_x && negative[2] == (last_x < 0));
+    assert ((negative[1] ? -size_y : size_y) == last_y && negative[1] == (last_y < 0));
+    assert ((negative[0] ? -size_z : size_z) == last_z && negative[0] == (last_z < 0));
+end
+
+always @* cover (loaded && negative == (TURN ? 7 : 3) && dy > CENTRE - 1);
+endmodule
+
+// A component: its products at the design's width, which by the lemma product-in-range holds them. The operands are the
+// design's own; they are asserted above to be what they should be.
+module slope_along #(
+    parameter BASIS_BITS = 10, parameter PRODUCT_BITS = 20, parameter WIDE = 22, parameter VIEW_DISTANCE = 100,
+    parameter CENTRE = 160, parameter HORIZON = 190, parameter UNIT_BITS = 2,
+    parameter COLUMN_BITS = 10, parameter ROW_BITS = 8
+) (
+    input clk, input load, input signed [BASIS_BITS-1:0] forward, input signed [BASIS_BITS-1:0] right,
+    input signed [BASIS_BITS-1:0] up, input signed [COLUMN_BITS-1:0] first, input [UNIT_BITS-1:0] base,
+    input signed [ROW_BITS:0] row, output signed [WIDE-1:0] slope
+);
+localparam MOST = VIEW_DISTANCE + CENTRE + HORIZON << BASIS_BITS - 1;
+wire signed [UNIT_BITS:0] base_part = {1'b0, base};
+wire signed [PRODUCT_BITS-1:0] ahead = forward * VIEW_DISTANCE, upward = up * row;
+wire signed [PRODUCT_BITS-1:0] to_first = right * first, aside = right * base_part;
+// By next-column, right * first + right * base is right * column; by slope-in-range the sum is within these bits. All
+// but the base's part is of the cycle before, in which the pixel was the same: so the solver need not add it again.
+reg signed [PRODUCT_BITS-1:0] before;
+always @(posedge clk) before <= ahead + to_first + upward;
+wire signed [PRODUCT_BITS-1:0] sum = before + aside;
+assign slope = sum;
+always @* begin
+    if (load) assume (slope >= -MOST && slope <= MOST);
+end
+endmodule
