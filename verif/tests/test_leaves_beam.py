@@ -775,6 +775,9 @@ def check_tester(block, ports, config: Configuration, tmp_path) -> None:
             case_stimulus[lead + 1] |= bounds
             case_stimulus[lead + tester.slope_at(config)] |= {f"slope_d{AXES[c]}": abs(int(slope[c])) for c in range(3)}
             case_stimulus[lead + 2] |= {"index": index}
+            # What comes without its strobe is another ray's.
+            case_stimulus[lead + 1] |= {f"signs_d{axis}": int(random.integers(2)) for axis in AXES}
+            case_stimulus[lead + 2] |= {name: int(random.integers(1 << walk_bits(config))) for name in bounds}
             for cycle, strobe in enumerate(strobes, lead):
                 case_stimulus[cycle] |= {strobe: 1}
             start = len(stimulus) + lead

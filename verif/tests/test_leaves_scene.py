@@ -235,7 +235,7 @@ def table_stimulus(random: np.random.Generator, table: Table, rectangles: int) -
             continue
         for address, word in zip(written[size * slot : size * (slot + 1)], data, strict=False):
             bus = random_bus(random, [address] * 8 + [address ^ 1, int(random.integers(last))], word)
-            stimulus.append({**bus, "reset": int(random.random() < 0.003)})
+            stimulus.append({**bus, "reset": int(random.random() < 0.01)})
         stimulus.append({**random_bus(random, [int(random.integers(last))]), "reset": 0})
     return stimulus
 
