@@ -1260,9 +1260,9 @@ def race(random: np.random.Generator, config: Configuration, slopes) -> tuple[np
         (beam_config(screen="tiny", rectangles=8, reflections=2, turn=True, materials=True, patterns=True), 12),
         (beam_config(screen="tiny", rectangles=2, reflections=0, scale=1, materials=True, patterns=True), 24),
         (beam_config(screen="tiny", rectangles=1, reflections=0, colour_bits=4, pixels=2), 12),
-        (beam_config(screen="tiny", rectangles=3, reflections=2, pixels=2), 100),
+        (beam_config(screen="tiny", rectangles=3, reflections=2, pixels=2), 40),
         (beam_config(rows=180, scale=6, rectangles=5, reflections=1, pixels=2), 4),
-        (beam_config(screen="tiny", rectangles=3, reflections=2, pixels=2, turn=True, patterns=True), 60),
+        (beam_config(screen="tiny", rectangles=3, reflections=2, pixels=2, turn=True, patterns=True), 24),
     ],
     ids=config_id,
 )
