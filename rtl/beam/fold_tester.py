@@ -58,7 +58,8 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
     clipped, folded_clip = signed(sum_bits), signed(sum_bits)
     numerator = unsigned(turn_bits)
     twice_p, twice_q, edge_p, edge_q = (signed(sum_bits + 1) for _ in range(4))
-    twice_high_p, twice_high_q, low_edge_p, low_edge_q = (signed(product_bits + 1) for _ in range(4))
+    twice_low_p, twice_low_q, twice_high_p, twice_high_q = (signed(product_bits + 1) for _ in range(4))
+    low_edge_p, low_edge_q = (signed(product_bits + 1) for _ in range(2))
 
     under_low_p, over_high_p, under_low_q, over_high_q = (bit() for _ in range(4))
     before_border, at_border = bit(), bit()
@@ -199,10 +200,15 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
         twice_q.next = folded_q_1 << 1
         twice_high_p.next = walk.high_p << 1
         twice_high_q.next = walk.high_q << 1
-        edge_p.next = (folded_p_1 << 1) | back_1
-        edge_q.next = (folded_q_1 << 1) | back_1
-        low_edge_p.next = (walk.low_p << 1) | back_1
-        low_edge_q.next = (walk.low_q << 1) | back_1
+        twice_low_p.next = walk.low_p << 1
+        twice_low_q.next = walk.low_q << 1
+
+    @always_comb
+    def add_sign():
+        edge_p.next = twice_p | back_1
+        edge_q.next = twice_q | back_1
+        low_edge_p.next = twice_low_p | back_1
+        low_edge_q.next = twice_low_q | back_1
 
     @always(clk.posedge)
     def stage_2():

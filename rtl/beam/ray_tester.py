@@ -23,7 +23,7 @@ def ray_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope
     edge_bits = len(walk.way_p) + 1
 
     back, back_1, back_2, ahead = bit(), bit(), bit(), bit()
-    twice_p, twice_q, twice_high_p, twice_high_q = (signed(edge_bits) for _ in range(4))
+    twice_p, twice_q, twice_low_p, twice_low_q, twice_high_p, twice_high_q = (signed(edge_bits) for _ in range(6))
     edge_p, edge_q, low_edge_p, low_edge_q = (signed(edge_bits) for _ in range(4))
     under_low_p, over_high_p, under_low_q, over_high_q = (bit() for _ in range(4))
     opposite_distance = signed(distance_bits + 1)
@@ -47,10 +47,15 @@ def ray_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope
         twice_q.next = along_q << 1
         twice_high_p.next = walk.high_p << 1
         twice_high_q.next = walk.high_q << 1
-        edge_p.next = (walk.way_p << 1) | back_1
-        edge_q.next = (along_q << 1) | back_1
-        low_edge_p.next = (walk.low_p << 1) | back_1
-        low_edge_q.next = (walk.low_q << 1) | back_1
+        twice_low_p.next = walk.low_p << 1
+        twice_low_q.next = walk.low_q << 1
+
+    @always_comb
+    def add_sign():
+        edge_p.next = twice_p | back_1
+        edge_q.next = twice_q | back_1
+        low_edge_p.next = twice_low_p | back_1
+        low_edge_q.next = twice_low_q | back_1
 
     @always(clk.posedge)
     def hold_sign():

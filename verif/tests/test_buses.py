@@ -8,10 +8,14 @@ from pathlib import Path
 import pytest
 from conftest import BUILD, SMALL_SCENE, Bench
 
-from raycaster.configuration import configure
+from raycaster.configuration import ConfigurationError, configure
+from raycaster.convert.write import write_processor_system, write_system
+from raycaster.fpga import verilog
+from raycaster.scene import load_scene
 from raycaster.sim.simulator import SIMULATORS, SimulationError, convert
 from raycaster.verif.seeds import seed
 
+SCENE = load_scene(SMALL_SCENE)
 BUSES = ("axi4lite", "wishbone", "apb")
 
 
@@ -57,3 +61,15 @@ def test_a_fault_is_noticed(bench: Bench, tmp_path: Path, bus, right, wrong, com
         files[-1].write_text(text)
     with pytest.raises(SimulationError, match=complaint):
         bench("verif.benches.bus_bench", small(bus), "icarus", SMALL_SCENE, seeds=(seed(),), verilog=files)
+
+
+@pytest.mark.parametrize("write", [write_processor_system, lambda *given: write_system(*given[:1], SCENE, *given[1:])])
+def test_what_drives_the_registers_itself_takes_no_other_bus(tmp_path, write):
+    with pytest.raises(ConfigurationError, match=r"bus: a system with.* processor drives .*; leave out apb$"):
+        write(small("apb"), tmp_path / "verilog")
+    assert not any(tmp_path.iterdir())
+
+
+def test_an_unknown_bus_gets_one_line(refuses):
+    error = refuses(verilog.main, "--bus", "pci")
+    assert error.startswith("error: bus: ") and "'axi4lite', 'wishbone' or 'apb', not 'pci'" in error

@@ -6,8 +6,10 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from raycaster.configuration import configure
+from raycaster.convert.write import write_verilog
 from raycaster.golden import seed_engine
 from raycaster.scene import load_scene
 
@@ -58,3 +60,47 @@ def test_picture_frame(tmp_path):
     expected = seed_engine.render(scene, screen)
     doubled = expected.repeat(screen.doubling, axis=0).repeat(screen.doubling, axis=1)
     assert np.array_equal(shown, doubled)
+
+
+BACKGROUND_BENCH = """
+module background_bench;
+reg clk = 0, reset = 1;
+wire [7:0] red, green, blue;
+wire hs, vs, blank_n;
+integer frames = 0, pixels = 0, others = 0;
+apb_background dut (.clk(clk), .reset(reset), .red(red), .green(green), .blue(blue), .hs(hs), .vs(vs),
+    .blank_n(blank_n));
+always #10 clk = ~clk;
+initial #100 reset = 0;
+always @(posedge vs) if (!reset) begin
+    frames = frames + 1;
+    if (frames == 3) begin
+        $display("%0d pixels, %0d others", pixels, others);
+        $finish;
+    end
+end
+always @(negedge clk) if (frames == 2 && blank_n) begin
+    pixels = pixels + 1;
+    if ({red, green, blue} !== 24'hCOLOUR) others = others + 1;
+end
+endmodule
+"""
+
+
+@pytest.mark.parametrize(("colour", "alike"), [("204060", True), ("204061", False)])
+def test_apb_background(colour, alike, tmp_path):
+    """In plain Verilog, as it stands beside what `make verilog` writes."""
+    config = configure(screen="tiny", units=8, rectangles=3, bus="apb")
+    files = write_verilog(config, tmp_path / "verilog")
+    (tmp_path / "bench.v").write_text(BACKGROUND_BENCH.replace("COLOUR", colour))
+    example = ROOT / "examples" / "apb_background.v"
+    for command in (
+        ["iverilog", "-g2005", "-Wall", "-Wno-timescale", "-s", "background_bench", "-o", "bench", "bench.v", example,
+         *files],
+        ["vvp", "-n", "bench"],
+    ):  # fmt: skip
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert (done.returncode, done.stderr) == (0, "")
+    screen = config.screen_geometry
+    clocks = screen.vertical.visible * screen.horizontal.visible * screen.clocks_per_pixel
+    assert done.stdout.split() == [str(clocks), "pixels,", "0" if alike else str(clocks), "others"]

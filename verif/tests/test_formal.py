@@ -184,7 +184,7 @@ FAULTS = {
     "one-too-few": (FOLD, "ray_fold", "sum_xz_1 = x_by_z - not_z_by_x", "sum_xz_1 = x_by_z + z_by_x"),
     "bounds-swapped": (FOLD, "fold_tester", "(under_low_q == back_2) && (over_high_q == back_2)",
                        "!under_low_q && !over_high_q"),
-    "bound-missed": (FOLD, "ray_tester", "low_edge_p = (walk_low_p << 1) | back_1", "low_edge_p = walk_low_p << 1"),
+    "bound-missed": (FOLD, "ray_tester", "low_edge_p = twice_low_p | back_1", "low_edge_p = twice_low_p"),
     "bounds-unsorted": (TABLE, "rect_sorter", "if (written_y_0 > written_y_1) begin", "if (1'b0) begin"),
     "not-held": (TABLE, "rect_rom", "if (rects_fetch) begin", "if (1'b1) begin"),
     "overflow-missed": (DIVIDER, "divider", "overflow <= too_large;", "overflow <= too_large && (quotient != 0);"),
