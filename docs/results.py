@@ -15,6 +15,7 @@ from rich.console import Console
 from raycaster.configuration import configure
 from raycaster.docs.facts import facts
 from raycaster.docs.pages import need_clone, render_all
+from raycaster.docs.proofs import proofs
 from raycaster.docs.tables import RESULTS, tables
 from raycaster.errors import UserError
 from raycaster.options import CommandParser
@@ -88,5 +89,5 @@ def main(argv: Sequence[str] | None = None) -> None:
                 designs.append(measured(options, arguments.output / configure(**options).name))
         figures = {"scenes": len(packaged_scenes(plain=True)), "designs": designs}
         keep(arguments, figures, {"rectangles": configure().rectangles}, left_out="placing and routing")
-    for page in render_all(facts() | tables()):
+    for page in render_all(facts() | tables() | proofs()):
         print(f"written: {page}")

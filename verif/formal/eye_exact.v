@@ -86,7 +86,7 @@ always @* if (loaded && mirrors <= REFLECTIONS) begin
     if (mirrors != 0) assert (last_axis < 3);
 end
 
-always @* cover (loaded && mirrors == REFLECTIONS && x > LAST);
+always @* cover (loaded && mirrors == REFLECTIONS && (REFLECTIONS == 0 || x > LAST));
 generate
     if (REFLECTIONS > 1) begin: corners
         always @* cover (loaded && mirrors == REFLECTIONS && (met & (met - 1)));

@@ -437,10 +437,10 @@ def _one_unit(**values: int | str) -> Configuration:
 
 EXACT = tuple(
     _one_unit(engine="exact", reflections=reflections, **options)
-    for reflections in (1, 2)
+    for reflections in (0, 1, 2)
     for options in ({}, {"turn": True}, {"turn": True, "materials": True, "patterns": True})
 )
-"""With reflections, the exact engine at every width that it is offered at: the default first, the widest last."""
+"""The exact engine at every width that it is offered at, the narrowest first and the widest last."""
 
 PROPERTIES: list[Property] = [
     _video(_one_unit(), "vga240", small=True),

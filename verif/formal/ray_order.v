@@ -135,6 +135,7 @@ always @* if (known && started) begin
     assert (store_ray == reflected);
     assert (reset_colour == screen_to_ray);
     assert (reset_z_buf == (screen_to_ray || add_colour));
+    assert (!(reset_z_buf && write_z_buf));
     assert (screen_to_ray == (cycles == 1));
     if (tracing || lost) assert (initial_ray == (rays == 0));
     if (done) assert (!tracing && !lost && rays == reflections + 1);

@@ -23,7 +23,7 @@ from raycaster import outcomes
 from raycaster.configuration import configure
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.inside import find_block, look_inside
-from raycaster.docs import blocks, commands, drawings, facts, pages, results, tables, timing
+from raycaster.docs import blocks, commands, drawings, facts, pages, proofs, results, tables, timing
 from raycaster.docs.commands import commands_of, outside_make
 from raycaster.errors import UserError
 from raycaster.options import CommandParser
@@ -31,6 +31,7 @@ from raycaster.rtl.system.ports import module_ports
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
 from raycaster.sim.simulator import convert
 from raycaster.verif import rtl_lint
+from raycaster.verif.formal.properties import PROPERTIES
 
 NOMINAL = {"74.0 MHz", "74.25 MHz"}
 """Frequencies that are set, not measured."""
@@ -294,7 +295,19 @@ def test_table():
 @pytest.fixture(scope="module")
 def values():
     """All that is made, by its name in the pages' markers."""
-    return facts.facts() | tables.tables()
+    return facts.facts() | tables.tables() | proofs.proofs()
+
+
+def test_the_blocks_proofs_are_named_as_they_are():
+    """Each is in the right column, and no other is named."""
+    assert set(proofs.FULL) | set(proofs.REDUCED) <= {proof.name for proof in PROPERTIES}
+    rows = [line.split(" | ") for line in proofs.proved_blocks().splitlines()]
+    blocks = {row[1]: row for row in rows}
+    assert blocks["`rect_tester`"][2:4] == ["`tester-products` and lemmas", "`tester-exact` (1 to 3 bits)"]
+    assert blocks["`beam_pass`"][2:] == ["", "", "", "", "in frames |"]
+    assert {path.stem for path in (ROOT / "rtl" / "exact").glob("[!_]*.py")} == {
+        row[1].strip("`") for row in rows if row[0] == "| exact"
+    }
 
 
 def test_all_that_is_made_has_its_place_on_a_page(values):
