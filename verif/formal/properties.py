@@ -306,6 +306,26 @@ def _eye(config: Configuration, small: bool) -> Property:
     )
 
 
+def _cell(config: Configuration, small: bool) -> Property:
+    return Property(
+        "cell-products",
+        "the digits that tell a pattern's cell are the quotient's, as long division has them, at full width",
+        config,
+        _label(config),
+        ("cell_finder", "divider_step"),
+        {
+            "COORDINATE_BITS": COORDINATE_BITS,
+            "LOOK_BITS": _look_bits(config),
+            "SLOPE_BITS": exact_slope_bits(config),
+            "EYE_BITS": eye_bits(config),
+        },
+        induction=2,
+        any_product=True,
+        reach=8,
+        small=small,
+    )
+
+
 def _slope(config: Configuration, small: bool) -> Property:
     screen = config.screen_geometry
     turned, plain = ("turned_generator", "slope_component", "magnitude"), ("ray_generator", "magnitude", "magnitude_1")
@@ -494,6 +514,8 @@ PROPERTIES: list[Property] = [
     *(_tester_products(config) for config in EXACT),
     *(_nearest_products(config, small=config is EXACT[0]) for config in EXACT),
     *(_eye(config, small=config is EXACT[-1]) for config in EXACT),
+    *(_cell(config, small=False) for config in EXACT if config.patterns),
+    _cell(_one_unit(engine="exact", patterns=True), small=False),
     _slope(configure(engine="exact"), small=False),
     _slope(configure(engine="exact", rows=200), small=False),
     _slope(configure(engine="exact", turn=True), small=True),

@@ -43,6 +43,7 @@ CORNER_NEAREST = chosen("nearest-products", "exact-vga240-u1-r12-m2-c8-turn-mate
 EYE = chosen("eye-exact", "exact-vga240-u1-r12-m2-c8-turn-materials-patterns")
 SLOPE = chosen("slope-exact", "exact-vga240-u4-r12-m1-c8")
 TURNED = chosen("slope-exact", "exact-vga240-u4-r12-m1-c8-turn")
+CELL = chosen("cell-products", "exact-vga240-u1-r12-m1-c8-patterns")
 FOLD = chosen("fold-exact", "2 and 1 bits, 1 mirrors")
 TABLE = chosen("fixed-rects", "seed, different")
 DIVIDER = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d3-c8 digits")
@@ -178,6 +179,11 @@ FAULTS = {
     "basis-crossed": (TURNED, "turned_generator", "camera_up_y = camera_word[19:10]",
                       "camera_up_y = camera_word[29:20]"),
     "up-is-down": (TURNED, "slope_component", "level + upward", "level - upward"),
+    "never-equal": (CELL, "divider_step", "if (difference < 0) begin", "if (difference <= 0) begin"),
+    "complement-alone": (CELL, "cell_finder", "{turned_way[16:0], back_q};", "{turned_way[16:0], 1'b0};"),
+    "point-a-bit-short": (CELL, "cell_finder", "remainder <= point[17:10];", "remainder <= point[16:10];"),
+    "way-not-turned": (CELL, "cell_finder", "turned_way = ~way;", "turned_way = way;"),
+    "a-cell-too-small": (CELL, "cell_finder", "odd_v = digits_2[size];", "odd_v = digits_1[size];"),
     "corner-missed": (FOLD, "fold_tester", "beyond = !met_2", "beyond = 1'b0"),
     "mirror-again": (FOLD, "fold_tester", "facet_distance > mirror_distance",
                      "facet_distance >= mirror_distance"),
@@ -194,7 +200,7 @@ FAULTS = {
 @pytest.mark.parametrize(
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
-     TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, FOLD, TABLE],
+     TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, FOLD, TABLE],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):
