@@ -15,11 +15,11 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from raycaster.configuration import Configuration, configure
@@ -28,6 +28,7 @@ from raycaster.convert.write import write_verilog
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, configuration_of
+from raycaster.jobs import run_jobs
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.outcomes import add_keep_option, keep, scope_of
 from raycaster.tools import TIMEOUT, find_program, prepare_wasm, run_program, run_yosys
@@ -562,17 +563,10 @@ def _run(
 ) -> dict[tuple[str, int], Any]:
     """Do all, some at a time, the long ones first."""
     output.mkdir(parents=True, exist_ok=True)
-    columns = TextColumn("counting"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
-    with (
-        Progress(*columns, console=console, transient=True) as progress,
-        ThreadPoolExecutor(JOBS) as pool,
-    ):
-        task = progress.add_task("", total=len(tasks))
+    order = sorted(tasks, key=lambda key: -key[1])
 
-        def work(key: tuple[str, int]) -> Any:
-            result = tasks[key](output / f"{key[0]}-{key[1] or 'modules'}")
-            progress.advance(task)
-            return result
+    def work(key: tuple[str, int]) -> Any:
+        return tasks[key](output / f"{key[0]}-{key[1] or 'modules'}")
 
-        order = sorted(tasks, key=lambda key: -key[1])
-        return dict(zip(order, pool.map(work, order), strict=True))
+    results = run_jobs("counting", work, order, partial(ThreadPoolExecutor, JOBS), console)
+    return dict(zip(order, results, strict=True))
