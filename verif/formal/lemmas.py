@@ -10,9 +10,7 @@ from __future__ import annotations
 import ast
 import shutil
 import subprocess
-from collections.abc import Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from pathlib import Path
 from typing import ClassVar
 
@@ -64,11 +62,6 @@ class Lemma:
 
     def _translated(self, text: str) -> str:
         return _smt(ast.parse(text, mode="eval").body, "" if self.integers else ".0")
-
-    def contradicted(self, values: Mapping[str, Fraction | bool]) -> bool:
-        """Whether these values of all variables fulfil the hypotheses and not the conclusion."""
-        *given, then = (bool(eval(text, {}, dict(values))) for text in (*self.given, self.then))
-        return all(given) and not then
 
 
 OPERATORS = {
