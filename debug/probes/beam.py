@@ -235,9 +235,7 @@ class BeamProbes(Description):
             events.append(Event("winner", entered + beam_pass.winner_latency(self.config), Place(bounce)))
             events.append(Event("kept", end, Place(bounce)))
             events.append(Event("blend", end + beam.LOOK_UP_LATENCY, Place(bounce)))
-        # A column is announced in its last clock, and its colour is there from the first one's on.
-        done = column + beam.beam_latency(self.config) - (screen.doubling - 1)
-        events.append(Event("done", done, Place(ray.reflections)))
+        events.append(Event("done", column + beam.beam_latency(self.config), Place(ray.reflections)))
         return events + shown_events(samples, ray, VIDEO, column)
 
     @property

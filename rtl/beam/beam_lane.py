@@ -75,14 +75,14 @@ def beam_lane(
     passes, reflections = len(numbers), len(numbers) - 1
     starts = [ENTRY_LATENCY + number * pass_latency(config) for number in range(passes)]
     looked_up = winner_latency(config) + LOOK_UP_LATENCY
-    kept_bits = starts[-1] + (looked_up if config.patterns else 1)
-    every_step = (2 << kept_bits) - 1
+    seen = starts[-1] + winner_latency(config) + cell_latency(config)
+    every_step = (1 << seen) - 1
     facet = facet_of(config)
     facet_words = [facet.twin().word for _ in range(config.rectangles)]
     takers = [word_of(facet_of(config).cut(facets, i), word) for i, word in enumerate(facet_words)]
 
     # Bit i: a column was announced i + 1 cycles ago. next_column comes a long way, so it is registered before its use.
-    steps = unsigned(kept_bits + 1)
+    steps = unsigned(seen)
 
     if config.turn:
         # All that walks along a row starts from 0, by a step that is as long as the start; its steps are growth then.
@@ -98,14 +98,14 @@ def beam_lane(
             elif entered:
                 steps.next = 0
             else:
-                steps.next = concat(steps[kept_bits:], next_column)
+                steps.next = concat(steps[seen - 1 :], next_column)
 
     else:
         restart = start_line
 
         @always(clk.posedge)
         def follow_columns():
-            steps.next = concat(steps[kept_bits:], next_column)
+            steps.next = concat(steps[seen - 1 :], next_column)
 
     def step_after(cycles: int):
         return steps(cycles, cycles - 1)
@@ -151,12 +151,16 @@ def beam_lane(
     colour_0, colour_1, colour_2 = look_0.colour, look_1.colour, look_2.colour
     look_bits = len(look_0.word)
 
+    # What is between two columns' steps is of neither: a column that is more than a clock wide keeps what it has seen.
+    step_seen = step_after(seen)
+
     @always(clk.posedge)
     def look_up():
-        found_0.next = end_0.valid
-        found_1.next = end_1.valid
-        look_0.word.next = facet_words[end_0.index][look_bits:]
-        look_1.word.next = facet_words[end_1.index][look_bits:]
+        if step_seen:
+            found_0.next = end_0.valid
+            found_1.next = end_1.valid
+            look_0.word.next = facet_words[end_0.index][look_bits:]
+            look_1.word.next = facet_words[end_1.index][look_bits:]
 
     if config.patterns:
         odd_u_0, odd_v_0, odd_u_1, odd_v_1 = (bit() for _ in range(4))
@@ -168,17 +172,19 @@ def beam_lane(
 
         @always(clk.posedge)
         def follow_cells():
-            odd_u_0.next = end_0.odd_u
-            odd_v_0.next = end_0.odd_v
-            odd_u_1.next = end_1.odd_u
-            odd_v_1.next = end_1.odd_v
+            if step_seen:
+                odd_u_0.next = end_0.odd_u
+                odd_v_0.next = end_0.odd_v
+                odd_u_1.next = end_1.odd_u
+                odd_v_1.next = end_1.odd_v
 
     if blends_three(config):
 
         @always(clk.posedge)
         def look_up_last():
-            found_2.next = end_2.valid
-            look_2.word.next = facet_words[end_2.index][look_bits:]
+            if step_seen:
+                found_2.next = end_2.valid
+                look_2.word.next = facet_words[end_2.index][look_bits:]
 
         if config.patterns:
             odd_u_2, odd_v_2, colour_2 = bit(), bit(), unsigned(RGB_BITS)
@@ -186,8 +192,9 @@ def beam_lane(
 
             @always(clk.posedge)
             def follow_last_cells():
-                odd_u_2.next = end_2.odd_u
-                odd_v_2.next = end_2.odd_v
+                if step_seen:
+                    odd_u_2.next = end_2.odd_u
+                    odd_v_2.next = end_2.odd_v
 
     else:
         found_2 = colour_2 = None

@@ -21,7 +21,8 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0)
     scan.start_screen: strobe, a row of rays (screen.doubling lines) before the first visible line, time to render row
     0. start_row: strobe at the beginning of the first line of each row, which is then handed over.
     visible_line: high in the visible part of a line, blanked ones included; next_column: strobe in the last clock of
-    each column there; both are lead pixels early where a pixel takes a clock, at most the horizontal blanking.
+    each column there. With a lead, where a pixel takes a clock, both are that many pixels early, at most the horizontal
+    blanking, and next_column is high in each column's first clock.
     pixel: the column's colour, sampled at the end of each of its pixels. vga changes at the falling edge of vga.clk.
     """
     horizontal, vertical, doubling = screen.beats, screen.vertical, screen.doubling
@@ -33,6 +34,7 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0)
     vsync_last = vsync_first + vertical.sync - 1
     hsync_active, vsync_active = horizontal.active_high, vertical.active_high
     last_repeat = doubling - 1
+    announced = 0 if lead else last_repeat
     single = screen.clocks_per_pixel == 1
     first_ahead, end_ahead = (-lead, horizontal.visible - lead) if single else (0, horizontal.visible)
     one_clock, to_line_end = tied(single, 1), tied(end_ahead == horizontal.visible, 1)
@@ -95,7 +97,7 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0)
         scan.start_screen.next = line_start and (y == -doubling)
         scan.start_row.next = line_start and (y >= 0) and (line_repeat == 0)
         scan.visible_line.next = in_columns
-        scan.next_column.next = pixel_end and in_columns and (pixel_repeat == last_repeat)
+        scan.next_column.next = pixel_end and in_columns and (pixel_repeat == announced)
 
     @always_seq(clk.posedge, reset=reset)
     def synchronise():

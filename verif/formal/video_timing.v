@@ -104,7 +104,7 @@ end
 always @* if (known && CLOCKS == 2 && !last_reset && !(last_clk && !vga_clk)) assert (outputs == last_outputs);
 
 // The renderer's strobes: StartScreen a row ahead of the picture, start_row at each row's first line, next_column at
-// each column's end.
+// each column's end, or with a lead at its beginning.
 wire line_begins = first_half && column == 0;
 wire [11:0] picture_line = line - V_BLANK, column_ahead = column + LEAD;
 wire [11:0] picture_column = column_ahead - H_BLANK;
@@ -113,7 +113,7 @@ always @* if (known) begin
     assert (start_screen == (line_begins && line == V_BLANK - DOUBLING));
     assert (start_row == (line_begins && line >= V_BLANK && picture_line % DOUBLING == 0));
     assert (visible_line == in_columns);
-    assert (next_column == (last_half && in_columns && picture_column % DOUBLING == DOUBLING - 1));
+    assert (next_column == (last_half && in_columns && picture_column % DOUBLING == (LEAD ? 0 : DOUBLING - 1)));
 end
 
 // Rows since StartScreen: all of them when the next one comes.

@@ -91,7 +91,7 @@ def video_model(screen: Screen, lead: int, cycle: int, colours: list[tuple[int, 
         "scan_start_screen": line_start and y == -doubling,
         "scan_start_row": line_start and y >= 0 and y % doubling == 0,
         "scan_visible_line": in_columns,
-        "scan_next_column": in_columns and clock == clocks - 1 and column % doubling == doubling - 1,
+        "scan_next_column": in_columns and clock == clocks - 1 and column % doubling == (0 if lead else doubling - 1),
         # With a clock a pixel it is the clock inverted, and the bench looks while that is low.
         "vga_clk": clock == clocks - 1,
         "vga_sync_n": 0,

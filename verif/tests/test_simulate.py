@@ -129,7 +129,7 @@ PATTERNED = SCENE + 'pattern = "rows"\ncolour2 = "#000000"'
         (SCENE, ("--divider-bits", "4"), "divider_bits: "),
         (SCENE, ("--fraction-bits", "9"), "fraction_bits: "),
         (SCENE, ("--colour-bits", "0"), "colour_bits: "),
-        (SCENE, ("--reflections", "3"), "reflections: "),
+        (SCENE, ("--reflections", "5"), "reflections: "),
         (TURNED, ("--engine", "seed"), "the seed engine measures depth along x, so its camera cannot turn"),
         (TURNED, ("TURN=0",), "the scene needs a camera that turns; leave TURN out"),
         (SCENE + "mirror = 0", ("MATERIALS=0",), "the scene needs rectangles that mirror more or less than half"),
