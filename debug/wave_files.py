@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from vcd.gtkw import GTKWSave, make_translation_filter
+from vcd.gtkw import GTKWFlag, GTKWSave, make_translation_filter
 
 from raycaster.debug.probes.ray import module_of
 from raycaster.debug.waves import RANGE, Waves
@@ -127,9 +127,11 @@ def _gtkwave(waves: Waves, view: View, filters: Mapping[tuple[str, str], Path]) 
                     signal, high, low = waves.bits(signal)
                     count = waves.width(signal)
                     # GTKWave numbers a signal's bits from the left.
-                    bits = [(count - 1 - bit, f"{signal}[{count - 1}:0]") for bit in range(high, low - 1, -1)]
-                    save.trace_combined(label, bits, datafmt=FORMATS[kind] if width > 1 else "bin")
-                    continue
+                    bits = " ".join(f"({count - 1 - bit}){signal}[{count - 1}:0]" for bit in range(high, low - 1, -1))
+                    shown = FORMATS[kind] if width > 1 else "bin"
+                    # What trace_combined of pyvcd 0.5 writes; Amaranth 0.5 wants a pyvcd before that.
+                    with save.trace_bits(f"#{{{label}}} {bits}", datafmt=shown, extraflags=GTKWFlag.grp_begin):
+                        continue
                 whole = f"{signal}[{width - 1}:0]" if width > 1 else signal
                 if place in filters:
                     save.trace(whole, label, datafmt="bin", translate_filter_file=str(filters[place]))

@@ -177,7 +177,7 @@ def test_two_scenes_of_one_name(build, scenes, tmp_path):
 
 def test_a_packaged_scene_from_anywhere(tmp_path):
     """By its name, from a directory without scenes, into the directory's own build/."""
-    command = [sys.executable, "-m", "raycaster.cli", "sim", "matte", "SCREEN=tiny", "UNITS=16"]
+    command = [sys.executable, "-m", "raycaster.cli", "sim", "matte", "SCREEN=tiny", "ENGINE=exact"]
     ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     assert (tmp_path / "build" / "sim" / "matte" / "frame.png").is_file()

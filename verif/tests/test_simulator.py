@@ -24,7 +24,7 @@ from raycaster.sim.simulator import (
     system_verilator,
 )
 
-TINY = configure(screen="tiny")
+TINY = configure(engine="exact", screen="tiny", units=2, rectangles=1)
 
 
 @pytest.fixture

@@ -288,7 +288,7 @@ def test_headers_that_are_not_there_are_not_found(no_fst_headers):
 def test_a_machine_without_headers_gets_vcd(no_fst_headers, tmp_path):
     """A model for windows, and a trace of its recording: what `make trace` does there."""
     command = [sys.executable, "-m", "raycaster.cli", "trace", "--build", tmp_path / "build", SMALL_SCENE]
-    command += ["--pixel", "48,10", "--screen", "tiny", "--units", "8", "--rectangles", "3"]
+    command += ["--pixel", "48,10", "--screen", "tiny", "--engine", "exact", "--rectangles", "3"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "The hardware does what golden does." in done.stdout
