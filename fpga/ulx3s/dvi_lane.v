@@ -1,30 +1,41 @@
 // SPDX-License-Identifier: MIT
-// One wire of a DVI link: a symbol's ten bits in five cycles of shift_clk, bit 0 first. Each wire counts for itself, and
-// is a module of its own in the netlist too: wires are far apart, farther than a signal comes in a cycle.
+// One wire of a DVI link: a symbol's ten bits in five cycles of shift_clk, bit 0 first. Each wire finds the pixels for
+// itself, and is a module of its own in the netlist too: wires are far apart, farther than a signal comes in a cycle. Two
+// of them may find a pixel a cycle apart, two bits: the fifth of a pixel that DVI 1.0 allows between a source's wires.
 
 (* keep_hierarchy *)
 module dvi_lane (
     input  wire       shift_clk,
-    input  wire       restart,          // counting starts with the third cycle of a pixel
+    input  wire       pixel,            // changes with the symbol, once a pixel
     input  wire [9:0] symbol,
     output wire       wire_p
 );
 
-localparam [4:0] THIRD = 5'b01000;
+localparam [4:0] WAITING = 5'b00000;    // for the first pixel
+localparam [4:0] THIRD = 5'b01000;      // of a pixel's cycles, from the one that knew of it on
 
-reg [4:0] arriving = 5'b00000;
-reg [4:0] phase = 5'b00000;
+reg [2:0] seen = 3'b000;
+reg       changed = 1'b0;
+reg       restart = 1'b0;
+reg [4:0] phase = WAITING;              // one bit is high, that of the cycle in the pixel
 reg       load = 1'b0;
 reg [9:0] shift;
 reg [1:0] leaving, pair;
 
-// The way here may take five cycles, which are a pixel, so that it is the third one again.
+// Two registers bring pixel over, and one more remembers it.
 always @(posedge shift_clk)
-    arriving <= {arriving[3:0], restart};
+    seen <= {seen[1:0], pixel};
 
-// Five cycles a pixel; one bit is high, that of the cycle.
+// A pixel that comes a cycle early or late changes nothing, as symbols hold still for longer; where one comes at quite
+// another time, after a reset, counting starts with it. A table and a register each, for the clock's sake.
+always @(posedge shift_clk) begin
+    changed <= seen[1] != seen[2];
+    restart <= changed && !phase[0] && !phase[1] && !phase[2];
+end
+
+// Five cycles a pixel, counted from the first.
 always @(posedge shift_clk)
-    if (arriving[4])
+    if (restart)
         phase <= THIRD;
     else
         phase <= {phase[3:0], phase[4]};
