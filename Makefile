@@ -7,10 +7,12 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 COMMANDS := sim scenes options play game web wave trace verilog fit area quartus bitstream registers report docs results commands
 CHECKS := soak prove mutate exhaustive coverage dvi verify-all
+comma := ,
 ARGUMENTS = $(filter-out PYTHON3=% PYTHON=% VENV=%,$(MAKEOVERRIDES))
 
 # Extras of pyproject.toml that a target needs beside the program itself.
-play game web: EXTRAS := play
+play game: EXTRAS := play
+web: EXTRAS := $(if $(filter-out 0,$(MEASURE)),play$(comma)test,play)
 fit area: EXTRAS := fpga
 results: EXTRAS := fpga,docs
 bitstream: EXTRAS := fpga,play

@@ -167,6 +167,19 @@ def buses() -> str:
     return _with_source(table(headings, rows), "bridges")
 
 
+def page_speed() -> str:
+    """A frame of the page's walk, beside the same design compiled for the machine that measured it."""
+    rows = [
+        [
+            f"`{row['scene']}`", f"{row['browser_ms']:.0f} ms", f"{row['native_ms']:.0f} ms",
+            f"{row['browser_ms'] / row['native_ms']:.2f}", f"{row['shown']:.1f}",
+        ]
+        for row in outcome("web")["figures"]["scenes"]
+    ]  # fmt: skip
+    headings = ["scene", "a frame in Chromium", "natively", "ratio", "frames a second on the page"]
+    return _with_source(table(headings, rows), "web")
+
+
 ROUTED = ("seed", "exact", "beam-320x240", "beam-640x480", "beam-1280x720")
 CELLS = ("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD")
 
@@ -326,7 +339,7 @@ def not_mutated() -> str:
 def tables() -> dict[str, str]:
     """All of them, by the names that pages use."""
     made = (
-        engines, work, scenes, families, features, buses, routed, routed_again, link_short, game_board, one_scene,
-        error_and_time, checks, not_mutated,
+        engines, work, scenes, families, features, buses, page_speed, routed, routed_again, link_short, game_board,
+        one_scene, error_and_time, checks, not_mutated,
     )  # fmt: skip
     return {each.__name__: each() for each in made}

@@ -22,6 +22,7 @@ from raycaster.errors import UserError
 from raycaster.jobs import run_jobs
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.options import CommandParser, add_build_option
+from raycaster.outcomes import add_keep_option, keep, scope_of
 from raycaster.output import replaced
 from raycaster.play.walk import DRAG, STEEPEST, STEP, TURN, TURNS, WALKS
 from raycaster.play.window import GAME_KEYS, TURN_KEYS, WALK_KEYS
@@ -29,6 +30,7 @@ from raycaster.scene import load_scene, packaged_scenes
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware
 from raycaster.web.scene_schema import scene_schema
+from raycaster.web.speed import speed, speed_table
 from raycaster.web.taps import tap_facts
 from raycaster.web.wasm import golden_wasm, machine_wasm
 
@@ -190,6 +192,8 @@ def command_parser() -> CommandParser:
     parser = CommandParser("web", __doc__, "")
     add_build_option(parser)
     parser.add_argument("--output", type=Path, help="where the page goes (default: web/ in there)")
+    parser.add_argument("--measure", action="store_true", help="time its frames in Chromium and natively")
+    add_keep_option(parser)
     parser.add_argument(
         "--test", action="store_true", help="let the address plant a wrong pixel, as in index.html?plant=100,50"
     )
@@ -215,3 +219,9 @@ def main(argv: Sequence[str] | None = None) -> None:
         highlight=False,
         soft_wrap=True,
     )
+    if arguments.measure:
+        model = WALKS_MODELS[0]
+        config = model.configuration
+        rows = speed(output, model.name, config, arguments.build, console)
+        console.print(speed_table(rows))
+        keep(arguments, {"bytes": size, "scenes": rows}, scope_of(config))

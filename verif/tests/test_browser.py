@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 
 from raycaster.ensure_tools import UserError
-from raycaster.verif.browser import browser_page
+from raycaster.web.browser import browser_page
 
 
 def test_a_script_that_fails_is_noticed():
@@ -15,6 +15,6 @@ def test_a_script_that_fails_is_noticed():
 
 
 def test_without_a_browser(monkeypatch):
-    monkeypatch.setattr("raycaster.verif.browser.find", lambda tool: None)
+    monkeypatch.setattr("raycaster.web.browser.find", lambda tool: None)
     with pytest.raises(UserError, match=r"^Chromium is missing[;,] .*$"), browser_page():
         pass

@@ -18,8 +18,8 @@ from conftest import ROOT
 from playwright.sync_api import Page
 
 from raycaster.scene import Camera, Scene, SceneError, load_scene, packaged_scenes
-from raycaster.verif.browser import browser_page
 from raycaster.verif.seeds import repeat, seed
+from raycaster.web.browser import browser_page
 from raycaster.web.scene_schema import scene_schema
 
 PAGE = ROOT / "web" / "page"

@@ -21,7 +21,8 @@ from raycaster.scene import Camera, SceneError, load_scene, packaged_scenes
 from raycaster.sim.simulator import BUILD
 from raycaster.sw.firmware import build_firmware
 from raycaster.sw.play_script import DEMO, load
-from raycaster.verif.browser import browser_page
+from raycaster.web import speed
+from raycaster.web.browser import browser_page
 from raycaster.web.site import MODELS, write_site
 
 SHOWN = "RayCaster.state.walk?.frames > 2 && RayCaster.state.walk.wrong !== null"
@@ -255,6 +256,16 @@ def test_the_engines_side_by_side(page, whole_site, fraction_bits):
     assert state["exact"] == {"hash": picture_hash(perfect), "wrong": 0}
     assert state["seed"] == {"hash": picture_hash(rounded), "wrong": 0}
     assert state["differs"] == np.any(perfect != rounded, axis=2).sum() > 0
+
+
+def test_frames_are_timed(site, monkeypatch):
+    """In the browser and natively, as a positive number of milliseconds; and the page shows some."""
+    monkeypatch.setattr(speed, "SCENES", ("boxes",))
+    monkeypatch.setattr(speed, "FRAMES", 2)
+    (row,) = speed.speed(site, MODELS[0].name, MODELS[0].configuration, BUILD, Console(quiet=True))
+    assert row.pop("scene") == "boxes"
+    assert min(row.values()) > 0
+    assert speed.speed_table([row | {"scene": "boxes"}]).row_count == 1
 
 
 def test_settings_are_json(site):

@@ -21,8 +21,8 @@ from raycaster.debug.waves import Samples
 from raycaster.design import Design
 from raycaster.golden.world import OTHER_AXES
 from raycaster.scene import Scene, load_scene
-from raycaster.verif.browser import browser_page
 from raycaster.verif.seeds import repeat, seed
+from raycaster.web.browser import browser_page
 from raycaster.web.site import Model, write_site
 from raycaster.web.taps import TAP_BITS, tap_facts, tapped_probes, tapped_signals
 from raycaster.web.wasm import machine_wasm

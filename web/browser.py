@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A page in the system's Chromium, without a window, for the tests of what runs in browsers."""
+"""A page in the system's Chromium, without a window, for tests and measurements of what runs in browsers."""
 
 from __future__ import annotations
 
