@@ -202,7 +202,8 @@ class SceneBus(Interface):
 class Rects(Interface):
     """One live rectangle at a time: sorted, the engine's `rect_latency` cycles after `fetch` with its `index`.
 
-    It is held until the next fetch. usable: a bit for each rectangle, 1 where it is enabled and has a plane.
+    It is held until the next fetch. usable: a bit for each rectangle, 1 where it is enabled and has a plane; the others
+    are don't care.
     """
 
     def __init__(self, config: Configuration):

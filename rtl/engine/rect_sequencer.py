@@ -49,7 +49,7 @@ def rect_sequencer(
                 others.next = candidates
                 others.next[i] = 0
 
-    # The choice is registered before it is fetched: memory and sorter take most of a cycle by themselves.
+    # The choice is registered before it is fetched, so that it and the memory have a cycle each.
     @always(clk.posedge)
     def offer():
         if take or not fetched:

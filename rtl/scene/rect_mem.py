@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The world's rectangles."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.records import rect_of
@@ -9,12 +9,17 @@ from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import WORD_BITS, bit, index_bits, side_by_side, signed, unsigned
 from raycaster.rtl.scene.rect_slot import rect_slot
 from raycaster.rtl.scene.rect_sorter import rect_sorter
-from raycaster.rtl.scene.written_rect import CORNER, written_of
+from raycaster.rtl.scene.written_rect import CORNER, PLACE_BITS, PLACES, Copies, implemented_bits, written_of
 
 
 @block
 def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configuration):
     """config.rectangles slots, and the live rectangle that the engine asks for; rects: Rects.
+
+    A memory holds the shadow as it was written. Another has three places for each slot, for rectangles as the engine
+    wants them, which is as many as shadow, pending and live copy may need: a write takes one that neither of the two
+    others keeps, and a commit and StartScreen change which place is whose. Reset clears neither memory: a slot that was
+    not written since reads 0, and is not usable. rects.rect: don't care where the rectangle is not usable.
 
     readback: the shadow's word at bus.address, 32 bits, combinational, 0 where there is none. bad_rectangle: the shadow
     holds an enabled rectangle without a plane.
@@ -24,42 +29,65 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     address_width = len(bus.address)
     index_width = index_bits(config)
 
-    numbers = [tied(table_slot + number, address_width - 2) for number in range(count)]
-    shadows, lives = ([written_of(config) for _ in range(count)] for _ in range(2))
-    shadow_words, live_words = ([written.word for written in stage] for stage in (shadows, lives))
+    slot = signed(address_width - 1)
+    index = unsigned(index_width)
+    in_table = bit()
+    stored, old, mask, data, merged = (written_of(config) for _ in range(5))
+    implemented = tied(implemented_bits(config), len(merged.word))
+    mask_0, mask_1, mask_2 = (unsigned(WORD_BITS) for _ in range(3))
+    pattern_word = old.pattern if config.patterns else tied(0, WORD_BITS)
+    shadow_words = [unsigned(len(merged.word)) for _ in range(1 << index_width)]
+
+    numbers = [tied(number, index_width) for number in range(count)]
     usables, bads = ([bit() for _ in range(count)] for _ in range(2))
     usable, bad = side_by_side(usables), side_by_side(bads)
-    read_slot = signed(address_width - 1)
-    read_index = unsigned(index_width)
-    in_table = bit()
-    read, chosen = written_of(config), written_of(config)
-    pattern_word = read.pattern if config.patterns else tied(0, WORD_BITS)
+    write, flat = bit(), bit()
+    all_copies = [Copies() for _ in range(count)]
+    copies_words = [copies.word for copies in all_copies]
+    written_copies, read_copies = Copies(), Copies()
+    next_pending, next_live, place = (unsigned(PLACE_BITS) for _ in range(3))
+    kept_0, kept_1 = bit(), bit()
+
     sorted_rect = rect_of(config)
+    places = [unsigned(len(sorted_rect.word)) for _ in range(PLACES << index_width)]
+    write_address, read_address = (unsigned(PLACE_BITS + index_width) for _ in range(2))
 
     slots = [
         rect_slot(
-            clk, reset, bus, numbers[i], shadow=shadows[i], live=lives[i], usable=usables[i], bad=bads[i], config=config
+            clk, reset, bus, write, index, numbers[i], place=place, enable=merged.enable, flat=flat,
+            copies=all_copies[i], usable=usables[i], bad=bads[i],
         )
         for i in range(count)
-    ]
-    sorter = rect_sorter(chosen, sorted_rect, config)
+    ]  # fmt: skip
+    sorter = rect_sorter(merged, sorted_rect, config)
 
     # The table starts after the other registers.
     @always_comb
     def locate():
-        read_slot.next = bus.address[address_width:2] - table_slot
+        slot.next = bus.address[address_width:2] - table_slot
 
-    # An index that is out of the table reads nothing, and must not reach beyond the list.
+    # An index that is out of the table reads nothing, and must not reach beyond the lists.
     @always_comb
     def clip():
-        in_table.next = (read_slot >= 0) and (read_slot < count)
-        read_index.next = 0
-        if (read_slot >= 0) and (read_slot < count):
-            read_index.next = read_slot[index_width:]
+        in_table.next = (slot >= 0) and (slot < count)
+        index.next = 0
+        if (slot >= 0) and (slot < count):
+            index.next = slot[index_width:]
 
     @always_comb
-    def read_rect():
-        read.word.next = shadow_words[read_index]
+    def decode():
+        write.next = bus.write and in_table
+
+    @always_comb
+    def read_shadow():
+        stored.word.next = shadow_words[index]
+        written_copies.word.next = copies_words[index]
+
+    @always_comb
+    def clear_unwritten():
+        old.word.next = 0
+        if written_copies.written:
+            old.word.next = stored.word
 
     # 0 outside the table.
     @always_comb
@@ -67,39 +95,120 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
         readback.next = 0
         if in_table:
             if bus.address[2:] == 0:
-                readback.next = read.corner_0
+                readback.next = old.corner_0
             elif bus.address[2:] == 1:
-                readback.next = read.corner_1
+                readback.next = old.corner_1
             elif bus.address[2:] == 2:
-                readback.next = read.surface
+                readback.next = old.surface
             else:
                 readback.next = pattern_word
+
+    @always_comb
+    def select_word():
+        mask_0.next = 0
+        mask_1.next = 0
+        mask_2.next = 0
+        if bus.address[2:] == 0:
+            mask_0.next = bus.mask
+        elif bus.address[2:] == 1:
+            mask_1.next = bus.mask
+        elif bus.address[2:] == 2:
+            mask_2.next = bus.mask
+
+    if config.patterns:
+        mask_3 = unsigned(WORD_BITS)
+
+        @always_comb
+        def select_pattern():
+            mask_3.next = 0
+            if bus.address[2:] == 3:
+                mask_3.next = bus.mask
+
+        @always_comb
+        def spread():
+            mask.word.next = concat(mask_0, mask_1, mask_2, mask_3)
+            data.word.next = concat(bus.data, bus.data, bus.data, bus.data)
+
+    else:
+
+        @always_comb
+        def spread():
+            mask.word.next = concat(mask_0, mask_1, mask_2)
+            data.word.next = concat(bus.data, bus.data, bus.data)
+
+    @always_comb
+    def merge():
+        merged.word.next = ((old.word & ~mask.word) | (data.word & mask.word)) & implemented
+
+    # A rectangle lies in a plane where its corners share a coordinate.
+    @always_comb
+    def find_plane():
+        flat.next = (merged.x_0 == merged.x_1) or (merged.y_0 == merged.y_1) or (merged.z_0 == merged.z_1)
+
+    # Whose places are kept at the end of this cycle.
+    @always_comb
+    def look_ahead():
+        next_pending.next = written_copies.pending
+        if bus.commit:
+            next_pending.next = written_copies.shadow
+        next_live.next = written_copies.live
+        if bus.go_live:
+            next_live.next = written_copies.pending
+
+    @always_comb
+    def find_kept():
+        kept_0.next = (next_pending == 0) or (next_live == 0)
+        kept_1.next = (next_pending == 1) or (next_live == 1)
+
+    @always_comb
+    def choose_place():
+        place.next = 0
+        if kept_0 and kept_1:
+            place.next = 2
+        elif kept_0:
+            place.next = 1
+
+    @always_comb
+    def address():
+        write_address.next = concat(place, index)
+        read_address.next = concat(read_copies.live, rects.index)
+
+    @always(clk.posedge)
+    def store_shadow():
+        if write:
+            shadow_words[index].next = merged.word
+
+    @always(clk.posedge)
+    def store_sorted():
+        if write:
+            places[write_address].next = sorted_rect.word
 
     @always_comb
     def show_slots():
         bad_rectangle.next = bad != 0
         rects.usable.next = usable
 
+    @always_comb
+    def find_live():
+        read_copies.word.next = copies_words[rects.index]
+
     if config.facts.rect_latency == 1:
 
-        @always_comb
-        def choose():
-            chosen.word.next = live_words[rects.index]
-
         @always(clk.posedge)
         def present():
             if rects.fetch:
-                rects.rect.word.next = sorted_rect.word
+                rects.rect.word.next = places[read_address]
 
     else:
+        fetched = rect_of(config)
 
         @always(clk.posedge)
-        def choose():
+        def fetch():
             if rects.fetch:
-                chosen.word.next = live_words[rects.index]
+                fetched.word.next = places[read_address]
 
         @always(clk.posedge)
         def present():
-            rects.rect.word.next = sorted_rect.word
+            rects.rect.word.next = fetched.word
 
     return instances()

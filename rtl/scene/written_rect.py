@@ -4,7 +4,7 @@
 from raycaster.configuration import Configuration
 from raycaster.registers import register_map
 from raycaster.rtl.common.records import Field, Record
-from raycaster.rtl.common.widths import RGB_BITS, WORD_BITS
+from raycaster.rtl.common.widths import RGB_BITS, WORD_BITS, bits_for
 
 REGISTERS = register_map(1)
 CORNER = REGISTERS["rectangle[0].corner_0"]
@@ -47,3 +47,23 @@ class WrittenRect(Record):
 def written_of(config: Configuration) -> WrittenRect:
     """One of a design's."""
     return WrittenRect(config.materials, config.patterns)
+
+
+def implemented_bits(config: Configuration) -> int:
+    """The bits of one that a design has."""
+    corner = CORNER.implemented
+    words = {"corner_0": corner, "corner_1": corner, "surface": surface_mask(config), "pattern": PATTERN.implemented}
+    return written_of(config).pack(words)
+
+
+PLACES = 3
+"""Of a slot, for its shadow, pending and live copy."""
+
+PLACE_BITS = bits_for(PLACES)
+
+
+class Copies(Record):
+    """At which of its places a slot's copies are. written: at all, since reset."""
+
+    def __init__(self):
+        super().__init__({"written": 1} | dict.fromkeys(("shadow", "pending", "live"), PLACE_BITS))

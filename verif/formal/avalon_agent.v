@@ -3,11 +3,11 @@
 //
 // Assumed: a transfer reads or writes, and not both, as Avalon asks; one cycle of reset at first. Reset may come again
 // at any time, and StartScreen, the budget's counters and the renderer's flags do as they like. `watched` is chosen by
-// the solver and then stays, so that what holds for it holds for every address.
+// the solver and then stays, so that what holds for it holds for every address; so is the rectangle `watched_slot`.
 
 module avalon_agent #(
     parameter ADDRESS_BITS = 5, parameter [31:0] VERSION_WORD = 0, parameter [31:0] ENGINE_WORD = 0,
-    parameter [31:0] SIZE_WORD = 0, parameter REFLECTIONS = 1
+    parameter [31:0] SIZE_WORD = 0, parameter REFLECTIONS = 1, parameter RECT_BITS = 71
 ) (
     input clk, input reset,
     input [ADDRESS_BITS-1:0] address, input read, input write, input [31:0] writedata, input [3:0] byteenable,
@@ -16,10 +16,12 @@ module avalon_agent #(
 );
 wire [31:0] readdata, camera_readback, rect_readback, bus_data, bus_mask;
 wire readdatavalid, waitrequest, irq, bad_rectangle, run, bus_write, bus_commit, bus_go_live;
-wire [1:0] reflections;
+wire [2:0] reflections;
 wire [23:0] background;
 wire [ADDRESS_BITS-1:0] bus_address;
 wire [8:0] camera_x, camera_y, camera_z;
+wire [1:0] rects_usable;
+wire [RECT_BITS-1:0] rects_rect;
 
 avalon_interface registers (
     .clk(clk), .reset(reset), .avs_s0_address(address), .avs_s0_read(read), .avs_s0_write(write),
@@ -39,17 +41,19 @@ camera_mem camera (
 rect_mem rects (
     .clk(clk), .reset(reset), .readback(rect_readback), .bad_rectangle(bad_rectangle), .bus_write(bus_write),
     .bus_commit(bus_commit), .bus_go_live(bus_go_live), .bus_address(bus_address), .bus_data(bus_data),
-    .bus_mask(bus_mask), .rects_usable(), .rects_index(rects_index), .rects_fetch(rects_fetch), .rects_rect_word()
+    .bus_mask(bus_mask), .rects_usable(rects_usable), .rects_index(rects_index), .rects_fetch(rects_fetch),
+    .rects_rect_word(rects_rect)
 );
 
 // The register map once more, by hand.
 localparam ID = 0, VERSION = 1, ENGINE = 2, SIZE = 3, CONTROL = 4, STATUS = 5, CYCLES = 6, IRQ_ENABLE = 7,
     IRQ_PENDING = 8, BACKGROUND = 9, CAMERA = 10, TABLE = 16;
 localparam [31:0] POINT_BITS = 32'h1ff7fdff, SURFACE_BITS = 32'h80ffffff;
+localparam [95:0] SLOT_BITS = {POINT_BITS, POINT_BITS, SURFACE_BITS};
 (* anyconst *) reg [ADDRESS_BITS-1:0] watched;
 reg [31:0] implemented;  // of what is shadowed; the other words have none
 always @* case (watched)
-    CONTROL: implemented = 32'h301;
+    CONTROL: implemented = 32'h701;
     BACKGROUND: implemented = 32'h00ffffff;
     CAMERA, TABLE, TABLE + 1, TABLE + 4, TABLE + 5: implemented = POINT_BITS;
     TABLE + 2, TABLE + 6: implemented = SURFACE_BITS;
@@ -167,26 +171,18 @@ always @(posedge clk) last_readdata <= readdata;
 always @* if (known && !last_reset && !readdatavalid) assert (readdata == last_readdata);
 
 // What the renderer gets is the live word, which changes at StartScreen only.
-(* hierconn *) wire [31:0] \registers.live_control , \registers.live_background , \camera.lives_0 ,
-    \rects.rect_slot_0_i.live_corner_0 , \rects.rect_slot_0_i.live_corner_1 , \rects.rect_slot_0_i.live_surface ,
-    \rects.rect_slot_1_i.live_corner_0 , \rects.rect_slot_1_i.live_corner_1 , \rects.rect_slot_1_i.live_surface ;
+(* hierconn *) wire [31:0] \registers.live_control , \registers.live_background , \camera.lives_0 ;
 reg [31:0] shown;
 always @* case (watched)
     CONTROL: shown = \registers.live_control ;
     BACKGROUND: shown = \registers.live_background ;
     CAMERA: shown = \camera.lives_0 ;
-    TABLE: shown = \rects.rect_slot_0_i.live_corner_0 ;
-    TABLE + 1: shown = \rects.rect_slot_0_i.live_corner_1 ;
-    TABLE + 2: shown = \rects.rect_slot_0_i.live_surface ;
-    TABLE + 4: shown = \rects.rect_slot_1_i.live_corner_0 ;
-    TABLE + 5: shown = \rects.rect_slot_1_i.live_corner_1 ;
-    TABLE + 6: shown = \rects.rect_slot_1_i.live_surface ;
-    default: shown = 0;
+    default: shown = live;  // rectangles are below
 endcase
-wire [1:0] most_reflections = REFLECTIONS;
-wire [52:0] scene = {run, reflections, background, camera_x, camera_y, camera_z};
+wire [2:0] most_reflections = REFLECTIONS;
+wire [53:0] scene = {run, reflections, background, camera_x, camera_y, camera_z};
 reg [31:0] last_shown;
-reg [52:0] last_scene;
+reg [53:0] last_scene;
 reg last_start;
 always @(posedge clk) begin
     last_shown <= shown;
@@ -197,32 +193,110 @@ always @* if (known) begin
     assert (shown == live);
     if (watched == CONTROL) begin
         assert (run == live[0]);
-        assert (reflections == (live[9:8] > most_reflections ? most_reflections : live[9:8]));
+        assert (reflections == (live[10:8] > most_reflections ? most_reflections : live[10:8]));
     end
     if (watched == BACKGROUND) assert (background == live[23:0]);
     if (watched == CAMERA) assert ({camera_z, camera_y, camera_x} == {live[28:20], live[18:10], live[8:0]});
     if (!last_start && !last_reset) assert (shown == last_shown && scene == last_scene);
 end
 
-// A committed rectangle is bad where it is enabled and its corners share no coordinate.
-(* hierconn *) wire [31:0] \registers.control_word , \registers.background_word ,
-    \rects.rect_slot_0_i.corner_0 , \rects.rect_slot_0_i.corner_1 , \rects.rect_slot_0_i.surface ,
-    \rects.rect_slot_1_i.corner_0 , \rects.rect_slot_1_i.corner_1 , \rects.rect_slot_1_i.surface ;
+// The watched rectangle: its three words as above, whether any was written since reset, and what the renderer gets of
+// it. What the sorter makes of words is arbitrary here, but always the same `result` of the same `words`: what holds
+// for these holds for any.
+(* anyconst *) reg watched_slot;
+wire [ADDRESS_BITS-1:0] first = TABLE + 4 * watched_slot;
+wire in_slot = address[ADDRESS_BITS-1:2] == first[ADDRESS_BITS-1:2];
+wire [95:0] slot_mask = {
+    address[1:0] == 0 ? mask : 32'b0, address[1:0] == 1 ? mask : 32'b0, address[1:0] == 2 ? mask : 32'b0
+} & SLOT_BITS;
+wire [95:0] wrote_slot_mask = {
+    wrote_address[1:0] == 0 ? wrote_mask : 32'b0, wrote_address[1:0] == 1 ? wrote_mask : 32'b0,
+    wrote_address[1:0] == 2 ? wrote_mask : 32'b0
+} & SLOT_BITS;
+reg [95:0] slot_shadow, slot_shadow_1, slot_snapshot, slot_pending, slot_live;
+reg written, written_1, written_snapshot, written_pending, written_live;
+always @(posedge clk) begin
+    if (reset) begin
+        {slot_shadow, slot_shadow_1, slot_pending, slot_live} <= 0;
+        {written, written_1, written_pending, written_live} <= 0;
+    end
+    else begin
+        if (writes && in_slot) begin
+            slot_shadow <= (slot_shadow & ~slot_mask) | ({3{writedata}} & slot_mask);
+            written <= 1;
+        end
+        {slot_shadow_1, written_1} <= {slot_shadow, written};
+        if (committed_2) {slot_pending, written_pending} <= {slot_snapshot, written_snapshot};
+        if (start_screen) {slot_live, written_live} <= {slot_pending, written_pending};
+    end
+    if (committed_1) {slot_snapshot, written_snapshot} <= {slot_shadow, written};
+end
 function shares(input [31:0] a, input [31:0] b);
     shares = a[8:0] == b[8:0] || a[18:10] == b[18:10] || a[28:20] == b[28:20];
 endfunction
-wire bad_0 = \rects.rect_slot_0_i.surface [31]
-    && !shares(\rects.rect_slot_0_i.corner_0 , \rects.rect_slot_0_i.corner_1 );
-wire bad_1 = \rects.rect_slot_1_i.surface [31]
-    && !shares(\rects.rect_slot_1_i.corner_0 , \rects.rect_slot_1_i.corner_1 );
-always @* if (known) assert (bad_rectangle == (bad_0 || bad_1));
+function good(input [95:0] words);
+    good = words[31] && shares(words[95:64], words[63:32]);
+endfunction
+function wrong(input [95:0] words);
+    wrong = words[31] && !shares(words[95:64], words[63:32]);
+endfunction
+(* anyconst *) reg [95:0] words;
+(* anyconst *) reg [RECT_BITS-1:0] result;
+(* hierconn *) wire [95:0] \rects.merged_word ;
+(* hierconn *) wire [RECT_BITS-1:0] \rects.sorted_rect_word ;
+always @* assume (\rects.merged_word != words || \rects.sorted_rect_word == result);
+
+// A fetch gives the live rectangle of its cycle, until the next one.
+reg fetched = 0;
+always @(posedge clk)
+    if (rects_fetch) fetched <= known && rects_index == watched_slot && written_live && slot_live == words;
+always @* if (known) begin
+    assert (rects_usable[watched_slot] == good(slot_live));
+    if (fetched) assert (rects_rect == result);
+end
+
+// Its memories are registers in this model.
+(* hierconn *) wire [95:0] \rects.shadow_words[0] , \rects.shadow_words[1] ;
+(* hierconn *) wire [RECT_BITS-1:0] \rects.places[0] , \rects.places[1] , \rects.places[2] , \rects.places[3] ,
+    \rects.places[4] , \rects.places[5] ;
+(* hierconn *) wire [1:0] \rects.rect_slot_0_i.shadow , \rects.rect_slot_1_i.shadow ,
+    \rects.rect_slot_0_i.pending , \rects.rect_slot_1_i.pending , \rects.rect_slot_0_i.live ,
+    \rects.rect_slot_1_i.live ;
+(* hierconn *) wire \rects.rect_slot_0_i.written , \rects.rect_slot_1_i.written ,
+    \rects.rect_slot_0_i.shadow_usable , \rects.rect_slot_1_i.shadow_usable ,
+    \rects.rect_slot_0_i.pending_usable , \rects.rect_slot_1_i.pending_usable , \rects.rect_slot_0_i.bad ,
+    \rects.rect_slot_1_i.bad ;
+wire [95:0] slot_0 = \rects.rect_slot_0_i.written ? \rects.shadow_words[0] : 0;
+wire [95:0] slot_1 = \rects.rect_slot_1_i.written ? \rects.shadow_words[1] : 0;
+wire [5:0] its_places = watched_slot
+    ? {\rects.rect_slot_1_i.shadow , \rects.rect_slot_1_i.pending , \rects.rect_slot_1_i.live }
+    : {\rects.rect_slot_0_i.shadow , \rects.rect_slot_0_i.pending , \rects.rect_slot_0_i.live };
+wire [1:0] its_shadow = its_places[5:4], its_pending = its_places[3:2], its_live = its_places[1:0];
+wire [2:0] right = watched_slot
+    ? {\rects.places[5] == result, \rects.places[3] == result, \rects.places[1] == result}
+    : {\rects.places[4] == result, \rects.places[2] == result, \rects.places[0] == result};
+always @* if (known) begin
+    assert (bad_rectangle == (wrong(slot_0) || wrong(slot_1)));
+    assert (\rects.rect_slot_0_i.bad == wrong(slot_0) && \rects.rect_slot_1_i.bad == wrong(slot_1));
+    assert ((watched_slot ? slot_1 : slot_0) == slot_shadow_1 && (slot_shadow & ~SLOT_BITS) == 0);
+    if (!wrote || wrote_address[ADDRESS_BITS-1:2] != first[ADDRESS_BITS-1:2])
+        assert (slot_shadow == slot_shadow_1 && written == written_1);
+    else assert (slot_shadow == ((slot_shadow_1 & ~wrote_slot_mask) | ({3{wrote_ones}} & wrote_slot_mask)) && written);
+    assert ((watched_slot ? \rects.rect_slot_1_i.written : \rects.rect_slot_0_i.written ) == written_1);
+    assert (its_shadow < 3 && its_pending < 3 && its_live < 3);
+    if (written_1 && slot_shadow_1 == words) assert (right[its_shadow]);
+    if (written_pending && slot_pending == words) assert (right[its_pending]);
+    if (written_live && slot_live == words) assert (right[its_live]);
+    assert ((watched_slot ? \rects.rect_slot_1_i.shadow_usable : \rects.rect_slot_0_i.shadow_usable )
+        == good(slot_shadow_1));
+    assert ((watched_slot ? \rects.rect_slot_1_i.pending_usable : \rects.rect_slot_0_i.pending_usable )
+        == good(slot_pending));
+    if (committed_2) assert (slot_snapshot == slot_shadow_1 && written_snapshot == written_1);
+end
 
 // Invariants: the registers behind the bus are a cycle behind the model, and the pending copies equal its own.
-(* hierconn *) wire [31:0] \registers.scene_word_0_i.pending , \registers.scene_word_1_i.pending ,
-    \camera.scene_word_i.pending , \rects.rect_slot_0_i.scene_word_0_i.pending ,
-    \rects.rect_slot_0_i.scene_word_1_i.pending , \rects.rect_slot_0_i.scene_word_2_i.pending ,
-    \rects.rect_slot_1_i.scene_word_0_i.pending , \rects.rect_slot_1_i.scene_word_1_i.pending ,
-    \rects.rect_slot_1_i.scene_word_2_i.pending ;
+(* hierconn *) wire [31:0] \registers.control_word , \registers.background_word ,
+    \registers.scene_word_0_i.pending , \registers.scene_word_1_i.pending , \camera.scene_word_i.pending ;
 (* hierconn *) wire [15:0] \registers.frame , \registers.slowest_row , \registers.slowest_group ;
 (* hierconn *) wire \registers.sticky_underrun , \registers.sticky_bad , \registers.irq_enable ,
     \registers.irq_pending , \registers.commit_pending , \registers.reading ;
@@ -231,12 +305,12 @@ always @* case (watched)
     CONTROL: {kept, kept_pending} = {\registers.control_word , \registers.scene_word_0_i.pending };
     BACKGROUND: {kept, kept_pending} = {\registers.background_word , \registers.scene_word_1_i.pending };
     CAMERA: {kept, kept_pending} = {camera_readback, \camera.scene_word_i.pending };
-    TABLE: {kept, kept_pending} = {\rects.rect_slot_0_i.corner_0 , \rects.rect_slot_0_i.scene_word_0_i.pending };
-    TABLE + 1: {kept, kept_pending} = {\rects.rect_slot_0_i.corner_1 , \rects.rect_slot_0_i.scene_word_1_i.pending };
-    TABLE + 2: {kept, kept_pending} = {\rects.rect_slot_0_i.surface , \rects.rect_slot_0_i.scene_word_2_i.pending };
-    TABLE + 4: {kept, kept_pending} = {\rects.rect_slot_1_i.corner_0 , \rects.rect_slot_1_i.scene_word_0_i.pending };
-    TABLE + 5: {kept, kept_pending} = {\rects.rect_slot_1_i.corner_1 , \rects.rect_slot_1_i.scene_word_1_i.pending };
-    TABLE + 6: {kept, kept_pending} = {\rects.rect_slot_1_i.surface , \rects.rect_slot_1_i.scene_word_2_i.pending };
+    TABLE: {kept, kept_pending} = {slot_0[95:64], pending};
+    TABLE + 1: {kept, kept_pending} = {slot_0[63:32], pending};
+    TABLE + 2: {kept, kept_pending} = {slot_0[31:0], pending};
+    TABLE + 4: {kept, kept_pending} = {slot_1[95:64], pending};
+    TABLE + 5: {kept, kept_pending} = {slot_1[63:32], pending};
+    TABLE + 6: {kept, kept_pending} = {slot_1[31:0], pending};
     default: {kept, kept_pending} = 0;
 endcase
 always @* if (known) begin

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A fixed scene's table against the general memory whose words are that scene's: every engine asks both for any
-// rectangle at any time, and gets the same.
+// A fixed scene's table against the general memory into which that scene's words were written: every engine asks both
+// for any rectangle at any time, and gets the same.
 //
-// Assumed of the memory is only that its words are the scene's, which is committed and goes live in every clock. Engines
-// are the same modules behind either, so this is what a fixed scene changes.
+// Assumed: what is written are words of the scene, whole, each in its place; when, in which order and how often is
+// arbitrary, as commit and StartScreen are; one cycle of reset at first, which may come again. Engines are the same
+// modules behind either, so this is what a fixed scene changes.
 
 module fixed_rects #(
     parameter INDEX_BITS = 2, parameter ADDRESS_BITS = 5, parameter RECT_BITS = 71, parameter LATENCY = 1,
@@ -11,54 +12,108 @@ module fixed_rects #(
     parameter [31:0] CORNER_0_1 = 0, parameter [31:0] CORNER_1_1 = 0, parameter [31:0] SURFACE_1 = 0,
     parameter [31:0] CORNER_0_2 = 0, parameter [31:0] CORNER_1_2 = 0, parameter [31:0] SURFACE_2 = 0
 ) (
-    input clk, input reset, input [INDEX_BITS-1:0] index, input fetch, input [ADDRESS_BITS-1:0] address
+    input clk, input reset, input [INDEX_BITS-1:0] index, input fetch,
+    input write, input [1:0] slot, input [1:0] word, input commit, input go_live
 );
+localparam TABLE = 16;
+localparam [95:0] SCENE_0 = {CORNER_0_0, CORNER_1_0, SURFACE_0}, SCENE_1 = {CORNER_0_1, CORNER_1_1, SURFACE_1},
+    SCENE_2 = {CORNER_0_2, CORNER_1_2, SURFACE_2};
+wire [95:0] words = slot == 0 ? SCENE_0 : slot == 1 ? SCENE_1 : SCENE_2;
+wire [31:0] data = word == 0 ? words[95:64] : word == 1 ? words[63:32] : words[31:0];
+wire [ADDRESS_BITS-1:0] address = TABLE + {slot, word};
 wire [2:0] usable;
 wire [RECT_BITS-1:0] rect, fixed_rect;
 rect_mem memory (
-    .clk(clk), .reset(reset), .readback(), .bad_rectangle(), .bus_write(1'b0), .bus_commit(1'b1), .bus_go_live(1'b1),
-    .bus_address(address), .bus_data(32'b0), .bus_mask(32'b0), .rects_usable(usable), .rects_index(index),
-    .rects_fetch(fetch), .rects_rect_word(rect)
+    .clk(clk), .reset(reset), .readback(), .bad_rectangle(), .bus_write(write), .bus_commit(commit),
+    .bus_go_live(go_live), .bus_address(address), .bus_data(data), .bus_mask({32{1'b1}}), .rects_usable(usable),
+    .rects_index(index), .rects_fetch(fetch), .rects_rect_word(rect)
 );
 rect_rom rom (.clk(clk), .rects_index(index), .rects_fetch(fetch), .rects_rect_word(fixed_rect));
 
-// What the scene's words say; the live ones stay as they are, without a reset.
-(* hierconn *) wire [31:0] \memory.rect_slot_0_i.live_corner_0 , \memory.rect_slot_0_i.live_corner_1 ;
-(* hierconn *) wire [31:0] \memory.rect_slot_1_i.live_corner_0 , \memory.rect_slot_1_i.live_corner_1 ;
-(* hierconn *) wire [31:0] \memory.rect_slot_2_i.live_corner_0 , \memory.rect_slot_2_i.live_corner_1 ;
-(* hierconn *) wire [31:0] \memory.rect_slot_0_i.live_surface , \memory.rect_slot_1_i.live_surface ;
-(* hierconn *) wire [31:0] \memory.rect_slot_2_i.live_surface ;
-(* hierconn *) wire [31:0] \memory.rect_slot_0_i.corner_0 , \memory.rect_slot_0_i.corner_1 ;
-(* hierconn *) wire [31:0] \memory.rect_slot_1_i.corner_0 , \memory.rect_slot_1_i.corner_1 ;
-(* hierconn *) wire [31:0] \memory.rect_slot_2_i.corner_0 , \memory.rect_slot_2_i.corner_1 ;
-(* hierconn *) wire [31:0] \memory.rect_slot_0_i.surface , \memory.rect_slot_1_i.surface , \memory.rect_slot_2_i.surface ;
-reg committed = 0, started = 0, known = 0, held = 0;
-always @(posedge clk) begin
-    committed <= 1;
-    started <= committed;
-    held <= held || fetch;
-    known <= LATENCY == 1 ? held || fetch : held;
-end
+reg running = 0;
+always @(posedge clk) running <= 1;
 always @* begin
-    assume (!reset && index < 3);
-    assume (\memory.rect_slot_0_i.live_corner_0 == CORNER_0_0 && \memory.rect_slot_0_i.live_corner_1 == CORNER_1_0 );
-    assume (\memory.rect_slot_1_i.live_corner_0 == CORNER_0_1 && \memory.rect_slot_1_i.live_corner_1 == CORNER_1_1 );
-    assume (\memory.rect_slot_2_i.live_corner_0 == CORNER_0_2 && \memory.rect_slot_2_i.live_corner_1 == CORNER_1_2 );
-    assume (\memory.rect_slot_0_i.live_surface == SURFACE_0 && \memory.rect_slot_1_i.live_surface == SURFACE_1 );
-    assume (\memory.rect_slot_2_i.live_surface == SURFACE_2 );
-    assume (\memory.rect_slot_0_i.corner_0 == CORNER_0_0 && \memory.rect_slot_0_i.corner_1 == CORNER_1_0 );
-    assume (\memory.rect_slot_1_i.corner_0 == CORNER_0_1 && \memory.rect_slot_1_i.corner_1 == CORNER_1_1 );
-    assume (\memory.rect_slot_2_i.corner_0 == CORNER_0_2 && \memory.rect_slot_2_i.corner_1 == CORNER_1_2 );
-    assume (\memory.rect_slot_0_i.surface == SURFACE_0 && \memory.rect_slot_1_i.surface == SURFACE_1 );
-    assume (\memory.rect_slot_2_i.surface == SURFACE_2 );
+    if (!running) assume (reset);
+    assume (index < 3 && slot < 3 && word < 3);
 end
 
+// Which words of a slot are written, and of which slots a copy is the scene's.
+reg [2:0] written_0, written_1, written_2, pending, live;
+wire [2:0] shadow = {&written_2, &written_1, &written_0};
+always @(posedge clk) begin
+    if (reset) {written_0, written_1, written_2, pending, live} <= 0;
+    else begin
+        if (write && slot == 0) written_0 <= written_0 | 3'b1 << word;
+        if (write && slot == 1) written_1 <= written_1 | 3'b1 << word;
+        if (write && slot == 2) written_2 <= written_2 | 3'b1 << word;
+        if (commit) pending <= shadow;
+        if (go_live) live <= pending;
+    end
+end
+
+// Whether what is at hand was the scene's when it was fetched.
+reg fetched = 0, held = 0;
+always @(posedge clk) begin
+    if (fetch) fetched <= live[index] && running;
+    held <= fetched;
+end
+wire known = LATENCY == 1 ? fetched : held;
 always @* if (known) assert (fixed_rect == rect);
-always @* if (started) assert (usable == 3'b111);
+always @* if (running) assert ((usable & live) == live);
+
+// Invariants: the memory's contents, which are registers in this model.
+(* hierconn *) wire [95:0] \memory.shadow_words[0] , \memory.shadow_words[1] , \memory.shadow_words[2] ;
+(* hierconn *) wire [RECT_BITS-1:0] \memory.places[0] , \memory.places[1] , \memory.places[2] , \memory.places[4] ,
+    \memory.places[5] , \memory.places[6] , \memory.places[8] , \memory.places[9] , \memory.places[10] ;
+(* hierconn *) wire [1:0] \memory.rect_slot_0_i.shadow , \memory.rect_slot_1_i.shadow , \memory.rect_slot_2_i.shadow ,
+    \memory.rect_slot_0_i.pending , \memory.rect_slot_1_i.pending , \memory.rect_slot_2_i.pending ,
+    \memory.rect_slot_0_i.live , \memory.rect_slot_1_i.live , \memory.rect_slot_2_i.live ;
+(* hierconn *) wire \memory.rect_slot_0_i.written , \memory.rect_slot_1_i.written , \memory.rect_slot_2_i.written ,
+    \memory.rect_slot_0_i.shadow_usable , \memory.rect_slot_1_i.shadow_usable ,
+    \memory.rect_slot_2_i.shadow_usable , \memory.rect_slot_0_i.pending_usable ,
+    \memory.rect_slot_1_i.pending_usable , \memory.rect_slot_2_i.pending_usable ;
+fixed_rects_slot #(RECT_BITS, SCENE_0) slot_0 (
+    running, written_0, shadow[0], pending[0], live[0], \memory.rect_slot_0_i.written , \memory.shadow_words[0] ,
+    \memory.places[0] , \memory.places[4] , \memory.places[8] , \memory.rect_slot_0_i.shadow ,
+    \memory.rect_slot_0_i.pending , \memory.rect_slot_0_i.live , \memory.rect_slot_0_i.shadow_usable ,
+    \memory.rect_slot_0_i.pending_usable
+);
+fixed_rects_slot #(RECT_BITS, SCENE_1) slot_1 (
+    running, written_1, shadow[1], pending[1], live[1], \memory.rect_slot_1_i.written , \memory.shadow_words[1] ,
+    \memory.places[1] , \memory.places[5] , \memory.places[9] , \memory.rect_slot_1_i.shadow ,
+    \memory.rect_slot_1_i.pending , \memory.rect_slot_1_i.live , \memory.rect_slot_1_i.shadow_usable ,
+    \memory.rect_slot_1_i.pending_usable
+);
+fixed_rects_slot #(RECT_BITS, SCENE_2) slot_2 (
+    running, written_2, shadow[2], pending[2], live[2], \memory.rect_slot_2_i.written , \memory.shadow_words[2] ,
+    \memory.places[2] , \memory.places[6] , \memory.places[10] , \memory.rect_slot_2_i.shadow ,
+    \memory.rect_slot_2_i.pending , \memory.rect_slot_2_i.live , \memory.rect_slot_2_i.shadow_usable ,
+    \memory.rect_slot_2_i.pending_usable
+);
 
 // Any of them, after any other.
 reg [INDEX_BITS-1:0] before = 0;
 always @(posedge clk) if (fetch) before <= index;
 always @* cover (known && fetch && index == 2 && before == 0);
 always @* cover (known && fetch && index == 0 && before == 2);
+endmodule
+
+// Of one slot: what is written of it, and each copy that is the scene's, sorted by another sorter here.
+module fixed_rects_slot #(parameter RECT_BITS = 71, parameter [95:0] SCENE = 0) (
+    input running, input [2:0] words, input shadow, input pending, input live, input written, input [95:0] kept,
+    input [RECT_BITS-1:0] place_0, input [RECT_BITS-1:0] place_1, input [RECT_BITS-1:0] place_2,
+    input [1:0] at_shadow, input [1:0] at_pending, input [1:0] at_live, input shadow_usable, input pending_usable
+);
+wire [95:0] mask = {{32{words[0]}}, {32{words[1]}}, {32{words[2]}}};
+wire [RECT_BITS-1:0] sorted;
+rect_sorter sorter (.written_word(SCENE), .rect_word(sorted));
+wire [2:0] right = {place_2 == sorted, place_1 == sorted, place_0 == sorted};
+always @* if (running) begin
+    assert (at_shadow < 3 && at_pending < 3 && at_live < 3);
+    assert (written == (words != 0));
+    if (written) assert (kept == (SCENE & mask));
+    if (shadow) assert (right[at_shadow] && shadow_usable);
+    if (pending) assert (right[at_pending] && pending_usable);
+    if (live) assert (right[at_live]);
+end
 endmodule

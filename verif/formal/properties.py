@@ -83,9 +83,12 @@ def _avalon(config: Configuration, small: bool) -> Property:
             "ENGINE_WORD": engine_word(config),
             "SIZE_WORD": size_word(config),
             "REFLECTIONS": config.reflections,
+            "RECT_BITS": len(rect_of(config).word),
         },
         induction=3,
         reach=12,
+        cut=("rect_sorter",),
+        as_registers=("rect_mem",),
         small=small,
     )
 
@@ -414,7 +417,7 @@ def _fixed(engine: str, alike: bool, small: bool) -> Property:
         "a fixed scene's table gives every rectangle as the memory does that holds the scene's words",
         FixedTable(general, fixed),
         f"{engine}, {'alike' if alike else 'different'}",
-        ("rect_mem", "rect_slot", "rect_sorter", "scene_word", "rect_rom"),
+        ("rect_mem", "rect_slot", "rect_sorter", "rect_rom"),
         {
             "INDEX_BITS": index_bits(fixed),
             "ADDRESS_BITS": address_bits(general.table),
@@ -423,7 +426,8 @@ def _fixed(engine: str, alike: bool, small: bool) -> Property:
             **parameters,
         },
         induction=3,
-        reach=6,
+        reach=16,
+        as_registers=("rect_mem",),
         small=small,
     )
 

@@ -128,6 +128,7 @@ class Property:
         any_product: multiplication, but by a constant, becomes an arbitrary function, one for each width of products.
         parameters: of the wrapper.
         induction: steps that the induction assumes; the base case is checked for as many from reset.
+        as_registers: of the modules, those whose memories become registers, at which a wrapper may peek.
         reach: steps within which each cover statement of the wrapper must be reached; 0: not tried.
         small: part of the quick subset.
     """
@@ -141,6 +142,7 @@ class Property:
     induction: int
     cut: tuple[str, ...] = ()
     any_product: bool = False
+    as_registers: tuple[str, ...] = ()
     reach: int = 0
     small: bool = False
 
@@ -325,6 +327,12 @@ def _make_model(proof: Property, directory: Path) -> None:
         f"hierarchy -check -top {wrapper} {values}",
         *(["cutpoint -blackbox"] if proof.cut else []),
         "proc -norom",  # a ROM would hold anything where induction starts
+        # What an address beyond a memory reads is arbitrary.
+        *(
+            f"{command} {module}"
+            for module in proof.as_registers
+            for command in ("memory_collect", "memory_map", "setundef -undriven -anyseq")
+        ),
         "flatten",
         "check -assert",  # a name that a wrapper peeks at and that does not exist has no driver
         "opt_clean",

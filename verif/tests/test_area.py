@@ -21,9 +21,9 @@ from raycaster.fpga.area import CHIPS, FAMILIES, Area, Chip, Model, measure, mea
 YOSYS = "0.70.0.0.post1259"
 SMALL = configure(screen="tiny", units=2, rectangles=2, divider_bits=1, allow_underrun=True, culling=False)
 AREAS = {
-    "ecp5": Area(tables=2516, registers=1806, elements=2516, multipliers=4, memories=0),
-    "cycloneive": Area(tables=2890, registers=1746, elements=3322, multipliers=4, memories=2),
-    "cyclonev": Area(tables=1882, registers=1812, elements=984, multipliers=4, memories=2),
+    "ecp5": Area(tables=2584, registers=1354, elements=2584, multipliers=4, memories=0),
+    "cycloneive": Area(tables=2419, registers=1380, elements=2930, multipliers=4, memories=4),
+    "cyclonev": Area(tables=1670, registers=1360, elements=907, multipliers=4, memories=2),
 }
 
 families = pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES)
@@ -37,7 +37,7 @@ def test_the_counts_of_a_small_design(family, tmp_path):
 
 INSTANCES = {
     "ray_caster_module": 1, "avalon_interface": 1, "camera_mem": 1, "rect_mem": 1, "rect_sorter": 1, "rect_slot": 2,
-    "scene_word": 9, "ray_caster_renderer": 1, "video_generator": 1, "line_buffer": 2, "ray_caster": 1,
+    "scene_word": 3, "ray_caster_renderer": 1, "video_generator": 1, "line_buffer": 2, "ray_caster": 1,
     "ray_control": 1, "ray_sequencer": 1, "rect_sequencer": 1, "ray_unit": 2, "ray_generator": 2,
     "magnitude": 8,
     "intersection_finder": 2, "intersection_helper": 4,

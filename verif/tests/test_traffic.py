@@ -31,7 +31,7 @@ def broken(directory: Path, module: str, right: str, wrong: str) -> list[Path]:
     ("module", "right", "wrong", "complaint"),
     [
         pytest.param("avalon_interface", "if (avs_s0_byteenable[2])", "if (1'b1)", "reads 0x", id="a-lane-always"),
-        pytest.param("rect_mem", "= pattern_word;", "= read_surface;", "reads 0x", id="unmapped-aliases"),
+        pytest.param("rect_mem", "= pattern_word;", "= old_surface;", "reads 0x", id="unmapped-aliases"),
         pytest.param(
             "avalon_interface", "readdatavalid <= reading;", "readdatavalid <= reading && !avs_s0_read;",
             "avs_s0_readdatavalid is 0, expected 1", id="answer-lost",
@@ -48,6 +48,8 @@ def broken(directory: Path, module: str, right: str, wrong: str) -> list[Path]:
             "scene_word", "if (bus_go_live)", "if (bus_go_live || bus_commit)", "pixels are wrong|cycles reads",
             id="live-in-mid-frame",
         ),
+        pytest.param("rect_slot", "if (bus_go_live)", "if (bus_commit)", "pixels are wrong", id="rectangles-too-early"),
+        pytest.param("rect_mem", "place = 2;", "place = 1;", "pixels are wrong", id="over-another-copy"),
         pytest.param("video_generator", "x <= -32;", "x <= -31;", "irq is 0, expected 1", id="restarts-too-early"),
     ],
 )  # fmt: skip
