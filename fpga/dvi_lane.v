@@ -7,7 +7,8 @@ module dvi_lane (
     input  wire       shift_clk,
     input  wire       restart,          // counting starts with the third cycle of a pixel
     input  wire [9:0] symbol,
-    output wire       wire_p
+    output wire       wire_p,
+    output wire       wire_n
 );
 
 localparam [4:0] THIRD = 5'b01000;
@@ -43,6 +44,6 @@ always @(posedge shift_clk) begin
     pair <= leaving;
 end
 
-ODDRX1F pin (.SCLK(shift_clk), .RST(1'b0), .D0(pair[0]), .D1(pair[1]), .Q(wire_p));
+ddr_pin pin (.shift_clk(shift_clk), .bits(pair), .wire_p(wire_p), .wire_n(wire_n));
 
 endmodule
