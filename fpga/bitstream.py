@@ -326,10 +326,14 @@ def main(argv: Sequence[str] | None = None) -> None:
     output = arguments.output / board.name
     outcome = make_bitstream(board, design, output, seed=arguments.seed, console=console)
     show(board, outcome, console)
-    figures = {"board": board.name, "seed": arguments.seed, "missed": outcome.missed}
+    flow = FLOWS[board.flow]
+    figures = {"board": board.name, "title": board.title, "chip": board.chip, "seed": arguments.seed}
+    figures |= {"missed": outcome.missed, "crossings": dict(outcome.crossings)}
+    figures |= {"kinds": dict(zip(("logic", "registers", "multipliers", "memories"), flow.cells, strict=True))}
     figures |= {"cells": dict(outcome.cells), "clocks": dict(outcome.clocks)}
     keep(arguments, figures, scope_of(design.configuration), left_out="a run on the board")
     if outcome.missed:
         raise UserError(f"too slow: {', '.join(outcome.missed)}; the reports are in {output}; another SEED may do")
-    made = output / f"{board.name}.{FLOWS[board.flow].bitstream}"
+    made = output / f"{board.name}.{flow.bitstream}"
     console.print(f"{made}, {made.stat().st_size:,} bytes, of {design.configuration.name} and {design.path}")
+    console.print(f"openFPGALoader {' '.join(board.loader)} {made}", soft_wrap=True)
