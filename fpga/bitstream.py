@@ -8,6 +8,7 @@ on a board: what a DVI connector sends is decoded in simulation instead, and com
 from __future__ import annotations
 
 import json
+import math
 import re
 import shutil
 import time
@@ -107,7 +108,7 @@ def write_project(board: OpenBoard, design: Design | ProcessorDesign, directory:
 def _clocks(clocks: Clocks, config: Configuration) -> str:
     """The module that gives the board's PLL its dividers, and tells where pixels end."""
     found = ", ".join(f"{name} {mhz:g} MHz" for name, mhz in clocks.nets.items())
-    parameters = ",\n".join(f"    .{name}({value})" for name, value in clocks.parameters.items())
+    parameters = ",\n".join(f"    .{name}({json.dumps(value)})" for name, value in clocks.parameters.items())
     return f"""// SPDX-License-Identifier: MIT
 // The clocks of {config.name}: {found}.
 
@@ -180,6 +181,24 @@ VIDEO = {
 );
 """,
     ),
+    "parallel": (
+        "wire [COLOUR_BITS-1:0] vga_r, vga_g, vga_b;\nwire vga_hs, vga_vs, vga_blank_n, vga_clk;",
+        """parallel_board #(.COLOUR_BITS(COLOUR_BITS)) board (
+    .clk_in({clock}),
+    .run(run),
+    .buttons(buttons),
+    .locked(locked),
+    .serial(serial),
+    .vga_r(vga_r),
+    .vga_g(vga_g),
+    .vga_b(vga_b),
+    .vga_hs(vga_hs),
+    .vga_vs(vga_vs),
+    .vga_blank_n(vga_blank_n),
+    .vga_clk(vga_clk)
+);
+""",
+    ),
 }
 """By a board's kind of video: wires of the top that outputs may be made of, and the instance that drives them."""
 
@@ -239,10 +258,48 @@ def make_bitstream(
 
 
 def _synthesise(board: OpenBoard, design: Design | ProcessorDesign, work: Path) -> None:
+    flow = FLOWS[board.flow]
     sources = [path.relative_to(work) for path in write_project(board, design, work)]
-    script = [f"read_verilog {source}" for source in sources]
-    command = f"{FLOWS[board.flow].synthesis} -top {board.name} -json {board.name}.json"
-    run_yosys(work, "synthesis", [*script, command])
+    synthesis = f"{flow.synthesis} -top {board.name}"
+    script = [*(f"read_verilog {source}" for source in sources), f"{synthesis} -run :coarse"]
+    script += [
+        *flow.before,
+        "proc",
+        "flatten",
+        "opt_expr",
+        "opt_clean",
+        "wreduce",
+        "rename -enumerate -pattern product_% t:$mul",
+    ]
+    run_yosys(work, "products", [*script, "write_rtlil products.il"])
+    spared = left_to_logic((work / "products.il").read_text(), board.multipliers, flow.factor_bits)
+    # The type that Yosys's own mapping gives to what it leaves to logic.
+    script += [f"chtype -set $__soft_mul c:{name}" for name in spared]
+    run_yosys(work, "synthesis", [*script, f"{synthesis} -run coarse: -json {board.name}.json"])
+
+
+def left_to_logic(netlist: str, most: int, factor_bits: int) -> list[str]:
+    """The smallest products, as many as a chip has no multipliers for.
+
+    Left to itself Yosys takes the chip's for all, and nextpnr finds no place for some.
+
+    Args:
+        netlist: RTLIL, before multipliers are mapped; products have public names.
+        most: multipliers that the chip has.
+        factor_bits: of their factors.
+    """
+    products = []
+    for cell in re.finditer(r"^  cell \$mul \\(\S+)\n((?:    .*\n)*)", netlist, re.MULTILINE):
+        widths = [int(width) for width in re.findall(r"parameter \\[AB]_WIDTH (\d+)", cell[2])]
+        products.append((math.prod(widths), cell[1], math.prod(-(-width // factor_bits) for width in widths)))
+    products.sort()
+    wanted = sum(taken for *_, taken in products)
+    spared = []
+    while wanted > most:
+        _, name, taken = products[len(spared)]
+        spared.append(name)
+        wanted -= taken
+    return spared
 
 
 def _call(command: list[str], work: Path, log: Path) -> None:
@@ -331,6 +388,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     figures |= {"missed": outcome.missed, "crossings": dict(outcome.crossings)}
     figures |= {"kinds": dict(zip(("logic", "registers", "multipliers", "memories"), flow.cells, strict=True))}
     figures |= {"cells": dict(outcome.cells), "clocks": dict(outcome.clocks)}
+    figures |= {name: getattr(design.configuration, name) for name in ("rectangles", "rows", "units", "reflections")}
     keep(arguments, figures, scope_of(design.configuration), left_out="a run on the board")
     if outcome.missed:
         raise UserError(f"too slow: {', '.join(outcome.missed)}; the reports are in {output}; another SEED may do")

@@ -53,9 +53,10 @@ class BoardSignal(_Strict):
 
     @model_validator(mode="after")
     def _check_options(self) -> BoardSignal:
+        count = 1 if isinstance(self.pins, str) else len(self.pins)
         for name, values in self.options.items():
-            if not isinstance(values, str) and len(values) != len(self.pins):
-                raise ValueError(f"{name} has {len(values)} values for {len(self.pins)} pins")
+            if not isinstance(values, str) and len(values) != count:
+                raise ValueError(f"{name} has {len(values)} values for {count} of the pins")
         return self
 
     def options_of(self, at: int) -> dict[str, str]:
@@ -144,6 +145,8 @@ class OpenBoard(Board):
     chip: str
     options: tuple[str, ...]
     """nextpnr's, for the chip, its package and its speed grade."""
+    multipliers: int
+    """That the chip has, from its maker's data sheet; products for which there is none are made of logic."""
     clock_mhz: float
     video: Literal["dvi", "parallel"]
     """A DVI link that the chip drives itself, or colours and syncs for a DAC or a transmitter."""

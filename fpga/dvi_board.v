@@ -17,6 +17,7 @@ wire [7:0] vga_r, vga_g, vga_b;
 wire vga_hs, vga_vs, vga_blank_n, vga_clk;
 wire [9:0] blue, green, red;
 wire pixel, pixel_end;
+wire [3:0] link;
 
 board_clocks clocks (
     .clk_in(clk_in),
@@ -63,8 +64,9 @@ dvi_serialiser serialiser (
     .green(green),
     .red(red),
     .pixel(pixel),
-    .link_p(link_p),
-    .link_n(link_n)
+    .link(link)
 );
+
+link_pins pins (.link(link), .link_p(link_p), .link_n(link_n));
 
 endmodule

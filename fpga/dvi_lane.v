@@ -7,8 +7,7 @@ module dvi_lane (
     input  wire       shift_clk,
     input  wire       restart,          // counting starts with the third cycle of a pixel
     input  wire [9:0] symbol,
-    output wire       wire_p,
-    output wire       wire_n
+    output wire       sent
 );
 
 localparam [4:0] THIRD = 5'b01000;
@@ -44,6 +43,6 @@ always @(posedge shift_clk) begin
     pair <= leaving;
 end
 
-ddr_pin pin (.shift_clk(shift_clk), .bits(pair), .wire_p(wire_p), .wire_n(wire_n));
+ddr_pin pin (.shift_clk(shift_clk), .bits(pair), .sent(sent));
 
 endmodule

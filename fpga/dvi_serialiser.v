@@ -12,8 +12,7 @@ module dvi_serialiser (
     input  wire [9:0] green,
     input  wire [9:0] red,
     input  wire       pixel,            // changes with the symbols, once a pixel
-    output wire [3:0] link_p,
-    output wire [3:0] link_n
+    output wire [3:0] link
 );
 
 localparam [9:0] LINK_CLOCK = 10'b0000011111;
@@ -49,17 +48,9 @@ always @(posedge shift_clk)
     else
         phase <= {phase[3:0], phase[4]};
 
-dvi_lane blue_lane (
-    .shift_clk(shift_clk), .restart(leaving[4]), .symbol(blue), .wire_p(link_p[0]), .wire_n(link_n[0])
-);
-dvi_lane green_lane (
-    .shift_clk(shift_clk), .restart(leaving[4]), .symbol(green), .wire_p(link_p[1]), .wire_n(link_n[1])
-);
-dvi_lane red_lane (
-    .shift_clk(shift_clk), .restart(leaving[4]), .symbol(red), .wire_p(link_p[2]), .wire_n(link_n[2])
-);
-dvi_lane clock_lane (
-    .shift_clk(shift_clk), .restart(leaving[4]), .symbol(LINK_CLOCK), .wire_p(link_p[3]), .wire_n(link_n[3])
-);
+dvi_lane blue_lane (.shift_clk(shift_clk), .restart(leaving[4]), .symbol(blue), .sent(link[0]));
+dvi_lane green_lane (.shift_clk(shift_clk), .restart(leaving[4]), .symbol(green), .sent(link[1]));
+dvi_lane red_lane (.shift_clk(shift_clk), .restart(leaving[4]), .symbol(red), .sent(link[2]));
+dvi_lane clock_lane (.shift_clk(shift_clk), .restart(leaving[4]), .symbol(LINK_CLOCK), .sent(link[3]));
 
 endmodule

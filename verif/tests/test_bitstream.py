@@ -113,7 +113,7 @@ def test_a_processor_on_the_board(tmp_path):
     assert (project / "serial.txt").read_text().startswith("RAYCMEgo\nBBB")
 
 
-LINKED = ".blue({}),\n    .green(green),\n    .red({}),\n    .pixel(pixel),\n    .link_p"
+LINKED = ".blue({}),\n    .green(green),\n    .red({}),\n    .pixel(pixel),\n    .link"
 
 
 @pytest.mark.parametrize(
