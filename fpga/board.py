@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Boards with an Intel (before: Altera) chip: their descriptions, and the check of what a project assigns to pins."""
+"""Boards: a folder each, with a description and, for Quartus, a top; the checks of descriptions, pins and projects."""
 
 from __future__ import annotations
 
@@ -8,19 +8,21 @@ import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, model_validator
 
 from raycaster.errors import UserError
+from raycaster.rtl.system.scene_player import BUTTONS
 
+HERE = Path(__file__).parent
 TOP = "ray_caster_project"
-"""The top of every board, and the name of its project."""
-
-BOARDS = ("de2", "de2_115", "de1_soc", "de10_lite")
-"""Each is a folder beside this file."""
+"""The top of every board in Quartus, and the name of its project."""
 
 DESCRIPTION = "board.toml"
+"""What makes a folder beside this file a board."""
+
+_INPUT = re.compile(r"~?(\w+)(?:\[(\d+)\])?")
 
 
 class BoardError(UserError):
@@ -32,7 +34,7 @@ def _check_pins(value: object) -> object:
     if not isinstance(pins, list) or not pins:
         raise ValueError('must be a pin such as "N2", or a list of them')
     for pin in pins:
-        if not isinstance(pin, str) or not re.fullmatch("[A-Z]{1,2}[1-9][0-9]?", pin):
+        if not isinstance(pin, str) or not re.fullmatch("[A-Z]{0,2}[1-9][0-9]?", pin):
             raise ValueError(f'must be a pin such as "N2", not {json.dumps(pin, default=str)}')
     return value
 
@@ -46,29 +48,33 @@ class BoardSignal(_Strict):
 
     standard: str
     pins: Annotated[str | tuple[str, ...], BeforeValidator(_check_pins)]
+    options: dict[str, str | tuple[str, ...]] = {}
+    """More that a pin file has for each of these pins, such as a pull-up: the same for all, or one for each."""
+
+    @model_validator(mode="after")
+    def _check_options(self) -> BoardSignal:
+        count = 1 if isinstance(self.pins, str) else len(self.pins)
+        for name, values in self.options.items():
+            if not isinstance(values, str) and len(values) != count:
+                raise ValueError(f"{name} has {len(values)} values for {count} of the pins")
+        return self
+
+    def options_of(self, at: int) -> dict[str, str]:
+        """Those of one of the pins."""
+        return {name: value if isinstance(value, str) else value[at] for name, value in self.options.items()}
 
 
 class Board(_Strict):
-    """A board's description. Its signals are more than a project uses, and bear the names of the board's manual."""
+    """A board's description: what all kinds have."""
 
     directory: Path
     title: str
-    family: str
-    device: str
-    quartus: str
-    """The version that it needs."""
-    top: Path
-    """The Verilog of the top, from the board's folder on."""
     clock: str
-    """The signal of 50 MHz."""
-    dac_clock: str | None = None
-    """The signal at whose rising edge the DAC takes the colours, where it has a clock."""
+    """The signal of the oscillator."""
     source: str
     """Where the pins and standards are from; confirmation and disagreements are of other sources, or "none"."""
     confirmation: str
     disagreements: str
-    settings: dict[str, str]
-    """Global assignments that the board needs."""
     configuration: dict[str, Any]
     """What the hardware is unless something else is asked for."""
     signals: dict[str, BoardSignal]
@@ -80,38 +86,129 @@ class Board(_Strict):
             if pin in users:
                 raise ValueError(f"signals: {pin} is both {users[pin]} and {bit}")
             users[pin] = bit
-        for name in (self.clock, self.dac_clock):
-            if name is not None and name not in self.pins:
+        for name in self.clocks:
+            if name not in self.pins:
                 raise ValueError(f"signals: {name} is missing, and the board's clocks name it")
         return self
 
     @property
+    def name(self) -> str:
+        """Its folder's."""
+        return self.directory.name
+
+    @property
+    def clocks(self) -> list[str]:
+        """The signals that carry one."""
+        return [self.clock]
+
+    @property
     def pins(self) -> dict[str, str]:
         """The pin of every bit of every signal, `KEY[0]` or `CLOCK_50`."""
-        pins: dict[str, str] = {}
-        for name, signal in self.signals.items():
-            if isinstance(signal.pins, str):
-                pins[name] = signal.pins
-            else:
-                pins |= {f"{name}[{index}]": pin for index, pin in enumerate(signal.pins)}
-        return pins
+        return {bit: pin for name in self.signals for bit, pin in self.bits(name).items()}
+
+    def bits(self, name: str) -> dict[str, str]:
+        """The pin of every bit of one signal."""
+        pins = self.signals[name].pins
+        return {name: pins} if isinstance(pins, str) else {f"{name}[{at}]": pin for at, pin in enumerate(pins)}
+
+
+class QuartusBoard(Board):
+    """One with an Intel (before: Altera) chip. Its signals are more than a project uses, named as in its manual."""
+
+    flow: Literal["quartus"]
+    family: str
+    device: str
+    quartus: str
+    """The version that it needs."""
+    top: Path
+    """The Verilog of the top, from the board's folder on."""
+    dac_clock: str | None = None
+    """The signal at whose rising edge the DAC takes the colours, where it has a clock."""
+    settings: dict[str, str]
+    """Global assignments that the board needs."""
+
+    @property
+    def clocks(self) -> list[str]:
+        """The signals that carry one."""
+        return [name for name in (self.clock, self.dac_clock) if name is not None]
+
+
+class OpenBoard(Board):
+    """One whose bitstreams Yosys and nextpnr make. Its top is made of this, so each signal here is a port of it.
+
+    `inputs` and `outputs` are Verilog: for each of `BUTTONS`, and for `reset`, a bit that is high while it is pressed;
+    for each output a value, of what the module of `video` puts out and of the inputs.
+    """
+
+    flow: Literal["ecp5", "ice40", "gowin"]
+    """A folder beside this file, with what tops need of the chip's own cells, and an entry of `flows.FLOWS`."""
+    chip: str
+    options: tuple[str, ...]
+    """nextpnr's, for the chip, its package and its speed grade."""
+    multipliers: int
+    """That the chip has, from its maker's data sheet; products for which there is none are made of logic."""
+    clock_mhz: float
+    video: Literal["dvi", "parallel"]
+    """A DVI link that the chip drives itself, or colours and syncs for a DAC or a transmitter."""
+    loader: tuple[str, ...]
+    """openFPGALoader's options for the board."""
+    inputs: dict[str, str]
+    outputs: dict[str, str]
+
+    @model_validator(mode="after")
+    def _check_ports(self) -> OpenBoard:
+        read = {self.clock}
+        for name, value in self.inputs.items():
+            if name not in ("reset", *BUTTONS):
+                raise ValueError(f"inputs: {name} is none of reset, {', '.join(BUTTONS)}")
+            bit = _INPUT.fullmatch(value)
+            if bit is None or value.removeprefix("~") not in self.pins or bit[1] in self.outputs:
+                raise ValueError(f"inputs: {name}: {value} is no bit of a signal here, or of an output")
+            read.add(bit[1])
+        for name in self.outputs:
+            if name not in self.signals:
+                raise ValueError(f"outputs: {name} is not among the signals")
+        for name in self.signals:
+            if name not in read and name not in self.outputs:
+                raise ValueError(f"signals: {name} is neither the clock nor among inputs or outputs")
+        return self
+
+
+Kind = TypeVar("Kind", bound=Board)
+
+
+def board_names(kind: type[Board] = Board) -> list[str]:
+    """Those of a kind, in alphabetical order.
+
+    Raises:
+        BoardError: a description is not TOML.
+    """
+    return [path.parent.name for path in sorted(HERE.glob(f"*/{DESCRIPTION}")) if issubclass(_kind(_read(path)), kind)]
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise BoardError(f"{path}: cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise BoardError(f"{path}: is not TOML: {error}") from None
+
+
+def _kind(contents: Mapping[str, Any]) -> type[Board]:
+    return QuartusBoard if contents.get("flow") == "quartus" else OpenBoard
 
 
 def load_board(directory: Path) -> Board:
-    """Read the description in a board's folder.
+    """Read the board whose description is in a directory.
 
     Raises:
         BoardError: it cannot be read, or is not one; one line says where and what is wrong.
     """
     path = directory / DESCRIPTION
+    contents = _read(path)
     try:
-        contents = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise BoardError(f"{path}: cannot be read: {error.strerror}") from None
-    except ValueError as error:
-        raise BoardError(f"{path}: is not TOML: {error}") from None
-    try:
-        return Board.model_validate(contents | {"directory": directory})
+        return _kind(contents).model_validate(contents | {"directory": directory})
     except ValidationError as error:
         first = error.errors()[0]
         place = ".".join(map(str, first["loc"]))
@@ -119,15 +216,16 @@ def load_board(directory: Path) -> Board:
         raise BoardError(f"{path}: {place}: {message}" if place else f"{path}: {message}") from None
 
 
-def find_board(name: str) -> Board:
-    """One of `BOARDS`.
+def find_board(name: str, kind: type[Kind]) -> Kind:
+    """The board of a kind that has this name.
 
     Raises:
-        BoardError: there is no such board.
+        BoardError: there is no such board, or its description is refused.
     """
-    if name not in BOARDS:
-        raise BoardError(f"board: {', '.join(BOARDS[:-1])} or {BOARDS[-1]}, not {name}")
-    return load_board(Path(__file__).with_name(name))
+    known = board_names(kind)
+    if name not in known:
+        raise BoardError(f"board: {', '.join(known[:-1])} or {known[-1]}, not {name}")
+    return load_board(HERE / name)
 
 
 def top_ports(verilog: str) -> dict[str, str]:
@@ -161,7 +259,7 @@ def assignments(qsf: str) -> list[tuple[str, str, str]]:
     return found
 
 
-def check_project(board: Board, verilog: str, qsf: str) -> None:
+def check_project(board: QuartusBoard, verilog: str, qsf: str) -> None:
     """See that a settings file and the top agree with each other and with the board.
 
     Args:

@@ -22,7 +22,7 @@ from raycaster.convert.take_home import clock_period
 from raycaster.convert.write import write_system
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
-from raycaster.fpga.board import BOARDS, TOP, Board, check_project, find_board, top_ports
+from raycaster.fpga.board import TOP, QuartusBoard, board_names, check_project, find_board, top_ports
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.output import replaced
 from raycaster.scene import Scene, find_scene
@@ -45,7 +45,7 @@ _CLOCK_REGISTER = "*|video_generator:*|pixel_end"
 """What drives vga_clk, as Quartus names it."""
 
 
-def write_project(board: Board, config: Configuration, scene: Scene, directory: Path) -> None:
+def write_project(board: QuartusBoard, config: Configuration, scene: Scene, directory: Path) -> None:
     """Write a Quartus project.
 
     Args:
@@ -76,7 +76,7 @@ def write_project(board: Board, config: Configuration, scene: Scene, directory: 
         (written / f"{TOP}.sdc").write_text(_constraints(board, config, ports))
 
 
-def compile_project(board: Board, directory: Path) -> Path:
+def compile_project(board: QuartusBoard, directory: Path) -> Path:
     """Compile a project with the Quartus that is on the path.
 
     Returns:
@@ -105,7 +105,7 @@ def compile_project(board: Board, directory: Path) -> Path:
     return directory / OUTPUT_FILES / f"{TOP}.sof"
 
 
-def _settings(board: Board, config: Configuration, sources: list[str]) -> str:
+def _settings(board: QuartusBoard, config: Configuration, sources: list[str]) -> str:
     """The settings file but for the pins: the chip and the sources."""
     settings = {
         "FAMILY": board.family,
@@ -125,7 +125,7 @@ def _settings(board: Board, config: Configuration, sources: list[str]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _pin_assignments(board: Board, ports: dict[str, str]) -> str:
+def _pin_assignments(board: QuartusBoard, ports: dict[str, str]) -> str:
     """The rest of it: pin and standard of each bit of the top's ports that the board has."""
     pins = board.pins
     lines = []
@@ -137,7 +137,7 @@ def _pin_assignments(board: Board, ports: dict[str, str]) -> str:
     return "".join(f"{line}\n" for line in lines)
 
 
-def _constraints(board: Board, config: Configuration, ports: dict[str, str]) -> str:
+def _constraints(board: QuartusBoard, config: Configuration, ports: dict[str, str]) -> str:
     """The timing constraints."""
     asynchronous = _patterns(bit for bit, direction in ports.items() if direction == "input" and bit != board.clock)
     start = f"""# SPDX-License-Identifier: MIT
@@ -186,7 +186,7 @@ def _patterns(bits: Iterable[str]) -> str:
 def command_parser() -> CommandParser:
     """What the command takes."""
     parser = CommandParser("quartus", __doc__, "boxes --board de1_soc")
-    parser.add_argument("--board", required=True, help=", ".join(BOARDS))
+    parser.add_argument("--board", required=True, help=", ".join(board_names(QuartusBoard)))
     add_scene_argument(parser, "what to show (mirror_room)", default=find_scene("mirror_room"))
     parser.add_argument(
         "--output",
@@ -203,7 +203,7 @@ def command_parser() -> CommandParser:
 def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
     arguments = command_parser().parse_args(argv)
-    board = find_board(arguments.board)
+    board = find_board(arguments.board, QuartusBoard)
     design = design_of(arguments.scene, given_options(arguments), arguments.fix, Console(), **board.configuration)
     directory = arguments.output / arguments.board
     write_project(board, design.configuration, design.shown, directory)

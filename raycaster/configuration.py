@@ -61,7 +61,8 @@ class Configuration:
     reflections: int = Field(1, ge=0, le=MOST_REFLECTIONS, description="reflections a ray may have")
     rows: int | None = Field(
         None,
-        description="rows of rays: 240 (640x480@60), 200 (640x400@70) or, beam only, 180 (1280x720@60, or SCALE=6)",
+        description="rows of rays: 240 (640x480@60), 200 (640x400@70); not beam: 120, 96 or 60 (640x480@60 at half the "
+        "clock); beam only: 180 (1280x720@60, or SCALE=6)",
     )
     scale: int | None = Field(
         None,

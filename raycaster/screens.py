@@ -47,6 +47,8 @@ class Screen:
     pixel_hz: int = 25_000_000
     scale: int = 1
     """Samples a unit of slope: the resolution scale."""
+    distance: int = VIEW_DISTANCE
+    """Slope along x of every primary ray at scale 1; with half as many columns, half as much shows the same view."""
     pixels_per_clock: int = 1
     """Pixels of the monitor a system clock; two are side by side, the left one in an even column."""
     for_pairs: Screen | None = None
@@ -62,7 +64,7 @@ class Screen:
     @property
     def view_distance(self) -> int:
         """Slope along x of every primary ray."""
-        return VIEW_DISTANCE * self.scale
+        return self.distance * self.scale
 
     @property
     def clock_hz(self) -> int:
@@ -147,9 +149,19 @@ _PLAY_240 = Screen(
     320, 240, 190, 1, Span(320, 2, 40, 58, active_high=False), Span(240, 1, 1, 1, active_high=False), pixel_hz=6_120_000
 )
 
+# The view of 240 rows in fewer, for small and slow chips: a pixel takes a clock, which has half the rate.
+_COARSE = {
+    rows: replace(
+        _VGA_240, columns=rows * 4 // 3, rows=rows, horizon_row=190 * rows // 240, doubling=480 // rows,
+        clocks_per_pixel=1, distance=VIEW_DISTANCE * rows // 240,
+    )
+    for rows in (120, 96, 60)
+}  # fmt: skip
+
 SCREENS: Mapping[tuple[str, int], Screen] = {
     ("vga", 240): _VGA_240,
     ("vga", 200): _VGA_200,
+    **{("vga", rows): screen for rows, screen in _COARSE.items()},
     ("tiny", 48): _TINY_48,
 }
 """By screen name and rows, at scale 1, for the engines with a line buffer."""

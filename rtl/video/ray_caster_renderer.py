@@ -24,6 +24,7 @@ def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, confi
     units, groups, rows = config.units, config.groups, config.screen_geometry.rows
     width = pixel_bits(config)
     last_unit = units - 1
+    one_clock = config.screen_geometry.clocks_per_pixel == 1
     cycles_limit = (1 << CYCLE_BITS) - 1
 
     place, scan, pixel = Place(config), Scan(), Pixel(config.colour_bits)
@@ -32,8 +33,12 @@ def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, confi
     pixels = unsigned(units * width)
     read_offset, read_unit = unsigned(bits_for(groups)), unsigned(unit_bits(config))
     sections = [unsigned(width) for _ in range(units)]
+    shown_unit = unsigned(unit_bits(config)) if one_clock else read_unit
 
-    video = video_generator(clk=clk, reset=reset, scan=scan, pixel=pixel, vga=vga, screen=config.screen_geometry)
+    # The line buffer takes a clock, which a pixel of one clock does not leave: columns are announced that much earlier.
+    video = video_generator(
+        clk=clk, reset=reset, scan=scan, pixel=pixel, vga=vga, screen=config.screen_geometry, lead=int(one_clock)
+    )  # fmt: skip
     caster = ray_caster(
         clk=clk, reset_ray_caster=reset_ray_caster, enable=enable, place=place, camera=camera, picture=picture,
         rects=rects, done=done, pixels=pixels, config=config,
@@ -124,11 +129,17 @@ def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, confi
                 if read_offset != groups - 1:
                     read_offset.next = read_offset + 1
 
+    if one_clock:
+        # As late as what the line buffer reads for it.
+        @always(clk.posedge)
+        def follow_unit():
+            shown_unit.next = read_unit
+
     # Black until the first row is handed over.
     @always_comb
     def show():
         pixel.word.next = 0
         if handed_over:
-            pixel.word.next = sections[read_unit]
+            pixel.word.next = sections[shown_unit]
 
     return instances()

@@ -10,7 +10,7 @@ from raycaster.screens import Screen
 
 
 @block
-def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0):
+def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0, at_start: bool = False):
     """Free-running sync, whatever the inputs; a pixel takes screen.clocks_per_pixel, 1 or 2, and reaches the outputs a
     pixel after its turn. Where a clock has two pixels, a pixel means both of them here, and a column too.
 
@@ -21,8 +21,8 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0)
     scan.start_screen: strobe, a row of rays (screen.doubling lines) before the first visible line, time to render row
     0. start_row: strobe at the beginning of the first line of each row, which is then handed over.
     visible_line: high in the visible part of a line, blanked ones included; next_column: strobe in the last clock of
-    each column there. With a lead, where a pixel takes a clock, both are that many pixels early, at most the horizontal
-    blanking, and next_column is high in each column's first clock.
+    each column there, or at_start in its first. With a lead, where a pixel takes a clock, both are that many pixels
+    early, at most the horizontal blanking.
     pixel: the column's colour, sampled at the end of each of its pixels. vga changes at the falling edge of vga.clk.
     """
     horizontal, vertical, doubling = screen.beats, screen.vertical, screen.doubling
@@ -34,7 +34,7 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0)
     vsync_last = vsync_first + vertical.sync - 1
     hsync_active, vsync_active = horizontal.active_high, vertical.active_high
     last_repeat = doubling - 1
-    announced = 0 if lead else last_repeat
+    announced = 0 if at_start else last_repeat
     single = screen.clocks_per_pixel == 1
     first_ahead, end_ahead = (-lead, horizontal.visible - lead) if single else (0, horizontal.visible)
     one_clock, to_line_end = tied(single, 1), tied(end_ahead == horizontal.visible, 1)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the ULX3S's top needs of the ECP5's own cells, for simulation: nothing but frequencies, phases and edges.
+// What tops need of the ECP5's own cells, for simulation: nothing but frequencies, phases and edges.
 
 `timescale 1ns / 1ps
 
-// The PLL with its output CLKOP fed back, from a clock of 25 MHz; it locks within some cycles of it.
+// The PLL with its output CLKOP fed back; it locks within some cycles of its input.
 module EHXPLLL #(
     parameter CLKI_DIV = 1,
     parameter CLKFB_DIV = 1,
@@ -23,28 +23,29 @@ module EHXPLLL #(
     parameter DPHASE_SOURCE = "DISABLED",
     parameter PLLRST_ENA = "DISABLED",
     parameter INTFB_WAKE = "DISABLED",
-    parameter STDBY_ENABLE = "DISABLED",
-    parameter real CLKI_NS = 40.0
+    parameter STDBY_ENABLE = "DISABLED"
 ) (
     input wire CLKI, CLKFB, RST, STDBY, PHASESEL0, PHASESEL1, PHASEDIR, PHASESTEP, PHASELOADREG, PLLWAKESYNC, ENCLKOP,
     output reg CLKOP = 1'b0,
     output reg CLKOS = 1'b0,
     output reg LOCK = 1'b0
 );
-    localparam real OSCILLATOR_NS = CLKI_NS * CLKI_DIV / CLKFB_DIV / CLKOP_DIV;
+    realtime rose;
+    real half;
 
     // Halves of the oscillator's period. Both outputs count the same ones, so that no rounding pulls them apart; rising
     // edges are together where each phase is its divider less one.
     integer op_count = 2 * (CLKOP_DIV - 1 - CLKOP_CPHASE);
     integer os_count = 2 * (CLKOS_DIV - 1 - CLKOS_CPHASE);
     initial begin
-        @(posedge CLKI);
+        @(posedge CLKI) rose = $realtime;
+        @(posedge CLKI) half = ($realtime - rose) * CLKI_DIV / CLKFB_DIV / CLKOP_DIV / 2;
         forever begin
             op_count = op_count == 2 * CLKOP_DIV - 1 ? 0 : op_count + 1;
             os_count = os_count == 2 * CLKOS_DIV - 1 ? 0 : os_count + 1;
             CLKOP = op_count < CLKOP_DIV;
             CLKOS = os_count < CLKOS_DIV;
-            #(OSCILLATOR_NS / 2);
+            #(half);
         end
     end
 

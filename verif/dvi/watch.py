@@ -20,11 +20,13 @@ from rich.console import Console
 
 from raycaster.design import Design
 from raycaster.fit.fixing import add_fix_option, design_of
-from raycaster.fpga.bitstream import BOARDS, find_board, write_project
+from raycaster.fpga.bitstream import write_project
+from raycaster.fpga.board import OpenBoard, board_names, find_board
 from raycaster.golden import engines
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.golden.tmds import CONTROL_SYMBOLS, decode
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
+from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import find_scene
 from raycaster.screens import Screen
 from raycaster.sim.monitor import Line, VideoError, decode_frame
@@ -33,11 +35,12 @@ from raycaster.sim.simulator import SimulationError, add_simulator_option, build
 SYMBOL_BITS = 10
 HERE = Path(__file__).parent
 TOP = "dvi_bench"
-BENCH, MODELS = HERE / "bench.v", HERE / "ecp5_models.v"
+BENCH = HERE / "bench.v"
 _CHANNELS = ("blue", "green", "red", "clock")
 
 
 def watch(
+    board: OpenBoard,
     sources: Sequence[Path],
     screen: Screen,
     frames: int,
@@ -50,12 +53,13 @@ def watch(
     """Simulate the board and return the first frames that its DVI connector sends after reset.
 
     Args:
+        board: it.
         sources: the board's Verilog, the design's included.
         screen: what the design shows it on.
         frames: how many.
         directory: for the recording.
         simulator: one of `raycaster.sim.simulator.SIMULATORS`; only Icarus knows unknown bits.
-        buttons: a bit for each of the board's that is held all the time, as its port `btn` has them.
+        buttons: a bit for each of the board's that is held all the time, as `scene_player.BUTTONS` has them.
         late_ns: added to the time that reset lasts.
 
     Returns:
@@ -70,7 +74,7 @@ def watch(
     # Reset restarts the video before the first vertical sync, from which frames are counted.
     bits = frames * frame + frame // 8
     arguments = [f"+bits={bits}", f"+buttons={buttons:b}", f"+late_ns={late_ns}"]
-    found = pictures(symbols(_record(sources, directory, simulator, arguments)), screen)
+    found = pictures(symbols(_record(board, sources, directory, simulator, arguments)), screen)
     if len(found) < frames:
         raise VideoError(f"{len(found)} frames in {bits} bits, expected {frames}")
     return found[:frames]
@@ -92,13 +96,17 @@ def golden(design: Design, position: tuple[int, int, int] | None = None) -> np.n
     return shown(engines.render(design.configuration, scene, design.reflections), design.configuration)
 
 
-def _record(sources: Sequence[Path], directory: Path, simulator: str, arguments: Sequence[str]) -> np.ndarray:
+def _record(
+    board: OpenBoard, sources: Sequence[Path], directory: Path, simulator: str, arguments: Sequence[str]
+) -> np.ndarray:
     """What the board's DVI connector sends: bool (4, bits), blue, green, red and clock."""
+    directory.mkdir(parents=True, exist_ok=True)
+    device = directory / "dvi_device.v"
+    device.write_text(_device(board))
     program = build_program(
-        f"{sources[-1].stem}-dvi", TOP, [*sources, MODELS, BENCH], simulator=simulator,
+        f"{board.name}-dvi", TOP, [*sources, HERE / f"{board.flow}_models.v", device, BENCH], simulator=simulator,
         flags=("-O3", "--output-split", "20000"), compiler=("-O1",),
     )  # fmt: skip
-    directory.mkdir(parents=True, exist_ok=True)
     done = subprocess.run([*program, *arguments], cwd=directory, capture_output=True, text=True, check=False)
     if done.returncode:
         (directory / "dvi.log").write_text(done.stdout + done.stderr)
@@ -111,6 +119,36 @@ def _record(sources: Sequence[Path], directory: Path, simulator: str, arguments:
         raise VideoError(f"bit {unknown.start()}: a wire is neither 0 nor 1")
     values = np.array([int(digit, 16) for digit in digits], np.uint8)
     return np.stack([values >> channel & 1 for channel in range(len(_CHANNELS))]).astype(bool)
+
+
+def _device(board: OpenBoard) -> str:
+    """A module with the board in it; its ports are those of every board. Without a button for reset, its PLL resets."""
+    lines, connections = [], []
+    for name, signal in board.signals.items():
+        bits = f" [{len(signal.pins) - 1}:0]" if isinstance(signal.pins, tuple) else ""
+        lines.append(f"    {'wire' if name in board.outputs else 'reg'}{bits} {name};")
+        connections.append(f".{name}({name})")
+    lines.append(f"    initial {board.clock} = 1'b0;")
+    lines.append(f"    always #({500 / board.clock_mhz}) {board.clock} = ~{board.clock};")
+    for name, value in board.inputs.items():
+        pressed = "reset" if name == "reset" else f"buttons[{BUTTONS.index(name)}]"
+        lines.append(f"    always @* {value.removeprefix('~')} = {'~' * value.startswith('~')}{pressed};")
+    for port, value in (("link", "link_p"), ("serial", "serial")):
+        [name] = [name for name, driven in board.outputs.items() if driven == value]
+        lines.append(f"    assign {port} = {name};")
+    body = "\n".join(lines)
+    return f"""`timescale 1ns / 1ps
+
+module dvi_device (
+    input  wire reset,
+    input  wire [{len(BUTTONS) - 1}:0] buttons,
+    output wire [3:0] link,
+    output wire serial
+);
+{body}
+    {board.name} top ({", ".join(connections)});
+endmodule
+"""
 
 
 def symbols(wires: np.ndarray) -> np.ndarray:
@@ -211,7 +249,7 @@ def _line(bits: np.ndarray) -> Line:
 def command_parser() -> CommandParser:
     """What the command takes."""
     parser = CommandParser("verify dvi", __doc__, "boxes")
-    parser.add_argument("--board", default="ulx3s", help=f"one of {', '.join(BOARDS)} (default: %(default)s)")
+    parser.add_argument("--board", default="ulx3s", help=f"{', '.join(board_names(OpenBoard))} (default: %(default)s)")
     add_scene_argument(parser, "what to show (mirror_room)", default=find_scene("mirror_room"))
     parser.add_argument("--frames", type=int, default=1, help="to look at (default: %(default)s)")
     add_simulator_option(parser)
@@ -224,9 +262,9 @@ def command_parser() -> CommandParser:
 def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns its exit code."""
     arguments = command_parser().parse_args(argv)
-    board = find_board(arguments.board)
+    board = find_board(arguments.board, OpenBoard)
     console = Console()
-    design = design_of(arguments.scene, given_options(arguments), arguments.fix, console)
+    design = design_of(arguments.scene, given_options(arguments), arguments.fix, console, **board.configuration)
     output = arguments.output / board.name / design.name
     shutil.rmtree(output, ignore_errors=True)
     output.mkdir(parents=True)
@@ -234,7 +272,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         with console.status(f"{board.name}, {design.configuration.name}: building and simulating"):
             sources = write_project(board, design, output)
-            frames = watch(sources, screen, arguments.frames, output, simulator=arguments.simulator)
+            frames = watch(board, sources, screen, arguments.frames, output, simulator=arguments.simulator)
     except (SimulationError, VideoError) as error:
         print(error, file=sys.stderr)
         return 1

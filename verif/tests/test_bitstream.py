@@ -18,16 +18,18 @@ from raycaster.configuration import configure
 from raycaster.design import Design, ProcessorDesign, design_for
 from raycaster.errors import UserError
 from raycaster.fpga import bitstream
-from raycaster.fpga.bitstream import BOARDS, Outcome, make_bitstream, write_project
+from raycaster.fpga.bitstream import Outcome, make_bitstream, write_project
+from raycaster.fpga.board import OpenBoard, board_names, find_board
 from raycaster.golden import engines
 from raycaster.golden.picture import shown as as_shown
 from raycaster.rtl.system.camera_axis import STEP
+from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import load_scene
 from raycaster.sim.monitor import VideoError
 from raycaster.verif.dvi.watch import golden, watch
 
-ULX3S = BOARDS["ulx3s"]
-CLOCKS, SERIALISER, LANE, TOP = "ulx3s_clocks.v", "dvi_serialiser.v", "dvi_lane.v", "ulx3s.v"
+ULX3S = find_board("ulx3s", OpenBoard)
+CLOCKS, SERIALISER, LANE, TOP = "board_clocks.v", "dvi_serialiser.v", "dvi_lane.v", "dvi_board.v"
 ENCODERS, ENCODER = "dvi_encoder.v", "tmds_encoder.v"
 
 
@@ -52,7 +54,7 @@ def shown(design, sources, tmp_path):
             assert right in board[name].read_text()
             board[name].write_text(board[name].read_text().replace(right, wrong))
         screen = design.configuration.screen_geometry
-        return watch(list(board.values()), screen, frames, tmp_path / "run", simulator=simulator, **pressed)
+        return watch(ULX3S, list(board.values()), screen, frames, tmp_path / "run", simulator=simulator, **pressed)
 
     return show
 
@@ -68,16 +70,15 @@ def test_the_dvi_stream_is_golden(design, shown, simulator, frames, late_ns):
 @pytest.mark.parametrize(
     ("buttons", "direction"),
     [
-        (("fire 1", "down", "right"), (1, 1, -1)),
-        (("fire 2", "down", "left"), (-1, -1, -1)),
-        (("fire 2", "up", "right"), (-1, 1, 1)),
+        (("forward", "down", "right"), (1, 1, -1)),
+        (("back", "down", "left"), (-1, -1, -1)),
+        (("back", "up", "right"), (-1, 1, 1)),
     ],
     ids=["forward-down-right", "back-down-left", "back-up-right"],
 )
 def test_buttons_move_the_camera(design, shown, buttons, direction):
     """The first frame shows the scene as it is, the next the camera a step further."""
-    names = ("power", "fire 1", "fire 2", "up", "down", "left", "right")
-    pressed = sum(1 << names.index(button) for button in buttons)
+    pressed = sum(1 << BUTTONS.index(button) for button in buttons)
     first, second = shown(frames=2, buttons=pressed)
     start = design.scene.camera.position
     x, y, z = (place + STEP * way for place, way in zip(start, direction, strict=True))
@@ -98,8 +99,8 @@ def test_a_processor_on_the_board(tmp_path):
     project = tmp_path / "project"
     project.mkdir()
     files = write_project(ULX3S, ProcessorDesign(program, config), project)
-    right = 1 << 6
-    frames = watch(files, config.screen_geometry, 6, project, simulator="verilator", buttons=right)
+    right = 1 << BUTTONS.index("right")
+    frames = watch(ULX3S, files, config.screen_geometry, 6, project, simulator="verilator", buttons=right)
     # Nothing is shown before the program has started, and by then an interrupt waits: the first picture is a step on.
     blank, *drawn = frames
     assert not blank.any()
@@ -112,14 +113,14 @@ def test_a_processor_on_the_board(tmp_path):
     assert (project / "serial.txt").read_text().startswith("RAYCMEgo\nBBB")
 
 
-LINKED = ".blue({}),\n    .green(green),\n    .red({}),\n    .pixel(pixel),\n    .gpdi_dp"
+LINKED = ".blue({}),\n    .green(green),\n    .red({}),\n    .pixel(pixel),\n    .link"
 
 
 @pytest.mark.parametrize(
     ("file", "right", "wrong", "complaint"),
     [
         (TOP, LINKED.format("blue", "red"), LINKED.format("red", "blue"), "carries control bits"),
-        (LANE, "D0(pair[0]), .D1(pair[1])", "D0(pair[1]), .D1(pair[0])", "control symbols"),
+        (LANE, ".bits(pair)", ".bits({pair[0], pair[1]})", "control symbols"),
         (SERIALISER, "symbol(red)", "symbol({red[8:0], red[9]})", "different bits"),
         (LANE, "THIRD = 5'b01000", "THIRD = 5'b00010", "change when they are taken"),
         (SERIALISER, "10'b0000011111", "10'b0000111111", "five ones and five zeros"),
@@ -201,7 +202,7 @@ def test_too_slow_gets_one_line(tmp_path, monkeypatch, capsys, clk, shift_clk, c
 @pytest.mark.parametrize(
     ("options", "complaint"),
     [
-        (("--board", "ice40"), "error: board: ice40 is not known here; choose one of ulx3s"),
+        (("--board", "ice40"), f"error: board: {', '.join(board_names(OpenBoard)[:-1])} or ulx3s, not ice40"),
         (("nowhere.toml",), "error: nowhere.toml: cannot be read"),
         ((str(SMALL_SCENE), "--colour-bits", "4"), "error: colour_bits: a DVI link carries 8 bits"),
         (

@@ -58,6 +58,19 @@ def config_id(config: Configuration) -> str:
     return config.name
 
 
+COARSE = Screen(
+    columns=8,
+    rows=2,
+    horizon_row=1,
+    doubling=4,
+    horizontal=Span(32, 8, 48, 40, active_high=False),
+    vertical=Span(8, 1, 2, 2, active_high=True),
+    clocks_per_pixel=1,
+    distance=50,
+)
+"""With a clock a pixel, and half the slope ahead."""
+
+
 def small_config(screen: Screen = SMALL_SCREEN, **options) -> Configuration:
     """A configuration for a screen that no name stands for."""
     beam = options.get("engine") == "beam"
@@ -512,6 +525,7 @@ def renderer_leaf(config: Configuration, directory) -> Leaf:
         small_config(units=2, rectangles=1, reflections=0, fraction_bits=4, rounding="nearest", culling=False),
         small_config(units=4, rectangles=1, reflections=2, divider_bits=3, colour_bits=2, culling=False),
         small_config(units=4, rectangles=1, reflections=2, colour_bits=4),
+        small_config(COARSE, units=4, rectangles=1, reflections=1, culling=False),
         # 16 groups of 27 cycles, of which a row of 336 has time for twelve.
         small_config(
             units=1, rectangles=1, reflections=0, fraction_bits=8, divider_bits=1, allow_underrun=True, culling=False

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What Yosys makes of the Verilog, in ECP5 cells, does the same: a ray unit on its vectors, a design in a frame."""
+"""What Yosys makes of the Verilog, in a chip's cells, does the same: a ray unit on its vectors, a design in a frame."""
 
 from __future__ import annotations
 
@@ -50,6 +50,27 @@ def test_frame(capsys):
     assert not (build / "sim").exists()
     [file] = build.glob("model/*/netlist/netlist.v")
     assert max(map(len, re.findall(r"\\(\S+)", file.read_text()))) <= 95, "Verilator's waveforms fail with longer names"
+
+
+@pytest.mark.parametrize(
+    ("cells", "some"), [("ice40", ("SB_LUT4", "SB_MAC16", "SB_RAM40_4K")), ("gowin", ("LUT4", "ALU", "DFFRE"))]
+)
+def test_frame_of_other_cells(cells, some, capsys):
+    """The exact engine, with the multipliers of the one and without those of the other."""
+    build = BUILD / "test" / f"netlist-{cells}"
+    assert gates("--cells", cells, "--engine", "exact", "--rectangles", 3, "--units", 4, build=build) == 0
+    result = json.loads((build / "gates" / "small" / "result.json").read_text())
+    assert result["pixels"] == 128 * 96
+    assert result["wrong_vs_golden"] == 0
+    [counts] = [json.loads(path.read_text()) for path in build.glob("model/*/netlist-*/cells.json")]
+    for cell in some:
+        assert counts["design"]["num_cells_by_type"][cell] > 0
+    capsys.readouterr()
+
+
+def test_cells_that_are_not_known(tmp_path):
+    with pytest.raises(UserError, match=r"^cells: ecp5 or ice40 or gowin, not xilinx$"):
+        gates("--cells", "xilinx", build=tmp_path / "build")
 
 
 @pytest.fixture(scope="module")

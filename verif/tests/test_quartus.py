@@ -22,7 +22,16 @@ from tcl import run_tcl
 from raycaster.configuration import Configuration, configure
 from raycaster.convert.take_home import WAIVERS
 from raycaster.fpga import quartus
-from raycaster.fpga.board import BOARDS, TOP, Board, BoardError, assignments, check_project, find_board, load_board
+from raycaster.fpga.board import (
+    TOP,
+    BoardError,
+    QuartusBoard,
+    assignments,
+    board_names,
+    check_project,
+    find_board,
+    load_board,
+)  # fmt: skip
 from raycaster.fpga.quartus import OUTPUT_FILES, VERILOG, write_project
 from raycaster.options import run_command
 from raycaster.rtl.system.scene_player import BUTTONS
@@ -32,14 +41,15 @@ from raycaster.tools import run_yosys
 
 SMALL: Mapping[str, Any] = {"screen": "tiny", "units": 2, "rectangles": 3, "allow_underrun": True}
 
+BOARDS = board_names(QuartusBoard)
 every_board = pytest.mark.parametrize("name", BOARDS)
 
 
-def small(board: Board, **more: Any) -> Configuration:
+def small(board: QuartusBoard, **more: Any) -> Configuration:
     return configure(**board.configuration, **SMALL | more)
 
 
-def write(board: Board, directory: Path, **more: Any) -> Configuration:
+def write(board: QuartusBoard, directory: Path, **more: Any) -> Configuration:
     config = configure(**board.configuration | SMALL | more)
     write_project(board, config, load_scene(SMALL_SCENE), directory)
     return config
@@ -66,7 +76,7 @@ def run(directory: Path, *command: str) -> str:
 
 def broken(name: str, directory: Path, file: str, right: str, wrong: str) -> Path:
     """A copy of a board's folder with something replaced in one file."""
-    shutil.copytree(find_board(name).directory, directory / name)
+    shutil.copytree(find_board(name, QuartusBoard).directory, directory / name)
     path = directory / name / file
     text = path.read_text()
     assert right in text
@@ -76,7 +86,7 @@ def broken(name: str, directory: Path, file: str, right: str, wrong: str) -> Pat
 
 @every_board
 def test_a_board_has_what_a_project_needs(name):
-    board = find_board(name)
+    board = find_board(name, QuartusBoard)
     small(board)
     for told in (board.title, board.family, board.device, board.quartus, board.source, board.confirmation):
         assert told.strip()
@@ -94,7 +104,7 @@ def test_a_board_has_what_a_project_needs(name):
     ],
 )
 def test_pins_that_are_known_otherwise(name, pins):
-    assert find_board(name).pins.items() >= pins.items()
+    assert find_board(name, QuartusBoard).pins.items() >= pins.items()
 
 
 @pytest.mark.parametrize(
@@ -102,7 +112,7 @@ def test_pins_that_are_known_otherwise(name, pins):
     [*((name, {}) for name in BOARDS), ("de2", {"colour_bits": 3}), ("de10_lite", {"colour_bits": 8})],
 )
 def test_tools_have_nothing_to_say(name, more, tmp_path):
-    board = find_board(name)
+    board = find_board(name, QuartusBoard)
     directory = tmp_path / "a project"
     bits = write(board, directory, **more).colour_bits
     files = sources(directory)
@@ -159,7 +169,7 @@ def test_a_broken_board_is_not_written(file, right, wrong, complaint, tmp_path):
 def qsf(tmp_path_factory) -> str:
     """The settings file of a project for the DE10-Lite."""
     directory = tmp_path_factory.mktemp("qsf") / "project"
-    write(find_board("de10_lite"), directory)
+    write(find_board("de10_lite", QuartusBoard), directory)
     return settings(directory)
 
 
@@ -180,7 +190,7 @@ def qsf(tmp_path_factory) -> str:
     ],
 )
 def test_a_broken_settings_file_is_noticed(right, wrong, complaint, qsf):
-    board = find_board("de10_lite")
+    board = find_board("de10_lite", QuartusBoard)
     top = (board.directory / board.top).read_text()
     check_project(board, top, qsf)
     assert qsf.count(right) == 1
@@ -215,7 +225,7 @@ def test_a_description_is_missing(tmp_path):
 
 
 def test_a_project_is_replaced_as_a_whole(tmp_path):
-    board = find_board("de10_lite")
+    board = find_board("de10_lite", QuartusBoard)
     directory = tmp_path / "project"
     write(board, directory)
     before = {path.name: path.read_bytes() for path in directory.iterdir() if path.is_file()}
@@ -239,7 +249,7 @@ source [lindex $argv 0]
 
 @every_board
 def test_constraints_are_tcl_of_these_ports(name, tmp_path):
-    board = find_board(name)
+    board = find_board(name, QuartusBoard)
     directory = tmp_path / "project"
     write(board, directory)
     done = run_tcl(tmp_path, TCL, str(directory / f"{TOP}.sdc"))
@@ -314,7 +324,7 @@ endmodule
     ],
 )
 def test_the_top_connects_what_it_says(name, bits, colours, tmp_path):
-    board = find_board(name)
+    board = find_board(name, QuartusBoard)
     path = board.directory / board.top
     top = path.read_text()
     widths = {port: int(highest) + 1 for highest, port in re.findall(r"\[(\d+):0\] +(\w+)", top)}
@@ -367,7 +377,7 @@ endmodule
 
 def test_a_board_shows_what_the_system_does(tmp_path):
     directory = tmp_path / "project"
-    screen = write(find_board("de10_lite"), directory).screen_geometry
+    screen = write(find_board("de10_lite", QuartusBoard), directory).screen_geometry
     frames = 3
     (directory / "bench.v").write_text(WHOLE % (frames * screen.frame_cycles))
     run(directory, "iverilog", "-g2005", "-s", "bench", "-o", "a.out", *sources(directory), "bench.v")
@@ -451,7 +461,7 @@ def test_quartus_takes_too_long(command, tmp_path, monkeypatch):
 
 
 def test_mistakes_are_told_in_one_line(command, tmp_path):
-    assert command(name="de0") == (2, [], ["error: board: de2, de2_115, de1_soc or de10_lite, not de0"])
+    assert command(name="de0") == (2, [], ["error: board: de10_lite, de1_soc, de2 or de2_115, not de0"])
     code, _, err = command(scene=tmp_path / "none.toml")
     assert (code, err) == (2, [f"error: {tmp_path / 'none.toml'}: cannot be read: No such file or directory"])
     code, _, err = command("--colour-bits", "9")

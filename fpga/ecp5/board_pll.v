@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// From the board's 25 MHz, shift_clk for the DVI link, five times the pixel clock, and clk for the design, which is the
-// pixel clock or twice that. ulx3s_clocks.v, made with the design, says which.
+// From the board's oscillator, shift_clk for the DVI link, five times the pixel clock, and clk for the design, which is
+// the pixel clock or twice that. board_clocks.v, made with the design, says which.
 
-module ulx3s_pll #(
-    // 25 MHz / CLKI_DIV * CLKFB_DIV is shift_clk, and SHIFT_DIV times that the oscillator's, within its 400 to 800 MHz;
+module board_pll #(
+    // clk_in / CLKI_DIV * CLKFB_DIV is shift_clk, and SHIFT_DIV times that the oscillator's, within its 400 to 800 MHz;
     // that by CLK_DIV is clk.
     parameter CLKI_DIV = 1,
     parameter CLKFB_DIV = 5,
     parameter SHIFT_DIV = 4,
     parameter CLK_DIV = 10
 ) (
-    input  wire clk_25mhz,
+    input  wire clk_in,
     output wire clk,
     output wire shift_clk,
     output wire locked
@@ -40,7 +40,7 @@ EHXPLLL #(
     .INTFB_WAKE("DISABLED"),
     .STDBY_ENABLE("DISABLED")
 ) pll (
-    .CLKI(clk_25mhz),
+    .CLKI(clk_in),
     .CLKFB(shift_clk),
     .RST(1'b0),
     .STDBY(1'b0),

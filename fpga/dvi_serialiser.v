@@ -12,14 +12,14 @@ module dvi_serialiser (
     input  wire [9:0] green,
     input  wire [9:0] red,
     input  wire       pixel,            // changes with the symbols, once a pixel
-    output wire [3:0] gpdi_dp
+    output wire [3:0] link
 );
 
 localparam [9:0] LINK_CLOCK = 10'b0000011111;
 
-dvi_lane blue_lane (.shift_clk(shift_clk), .pixel(pixel), .symbol(blue), .wire_p(gpdi_dp[0]));
-dvi_lane green_lane (.shift_clk(shift_clk), .pixel(pixel), .symbol(green), .wire_p(gpdi_dp[1]));
-dvi_lane red_lane (.shift_clk(shift_clk), .pixel(pixel), .symbol(red), .wire_p(gpdi_dp[2]));
-dvi_lane clock_lane (.shift_clk(shift_clk), .pixel(pixel), .symbol(LINK_CLOCK), .wire_p(gpdi_dp[3]));
+dvi_lane blue_lane (.shift_clk(shift_clk), .pixel(pixel), .symbol(blue), .sent(link[0]));
+dvi_lane green_lane (.shift_clk(shift_clk), .pixel(pixel), .symbol(green), .sent(link[1]));
+dvi_lane red_lane (.shift_clk(shift_clk), .pixel(pixel), .symbol(red), .sent(link[2]));
+dvi_lane clock_lane (.shift_clk(shift_clk), .pixel(pixel), .symbol(LINK_CLOCK), .sent(link[3]));
 
 endmodule

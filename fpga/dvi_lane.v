@@ -8,7 +8,7 @@ module dvi_lane (
     input  wire       shift_clk,
     input  wire       pixel,            // changes with the symbol, once a pixel
     input  wire [9:0] symbol,
-    output wire       wire_p
+    output wire       sent
 );
 
 localparam [4:0] WAITING = 5'b00000;    // for the first pixel
@@ -54,6 +54,6 @@ always @(posedge shift_clk) begin
     pair <= leaving;
 end
 
-ODDRX1F pin (.SCLK(shift_clk), .RST(1'b0), .D0(pair[0]), .D1(pair[1]), .Q(wire_p));
+ddr_pin pin (.shift_clk(shift_clk), .bits(pair), .sent(sent));
 
 endmodule

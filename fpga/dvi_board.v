@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// All of a board with a DVI link but its pins: what board_design draws is on the link, and what it says on serial.
+
+module dvi_board (
+    input  wire       clk_in,           // the oscillator
+    input  wire       run,              // low starts everything anew, as does an unlocked PLL
+    input  wire [5:0] buttons,          // down, up, right, left, back, forward
+    output wire       locked,
+    output wire       serial,
+    output wire [3:0] link_p,           // clock, red, green, blue
+    output wire [3:0] link_n
+);
+
+wire clk, shift_clk;
+wire ready = locked & run;
+wire [7:0] vga_r, vga_g, vga_b;
+wire vga_hs, vga_vs, vga_blank_n, vga_clk;
+wire [9:0] blue, green, red;
+wire pixel, pixel_end;
+wire [3:0] link;
+
+board_clocks clocks (
+    .clk_in(clk_in),
+    .vga_clk(vga_clk),
+    .clk(clk),
+    .shift_clk(shift_clk),
+    .locked(locked),
+    .pixel_end(pixel_end)
+);
+
+board_design shown (
+    .clk(clk),
+    .ready(ready),
+    .buttons(buttons),
+    .uart_tx(serial),
+    .vga_r(vga_r),
+    .vga_g(vga_g),
+    .vga_b(vga_b),
+    .vga_hs(vga_hs),
+    .vga_vs(vga_vs),
+    .vga_blank_n(vga_blank_n),
+    .vga_clk(vga_clk)
+);
+
+dvi_encoder encoder (
+    .clk(clk),
+    .ready(ready),
+    .pixel_end(pixel_end),
+    .vga_r(vga_r),
+    .vga_g(vga_g),
+    .vga_b(vga_b),
+    .vga_hs(vga_hs),
+    .vga_vs(vga_vs),
+    .vga_blank_n(vga_blank_n),
+    .blue(blue),
+    .green(green),
+    .red(red),
+    .pixel(pixel)
+);
+
+dvi_serialiser serialiser (
+    .shift_clk(shift_clk),
+    .blue(blue),
+    .green(green),
+    .red(red),
+    .pixel(pixel),
+    .link(link)
+);
+
+link_pins pins (.link(link), .link_p(link_p), .link_n(link_n));
+
+endmodule

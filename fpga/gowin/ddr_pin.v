@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// Two bits each cycle of shift_clk, first bits[0].
+
+module ddr_pin (
+    input  wire       shift_clk,
+    input  wire [1:0] bits,
+    output wire       sent
+);
+
+ODDR pin (.CLK(shift_clk), .TX(1'b1), .D0(bits[0]), .D1(bits[1]), .Q0(sent));
+
+endmodule

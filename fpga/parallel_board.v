@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// All of a board with a DAC, or a transmitter, but its pins: what board_design draws changes as vga_clk falls, a clock a
+// pixel, and is taken as it rises.
+
+module parallel_board #(
+    parameter COLOUR_BITS = 8
+) (
+    input  wire clk_in,                     // the oscillator
+    input  wire run,                        // low starts everything anew, as does an unlocked PLL
+    input  wire [5:0] buttons,              // down, up, right, left, back, forward
+    output wire locked,
+    output wire serial,
+    output wire [COLOUR_BITS-1:0] vga_r,
+    output wire [COLOUR_BITS-1:0] vga_g,
+    output wire [COLOUR_BITS-1:0] vga_b,
+    output wire vga_hs,
+    output wire vga_vs,
+    output wire vga_blank_n,
+    output wire vga_clk
+);
+
+wire clk;
+
+board_clocks clocks (
+    .clk_in(clk_in),
+    .vga_clk(1'b0),
+    .clk(clk),
+    .shift_clk(),
+    .locked(locked),
+    .pixel_end()
+);
+
+board_design #(.COLOUR_BITS(COLOUR_BITS)) shown (
+    .clk(clk),
+    .ready(locked & run),
+    .buttons(buttons),
+    .uart_tx(serial),
+    .vga_r(vga_r),
+    .vga_g(vga_g),
+    .vga_b(vga_b),
+    .vga_hs(vga_hs),
+    .vga_vs(vga_vs),
+    .vga_blank_n(vga_blank_n),
+    .vga_clk()
+);
+
+clock_pin monitor_clock (.clk(clk), .pin(vga_clk));
+
+endmodule
