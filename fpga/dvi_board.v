@@ -59,6 +59,7 @@ dvi_encoder encoder (
 );
 
 dvi_serialiser serialiser (
+    .clk(clk),
     .shift_clk(shift_clk),
     .blue(blue),
     .green(green),

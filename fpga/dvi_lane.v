@@ -5,6 +5,7 @@
 
 (* keep_hierarchy *)
 module dvi_lane (
+    input  wire       clk,
     input  wire       shift_clk,
     input  wire       pixel,            // changes with the symbol, once a pixel
     input  wire [9:0] symbol,
@@ -14,6 +15,8 @@ module dvi_lane (
 localparam [4:0] WAITING = 5'b00000;    // for the first pixel
 localparam [4:0] THIRD = 5'b01000;      // of a pixel's cycles, from the one that knew of it on
 
+reg [9:0] held = 10'b0000000000;
+reg       held_pixel = 1'b0;
 reg [2:0] seen = 3'b000;
 reg       changed = 1'b0;
 reg       restart = 1'b0;
@@ -22,9 +25,15 @@ reg       load = 1'b0;
 reg [9:0] shift;
 reg [1:0] leaving, pair;
 
+// From across the chip while there is time for it: from here on shift_clk sees nothing that is not near.
+always @(posedge clk) begin
+    held <= symbol;
+    held_pixel <= pixel;
+end
+
 // Two registers bring pixel over, and one more remembers it.
 always @(posedge shift_clk)
-    seen <= {seen[1:0], pixel};
+    seen <= {seen[1:0], held_pixel};
 
 // A pixel that comes a cycle early or late changes nothing, as symbols hold still for longer; where one comes at quite
 // another time, after a reset, counting starts with it. A table and a register each, for the clock's sake.
@@ -46,7 +55,7 @@ always @(posedge shift_clk)
 
 // Around rather than out, as what comes last is never sent, and a reset is slower than a table.
 always @(posedge shift_clk)
-    shift <= load ? symbol : {shift[1:0], shift[9:2]};
+    shift <= load ? held : {shift[1:0], shift[9:2]};
 
 // The way to the pin may be long too.
 always @(posedge shift_clk) begin

@@ -7,6 +7,7 @@
 // no path between two clocks against anything; raycaster.fpga.bitstream sees that these take less than a cycle.
 
 module dvi_serialiser (
+    input  wire       clk,              // of the symbols
     input  wire       shift_clk,
     input  wire [9:0] blue,
     input  wire [9:0] green,
@@ -17,9 +18,9 @@ module dvi_serialiser (
 
 localparam [9:0] LINK_CLOCK = 10'b0000011111;
 
-dvi_lane blue_lane (.shift_clk(shift_clk), .pixel(pixel), .symbol(blue), .sent(link[0]));
-dvi_lane green_lane (.shift_clk(shift_clk), .pixel(pixel), .symbol(green), .sent(link[1]));
-dvi_lane red_lane (.shift_clk(shift_clk), .pixel(pixel), .symbol(red), .sent(link[2]));
-dvi_lane clock_lane (.shift_clk(shift_clk), .pixel(pixel), .symbol(LINK_CLOCK), .sent(link[3]));
+dvi_lane blue_lane (.clk(clk), .shift_clk(shift_clk), .pixel(pixel), .symbol(blue), .sent(link[0]));
+dvi_lane green_lane (.clk(clk), .shift_clk(shift_clk), .pixel(pixel), .symbol(green), .sent(link[1]));
+dvi_lane red_lane (.clk(clk), .shift_clk(shift_clk), .pixel(pixel), .symbol(red), .sent(link[2]));
+dvi_lane clock_lane (.clk(clk), .shift_clk(shift_clk), .pixel(pixel), .symbol(LINK_CLOCK), .sent(link[3]));
 
 endmodule

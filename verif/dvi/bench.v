@@ -28,14 +28,16 @@ module dvi_bench;
         .serial(serial)
     );
 
-    always @(device.top.board.blue, device.top.board.green, device.top.board.red) begin
+    `define LINK device.top.board.serialiser
+
+    always @(`LINK.blue_lane.held, `LINK.green_lane.held, `LINK.red_lane.held) begin
         changed = $realtime;
         if (recording && changed - taken < still)
             unsteady = unsteady + 1;
     end
 
     always @(posedge device.top.board.shift_clk)
-        if (recording && device.top.board.serialiser.blue_lane.load) begin
+        if (recording && (`LINK.blue_lane.load || `LINK.green_lane.load || `LINK.red_lane.load)) begin
             taken = $realtime;
             if (taken - changed < still)
                 unsteady = unsteady + 1;
