@@ -1466,7 +1466,8 @@ def test_beam_caster(config, lines, tmp_path):
         fates |= {tuple(int(winner[column] >= 0) for winner in traced.winners) for column in range(len(line))}
         vectors = np.concatenate([camera, *(basis if config.turn else ())]).tolist()
         held = {f"camera_{name}": value for name, value in zip(camera_of(config).layout, vectors, strict=True)}
-        held |= {"reset": 0, "start_line": 0, "next_column": 0, "picture_reflections": reflections}
+        held |= {"reset": 0, "start_line": 0, "next_column": 0}
+        held |= {"picture_reflections": reflections} if config.reflections else {}
         held["picture_background"] = int.from_bytes(bytes(background.astype(np.uint8)))
         held["rects_usable"] = sum(1 << int(index) for index in np.flatnonzero(table.visible))
         if number % 16 == 4:
