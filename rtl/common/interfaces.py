@@ -190,7 +190,8 @@ class SceneBus(Interface):
     """What the registers tell the scene memories: a write, or where to read, and when the shadow moves on.
 
     write: strobe; address: word address, for write and for reading back; data, mask: the word and which of its bits to
-    write; commit: shadow to pending; go_live: pending to live. Both copy at the end of the cycle.
+    write; commit: shadow to pending; go_live: pending to live. Both copy at the end of the cycle. commit comes in the
+    cycle after the write that asks for it, so never in the one after a write to a scene memory.
     """
 
     def __init__(self, address_bits: int):

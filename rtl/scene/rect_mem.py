@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The world's rectangles."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, always_seq, block, concat, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.records import rect_of
@@ -17,12 +17,13 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     """config.rectangles slots, and the live rectangle that the engine asks for; rects: Rects.
 
     A memory holds the shadow as it was written. Another has three places for each slot, for rectangles as the engine
-    wants them, which is as many as shadow, pending and live copy may need: a write takes one that neither of the two
-    others keeps, and a commit and StartScreen change which place is whose. Reset clears neither memory: a slot that was
-    not written since reads 0, and is not usable. rects.rect: don't care where the rectangle is not usable.
+    wants them, which is as many as shadow, pending and live copy may need: a cycle after a write the rectangle is
+    sorted into a place that neither of the two others keeps, and a commit and StartScreen change which place is whose.
+    Reset clears neither memory: a slot that was not written since reads 0, and is not usable. rects.rect: don't care
+    where the rectangle is not usable.
 
     readback: the shadow's word at bus.address, 32 bits, combinational, 0 where there is none. bad_rectangle: the shadow
-    holds an enabled rectangle without a plane.
+    holds an enabled rectangle without a plane; from the second cycle after a write on.
     """
     count = config.rectangles
     table_slot = CORNER.address // 4
@@ -31,7 +32,8 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
 
     slot = signed(address_width - 1)
     index = unsigned(index_width)
-    in_table = bit()
+    in_table, write = bit(), bit()
+    written = unsigned(count)
     stored, old, mask, data, merged = (written_of(config) for _ in range(5))
     implemented = tied(implemented_bits(config), len(merged.word))
     mask_0, mask_1, mask_2 = (unsigned(WORD_BITS) for _ in range(3))
@@ -41,10 +43,12 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     numbers = [tied(number, index_width) for number in range(count)]
     usables, bads = ([bit() for _ in range(count)] for _ in range(2))
     usable, bad = side_by_side(usables), side_by_side(bads)
-    write, flat = bit(), bit()
+    storing, flat = bit(), bit()
+    latest_index = unsigned(index_width)
+    latest = written_of(config)
     all_copies = [Copies() for _ in range(count)]
     copies_words = [copies.word for copies in all_copies]
-    written_copies, read_copies = Copies(), Copies()
+    latest_copies, read_copies = Copies(), Copies()
     next_pending, next_live, place = (unsigned(PLACE_BITS) for _ in range(3))
     kept_0, kept_1 = bit(), bit()
 
@@ -54,12 +58,12 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
 
     slots = [
         rect_slot(
-            clk, reset, bus, write, index, numbers[i], place=place, enable=merged.enable, flat=flat,
+            clk, reset, bus, storing, latest_index, numbers[i], place=place, enable=latest.enable, flat=flat,
             copies=all_copies[i], usable=usables[i], bad=bads[i],
         )
         for i in range(count)
     ]  # fmt: skip
-    sorter = rect_sorter(merged, sorted_rect, config)
+    sorter = rect_sorter(latest, sorted_rect, config)
 
     # The table starts after the other registers.
     @always_comb
@@ -81,12 +85,11 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     @always_comb
     def read_shadow():
         stored.word.next = shadow_words[index]
-        written_copies.word.next = copies_words[index]
 
     @always_comb
     def clear_unwritten():
         old.word.next = 0
-        if written_copies.written:
+        if written[index]:
             old.word.next = stored.word
 
     # 0 outside the table.
@@ -140,20 +143,44 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     def merge():
         merged.word.next = ((old.word & ~mask.word) | (data.word & mask.word)) & implemented
 
+    @always(clk.posedge)
+    def store_shadow():
+        if write:
+            shadow_words[index].next = merged.word
+
+    @always_seq(clk.posedge, reset=reset)
+    def remember_written():
+        if write:
+            written.next[index] = True
+
+    # Merging and sorting have a cycle each, which no commit needs: the write that asks for it is one of its own.
+    @always(clk.posedge)
+    def hand_over():
+        latest.word.next = merged.word
+        latest_index.next = index
+
+    @always_seq(clk.posedge, reset=reset)
+    def follow_write():
+        storing.next = write
+
     # A rectangle lies in a plane where its corners share a coordinate.
     @always_comb
     def find_plane():
-        flat.next = (merged.x_0 == merged.x_1) or (merged.y_0 == merged.y_1) or (merged.z_0 == merged.z_1)
+        flat.next = (latest.x_0 == latest.x_1) or (latest.y_0 == latest.y_1) or (latest.z_0 == latest.z_1)
+
+    @always_comb
+    def find_copies():
+        latest_copies.word.next = copies_words[latest_index]
 
     # Whose places are kept at the end of this cycle.
     @always_comb
     def look_ahead():
-        next_pending.next = written_copies.pending
+        next_pending.next = latest_copies.pending
         if bus.commit:
-            next_pending.next = written_copies.shadow
-        next_live.next = written_copies.live
+            next_pending.next = latest_copies.shadow
+        next_live.next = latest_copies.live
         if bus.go_live:
-            next_live.next = written_copies.pending
+            next_live.next = latest_copies.pending
 
     @always_comb
     def find_kept():
@@ -170,17 +197,12 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
 
     @always_comb
     def address():
-        write_address.next = concat(place, index)
+        write_address.next = concat(place, latest_index)
         read_address.next = concat(read_copies.live, rects.index)
 
     @always(clk.posedge)
-    def store_shadow():
-        if write:
-            shadow_words[index].next = merged.word
-
-    @always(clk.posedge)
     def store_sorted():
-        if write:
+        if storing:
             places[write_address].next = sorted_rect.word
 
     @always_comb

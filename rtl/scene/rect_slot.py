@@ -8,21 +8,19 @@ from raycaster.rtl.scene.written_rect import PLACE_BITS
 
 
 @block
-def rect_slot(clk, reset, bus, write, index, number, place, enable, flat, copies, usable, bad):
-    """write: the rectangle of this index is written, to its place `place`, which is its shadow's copy from then on.
+def rect_slot(clk, reset, bus, storing, index, number, place, enable, flat, copies, usable, bad):
+    """storing: the rectangle of this index goes to its place `place`, where its shadow's copy is from then on.
 
-    number: constant, the slot's own index. enable, flat: what is written is enabled, and has a plane. copies: `Copies`;
+    number: constant, the slot's own index. enable, flat: what goes there is enabled, and has a plane. copies: `Copies`;
     bus.commit and bus.go_live move no rectangle, they change whose its places are. usable: the live rectangle is
     enabled and has a plane. bad: the shadow's is enabled and has none.
     """
-    written = bit()
     shadow, pending, live = (unsigned(PLACE_BITS) for _ in range(3))
     shadow_usable, pending_usable = bit(), bit()
 
     @always_seq(clk.posedge, reset=reset)
     def follow_shadow():
-        if write and index == number:
-            written.next = True
+        if storing and index == number:
             shadow.next = place
             shadow_usable.next = enable and flat
             bad.next = enable and not flat
@@ -41,6 +39,6 @@ def rect_slot(clk, reset, bus, write, index, number, place, enable, flat, copies
 
     @always_comb
     def join():
-        copies.word.next = concat(written, shadow, pending, live)
+        copies.word.next = concat(shadow, pending, live)
 
     return instances()

@@ -63,7 +63,7 @@ PLACE_BITS = bits_for(PLACES)
 
 
 class Copies(Record):
-    """At which of its places a slot's copies are. written: at all, since reset."""
+    """At which of its places a slot's copies are."""
 
     def __init__(self):
-        super().__init__({"written": 1} | dict.fromkeys(("shadow", "pending", "live"), PLACE_BITS))
+        super().__init__(dict.fromkeys(("shadow", "pending", "live"), PLACE_BITS))

@@ -242,9 +242,9 @@ function wrong(input [95:0] words);
 endfunction
 (* anyconst *) reg [95:0] words;
 (* anyconst *) reg [RECT_BITS-1:0] result;
-(* hierconn *) wire [95:0] \rects.merged_word ;
+(* hierconn *) wire [95:0] \rects.latest_word ;
 (* hierconn *) wire [RECT_BITS-1:0] \rects.sorted_rect_word ;
-always @* assume (\rects.merged_word != words || \rects.sorted_rect_word == result);
+always @* assume (\rects.latest_word != words || \rects.sorted_rect_word == result);
 
 // A fetch gives the live rectangle of its cycle, until the next one.
 reg fetched = 0;
@@ -262,12 +262,13 @@ end
 (* hierconn *) wire [1:0] \rects.rect_slot_0_i.shadow , \rects.rect_slot_1_i.shadow ,
     \rects.rect_slot_0_i.pending , \rects.rect_slot_1_i.pending , \rects.rect_slot_0_i.live ,
     \rects.rect_slot_1_i.live ;
-(* hierconn *) wire \rects.rect_slot_0_i.written , \rects.rect_slot_1_i.written ,
+(* hierconn *) wire [1:0] \rects.written ;
+(* hierconn *) wire \rects.storing , \rects.latest_index ,
     \rects.rect_slot_0_i.shadow_usable , \rects.rect_slot_1_i.shadow_usable ,
     \rects.rect_slot_0_i.pending_usable , \rects.rect_slot_1_i.pending_usable , \rects.rect_slot_0_i.bad ,
     \rects.rect_slot_1_i.bad ;
-wire [95:0] slot_0 = \rects.rect_slot_0_i.written ? \rects.shadow_words[0] : 0;
-wire [95:0] slot_1 = \rects.rect_slot_1_i.written ? \rects.shadow_words[1] : 0;
+wire [95:0] slot_0 = \rects.written [0] ? \rects.shadow_words[0] : 0;
+wire [95:0] slot_1 = \rects.written [1] ? \rects.shadow_words[1] : 0;
 wire [5:0] its_places = watched_slot
     ? {\rects.rect_slot_1_i.shadow , \rects.rect_slot_1_i.pending , \rects.rect_slot_1_i.live }
     : {\rects.rect_slot_0_i.shadow , \rects.rect_slot_0_i.pending , \rects.rect_slot_0_i.live };
@@ -275,20 +276,27 @@ wire [1:0] its_shadow = its_places[5:4], its_pending = its_places[3:2], its_live
 wire [2:0] right = watched_slot
     ? {\rects.places[5] == result, \rects.places[3] == result, \rects.places[1] == result}
     : {\rects.places[4] == result, \rects.places[2] == result, \rects.places[0] == result};
+wire stores_0 = \rects.storing && !\rects.latest_index , stores_1 = \rects.storing && \rects.latest_index ;
+wire stores_it = watched_slot ? stores_1 : stores_0;
 always @* if (known) begin
-    assert (bad_rectangle == (wrong(slot_0) || wrong(slot_1)));
-    assert (\rects.rect_slot_0_i.bad == wrong(slot_0) && \rects.rect_slot_1_i.bad == wrong(slot_1));
+    if (bus_commit) assert (!\rects.storing && bad_rectangle == (wrong(slot_0) || wrong(slot_1)));
+    if (stores_0) assert (\rects.latest_word == slot_0);
+    else assert (\rects.rect_slot_0_i.bad == wrong(slot_0));
+    if (stores_1) assert (\rects.latest_word == slot_1);
+    else assert (\rects.rect_slot_1_i.bad == wrong(slot_1));
     assert ((watched_slot ? slot_1 : slot_0) == slot_shadow_1 && (slot_shadow & ~SLOT_BITS) == 0);
     if (!wrote || wrote_address[ADDRESS_BITS-1:2] != first[ADDRESS_BITS-1:2])
         assert (slot_shadow == slot_shadow_1 && written == written_1);
     else assert (slot_shadow == ((slot_shadow_1 & ~wrote_slot_mask) | ({3{wrote_ones}} & wrote_slot_mask)) && written);
-    assert ((watched_slot ? \rects.rect_slot_1_i.written : \rects.rect_slot_0_i.written ) == written_1);
+    assert (\rects.written [watched_slot] == written_1);
     assert (its_shadow < 3 && its_pending < 3 && its_live < 3);
-    if (written_1 && slot_shadow_1 == words) assert (right[its_shadow]);
+    if (!stores_it) begin
+        if (written_1 && slot_shadow_1 == words) assert (right[its_shadow]);
+        assert ((watched_slot ? \rects.rect_slot_1_i.shadow_usable : \rects.rect_slot_0_i.shadow_usable )
+            == good(slot_shadow_1));
+    end
     if (written_pending && slot_pending == words) assert (right[its_pending]);
     if (written_live && slot_live == words) assert (right[its_live]);
-    assert ((watched_slot ? \rects.rect_slot_1_i.shadow_usable : \rects.rect_slot_0_i.shadow_usable )
-        == good(slot_shadow_1));
     assert ((watched_slot ? \rects.rect_slot_1_i.pending_usable : \rects.rect_slot_0_i.pending_usable )
         == good(slot_pending));
     if (committed_2) assert (slot_snapshot == slot_shadow_1 && written_snapshot == written_1);

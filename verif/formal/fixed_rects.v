@@ -3,8 +3,9 @@
 // for any rectangle at any time, and gets the same.
 //
 // Assumed: what is written are words of the scene, whole, each in its place; when, in which order and how often is
-// arbitrary, as commit and StartScreen are; one cycle of reset at first, which may come again. Engines are the same
-// modules behind either, so this is what a fixed scene changes.
+// arbitrary, as commit and StartScreen are, but that no commit comes in the cycle after a write, which is proved of the
+// registers; one cycle of reset at first, which may come again. Engines are the same modules behind either, so this is
+// what a fixed scene changes.
 
 module fixed_rects #(
     parameter INDEX_BITS = 2, parameter ADDRESS_BITS = 5, parameter RECT_BITS = 71, parameter LATENCY = 1,
@@ -30,11 +31,15 @@ rect_mem memory (
 );
 rect_rom rom (.clk(clk), .rects_index(index), .rects_fetch(fetch), .rects_rect_word(fixed_rect));
 
-reg running = 0;
-always @(posedge clk) running <= 1;
+reg running = 0, wrote = 0;
+always @(posedge clk) begin
+    running <= 1;
+    wrote <= write;
+end
 always @* begin
     if (!running) assume (reset);
     assume (index < 3 && slot < 3 && word < 3);
+    assume (!(commit && wrote));
 end
 
 // Which words of a slot are written, and of which slots a copy is the scene's.
@@ -68,27 +73,29 @@ always @* if (running) assert ((usable & live) == live);
 (* hierconn *) wire [1:0] \memory.rect_slot_0_i.shadow , \memory.rect_slot_1_i.shadow , \memory.rect_slot_2_i.shadow ,
     \memory.rect_slot_0_i.pending , \memory.rect_slot_1_i.pending , \memory.rect_slot_2_i.pending ,
     \memory.rect_slot_0_i.live , \memory.rect_slot_1_i.live , \memory.rect_slot_2_i.live ;
-(* hierconn *) wire \memory.rect_slot_0_i.written , \memory.rect_slot_1_i.written , \memory.rect_slot_2_i.written ,
-    \memory.rect_slot_0_i.shadow_usable , \memory.rect_slot_1_i.shadow_usable ,
+(* hierconn *) wire [2:0] \memory.written ;
+(* hierconn *) wire [1:0] \memory.latest_index ;
+(* hierconn *) wire [95:0] \memory.latest_word ;
+(* hierconn *) wire \memory.storing , \memory.rect_slot_0_i.shadow_usable , \memory.rect_slot_1_i.shadow_usable ,
     \memory.rect_slot_2_i.shadow_usable , \memory.rect_slot_0_i.pending_usable ,
     \memory.rect_slot_1_i.pending_usable , \memory.rect_slot_2_i.pending_usable ;
 fixed_rects_slot #(RECT_BITS, SCENE_0) slot_0 (
-    running, written_0, shadow[0], pending[0], live[0], \memory.rect_slot_0_i.written , \memory.shadow_words[0] ,
-    \memory.places[0] , \memory.places[4] , \memory.places[8] , \memory.rect_slot_0_i.shadow ,
-    \memory.rect_slot_0_i.pending , \memory.rect_slot_0_i.live , \memory.rect_slot_0_i.shadow_usable ,
-    \memory.rect_slot_0_i.pending_usable
+    running, wrote, \memory.storing && \memory.latest_index == 0, \memory.latest_word , written_0, shadow[0],
+    pending[0], live[0], \memory.written [0], \memory.shadow_words[0] , \memory.places[0] ,
+    \memory.places[4] , \memory.places[8] , \memory.rect_slot_0_i.shadow , \memory.rect_slot_0_i.pending ,
+    \memory.rect_slot_0_i.live , \memory.rect_slot_0_i.shadow_usable , \memory.rect_slot_0_i.pending_usable
 );
 fixed_rects_slot #(RECT_BITS, SCENE_1) slot_1 (
-    running, written_1, shadow[1], pending[1], live[1], \memory.rect_slot_1_i.written , \memory.shadow_words[1] ,
-    \memory.places[1] , \memory.places[5] , \memory.places[9] , \memory.rect_slot_1_i.shadow ,
-    \memory.rect_slot_1_i.pending , \memory.rect_slot_1_i.live , \memory.rect_slot_1_i.shadow_usable ,
-    \memory.rect_slot_1_i.pending_usable
+    running, wrote, \memory.storing && \memory.latest_index == 1, \memory.latest_word , written_1, shadow[1],
+    pending[1], live[1], \memory.written [1], \memory.shadow_words[1] , \memory.places[1] ,
+    \memory.places[5] , \memory.places[9] , \memory.rect_slot_1_i.shadow , \memory.rect_slot_1_i.pending ,
+    \memory.rect_slot_1_i.live , \memory.rect_slot_1_i.shadow_usable , \memory.rect_slot_1_i.pending_usable
 );
 fixed_rects_slot #(RECT_BITS, SCENE_2) slot_2 (
-    running, written_2, shadow[2], pending[2], live[2], \memory.rect_slot_2_i.written , \memory.shadow_words[2] ,
-    \memory.places[2] , \memory.places[6] , \memory.places[10] , \memory.rect_slot_2_i.shadow ,
-    \memory.rect_slot_2_i.pending , \memory.rect_slot_2_i.live , \memory.rect_slot_2_i.shadow_usable ,
-    \memory.rect_slot_2_i.pending_usable
+    running, wrote, \memory.storing && \memory.latest_index == 2, \memory.latest_word , written_2, shadow[2],
+    pending[2], live[2], \memory.written [2], \memory.shadow_words[2] , \memory.places[2] ,
+    \memory.places[6] , \memory.places[10] , \memory.rect_slot_2_i.shadow , \memory.rect_slot_2_i.pending ,
+    \memory.rect_slot_2_i.live , \memory.rect_slot_2_i.shadow_usable , \memory.rect_slot_2_i.pending_usable
 );
 
 // Any of them, after any other.
@@ -100,7 +107,8 @@ endmodule
 
 // Of one slot: what is written of it, and each copy that is the scene's, sorted by another sorter here.
 module fixed_rects_slot #(parameter RECT_BITS = 71, parameter [95:0] SCENE = 0) (
-    input running, input [2:0] words, input shadow, input pending, input live, input written, input [95:0] kept,
+    input running, input wrote, input storing, input [95:0] latest, input [2:0] words, input shadow, input pending,
+    input live, input written, input [95:0] kept,
     input [RECT_BITS-1:0] place_0, input [RECT_BITS-1:0] place_1, input [RECT_BITS-1:0] place_2,
     input [1:0] at_shadow, input [1:0] at_pending, input [1:0] at_live, input shadow_usable, input pending_usable
 );
@@ -112,7 +120,8 @@ always @* if (running) begin
     assert (at_shadow < 3 && at_pending < 3 && at_live < 3);
     assert (written == (words != 0));
     if (written) assert (kept == (SCENE & mask));
-    if (shadow) assert (right[at_shadow] && shadow_usable);
+    if (storing) assert (wrote && latest == kept);
+    else if (shadow) assert (right[at_shadow] && shadow_usable);
     if (pending) assert (right[at_pending] && pending_usable);
     if (live) assert (right[at_live]);
 end

@@ -21,9 +21,9 @@ from raycaster.fpga.area import CHIPS, FAMILIES, Area, Chip, Model, measure, mea
 YOSYS = "0.70.0.0.post1259"
 SMALL = configure(screen="tiny", units=2, rectangles=2, divider_bits=1, allow_underrun=True, culling=False)
 AREAS = {
-    "ecp5": Area(tables=2584, registers=1354, elements=2584, multipliers=4, memories=0),
-    "cycloneive": Area(tables=2419, registers=1380, elements=2930, multipliers=4, memories=4),
-    "cyclonev": Area(tables=1670, registers=1360, elements=907, multipliers=4, memories=2),
+    "ecp5": Area(tables=2404, registers=1435, elements=2404, multipliers=4, memories=0),
+    "cycloneive": Area(tables=2390, registers=1461, elements=2980, multipliers=4, memories=4),
+    "cyclonev": Area(tables=1650, registers=1441, elements=861, multipliers=4, memories=2),
 }
 
 families = pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES)
