@@ -60,6 +60,7 @@ LIBRARIES: Mapping[str, Library] = {
         "synth_gowin -family gw2a -nodsp -nobram -noiopads",
         ("cells_sim.v",),
         (*_GOWIN_TABLES, "ALU", *_GOWIN_REGISTERS, "RAM16SDP1", "RAM16SDP2", "RAM16SDP4", "VCC", "GND"),
+        ("MUX2",),
     ),
 }
 """By family, as a board's description names it."""
