@@ -217,7 +217,7 @@ def boards() -> str:
         for kind in (kinds["logic"], kinds["multipliers"]):
             used, there = figures["cells"][kind]
             counts.append(f"{used:,} of {there:,} {kind}")
-        command = kept["command"].removeprefix("raycaster bitstream").partition(" --keep")[0].strip()
+        command = kept["command"].removeprefix("raycaster bitstream").partition(" --output")[0].strip()
         link = _clock(figures, "shift_clk") if "shift_clk" in figures["clocks"] else ""
         rows.append([figures["title"], figures["chip"], f"`{command}`", *counts, _clock(figures, "clk"), link,
                      f"{kept['date']}, {kept['commit']}"])  # fmt: skip
@@ -234,7 +234,7 @@ def icebreaker() -> str:
         figures = kept["figures"]
         cells, kinds = figures["cells"], figures["kinds"]
         used, there = cells[kinds["logic"]]
-        command = kept["command"].removeprefix("raycaster bitstream").partition(" --keep")[0].strip()
+        command = kept["command"].removeprefix("raycaster bitstream").partition(" --output")[0].strip()
         rows.append(
             [f"`{command}`", figures["rectangles"], figures["reflections"], figures["rows"], figures["units"],
              f"{used:,} of {there:,}", _clock(figures, "clk"), f"{kept['date']}, {kept['commit']}"]

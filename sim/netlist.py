@@ -60,6 +60,7 @@ LIBRARIES: Mapping[str, Library] = {
         "synth_gowin -family gw2a -nodsp -nobram -noiopads",
         ("cells_sim.v",),
         (*_GOWIN_TABLES, "ALU", *_GOWIN_REGISTERS, "RAM16SDP1", "RAM16SDP2", "RAM16SDP4", "VCC", "GND"),
+        ("MUX2",),
     ),
 }
 """By family, as a board's description names it."""
@@ -153,8 +154,8 @@ def synthesise(
 def _cell_models(library: Library, directory: Path) -> str:
     """Yosys's own models, of the cells that occur: some of the others are not Verilog that every simulator reads."""
     text = "".join((directory / name).read_text() for name in library.files)
-    modules = re.findall(r"^module (\w+) ?(\(.*?^endmodule\n)", text, re.MULTILINE | re.DOTALL)
-    chosen = [f"module {cell} {rest}" for cell, rest in modules if cell in library.counted + library.modelled]
+    modules = re.findall(r"^module (\w+) ?(\(.*?^\s*endmodule\b)", text, re.MULTILINE | re.DOTALL)
+    chosen = [f"module {cell} {rest}\n" for cell, rest in modules if cell in library.counted + library.modelled]
     # Macros come before them.
     return "\n".join([*re.findall(r"^`(?:define|ifndef|else|endif).*", text[: text.index("\nmodule ")], re.M), *chosen])
 

@@ -21,15 +21,14 @@ from raycaster.tools import run_yosys
 from raycaster.verif.dvi.watch import golden, watch
 
 BOARDS = board_names(OpenBoard)
-SMALL = {"engine": "exact", "units": 1, "allow_underrun": True}
 
 every_board = pytest.mark.parametrize("name", BOARDS)
 
 
 def small_design(board: OpenBoard):
-    """A small scene built in, as small as the board's monitor allows."""
+    """A small scene built in, as small as the board's monitor allows; each pixel is drawn in time."""
     screen = {"screen": "tiny"} if board.video == "dvi" else {"rows": 60}
-    return fix(SMALL_SCENE, board.configuration | SMALL | screen, "all").design
+    return fix(SMALL_SCENE, board.configuration | {"engine": "exact"} | screen, "all").design
 
 
 def changed(name: str, directory: Path, right: str, wrong: str) -> OpenBoard:
