@@ -110,8 +110,9 @@ def turn_bits(config: Configuration) -> int:
 def fold_bits(config: Configuration) -> int:
     """A product at the folded ray, with the sign.
 
-    (n - T[a]) D[u] and T[u] D[a] add up. Of one mirror one component of T is not 0, and each is kept in `turn_bits`,
-    so with t = 1 << (turn_bits - 1) |.| <= (511 + t) * the steepest slope with one mirror, and (511 + 2 t) * with more.
+    (n - T[a]) D[u] and T[u] D[a] add up, where one mirror makes one component of T not 0, and more make both. T is kept
+    in `turn_bits`, so |T| <= t = 1 << (turn_bits - 1), and |.| <= (511 + m t) * the steepest slope, with m = 1 of one
+    mirror and m = 2 of more.
     """
     offsets = min(config.reflections, 2) << (turn_bits(config) - 1)
     return ((WORLD_SIZE - 1 + offsets) * steepest_slope(config)).bit_length() + 1
