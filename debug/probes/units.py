@@ -240,8 +240,6 @@ class UnitProbes(Description):
             Probe("slope, signs", fields(generator, "initial_signs", SIGNS, Signs()), "start", slope_signs, late=1),
             Probe("comes from the camera", (f"{self.sequencer}.steps_initial_ray",), "ray",
                 lambda _, place: (int(place.bounce == 0),), late=1, shown=False),
-            Probe("rectangle, sorted", fields(f"{rects}.rect_sorter_i", "rect", RECT_FIELDS, layout), "fetch",
-                sorted_rect, shown=False),
             Probe("rectangle", fields(rects, "rects_rect", RECT_FIELDS, layout), "fetch", sorted_rect, late=1,
                 shown=False),
             *([culling] if self.config.culling else []),

@@ -84,7 +84,7 @@ def test_a_sound_design_has_no_difference(tmp_path, engine):
 
 FAULTS = {
     "seed": [
-        ("rect_sorter", "    v_low = v_0", "    v_low = v_0 + 1"),
+        ("rect_mem", "rects_rect_word <= ", "rects_rect_word <= 1 ^ "),
         ("group_culler", "may_hit <= found", "may_hit <= 0"),
         ("ray_generator", "dy = column - 32", "dy = column - 31"),
         ("intersection_helper", "forward = a + quotient", "forward = a - quotient"),
