@@ -26,7 +26,7 @@ from raycaster.design import Design, ProcessorDesign
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.board import OpenBoard, board_names, find_board
-from raycaster.fpga.flows import FLOWS, Clocks, clocks_for
+from raycaster.fpga.flows import FLOWS, Clocks, Flow, clocks_for
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.outcomes import add_keep_option, keep, scope_of
@@ -252,7 +252,7 @@ def make_bitstream(
             ],
         )  # fmt: skip
         stage("pack", [pack, *flow.pack(board)])
-        outcome = _read_report(clocks_for(board, design.configuration), work / "report.json", seconds)
+        outcome = _read_report(flow, clocks_for(board, design.configuration), work / "report.json", seconds)
         (work / "result.json").write_text(json.dumps(vars(outcome), indent=2) + "\n")
     return outcome
 
@@ -310,23 +310,23 @@ def _call(command: list[str], work: Path, log: Path) -> None:
         raise UserError(f"{command[0]}: {reason}; the log is {log}")
 
 
-def _read_report(wanted: Clocks, path: Path, seconds: Mapping[str, float]) -> Outcome:
+def _read_report(flow: Flow, wanted: Clocks, path: Path, seconds: Mapping[str, float]) -> Outcome:
     report = json.loads(path.read_text())
     clocks = {}
     for net, required in wanted.nets.items():
         [reached] = [entry["achieved"] for name, entry in report["fmax"].items() if _is_net(name, net)]
         clocks[net] = (round(reached, 2), required)
     crossings = {}
-    for (source, sink), allowed in wanted.crossings.items():
+    for (source, sink), allowed in wanted.crossings.items() if flow.tells_crossings else ():
         [steps] = [
             entry["path"]
             for entry in report["critical_paths"]
             if _is_net(entry["from"], source) and _is_net(entry["to"], sink)
         ]
         crossings[f"{source} to {sink}"] = (round(sum(step["delay"] for step in steps), 2), allowed)
-    cells = {
-        name: (entry["used"], entry["available"]) for name, entry in report["utilization"].items() if entry["used"]
-    }
+    counts = {name: (entry["used"], entry["available"]) for name, entry in report["utilization"].items()}
+    # Some are of nextpnr's own making, of which the chip has none.
+    cells = {name: (used, there) for name, (used, there) in counts.items() if used and there}
     return Outcome(cells, clocks, crossings, seconds)
 
 

@@ -50,6 +50,7 @@ class Flow:
         cells: of nextpnr's names, those of logic, registers, multipliers and blocks of memory; the same name twice
             where a cell has both.
         factor_bits: of a multiplier's factors.
+        tells_crossings: whether nextpnr reports paths from a clock to another.
         pll: parameters for a clock of so many MHz from one of so many, `per_clk` cycles of it for one of clk, and the
             frequency that they make; None where there are none.
     """
@@ -63,6 +64,7 @@ class Flow:
     bitstream: str
     cells: tuple[str, str, str, str]
     factor_bits: int
+    tells_crossings: bool
     pll: Callable[[float, float, float], tuple[Mapping[str, int | str], float] | None]
 
 
@@ -190,6 +192,7 @@ FLOWS: Mapping[str, Flow] = {
         bitstream="bit",
         cells=("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD"),
         factor_bits=18,
+        tells_crossings=True,
         pll=_ecp5_pll,
     ),
     "ice40": Flow(
@@ -202,6 +205,7 @@ FLOWS: Mapping[str, Flow] = {
         bitstream="bin",
         cells=("ICESTORM_LC", "ICESTORM_LC", "ICESTORM_DSP", "ICESTORM_RAM"),
         factor_bits=16,
+        tells_crossings=False,
         pll=_ice40_pll,
     ),
     "gowin": Flow(
@@ -215,6 +219,7 @@ FLOWS: Mapping[str, Flow] = {
         bitstream="fs",
         cells=("LUT4", "DFF", "MULT18X18", "BSRAM"),
         factor_bits=18,
+        tells_crossings=False,
         pll=_gowin_pll,
     ),
 }
