@@ -74,8 +74,8 @@ def look_inside(top: _Block, opened: Collection[str]) -> Inside:
             if isinstance(sub, _Block) and sub.func.__name__ in opened:
                 visit(sub, (*within, sub.func.__name__))
             elif isinstance(sub, _Block):
-                around = {id(signal) for signal in block_ports(sub).values()}
-                reads, drives = (_whole(signals, around) for signals in _traffic(sub))
+                around = _whole({id(signal): signal for signal in block_ports(sub).values()})
+                reads, drives = (_whole(signals) & around for signals in _traffic(sub))
                 parts.append(Part(sub.func.__name__, True, within, reads - drives, drives))
             else:
                 reads, drives = (_whole(signals) for signals in _traffic_of_process(sub))
@@ -112,10 +112,10 @@ def _traffic_of_process(process: _Instantiator) -> tuple[Signals, Signals]:
     return find(process.inputs), find(process.outputs)
 
 
-def _whole(signals: Signals, around: Collection[int] | None = None) -> frozenset[int]:
+def _whole(signals: Signals) -> frozenset[int]:
     """The signals themselves where some of these are slices of them, or put together of them."""
     found: set[int] = set()
-    waiting = [signal for number, signal in signals.items() if around is None or number in around]
+    waiting = list(signals.values())
     while waiting:
         signal = waiting.pop()
         if isinstance(signal, _SliceSignal):

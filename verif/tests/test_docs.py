@@ -280,6 +280,9 @@ def test_nets(renderer):
     nets = {net.names: net for net in blocks.nets(renderer)}
     assert nets["reset_delay",].drivers == {"delay_reset"}
     assert nets["reset_delay",].readers == {"join_resets"}
+    # Of a record that a block is given it reads fields.
+    assert nets["pixel_word",].drivers == {"show"}
+    assert nets["pixel_word",].readers == {"video_generator"}
     assert nets["vga_*",].is_port
     assert nets["vga_*",].drivers == {"video_generator"}
     assert not nets["picture_run",].drivers
