@@ -106,7 +106,6 @@ class Configuration:
         self._check_pixels()
         if not self.facts.divides:
             self._refuse_quotients()
-        self._refuse_depth()
         self._choose_culling()
         self._choose_looks()
         if self.units is None:
@@ -150,10 +149,6 @@ class Configuration:
             beam = "; scales need the beam engine, ENGINE=beam" if self.engine != "beam" else ""
             shown = f"the {self.engine} engine shows {self.rows} rows at {scales}"
             raise ValueError(f"scale: {shown}, not {self.scale}{beam}")
-
-    def _refuse_depth(self) -> None:
-        if self.reflections > 2 and not self.facts.line_buffered:
-            raise ValueError(f"reflections: the {self.engine} engine has 2 at most, not {self.reflections}")
 
     def _check_pixels(self) -> None:
         """Two pixels a clock are two neighbouring columns, and both edges of each sync are between two clocks."""

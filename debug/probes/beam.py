@@ -41,8 +41,20 @@ from raycaster.golden.rays import primary_slopes
 from raycaster.rtl.beam import beam_lane as beam
 from raycaster.rtl.beam import beam_pass
 from raycaster.rtl.beam import fold_tester as tester
+from raycaster.rtl.beam import look_up as looking
 from raycaster.rtl.beam import nearest_of_two as contest
-from raycaster.rtl.common.records import Facet, Look, Rect, Reflector, Walk, Winner, candidate_of, fold_of
+from raycaster.rtl.common.records import (
+    Facet,
+    Look,
+    Pixel,
+    Rect,
+    Reflector,
+    Walk,
+    Winner,
+    candidate_of,
+    fold_of,
+    shade_of,
+)
 from raycaster.rtl.common.widths import factor_bits, index_bits, walk_bits
 
 RENDERER = f"{DUT}.beam_renderer_i"
@@ -56,7 +68,6 @@ EXTENT = ((1, 2), (0, 2), (1, 0))
 """p and q by the plane's axis: p is y unless that is the axis, so that along a row only it changes."""
 
 BOUNDS = ("low_p", "high_p", "low_q", "high_q")
-SEEN = ("first", "second", "third")
 
 
 def products(ray: Ray, rectangle: int, slopes: Sequence[int]) -> tuple[int, int, list[int]]:
@@ -171,9 +182,9 @@ class BeamProbes(Description):
             tester=f"{one}.{numbered('fold_tester' if bounce else 'ray_tester', rectangle, count)}",
             fold=f"{LANE}.{numbered('ray_fold', max(0, bounce - 1), passes - 1)}",
             kept=f"{LANE}.{numbered('winner_delay', late, len(delays))}",
-            bounce=bounce,
-            seen=SEEN[bounce],
-            mirror="only" if bounce == 0 else "last",
+            look=f"{LANE}.{numbered('look_up', bounce, passes)}",
+            seen=f"{BLEND}.{numbered('colour_seen', bounce, passes)}",
+            mirror=f"{LANE}.{numbered('mirror_look_up', min(bounce, passes - 2), passes - 1)}",
             **{f"round_{turn}": self._contest(turn, rectangle) for turn in range(beam_pass.rounds(config))},
         )
 
@@ -186,6 +197,17 @@ class BeamProbes(Description):
             else "winner_delay_i.late"
         )
         return ".".join([*["nearest_of_i"] * (turn + 1), one])
+
+    def _means(self) -> Probe:
+        """Of the three channels, those of the first mirror, which come after all others'."""
+        mirrors = self.config.reflections
+        low = CHANNEL_BITS + mirrors - self.config.colour_bits
+        names = [numbered("colour_mean", 3 * (mirrors - 1) + channel, 3 * mirrors) for channel in range(3)]
+        return Probe(
+            "means of the channels", tuple(f"{BLEND}.{name}.mean" for name in names), "blend",
+            lambda ray, place: None if place.bounce else pixel_channels(ray, place), late=1,
+            decode=lambda ray, place, *sums: [one >> low for one in sums],
+        )  # fmt: skip
 
     def controls(self) -> Iterable[str]:
         """The signals that `events` reads."""
@@ -234,7 +256,7 @@ class BeamProbes(Description):
                 events += [Event(f"round {turn}", cycle, Place(bounce, i)) for i in range(0, count, 2 << turn)]
             events.append(Event("winner", entered + beam_pass.winner_latency(self.config), Place(bounce)))
             events.append(Event("kept", end, Place(bounce)))
-            events.append(Event("blend", end + beam.LOOK_UP_LATENCY, Place(bounce)))
+            events.append(Event("blend", end + looking.LATENCY, Place(bounce)))
         events.append(Event("done", column + beam.beam_latency(self.config), Place(ray.reflections)))
         return events + shown_events(samples, ray, VIDEO, column)
 
@@ -258,7 +280,7 @@ class BeamProbes(Description):
                 shown=False),
         ]  # fmt: skip
         kept = [
-            Probe("mirror", fields(LANE, "{mirror}", ("axis", "distance"), reflector), "winner",
+            Probe("mirror", fields("{mirror}", "last", ("axis", "distance"), reflector), "winner",
                 of_mirrors(passes, met), late=1, signed=(1,), shown=False),
             Probe("kept", fields("{kept}", "late", ("valid", "index"), winner), "kept",
                 of_mirrors(passes, nearest_of(0)), shown=False),
@@ -289,12 +311,11 @@ class BeamProbes(Description):
             Probe("nearest", fields("{beam}", f"{{round_{last}}}", ("valid", "index"), candidate), "winner",
                 nearest_of(0)),
             *(kept if passes > 1 else []),
-            Probe("found", (f"{LANE}.found_{{bounce}}",), "blend", found),
-            Probe("its colour", fields(LANE, "look_{bounce}", ("colour",), Look()), "blend", found_colour,
-                colour=True),
-            Probe("colour seen", tuple(f"{BLEND}.{{seen}}_{name}" for name in COLOURS), "blend",
+            Probe("found", ("{look}.found",), "blend", found),
+            Probe("its colour", fields("{look}", "look", ("colour",), Look()), "blend", found_colour, colour=True),
+            Probe("colour seen", fields("{seen}", "shade", COLOURS, shade_of(config)), "blend",
                 lambda ray, place: channels_of(seen_colour(ray, place)[0], CHANNEL_BITS), late=1),
-            Probe("pixel", tuple(f"{BLEND}.colour_mean_{number}_i.mean" for number in range(3)), "done",
-                pixel_channels),
+            *([self._means()] if passes > 1 else []),
+            Probe("pixel", fields(BLEND, "pixel", COLOURS, Pixel(config.colour_bits)), "done", pixel_channels),
             *monitor_probes(RENDERER, "shown", VIDEO, config),
         ]  # fmt: skip

@@ -7,32 +7,22 @@ from myhdl import always, block, concat, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.beam import hit_cells as cells
+from raycaster.rtl.beam import look_up as looking
 from raycaster.rtl.beam import ray_fold as folder
 from raycaster.rtl.beam.beam_pass import beam_pass, winner_latency
 from raycaster.rtl.beam.fold_tester import fold_lead
 from raycaster.rtl.beam.hit_cells import hit_cells
+from raycaster.rtl.beam.look_up import look_up
+from raycaster.rtl.beam.mirror_look_up import mirror_look_up
 from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.beam.slope_walker import ray_slope, slope_walker
 from raycaster.rtl.beam.winner_delay import winner_delay
-from raycaster.rtl.beam.word_of import word_of
-from raycaster.rtl.common.records import (
-    Look,
-    Reflector,
-    Sight,
-    candidate_of,
-    facet_of,
-    fold_of,
-    winner_of,
-)
-from raycaster.rtl.common.widths import RGB_BITS, bit, index_bits, unsigned
-from raycaster.rtl.engine.colour_blend import blend_latency, blends_three, colour_blend, mixes
-from raycaster.rtl.engine.pattern_colour import pattern_colour
+from raycaster.rtl.common.records import Reflector, Sight, candidate_of, fold_of, seen_of, turn_of, winner_of
+from raycaster.rtl.common.widths import bit, index_bits, side_by_side, unsigned
+from raycaster.rtl.engine.colour_blend import blend_latency, colour_blend
 
 ENTRY_LATENCY = 1
 """Cycles from next_column to the first walkers' step."""
-
-LOOK_UP_LATENCY = 1
-"""Cycles from a winner's number to what is known of it."""
 
 
 def tested(config: Configuration) -> list[list[int]]:
@@ -45,7 +35,7 @@ def tested(config: Configuration) -> list[list[int]]:
 
 def pass_latency(config: Configuration) -> int:
     """Cycles from a ray to its reflection."""
-    return winner_latency(config) + LOOK_UP_LATENCY + folder.LATENCY + fold_lead(config)
+    return winner_latency(config) + looking.LATENCY + folder.LATENCY + fold_lead(config)
 
 
 def cell_latency(config: Configuration) -> int:
@@ -57,7 +47,7 @@ def beam_latency(config: Configuration) -> int:
     """Cycles from next_column to the column's colour."""
     reflections = len(tested(config)) - 1
     entered = ENTRY_LATENCY + reflections * pass_latency(config)
-    return entered + winner_latency(config) + cell_latency(config) + LOOK_UP_LATENCY + blend_latency(config)
+    return entered + winner_latency(config) + cell_latency(config) + looking.LATENCY + blend_latency(config)
 
 
 @block
@@ -74,12 +64,9 @@ def beam_lane(
     numbers = tested(config)
     passes, reflections = len(numbers), len(numbers) - 1
     starts = [ENTRY_LATENCY + number * pass_latency(config) for number in range(passes)]
-    looked_up = winner_latency(config) + LOOK_UP_LATENCY
+    looked_up = winner_latency(config) + looking.LATENCY
     seen = starts[-1] + winner_latency(config) + cell_latency(config)
     every_step = (1 << seen) - 1
-    facet = facet_of(config)
-    facet_words = [facet.twin().word for _ in range(config.rectangles)]
-    takers = [word_of(facet_of(config).cut(facets, i), word) for i, word in enumerate(facet_words)]
 
     # Bit i: a column was announced i + 1 cycles ago. next_column comes a long way, so it is registered before its use.
     steps = unsigned(seen)
@@ -110,15 +97,15 @@ def beam_lane(
     def step_after(cycles: int):
         return steps(cycles, cycles - 1)
 
-    folds, winners = [fold_of(config) for _ in numbers], [winner_of(config) for _ in numbers]
+    folds = [None, *(fold_of(config) for _ in range(reflections))]
+    winners = [winner_of(config) for _ in numbers]
     hits = [candidate_of(config) if config.patterns else None for _ in numbers]
-    folds[0].tie({})
     beams = [
         beam_pass(clk, start_line=restart, load=load, step=step_after(first),
             step_way=step_after(first + (fold is None)), step_bounds=step_after(first + 1),
             step_slope=step_after(first + 2), start=start, aim=aim, facets=facets, growths=growths, fold=fold,
             nearest=hit, winner=winner, tested=some, config=config)
-        for first, fold, hit, winner, some in zip(starts, [None, *folds[1:]], hits, winners, numbers, strict=True)
+        for first, fold, hit, winner, some in zip(starts, folds, hits, winners, numbers, strict=True)
     ]  # fmt: skip
 
     # The slope of a ray that has just got its winner: for its fold at the mirror, and for the pattern that it sees.
@@ -127,13 +114,16 @@ def beam_lane(
         slope_walker(clk, restart, step_after(first + looked_up + 1), aim=aim, slope=slope, config=config)
         for first, slope in zip(starts, late_slopes, strict=False)
     ]
+    # The image of the room that a ray is in, when it is known what it meets there.
+    images = [turn_of(config).tie({}), *(turn_of(config) for _ in range(reflections))]
+
     if config.patterns:
         sights = [Sight(index_bits(config)) for _ in numbers]
         cell_finders = [
             hit_cells(
-                clk, fold=fold, nearest=hit, winner=winner, slope=slope, camera=camera, sight=sight, config=config
+                clk, turn=image, nearest=hit, winner=winner, slope=slope, camera=camera, sight=sight, config=config
             )
-            for fold, hit, winner, slope, sight in zip(folds, hits, winners, late_slopes, sights, strict=True)
+            for image, hit, winner, slope, sight in zip(images, hits, winners, late_slopes, sights, strict=True)
         ]
     else:
         sights = winners
@@ -143,93 +133,34 @@ def beam_lane(
     delays = [
         winner_delay(clk, now.word, late.word, pass_latency(config)) for one in stages for now, late in pairwise(one)
     ]
-    # A reflection that the design does not have meets nothing.
-    none, nothing = (sights[0].twin().tie({}) for _ in range(2))
-    end_0, end_1, end_2 = ([one[-1] for one in stages] + [none, nothing])[:3]
-    found_0, found_1, found_2 = (bit() for _ in range(3))
-    look_0, look_1, look_2 = (Look(config.materials, config.patterns) for _ in range(3))
-    colour_0, colour_1, colour_2 = look_0.colour, look_1.colour, look_2.colour
-    look_bits = len(look_0.word)
+    # The last ray's image serves its pattern alone.
+    image_delays = [
+        winner_delay(clk, fold.image, image.word, fold_lead(config) + looked_up)
+        for fold, image in zip(folds[1:], images[1:], strict=True)
+        if config.patterns or fold is not folds[-1]
+    ]
 
     # What is between two columns' steps is of neither: a column that is more than a clock wide keeps what it has seen.
     step_seen = step_after(seen)
 
-    @always(clk.posedge)
-    def look_up():
-        if step_seen:
-            found_0.next = end_0.valid
-            found_1.next = end_1.valid
-            look_0.word.next = facet_words[end_0.index][look_bits:]
-            look_1.word.next = facet_words[end_1.index][look_bits:]
+    sees = [seen_of(config) for _ in numbers]
+    look_ups = [
+        look_up(clk, step_seen, facets=facets, sight=one[-1], seen=seen, config=config)
+        for one, seen in zip(stages, sees, strict=True)
+    ]
+    # A reflection that the design does not have sees nothing.
+    missing = ["0" * len(seen_of(config).word)] * (config.reflections - reflections)
+    all_seen = side_by_side([*(seen.word for seen in sees), *missing])
+    blender = colour_blend(clk, seen=all_seen, picture=picture, pixel=pixel, config=config)
 
-    if config.patterns:
-        odd_u_0, odd_v_0, odd_u_1, odd_v_1 = (bit() for _ in range(4))
-        colour_0, colour_1 = unsigned(RGB_BITS), unsigned(RGB_BITS)
-        painters = [
-            pattern_colour(look_0, odd_u=odd_u_0, odd_v=odd_v_0, colour=colour_0),
-            pattern_colour(look_1, odd_u=odd_u_1, odd_v=odd_v_1, colour=colour_1),
-        ]
-
-        @always(clk.posedge)
-        def follow_cells():
-            if step_seen:
-                odd_u_0.next = end_0.odd_u
-                odd_v_0.next = end_0.odd_v
-                odd_u_1.next = end_1.odd_u
-                odd_v_1.next = end_1.odd_v
-
-    if blends_three(config):
-
-        @always(clk.posedge)
-        def look_up_last():
-            if step_seen:
-                found_2.next = end_2.valid
-                look_2.word.next = facet_words[end_2.index][look_bits:]
-
-        if config.patterns:
-            odd_u_2, odd_v_2, colour_2 = bit(), bit(), unsigned(RGB_BITS)
-            last_painter = pattern_colour(look_2, odd_u=odd_u_2, odd_v=odd_v_2, colour=colour_2)
-
-            @always(clk.posedge)
-            def follow_last_cells():
-                if step_seen:
-                    odd_u_2.next = end_2.odd_u
-                    odd_v_2.next = end_2.odd_v
-
-    else:
-        found_2 = colour_2 = None
-    mirror_0 = look_0.mirror if mixes(config) else None
-    mirror_1 = look_1.mirror if mixes(config) and config.reflections == 2 else None
-
-    blender = colour_blend(
-        clk, found_0=found_0, found_1=found_1, found_2=found_2, colour_0=colour_0, colour_1=colour_1, colour_2=colour_2,
-        mirror_0=mirror_0, mirror_1=mirror_1, picture=picture, pixel=pixel, config=config,
-    )  # fmt: skip
-
-    # Of a facet, a reflector has the axis and the distance, which are next to each other in both.
-    mirror_end, mirror_low = facet.slice("axis")[0] + 1, facet.slice("distance")[1]
-    if passes > 1:
-        first_winner, no_mirror, only = winners[0], Reflector().tie({}), Reflector()
-
-        @always(clk.posedge)
-        def look_up_mirror():
-            only.word.next = concat(True, False, facet_words[first_winner.index][mirror_end:mirror_low])
-
-        first_folder = ray_fold(clk, earlier=no_mirror, last=only, slope=late_slopes[0], fold=folds[1])
-    if passes > 2:
-        late_winner, second_winner, earlier, last = stages[0][1], winners[1], Reflector(), Reflector()
-        if config.patterns:
-            # The first sight is later than its winner, by as long as it takes to find its cells.
-            late_winner = winner_of(config)
-            first_delay = winner_delay(clk, first_winner.word, late_winner.word, pass_latency(config))
-
-        @always(clk.posedge)
-        def look_up_mirrors():
-            earlier.word.next = concat(True, False, facet_words[late_winner.index][mirror_end:mirror_low])
-            last.word.next = concat(
-                True, second_winner.at_mirror, facet_words[second_winner.index][mirror_end:mirror_low]
-            )
-
-        second_folder = ray_fold(clk, earlier=earlier, last=last, slope=late_slopes[1], fold=folds[2])
+    lasts = [Reflector() for _ in range(reflections)]
+    mirrors = [
+        mirror_look_up(clk, facets=facets, winner=winner, last=last, config=config)
+        for winner, last in zip(winners, lasts, strict=False)
+    ]
+    folders = [
+        ray_fold(clk, before=image, last=last, slope=slope, fold=fold)
+        for image, last, slope, fold in zip(images, lasts, late_slopes, folds[1:], strict=False)
+    ]
 
     return instances()

@@ -29,10 +29,10 @@ def check_blanking(config: Configuration) -> None:
     if (left := blanking_left(config)) < 0:
         turning = " and a camera that turns" if config.turn else ""
         paired = " at two pixels a clock" if config.pixels > 1 else ""
-        others = " or ".join([*(["TURN=0"] if turning else []), *(["PIXELS=1"] if paired else [])])
+        ways = ["take fewer of either", *(["TURN=0"] if turning else []), *(["PIXELS=1"] if paired else [])]
         raise ConfigurationError(
             f"rectangles: with {config.rectangles} of them, {config.reflections} reflections{turning}{paired}, the "
-            f"beam engine is {-left} cycles short of a line's blanking on this screen; take fewer, or {others}"
+            f"beam engine is {-left} cycles short of a line's blanking on this screen; {' or '.join(ways)}"
         )
 
 

@@ -6,19 +6,17 @@ from itertools import pairwise
 from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
-from raycaster.rtl.beam.beam_pass import winner_latency
 from raycaster.rtl.beam.cell_step import SMALLEST_CELL_BITS, cell_step
-from raycaster.rtl.beam.fold_tester import fold_lead
 from raycaster.rtl.beam.winner_delay import winner_delay
-from raycaster.rtl.common.records import CellDivision, Turn, winner_of
+from raycaster.rtl.common.records import CellDivision, winner_of
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
     CELL_BITS,
-    TURN_BITS,
     bit,
     exact_slope_bits,
     eye_bits,
     signed,
+    turn_bits,
     unsigned,
 )
 
@@ -29,23 +27,21 @@ LATENCY = SLOPE_AT + 3 + COORDINATE_BITS - SMALLEST_CELL_BITS
 
 
 @block
-def hit_cells(clk, fold, nearest, winner, slope, camera, sight, config: Configuration):
+def hit_cells(clk, turn, nearest, winner, slope, camera, sight, config: Configuration):
     """A hit a clock; sight, which is the winner with odd_u and odd_v, follows LATENCY cycles later.
 
     With the mirrored eye E' and slope D', the ray is at E' + D' t, and t is the hit's numerator / denominator: so the
     quotient of E' * denominator + D' * numerator and the denominator is a world coordinate (Heckbert and Hanrahan
     1984), whose bit of a cell's worth a restoring division finds. Only the nearest rectangle's are formed.
 
-    fold: of the ray as it enters its pass, `fold_lead` and `winner_latency` cycles before nearest, a Candidate; slope:
-    D, SLOPE_AT cycles after it.
+    nearest: a Candidate; turn: the ray's `Turn`, a cycle after nearest; slope: D, SLOPE_AT cycles after it.
     """
-    slope_bits, numerator_bits, base_bits = exact_slope_bits(config), eye_bits(config) - 1, TURN_BITS + 1
+    slope_bits, numerator_bits, base_bits = exact_slope_bits(config), eye_bits(config) - 1, turn_bits(config) + 1
     way_bits, base_way_bits = slope_bits + 1 + numerator_bits, base_bits + slope_bits
     sum_bits = max(way_bits, base_way_bits) + 1
     dividend_bits = slope_bits + COORDINATE_BITS
     places = range(COORDINATE_BITS - 1, SMALLEST_CELL_BITS - 1, -1)
 
-    turn, late_turn = Turn(), Turn()
     axis_1, axis_2 = unsigned(AXIS_BITS), unsigned(AXIS_BITS)
     cell_1, cell_2, cell_3, cell_4 = (unsigned(CELL_BITS) for _ in range(4))
     numerator_1, denominator_1 = unsigned(numerator_bits), unsigned(slope_bits)
@@ -63,13 +59,6 @@ def hit_cells(clk, fold, nearest, winner, slope, camera, sight, config: Configur
     of_u, of_v = ([CellDivision(slope_bits, place + 1) for place in (*places, places[-1] - 1)] for _ in "uv")
     dividend_u, dividend_v, quotient_u, quotient_v = of_u[0], of_v[0], of_u[-1], of_v[-1]
 
-    @always_comb
-    def take_turn():
-        turn.word.next = concat(
-            fold.back_x, fold.back_y, fold.back_z, fold.turn_x[TURN_BITS:], fold.turn_y, fold.turn_z
-        )
-
-    turn_delay = winner_delay(clk, turn.word, late_turn.word, fold_lead(config) + winner_latency(config) + 1)
     delay = winner_delay(clk, winner.word, late.word, LATENCY)
 
     @always(clk.posedge)
@@ -83,17 +72,17 @@ def hit_cells(clk, fold, nearest, winner, slope, camera, sight, config: Configur
     @always(clk.posedge)
     def stage_2():
         if axis_1 == 0:
-            base_u.next = late_turn.turn_y + camera.y
-            back_u_2.next = late_turn.back_y
+            base_u.next = turn.turn_y + camera.y
+            back_u_2.next = turn.back_y
         else:
-            base_u.next = late_turn.turn_x + camera.x
-            back_u_2.next = late_turn.back_x
+            base_u.next = turn.turn_x + camera.x
+            back_u_2.next = turn.back_x
         if axis_1 == 2:
-            base_v.next = late_turn.turn_y + camera.y
-            back_v_2.next = late_turn.back_y
+            base_v.next = turn.turn_y + camera.y
+            back_v_2.next = turn.back_y
         else:
-            base_v.next = late_turn.turn_z + camera.z
-            back_v_2.next = late_turn.back_z
+            base_v.next = turn.turn_z + camera.z
+            back_v_2.next = turn.back_z
         axis_2.next = axis_1
         cell_2.next = cell_1
         numerator_2.next = numerator_1

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""How a straight ray through one mirror, or two, folds back into the room."""
+"""How a straight ray folds back into the room at one more mirror."""
 
 from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.rtl.common.widths import AXIS_BITS, bit, signed, unsigned
 
 LATENCY = 3
-"""Cycles from the mirrors to the fold; the slope is read one cycle in."""
+"""Cycles from the mirror to the fold; the slope is read one cycle in."""
 
 
 @block
-def ray_fold(clk, earlier, last, slope, fold):
+def ray_fold(clk, before, last, slope, fold):
     """A ray a clock; the fold follows LATENCY cycles later.
 
     A mirror leaves the ray straight and turns the room behind it (Heckbert and Hanrahan 1984 mirror the eye in the same
@@ -19,15 +19,14 @@ def ray_fold(clk, earlier, last, slope, fold):
     is then met where X[a] - E[a] = +-(n - T[a]), and there the ray's component p, times D[a], is +-n D[p] + C, with
     C = T[p] D[a] -+ T[a] D[p]: the same for all rectangles on the axis, so no rectangle needs a multiplier.
 
-    earlier, last: Reflectors, last.active being 1; slope: D, a `Direction`. Widths are the ports'.
+    before: the `Turn` of the fold at the mirror before, all 0 where there was none; last: a Reflector; slope: D, a
+    `Direction`. Widths are the ports'.
     """
     part_bits, product_bits = len(fold.p_x), len(fold.border_x)
     distance_bits, turn_bits = len(last.distance), len(fold.turn_x)
 
-    again = bit()
-    doubled, earlier_doubled, apart_doubled, last_turn = (signed(turn_bits) for _ in range(4))
-    apart = signed(distance_bits + 1)
-    apart_kept = signed(distance_bits)
+    doubled, turn, turned = (signed(turn_bits) for _ in range(3))
+    difference = signed(turn_bits + 1)
 
     turn_x, turn_y, turn_z = (signed(turn_bits) for _ in range(3))
     back_x, back_y, back_z, x_back, y_back, z_back = (bit() for _ in range(6))
@@ -46,68 +45,62 @@ def ray_fold(clk, earlier, last, slope, fold):
     xy, yx, xz, zx, yz, zy = (signed(part_bits) for _ in range(6))
     not_y_by_x, not_z_by_x, not_z_by_y = (signed(part_bits) for _ in range(3))
     p_x, p_y, p_z, q_x, q_y, q_z = (signed(part_bits) for _ in range(6))
-    sum_xy_1, sum_xz_1, sum_yz_1 = (signed(part_bits + 1) for _ in range(3))
+    sum_xy_1, sum_xz_1, sum_yz_1 = (signed(part_bits) for _ in range(3))
 
-    sides_3 = unsigned(7)
+    sides_3, mirror_back_3 = unsigned(6), bit()
     turn_x_3, turn_y_3, turn_z_3 = (signed(turn_bits) for _ in range(3))
     p_x_3, p_y_3, p_z_3, q_x_3, q_y_3, q_z_3 = (signed(part_bits) for _ in range(6))
     border_x_3, border_y_3, border_z_3 = (signed(product_bits) for _ in range(3))
     axis_3 = unsigned(AXIS_BITS)
     distance_3 = signed(distance_bits)
 
-    # Two mirrors on one axis move the room by twice what lies between them.
+    # Along the mirror's axis T becomes 2 n - T.
     @always_comb
-    def measure():
-        again.next = earlier.active and (earlier.axis == last.axis)
-        doubled.next = last.distance + last.distance
-        earlier_doubled.next = earlier.distance + earlier.distance
-        apart.next = last.distance - earlier.distance
+    def choose_turn():
+        if last.axis == 0:
+            turn.next = before.turn_x
+        elif last.axis == 1:
+            turn.next = before.turn_y
+        else:
+            turn.next = before.turn_z
+
+    @always_comb
+    def double():
+        doubled.next = last.distance << 1
+
+    @always_comb
+    def mirror():
+        difference.next = doubled - turn
 
     # Mirrors of one scene are within the world; while a scene is loaded this may overflow, and is don't care.
     @always_comb
     def fit():
-        apart_kept.next = apart[distance_bits:].signed()
-
-    @always_comb
-    def double():
-        apart_doubled.next = apart_kept + apart_kept
-
-    @always_comb
-    def choose_turn():
-        last_turn.next = doubled
-        if again:
-            last_turn.next = apart_doubled
+        turned.next = difference[turn_bits:].signed()
 
     # T, which components of the folded ray run back, and the axes of all mirrors in the point that it leaves.
     @always(clk.posedge)
     def stage_1():
-        met_x.next = (last.axis == 0) or (last.at_mirror and (earlier.axis == 0))
-        met_y.next = (last.axis == 1) or (last.at_mirror and (earlier.axis == 1))
-        met_z.next = (last.axis == 2) or (last.at_mirror and (earlier.axis == 2))
-        turn_x.next = 0
-        turn_y.next = 0
-        turn_z.next = 0
-        back_x.next = False
-        back_y.next = False
-        back_z.next = False
+        met_x.next = last.at_mirror and before.met_x
+        met_y.next = last.at_mirror and before.met_y
+        met_z.next = last.at_mirror and before.met_z
+        back_x.next = before.back_x
+        back_y.next = before.back_y
+        back_z.next = before.back_z
+        turn_x.next = before.turn_x
+        turn_y.next = before.turn_y
+        turn_z.next = before.turn_z
         if last.axis == 0:
-            turn_x.next = last_turn
-            back_x.next = not again
-        elif earlier.active and (earlier.axis == 0):
-            turn_x.next = earlier_doubled
-            back_x.next = True
-        if last.axis == 1:
-            turn_y.next = last_turn
-            back_y.next = not again
-        elif earlier.active and (earlier.axis == 1):
-            turn_y.next = earlier_doubled
-            back_y.next = True
-        if last.axis == 2:
-            turn_z.next = last_turn
-            back_z.next = not again
-        elif earlier.active and (earlier.axis == 2):
-            turn_z.next = earlier_doubled
-            back_z.next = True
+            met_x.next = True
+            back_x.next = not before.back_x
+            turn_x.next = turned
+        elif last.axis == 1:
+            met_y.next = True
+            back_y.next = not before.back_y
+            turn_y.next = turned
+        else:
+            met_z.next = True
+            back_z.next = not before.back_z
+            turn_z.next = turned
         axis_1.next = last.axis
         distance_1.next = last.distance
 
@@ -162,8 +155,7 @@ def ray_fold(clk, earlier, last, slope, fold):
         not_z_by_x.next = ~z_by_x
         not_z_by_y.next = ~z_by_y
 
-    # C where they do not, one more than the sum, as it is added to a complement: a + b + 1 = a - ~b. Only two mirrors
-    # on different axes need the additional bit, and then this sum is don't care.
+    # C where they do not, one more than the sum, as it is added to a complement: a + b + 1 = a - ~b.
     @always_comb
     def make_good():
         sum_xy_1.next = x_by_y - not_y_by_x
@@ -179,19 +171,20 @@ def ray_fold(clk, earlier, last, slope, fold):
         q_y.next = yz
         p_z.next = zy
         if back_x_2 != back_y_2:
-            p_x.next = sum_xy_1[part_bits:].signed()
-            p_y.next = sum_xy_1[part_bits:].signed()
+            p_x.next = sum_xy_1
+            p_y.next = sum_xy_1
         if back_x_2 != back_z_2:
-            q_x.next = sum_xz_1[part_bits:].signed()
-            q_z.next = sum_xz_1[part_bits:].signed()
+            q_x.next = sum_xz_1
+            q_z.next = sum_xz_1
         if back_y_2 != back_z_2:
-            q_y.next = sum_yz_1[part_bits:].signed()
-            p_z.next = sum_yz_1[part_bits:].signed()
+            q_y.next = sum_yz_1
+            p_z.next = sum_yz_1
 
     # A register a field: a simulator need not take the word apart for every rectangle.
     @always(clk.posedge)
     def stage_3():
-        sides_3.next = concat(met_x_2, met_y_2, met_z_2, mirror_back_2, back_x_2, back_y_2, back_z_2)
+        mirror_back_3.next = mirror_back_2
+        sides_3.next = concat(met_x_2, met_y_2, met_z_2, back_x_2, back_y_2, back_z_2)
         turn_x_3.next = turn_x_2
         turn_y_3.next = turn_y_2
         turn_z_3.next = turn_z_2
@@ -210,8 +203,8 @@ def ray_fold(clk, earlier, last, slope, fold):
     @always_comb
     def join():
         fold.word.next = concat(
-            sides_3, turn_x_3, turn_y_3, turn_z_3, p_x_3, p_y_3, p_z_3, q_x_3, q_y_3, q_z_3, border_x_3, border_y_3,
-            border_z_3, axis_3, distance_3,
+            sides_3, turn_x_3, turn_y_3, turn_z_3, mirror_back_3, p_x_3, p_y_3, p_z_3, q_x_3, q_y_3, q_z_3, border_x_3,
+            border_y_3, border_z_3, axis_3, distance_3,
         )  # fmt: skip
 
     return instances()

@@ -18,13 +18,13 @@ from raycaster.rtl.common.widths import (
     KIND_BITS,
     MIRROR_BITS,
     RGB_BITS,
-    TURN_BITS,
     WIDE_BITS,
     exact_slope_bits,
     eye_bits,
     fold_bits,
     index_bits,
     position_bits,
+    turn_bits,
     unsigned,
     walk_bits,
 )
@@ -310,48 +310,58 @@ def stride_of(config: Configuration) -> Walk:
 
 
 class Reflector(Record):
-    """A mirror that a ray left, if `active`: its axis, and the distance from the camera to its plane.
+    """A mirror that a ray left: its axis, and the distance from the camera to its plane.
 
     at_mirror: the ray met it in the very point in which it met the mirror before it.
     """
 
     def __init__(self, distance_bits: int = DISTANCE_BITS):
-        super().__init__({"active": 1, "at_mirror": 1, "axis": AXIS_BITS, "distance": Signed(distance_bits)})
+        super().__init__({"at_mirror": 1, "axis": AXIS_BITS, "distance": Signed(distance_bits)})
 
 
 class Turn(Record):
-    """Where an image of the room is. back_x, back_y, back_z: a ray runs the other way there; turn_x, turn_y, turn_z: T,
-    what is added to a point there."""
+    """Where the image of the room is in which a straight ray is after its mirrors so far; see `ray_fold`.
 
-    def __init__(self, turn_bits: int = TURN_BITS):
+    met_x, met_y, met_z: a mirror on that axis was met in the point that the ray left last; back_x, back_y, back_z: the
+    ray runs the other way there; turn_x, turn_y, turn_z: T, what is added to a point there.
+    """
+
+    def __init__(self, turn_bits: int):
         super().__init__(
-            dict.fromkeys(("back_x", "back_y", "back_z"), 1)
+            dict.fromkeys(("met_x", "met_y", "met_z", "back_x", "back_y", "back_z"), 1)
             | dict.fromkeys(("turn_x", "turn_y", "turn_z"), Signed(turn_bits))
         )
+
+
+def turn_of(config: Configuration) -> Turn:
+    """One of a design's widths."""
+    return Turn(turn_bits(config))
 
 
 class Fold(Record):
     """How a straight ray through all mirrors so far folds back into the room; see `ray_fold`.
 
-    met_x, met_y, met_z: a mirror on that axis was met in the point that the ray left last;
-    mirror_back: the folded ray runs down from it; back_x ... turn_z: the room's `Turn`; p_x ..., q_x ...: for a
-    rectangle on the axis, what is added to its way along p, and q (see `Walk`), one more where that is complemented;
-    border_x ...: n D of the last mirror's n; axis, distance: of the last mirror.
+    Its `Turn`, which is the part `image` too; mirror_back: the folded ray runs down from the last mirror; p_x ...,
+    q_x ...: for a rectangle on the axis, what is added to its way along p, and q (see `Walk`), one more where that is
+    complemented; border_x ...: n D of the last mirror's n; axis, distance: of the last mirror.
     """
 
-    def __init__(self, product_bits: int, walk_width: int, turn_bits: int = TURN_BITS, distance: int = DISTANCE_BITS):
+    def __init__(self, product_bits: int, walk_width: int, turn_bits: int, distance: int = DISTANCE_BITS):
+        image = Turn(turn_bits).layout
         super().__init__(
-            dict.fromkeys(("met_x", "met_y", "met_z", "mirror_back"), 1)
-            | Turn(turn_bits).layout
+            image
+            | {"mirror_back": 1}
             | dict.fromkeys(("p_x", "p_y", "p_z", "q_x", "q_y", "q_z"), Signed(product_bits))
             | dict.fromkeys(("border_x", "border_y", "border_z"), Signed(walk_width))
             | {"axis": AXIS_BITS, "distance": Signed(distance)}
         )
+        bits = sum(image.values())
+        self.image = Field(self.word, "image", len(self.word) - bits, bits)
 
 
 def fold_of(config: Configuration) -> Fold:
     """One of a design's widths."""
-    return Fold(fold_bits(config), walk_bits(config))
+    return Fold(fold_bits(config), walk_bits(config), turn_bits(config))
 
 
 class Candidate(Record):
@@ -382,6 +392,30 @@ class Winner(Record):
 def winner_of(config: Configuration) -> Winner:
     """One of a design's widths."""
     return Winner(index_bits(config))
+
+
+class Seen(Record):
+    """What a ray sees, if it has `found` something: its colour, and of mirrors that mix how much of it mirrors."""
+
+    def __init__(self, mixes: bool = False):
+        super().__init__({"found": 1} | ({"mirror": MIRROR_BITS} if mixes else {}) | {"colour": RGB_BITS})
+
+
+def seen_of(config: Configuration) -> Seen:
+    """One of a design's: what nothing reflects does not mix."""
+    return Seen(config.materials and config.reflections > 0)
+
+
+class Shade(Record):
+    """What a ray adds to its pixel: a `Colour`, and of mirrors that mix how much of what is behind it shows."""
+
+    def __init__(self, mixes: bool = False):
+        super().__init__(({"mirror": MIRROR_BITS} if mixes else {}) | Colour().layout)
+
+
+def shade_of(config: Configuration) -> Shade:
+    """One of a design's."""
+    return Shade("mirror" in seen_of(config).layout)
 
 
 class CellDivision(Record):

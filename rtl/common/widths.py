@@ -14,9 +14,6 @@ DISTANCE_BITS = COORDINATE_BITS + 1
 WIDE_BITS = COORDINATE_BITS + 2
 """From the camera to a bound that may be a unit outside the world, with the sign: -512..512."""
 
-TURN_BITS = COORDINATE_BITS + 2
-"""Twice a distance, or the difference of two mirrors doubled, with the sign: at most 2 * 511."""
-
 AXIS_BITS = 2
 RGB_BITS = 3 * CHANNEL_BITS
 """A whole colour; `colour_bits` of a configuration is a channel of the VGA output."""
@@ -101,13 +98,23 @@ def wide_walk_bits(config: Configuration) -> int:
     return (WORLD_SIZE * max(steepest_slope(config), config.units)).bit_length() + 1
 
 
+def turn_bits(config: Configuration) -> int:
+    """A component of T (see `ray_fold`), with the sign: mirrors on one axis add and take away twice their distances.
+
+    Two by two they cancel the camera, so each pair, or one alone, adds up to 2 * 511.
+    """
+    pairs = max(1, (config.reflections + 1) // 2)
+    return (2 * (WORLD_SIZE - 1) * pairs).bit_length() + 1
+
+
 def fold_bits(config: Configuration) -> int:
     """A product at the folded ray, with the sign.
 
-    (n - T[a]) D[u] and T[u] D[a] add up, where each of at most two mirrors makes one component of T not 0, and T is
-    kept in `TURN_BITS`: |.| <= (511 + 1024 * mirrors) * the steepest slope.
+    (n - T[a]) D[u] and T[u] D[a] add up, where one mirror makes one component of T not 0, and more make both. T is kept
+    in `turn_bits`, so |T| <= t = 1 << (turn_bits - 1), and |.| <= (511 + m t) * the steepest slope, with m = 1 of one
+    mirror and m = 2 of more.
     """
-    offsets = min(config.reflections, 2) << (TURN_BITS - 1)
+    offsets = min(config.reflections, 2) << (turn_bits(config) - 1)
     return ((WORLD_SIZE - 1 + offsets) * steepest_slope(config)).bit_length() + 1
 
 

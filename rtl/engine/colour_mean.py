@@ -1,47 +1,35 @@
 # SPDX-License-Identifier: MIT
-"""One channel of a pixel whose rays have all seen something."""
+"""One channel of what a ray sees in a mirror that shows half."""
 
-from myhdl import always, always_comb, block, instances
+from myhdl import always_comb, block, instances
 
-from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.rtl.common.widths import unsigned
-from raycaster.rtl.engine.colour_average import colour_average
-
-LATENCY = 1
 
 
 @block
-def colour_mean(clk, first, second, third, reflections, mean, config: Configuration):
-    """The `colour_average` of what a ray and its reflections saw, LATENCY cycles later.
+def colour_mean(own, behind, reflections, mean, number: int):
+    """mean = own + behind, of worth a half: no bit is lost. Combinational.
 
-    first, second, third: what they saw, 8 bits each; mean: the top colour_bits.
+    own: the mirror's colour, 8 bits; behind: own's width and a bit of fraction for each mirror behind this one; number:
+    of mirrors before this one. Where a scene asks for no more reflections than these, own counts twice.
     """
-    doubled, pair, others = (unsigned(CHANNEL_BITS + 1) for _ in range(3))
-    four, total = (unsigned(CHANNEL_BITS + 2) for _ in range(2))
-    averaged = unsigned(config.colour_bits)
-    average = colour_average(total, reflections, averaged, config)
+    mean_bits = len(mean)
+    fraction_bits = len(behind) - len(own)
+
+    whole, other = unsigned(mean_bits), unsigned(mean_bits)
 
     @always_comb
-    def weigh():
-        doubled.next = first + first
-        pair.next = first + second
-        others.next = second + third
-
-    @always_comb
-    def add():
-        four.next = doubled + others
+    def widen():
+        whole.next = own << fraction_bits
 
     @always_comb
     def choose():
-        if reflections == 2:
-            total.next = four
-        elif reflections == 1:
-            total.next = pair
-        else:
-            total.next = first
+        other.next = behind
+        if reflections == number:
+            other.next = own << fraction_bits
 
-    @always(clk.posedge)
-    def keep():
-        mean.next = averaged
+    @always_comb
+    def add():
+        mean.next = whole + other
 
     return instances()

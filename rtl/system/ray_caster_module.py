@@ -47,6 +47,8 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
         for name, signal in vars(bus).items():
             setattr(bus, name, unconnected(signal))
     else:
+        if not config.facts.line_buffered and config.reflections == 0:
+            picture.reflections = unconnected(picture.reflections)  # where there are none, it does not ask how many
         position = camera_mem(clk, reset, bus, camera_readback, camera, config)
     if config.bus != "avalon":
         avs_s0 = AvalonPort(len(bus.address))

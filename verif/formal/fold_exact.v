@@ -76,10 +76,14 @@ wire signed [WIDE-1:0] last_distance = last_plane - of_three(last_axis, eye_x, e
 localparam FOLD_WORD = 7 + 3 * TURN_BITS + 6 * FOLD_BITS + 3 * WALK_BITS + 2 + COORDINATE_BITS + 1;
 wire [FOLD_WORD-1:0] fold;
 
-// Words of records, the first field in the highest bits: see `raycaster.rtl.common.records`.
+// Words of records, the first field in the highest bits: see `raycaster.rtl.common.records`. Before the second mirror the
+// ray has met the first one: the image of the room is where that moves the eye to.
+wire [2:0] before = two ? 3'b100 >> axis_1 : 3'b000;
+wire signed [WIDE-1:0] moved_x = two ? x_1 - eye_x : 0, moved_y = two ? y_1 - eye_y : 0, moved_z = two ? z_1 - eye_z : 0;
 ray_fold folder (
-    .clk(clk), .earlier_word({two, 1'b0, axis_1, n_1[COORDINATE_BITS:0]}),
-    .last_word({1'b1, two && together, last_axis, last_distance[COORDINATE_BITS:0]}),
+    .clk(clk),
+    .before_word({before, before, moved_x[TURN_BITS-1:0], moved_y[TURN_BITS-1:0], moved_z[TURN_BITS-1:0]}),
+    .last_word({two && together, last_axis, last_distance[COORDINATE_BITS:0]}),
     .slope_x(dx), .slope_y(dy), .slope_z(dz), .fold_word(fold)
 );
 

@@ -24,7 +24,7 @@ from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.beam.ray_tester import ray_tester
 from raycaster.rtl.bus.avalon_host import avalon_host
 from raycaster.rtl.common.interfaces import Access, AvalonPort, Direction, Eye, Rects, Scan, SceneBus, Slope, Steps, Vga
-from raycaster.rtl.common.records import Candidate, Facet, Fold, Mirror, Pixel, Rect, Reflector, Signs, Walk
+from raycaster.rtl.common.records import Candidate, Facet, Fold, Mirror, Pixel, Rect, Reflector, Signs, Turn, Walk
 from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, unsigned
 from raycaster.rtl.engine.engines import block_named
 from raycaster.rtl.exact.rect_tester import rect_tester
@@ -67,6 +67,11 @@ class FoldWidths:
     def walk(self) -> int:
         """As `raycaster.rtl.common.widths.walk_bits`."""
         return self._products((1 << self.coordinate) - 1)
+
+    @property
+    def turn(self) -> int:
+        """As `raycaster.rtl.common.widths.turn_bits`, for two mirrors at most."""
+        return self.coordinate + 2
 
     @property
     def fold(self) -> int:
@@ -262,10 +267,10 @@ def _convert_rect_tester(widths: TesterWidths, directory: Path) -> None:
 
 def _convert_fold(widths: FoldWidths, directory: Path) -> None:
     distance, product = widths.coordinate + 1, widths.walk
-    earlier, last = Reflector(distance), Reflector(distance)
-    fold = Fold(widths.fold, product, widths.coordinate + 2, distance)
+    before, last = Turn(widths.turn), Reflector(distance)
+    fold = Fold(widths.fold, product, widths.turn, distance)
     with elaboration():
-        folder = ray_fold(bit(), earlier=earlier, last=last, slope=Direction(widths.slope + 1), fold=fold)
+        folder = ray_fold(bit(), before=before, last=last, slope=Direction(widths.slope + 1), fold=fold)
         testers = [
             tester(
                 bit(), step_way=bit(), step_bounds=bit(), step_slope=bit(), facet=Facet(product, distance),

@@ -11,7 +11,14 @@ import numpy as np
 import pytest
 from hard_scenes import pixel_word, sharpened, traced_scene, verdict
 
-from raycaster.configuration import CHANNEL_BITS, WORLD_SIZE, Configuration, ConfigurationError, configure
+from raycaster.configuration import (
+    CHANNEL_BITS,
+    MOST_REFLECTIONS,
+    WORLD_SIZE,
+    Configuration,
+    ConfigurationError,
+    configure,
+)
 from raycaster.golden import exact
 from raycaster.golden.random_world import EXTREMES, random_basis, random_camera, random_looks, random_rectangles
 from raycaster.golden.rays import primary_slopes
@@ -22,13 +29,14 @@ from raycaster.rtl.beam import nearest_of_two as contest
 from raycaster.rtl.beam import ray_fold as folder
 from raycaster.rtl.beam.beam_caster import beam_caster
 from raycaster.rtl.beam.beam_lane import beam_lane, beam_latency
-from raycaster.rtl.beam.beam_pass import winner_latency
 from raycaster.rtl.beam.beam_renderer import blanking_left, check_blanking
 from raycaster.rtl.beam.cell_step import cell_step
 from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.hit_cells import hit_cells
 from raycaster.rtl.beam.lane_start import lane_start
 from raycaster.rtl.beam.line_starter import AIM_LATENCY, line_starter, start_cycles
+from raycaster.rtl.beam.look_up import look_up
+from raycaster.rtl.beam.mirror_look_up import mirror_look_up
 from raycaster.rtl.beam.nearest_of import nearest_of
 from raycaster.rtl.beam.nearest_of_two import nearest_of_two
 from raycaster.rtl.beam.ray_fold import ray_fold
@@ -52,8 +60,11 @@ from raycaster.rtl.common.records import (
     facet_of,
     fold_of,
     growth_of,
+    seen_of,
+    shade_of,
     shown_of,
     stride_of,
+    turn_of,
     walk_of,
     winner_of,
 )
@@ -62,7 +73,6 @@ from raycaster.rtl.common.widths import (
     DISTANCE_BITS,
     MIRROR_BITS,
     RGB_BITS,
-    TURN_BITS,
     bit,
     exact_slope_bits,
     factor_bits,
@@ -70,13 +80,15 @@ from raycaster.rtl.common.widths import (
     index_bits,
     signed,
     steepest_slope,
+    turn_bits,
     unsigned,
     walk_bits,
 )
 from raycaster.rtl.engine import rect_setup as setup
-from raycaster.rtl.engine.colour_blend import blend_latency, blends_three, colour_blend, mixes
+from raycaster.rtl.engine.colour_blend import blend_latency, colour_blend, mixes
 from raycaster.rtl.engine.colour_mean import colour_mean
 from raycaster.rtl.engine.colour_mix import colour_mix
+from raycaster.rtl.engine.colour_seen import colour_seen
 from raycaster.rtl.engine.rect_setup import rect_setup
 from raycaster.scene import UNTURNED
 from raycaster.screens import BEAM_SCREENS
@@ -128,6 +140,20 @@ by_screen = pytest.mark.parametrize(
     ],
     ids=config_id,
 )
+
+
+by_depth = pytest.mark.parametrize(
+    "config",
+    [
+        *by_screen.args[1],
+        beam_config(reflections=3, screen="tiny"),
+        beam_config(reflections=4, rows=180),
+        beam_config(reflections=3, rows=240, turn=True, patterns=True),
+        beam_config(reflections=4, screen="tiny", turn=True),
+    ],
+    ids=config_id,
+)
+"""And with more reflections."""
 
 
 def any_slope(random: np.random.Generator, config: Configuration) -> np.ndarray:
@@ -238,19 +264,23 @@ def test_two_pixels_a_clock_take_an_even_line(part):
 
 @pytest.mark.parametrize("place", BEAM_SCREENS, ids=str)
 @pytest.mark.parametrize("rectangles", [1, 2, 12, 32])
-@pytest.mark.parametrize("reflections", [0, 1, 2])
+@pytest.mark.parametrize("reflections", range(MOST_REFLECTIONS + 1))
 def test_every_row_is_set_up_in_its_blanking(place, rectangles, reflections):
     """The latest column has left, and all rectangles are loaded, before the first column's turn."""
     screen, rows = place
     config = beam_config(screen=screen, rows=rows, rectangles=rectangles, reflections=reflections)
-    assert blanking_left(config) >= 0
+    fits = screen == "vga" or rectangles < 32 or reflections < 3
+    assert (blanking_left(config) >= 0) == fits
+    if not fits:
+        with pytest.raises(ConfigurationError, match=r"^rectangles: with 32 of them, [34] reflections, .*either$"):
+            check_blanking(config)
 
 
 @pytest.mark.parametrize(
-    ("screen", "rows", "most"), [("vga", 240, 2), ("vga", 180, 2), ("tiny", 48, 2), ("play", 240, 1)]
+    ("screen", "rows", "most"), [("vga", 240, 4), ("vga", 180, 4), ("tiny", 48, 2), ("play", 240, 1)]
 )
 def test_every_row_of_a_turned_camera_is_set_up_in_its_blanking(screen, rows, most):
-    """That of a dozen rectangles, with all there is; on the playing screen with so many reflections at most."""
+    """That of a dozen rectangles, with all there is; on small screens with so many reflections at most."""
     config = beam_config(screen=screen, rows=rows, reflections=most, turn=True, materials=True, patterns=True)
     assert blanking_left(config) >= 0
     with pytest.raises(
@@ -646,7 +676,7 @@ def beam_rays(random: np.random.Generator, config: Configuration, count: int):
                 continue
             t = Fraction(int(plane - eye[axis]), int(turned[axis]))
             # A corner has a mirror on each of its axes.
-            if t > met or (t == met and mirrors and axis != mirrors[-1][0]):
+            if t > met or (t == met and mirrors and axis not in met_last(camera, slope, mirrors)):
                 met = t
                 mirrors.append((axis, plane))
         eye, turned = seen_from(camera, slope, mirrors)
@@ -695,13 +725,22 @@ def met_last(camera, slope, mirrors) -> list[int]:
     return [axis for t, (axis, _) in zip(times, mirrors, strict=True) if t == times[-1]]
 
 
+def image_of(config: Configuration, camera, slope, mirrors) -> dict[str, int]:
+    """The image of the room, by its definition: x - E = +-(X - E) + T, where the room's x is the mirrored camera's."""
+    eye, _ = seen_from(camera, slope, mirrors)
+    met = met_last(camera, slope, mirrors)
+    fields = {f"met_{name}": int(axis in met) for axis, name in enumerate(AXES)}
+    fields |= {f"back_{name}": sum(axis == mirror for mirror, _ in mirrors) % 2 for axis, name in enumerate(AXES)}
+    moved = zip(AXES, eye, camera, strict=True)
+    return fields | {f"turn_{name}": word(int(there) - int(here), turn_bits(config)) for name, there, here in moved}
+
+
 def folded(config: Configuration, camera, slope, mirrors) -> dict[str, int]:
-    """The fold, by its definition: x - E = +-(X - E) + T, where the room's x is the mirrored camera's."""
+    """The fold of a ray in that image."""
     eye, turned = seen_from(camera, slope, mirrors)
     turn = [int(value) for value in eye - camera]
-    back = [sum(axis == mirror for mirror, _ in mirrors) % 2 for axis in range(3)]
-    fields = {f"back_{name}": back[axis] for axis, name in enumerate(AXES)}
-    fields |= {f"turn_{name}": word(turn[axis], TURN_BITS) for axis, name in enumerate(AXES)}
+    fields = image_of(config, camera, slope, mirrors)
+    back = [fields[f"back_{name}"] for name in AXES]
     for letter, others in (("p", P), ("q", Q)):
         for axis, other in enumerate(others):
             flip = back[axis] != back[other]
@@ -712,7 +751,6 @@ def folded(config: Configuration, camera, slope, mirrors) -> dict[str, int]:
     distance = plane - int(camera[axis])
     fields |= {f"border_{name}": word(distance * int(slope[c]), walk_bits(config)) for c, name in enumerate(AXES)}
     fields["mirror_back"] = int(turned[axis] < 0)
-    fields |= {f"met_{name}": int(c in met_last(camera, slope, mirrors)) for c, name in enumerate(AXES)}
     return fields | {"axis": axis, "distance": word(distance, DISTANCE_BITS)}
 
 
@@ -722,7 +760,7 @@ def test_ray_tester(config, tmp_path):
     check_tester(ray_tester, {}, config, tmp_path)
 
 
-@by_screen
+@by_depth
 def test_fold_tester(config, tmp_path):
     """A ray now and then; its bounds come a cycle later, and its slope's magnitudes then, or two cycles later."""
     if config.reflections:
@@ -750,7 +788,8 @@ def check_tester(block, ports, config: Configuration, tmp_path) -> None:
     )
     random = np.random.default_rng(seed())
     stimulus, expected, seen = [], {}, set()
-    for table, chosen, camera, slope, mirrors in beam_rays(random, config, 3000):
+    # Of more mirrors fewer are in one point.
+    for table, chosen, camera, slope, mirrors in beam_rays(random, config, 3000 * max(1, config.reflections - 1)):
         if bool(mirrors) != bool(ports):
             continue
         fold = {f"fold_{name}": value for name, value in folded(config, camera, slope, mirrors).items()}
@@ -789,8 +828,9 @@ def check_tester(block, ports, config: Configuration, tmp_path) -> None:
             case = table.corners[index].tolist(), camera, slope, mirrors, repeat()
             expected[start + tester.LATENCY] = facet, hit and bool(facet["facet_usable"]), at_mirror, n, e, index, case
     outputs = leaf.run_both([*stimulus, dict.fromkeys(strobes, 0)], settled=lead + tester.LATENCY)
-    # With no mirror; with one, and two in one point, where a third plane may be too.
-    assert len(seen) == (3 * config.reflections if ports else 2)
+    # With no mirror; with one, and two in one point, where a third plane may be too. Three in one point hide the rest.
+    assert len([case for case in seen if case[0] < 3]) == (3 * min(config.reflections, 2) if ports else 2)
+    assert ((3, False, False) in seen) == (config.reflections > 2 and bool(ports))
     for cycle, (facet, hit, at_mirror, n, e, index, case) in expected.items():
         output = outputs[cycle]
         assert output["hit_valid"] == hit, case
@@ -810,17 +850,19 @@ def check_tester(block, ports, config: Configuration, tmp_path) -> None:
         beam_config(reflections=2, screen="tiny"),
         beam_config(rows=180, turn=True),
         beam_config(reflections=2, turn=True),
+        beam_config(reflections=3, screen="tiny"),
+        beam_config(reflections=4, turn=True),
     ],
     ids=config_id,
 )
 def test_ray_fold(config, tmp_path):
-    """A ray a cycle; its slope comes a cycle after its mirrors."""
+    """A ray a cycle, at the last of its mirrors; its slope comes a cycle later."""
     slope_bits = exact_slope_bits(config) + 1
     leaf = Leaf(
         ray_fold,
         lambda: {
             "clk": bit(),
-            "earlier": Reflector(),
+            "before": turn_of(config),
             "last": Reflector(),
             "slope": Direction(slope_bits),
             "fold": fold_of(config),
@@ -831,14 +873,11 @@ def test_ray_fold(config, tmp_path):
     rays = [ray[2:] for ray in beam_rays(random, config, 4000) if ray[-1]]
     stimulus = [{} for _ in range(len(rays) + folder.LATENCY + 1)]
     for cycle, (camera, slope, mirrors) in enumerate(rays):
-        met = {"last": mirrors[-1], "earlier": (int(random.integers(3)), any_place(random))}
-        if len(mirrors) == 2:
-            met["earlier"] = mirrors[0]
-        for name, (axis, plane) in met.items():
-            distance = word(plane - int(camera[axis]), DISTANCE_BITS)
-            stimulus[cycle] |= {f"{name}_axis": axis, f"{name}_distance": distance}
-        stimulus[cycle] |= {"earlier_active": int(len(mirrors) == 2), "last_active": 1}
-        stimulus[cycle] |= {"last_at_mirror": int(len(met_last(camera, slope, mirrors)) == 2)}
+        before = image_of(config, camera, slope, mirrors[:-1])
+        stimulus[cycle] |= {f"before_{name}": value for name, value in before.items()}
+        axis, plane = mirrors[-1]
+        distance, at_mirror = word(plane - int(camera[axis]), DISTANCE_BITS), len(met_last(camera, slope, mirrors)) > 1
+        stimulus[cycle] |= {"last_axis": axis, "last_distance": distance, "last_at_mirror": int(at_mirror)}
         stimulus[cycle + 1] |= direction_ports("slope", config, slope)
     outputs = leaf.run_both(stimulus, settled=folder.LATENCY)
     for cycle, (camera, slope, mirrors) in enumerate(rays):
@@ -962,7 +1001,7 @@ def test_nearest_of(count, tmp_path):
             assert output == candidate_ports(config, "nearest", min(valid, key=fraction_of)), repeat()
 
 
-@pytest.mark.parametrize("cycles", [2, 3, 13])
+@pytest.mark.parametrize("cycles", [1, 2, 3, 13])
 def test_winner_delay(cycles, tmp_path):
     leaf = Leaf(
         winner_delay,
@@ -979,35 +1018,33 @@ def test_winner_delay(cycles, tmp_path):
 # The colour -----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("colour_bits", [1, 5, 8])
-def test_colour_mean(colour_bits, tmp_path):
-    config = beam_config(colour_bits=colour_bits)
-    names = ("first", "second", "third")
+@pytest.mark.parametrize("behind", [0, 1, 3])
+def test_colour_mean(behind, tmp_path):
+    """Channels at their ends and between; what is behind has a fraction of its own."""
+    far_bits, number = CHANNEL_BITS + behind, 3 - behind
     leaf = Leaf(
         colour_mean,
         lambda: {
-            "clk": bit(),
-            **{name: unsigned(8) for name in names},
-            "reflections": unsigned(2),
-            "mean": unsigned(colour_bits),
-            "config": config,
+            "own": unsigned(CHANNEL_BITS),
+            "behind": unsigned(far_bits),
+            "reflections": unsigned(3),
+            "mean": unsigned(far_bits + 1),
+            "number": number,
         },
         tmp_path,
     )
     random = np.random.default_rng(seed())
-    values = random.choice([0, 1, 254, 255, *random.integers(256, size=4)], (600, 3))
-    stimulus = [
-        {**dict(zip(names, map(int, seen), strict=True)), "reflections": number % 3}
-        for number, seen in enumerate(values)
-    ]
-    outputs = leaf.run_both([*stimulus, {}], settled=1)
-    for inputs, output in zip(stimulus, outputs[1:], strict=True):
-        first, second, third = (inputs[name] for name in names)
-        mean = (first, (first + second) >> 1, (2 * first + second + third) >> 2)[inputs["reflections"]]
-        assert output["mean"] == mean >> (8 - colour_bits), (inputs, repeat())
+    ends = [[own, far << behind] for own in (0, 1, 254, 255) for far in (0, 1, 254, 255)]
+    pairs = [*ends, *random.integers([256, (255 << behind) + 1], size=(200, 2)).tolist()]
+    # Where a scene asks for fewer reflections, what is behind is not looked at here, nor by who comes before.
+    depths = range(number, MOST_REFLECTIONS + 1)
+    stimulus = [{"own": own, "behind": far, "reflections": depth} for own, far in pairs for depth in depths]
+    for inputs, output in zip(stimulus, leaf.run_both(stimulus), strict=True):
+        own = inputs["own"] << behind
+        assert output["mean"] == own + (inputs["behind"] if inputs["reflections"] > number else own), (inputs, repeat())
 
 
-@pytest.mark.parametrize("behind", [0, 1])
+@pytest.mark.parametrize("behind", [0, 1, 3])
 def test_colour_mix(behind, tmp_path):
     """Every share of channels at their ends and between; what is behind has a fraction of its own."""
     far_bits = CHANNEL_BITS + 2 * behind
@@ -1033,27 +1070,64 @@ def test_colour_mix(behind, tmp_path):
         assert output["mixed"] == (4 - mirror) * (near << 2 * behind) + mirror * far, (inputs, repeat())
 
 
+@pytest.mark.parametrize("materials", [False, True])
+@pytest.mark.parametrize("number", [0, 1, 3])
+def test_colour_seen(materials, number, tmp_path):
+    """The background where this ray, or one before it, found nothing; a mirror where a scene goes on behind it."""
+    config = beam_config(reflections=4, materials=materials)
+    leaf = Leaf(
+        colour_seen,
+        lambda: {
+            "clk": bit(), "reached": bit(), "seen": seen_of(config), "picture": Picture(), "found": bit(),
+            "shade": shade_of(config), "number": number,
+        },
+        tmp_path,
+    )  # fmt: skip
+    random = np.random.default_rng(seed())
+    stimulus = [
+        {
+            "reached": int(random.integers(2)),
+            "seen_found": int(random.random() < 0.7),
+            "seen_colour": int(random.integers(1 << RGB_BITS)),
+            **({"seen_mirror": int(random.integers(1, 5))} if materials else {}),
+            "picture_background": int(random.integers(1 << RGB_BITS)),
+            **({"picture_reflections": int(random.integers(MOST_REFLECTIONS + 1))} if materials else {}),
+        }
+        for _ in range(400)
+    ]
+    outputs = leaf.run_both([*stimulus, {}], settled=1)
+    for inputs, now, then in zip(stimulus, outputs, outputs[1:], strict=False):
+        found = inputs["reached"] and inputs["seen_found"]
+        assert now["found"] == found, (inputs, repeat())
+        colour = inputs["seen_colour" if found else "picture_background"].to_bytes(3)
+        assert bytes(then[f"shade_{channel}"] for channel in ("red", "green", "blue")) == colour, (inputs, repeat())
+        if materials:
+            goes_on = inputs["picture_reflections"] > number
+            assert then["shade_mirror"] == (inputs["seen_mirror"] if goes_on else 0), (inputs, repeat())
+
+
 @pytest.mark.parametrize(
     "config",
     [
         beam_config(colour_bits=6),
+        beam_config(reflections=0),
+        beam_config(reflections=2),
+        beam_config(reflections=4, colour_bits=6),
         beam_config(reflections=1, materials=True),
         beam_config(reflections=2, materials=True, colour_bits=6),
+        beam_config(reflections=4, materials=True),
         beam_config(reflections=0, materials=True),
     ],
     ids=config_id,
 )
 def test_colour_blend(config, tmp_path):
     """What comes after a ray that found nothing is background, and weighs as much as the mirrors before it say."""
-    seen_count = 3 if blends_three(config) else 2
-    mirror_count = config.reflections if mixes(config) else 0
+    rays, record = config.reflections + 1, seen_of(config)
     leaf = Leaf(
         colour_blend,
         lambda: {
             "clk": bit(),
-            **{f"found_{i}": bit() if i < seen_count else None for i in range(3)},
-            **{f"colour_{i}": unsigned(RGB_BITS) if i < seen_count else None for i in range(3)},
-            **{f"mirror_{i}": unsigned(MIRROR_BITS) if i < mirror_count else None for i in range(2)},
+            "seen": unsigned(rays * len(record.word)),
             "picture": Picture(),
             "pixel": Pixel(config.colour_bits),
             "config": config,
@@ -1063,25 +1137,24 @@ def test_colour_blend(config, tmp_path):
     random = np.random.default_rng(seed())
     stimulus, expected = [], []
     latency, background, reflections = blend_latency(config), 0x123456, 0
-    asked = config.reflections + 1 if mirror_count else 3
     for number in range(1800):
         if number % 100 == 0:
-            background, reflections = int(random.integers(1 << RGB_BITS)), number // 100 % asked
-        found = (random.random(seen_count) < 0.7).astype(int).tolist()
+            background, reflections = int(random.integers(1 << RGB_BITS)), number // 100 % rays
+        found = (random.random(rays) < 0.8).astype(int).tolist()
         colours = [int(random.integers(1 << RGB_BITS)) for _ in found]
-        mirrors = [int(random.integers(5)) for _ in range(mirror_count)]
+        mirrors = [int(random.integers(5)) if mixes(config) else 2 for _ in found]
+        rows = zip(found, mirrors, colours, strict=True)
+        fields = [dict(zip(("found", "mirror", "colour"), one, strict=True)) for one in rows]
         stimulus.append({
-            "picture_background": background, "picture_reflections": reflections,
-            **{f"found_{i}": one for i, one in enumerate(found)},
-            **{f"colour_{i}": one for i, one in enumerate(colours)},
-            **{f"mirror_{i}": one for i, one in enumerate(mirrors)},
+            "picture_background": background, **({"picture_reflections": reflections} if rays > 1 else {}),
+            "seen": sum(record.pack(one) << i * len(record.word) for i, one in enumerate(fields)),
         })  # fmt: skip
         seen = [colour if all(found[: i + 1]) else background for i, colour in enumerate(colours)]
         pixel = []
         for low in (16, 8, 0):
             channels = [Fraction(colour >> low & 255) for colour in seen[: reflections + 1]]
             value = channels.pop()
-            for own, quarters in reversed(list(zip(channels, mirrors or (2, 2), strict=False))):
+            for own, quarters in reversed(list(zip(channels, mirrors, strict=False))):
                 value = ((4 - quarters) * own + quarters * value) / 4
             pixel.append(int(value) >> CHANNEL_BITS - config.colour_bits)
         expected.append(pixel)
@@ -1089,6 +1162,82 @@ def test_colour_blend(config, tmp_path):
     for number, (colour, output) in enumerate(zip(expected, outputs[latency:], strict=True)):
         if number % 100 < 100 - latency:  # of the others the background has changed on the way
             assert [output[f"pixel_{channel}"] for channel in ("red", "green", "blue")] == colour, (number, repeat())
+
+
+# The look-ups ---------------------------------------------------------------------------------------------------------
+
+
+def any_facets(random: np.random.Generator, config: Configuration) -> tuple[list[dict[str, int]], int]:
+    """Fields of facets, and all of them side by side."""
+    record = facet_of(config)
+    facets = [
+        {name: int(random.integers(1 << bits)) for name, bits in record.layout.items()}
+        for _ in range(config.rectangles)
+    ]
+    return facets, sum(record.pack(facet) << i * len(record.word) for i, facet in enumerate(facets))
+
+
+@pytest.mark.parametrize("looks", [{}, {"materials": True, "patterns": True}], ids=["plain", "looks"])
+def test_look_up(looks, tmp_path):
+    """Of each rectangle what it looks like, of a pattern the colour of the cell; between its steps it keeps that."""
+    config = beam_config(screen="tiny", rectangles=5, **looks)
+    leaf = Leaf(
+        look_up,
+        lambda: {
+            "clk": bit(),
+            "step": bit(),
+            "facets": unsigned(config.rectangles * len(facet_of(config).word)),
+            "sight": Sight(index_bits(config)) if config.patterns else winner_of(config),
+            "seen": seen_of(config),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    stimulus, expected, kept = [], [], None
+    for _ in range(400):
+        facets, side_by_side = any_facets(random, config)
+        sight = {"valid": int(random.integers(2)), "index": int(random.integers(config.rectangles))}
+        sight |= {name: int(random.integers(2)) for name in ("odd_u", "odd_v") if config.patterns}
+        step = int(random.random() < 0.8) if kept else 1
+        stimulus.append({"step": step, "facets": side_by_side} | {f"sight_{name}": v for name, v in sight.items()})
+        if step:
+            facet = facets[sight["index"]]
+            kept = {"seen_found": sight["valid"], "seen_colour": facet["colour"]}
+            if config.patterns:
+                odd_u, odd_v = sight["odd_u"], sight["odd_v"]
+                second = (False, (odd_u + odd_v) % 2, odd_v, odd_u)[facet["kind"]]
+                kept["seen_colour"] = facet["colour_2" if second else "colour"]
+            if config.materials:
+                kept["seen_mirror"] = facet["mirror"]
+        expected.append(kept)
+    outputs = leaf.run_both([*stimulus, {"step": 0}], settled=1)
+    for output, wanted in zip(outputs[1:], expected, strict=True):
+        assert {name: output[name] for name in wanted} == wanted, repeat()
+
+
+def test_mirror_look_up(tmp_path):
+    config = beam_config(screen="tiny", rectangles=5)
+    leaf = Leaf(
+        mirror_look_up,
+        lambda: {
+            "clk": bit(),
+            "facets": unsigned(config.rectangles * len(facet_of(config).word)),
+            "winner": winner_of(config),
+            "last": Reflector(),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    stimulus, expected = [], []
+    for _ in range(200):
+        facets, side_by_side = any_facets(random, config)
+        at_mirror, index = int(random.integers(2)), int(random.integers(config.rectangles))
+        stimulus.append({"facets": side_by_side, "winner_at_mirror": at_mirror, "winner_index": index})
+        expected.append({"last_at_mirror": at_mirror} | {f"last_{n}": facets[index][n] for n in ("axis", "distance")})
+    outputs = leaf.run_both([*stimulus, {}], settled=1)
+    assert outputs[1:] == expected, repeat()
 
 
 # The cells of patterns ------------------------------------------------------------------------------------------------
@@ -1128,6 +1277,7 @@ def test_cell_step(place, tmp_path):
         beam_config(screen="tiny", patterns=True, reflections=0),
         beam_config(patterns=True, rows=180),
         beam_config(screen="tiny", patterns=True, turn=True, reflections=2),
+        beam_config(screen="tiny", patterns=True, reflections=4),
     ],
     ids=config_id,
 )
@@ -1138,7 +1288,7 @@ def test_hit_cells(config, tmp_path):
         hit_cells,
         lambda: {
             "clk": bit(),
-            "fold": fold_of(config),
+            "turn": turn_of(config),
             "nearest": candidate_of(config),
             "winner": winner_of(config),
             "slope": Direction(slope_bits + 1),
@@ -1149,11 +1299,10 @@ def test_hit_cells(config, tmp_path):
         tmp_path,
     )
     random = np.random.default_rng(seed())
-    entered = tester.fold_lead(config) + winner_latency(config)
     stimulus, expected = [{} for _ in range(4000)], {}
     camera = random.integers(100, 400, size=3).tolist()
     stimulus[0] |= {f"camera_{axis}": value for axis, value in zip(AXES, camera, strict=True)}
-    cycle = entered
+    cycle = 0
     for table, chosen, _, slope, mirrors in beam_rays(random, config, 1200):
         eye, turned = seen_from(camera, slope, mirrors)
         for index in 8 * list(chosen):
@@ -1173,15 +1322,13 @@ def test_hit_cells(config, tmp_path):
             fields = {"valid": 1, "numerator": n, "denominator": e, "axis": axis, "cell": cell}
             stimulus[cycle] |= {f"nearest_{name}": value for name, value in fields.items()}
             stimulus[cycle] |= {"winner_valid": 1, "winner_index": number}
-            stimulus[cycle - entered] |= {
-                f"fold_{name}": value for name, value in folded(config, camera, slope, mirrors).items()
-                if name.startswith(("turn", "back"))
-            }  # fmt: skip
+            image = image_of(config, camera, slope, mirrors)
+            stimulus[cycle + 1] |= {f"turn_{name}": value for name, value in image.items()}
             stimulus[cycle + hit_cells_module.SLOPE_AT] |= direction_ports("slope", config, slope)
             expected[cycle + latency] = *parities, number
             cycle += 1
     assert len(expected) > 400
-    outputs = leaf.run_both(stimulus, settled=entered + latency)
+    outputs = leaf.run_both(stimulus, settled=1 + latency)
     for cycle, values in expected.items():
         output = outputs[cycle]
         assert output["sight_valid"]
@@ -1215,8 +1362,8 @@ def race(random: np.random.Generator, config: Configuration, slopes) -> tuple[np
         corners, order = table.corners.copy(), random.permutation(count)
         # The last column whose rays run down along y is the one that tells its sign from the next one's.
         column = before_centre if random.random() < 0.1 else int(random.integers(len(slopes), size=2).min())
-        # After two mirrors the lowest bits count where a small odd slope reaches an edge exactly.
-        if ends == 2 and random.random() < 0.5:
+        # After two mirrors and more the lowest bits count where a small odd slope reaches an edge exactly.
+        if ends >= 2 and random.random() < 0.5:
             column = before_centre + 1 + int(random.choice([-3, -1, 1, 3]))
         mirrors: list[tuple[int, int]] = []
         times = [Fraction(0)]
@@ -1224,14 +1371,14 @@ def race(random: np.random.Generator, config: Configuration, slopes) -> tuple[np
             eye, turned = seen_from(camera, slopes[column], mirrors)
             axis = int(random.choice(np.flatnonzero(turned)))
             t = time_ahead(random, eye, turned, times[-1], axis)
-            if bounce == 2 and by_mirror:
+            if bounce >= 2 and by_mirror:
                 t = times[-1]
-            elif bounce == 2:
-                # It may meet the first one again, which then is the other of the two.
-                again, first = mirrors[0]
+            elif bounce >= 2:
+                # It may meet the one before the last again, which then is the other of the two.
+                again, first = mirrors[-2]
                 t = max(times[-1], Fraction(int(first - eye[again]), int(turned[again])))
             plane = coordinate(eye, turned, t, axis)
-            if bounce == 2:
+            if bounce >= 2:
                 plane = min(max(plane + int(random.integers(-1, 2)), 0), LAST)
             times.append(opened(random, corners[order[bounce]], axis, plane, eye, turned))
             mirrors.append((axis, plane))
@@ -1254,6 +1401,12 @@ def race(random: np.random.Generator, config: Configuration, slopes) -> tuple[np
         # Small enough for every rectangle to matter in every pass.
         (beam_config(screen="tiny", rectangles=3, reflections=2, scale=1), 400),
         (beam_config(screen="tiny", rectangles=8, reflections=2), 12),
+        (beam_config(screen="tiny", rectangles=5, reflections=3, scale=1), 60),
+        (
+            beam_config(screen="tiny", rectangles=5, reflections=4, scale=1, turn=True, materials=True, patterns=True),
+            24,
+        ),
+        (beam_config(screen="tiny", rectangles=5, reflections=4, pixels=2), 24),
         (beam_config(rows=180, rectangles=5, reflections=1), 4),
         (beam_config(screen="tiny", rectangles=3, reflections=2, scale=1, turn=True), 200),
         (beam_config(screen="tiny", rectangles=3, reflections=1, scale=1, materials=True, patterns=True), 24),
@@ -1313,7 +1466,8 @@ def test_beam_caster(config, lines, tmp_path):
         fates |= {tuple(int(winner[column] >= 0) for winner in traced.winners) for column in range(len(line))}
         vectors = np.concatenate([camera, *(basis if config.turn else ())]).tolist()
         held = {f"camera_{name}": value for name, value in zip(camera_of(config).layout, vectors, strict=True)}
-        held |= {"reset": 0, "start_line": 0, "next_column": 0, "picture_reflections": reflections}
+        held |= {"reset": 0, "start_line": 0, "next_column": 0}
+        held |= {"picture_reflections": reflections} if config.reflections else {}
         held["picture_background"] = int.from_bytes(bytes(background.astype(np.uint8)))
         held["rects_usable"] = sum(1 << int(index) for index in np.flatnonzero(table.visible))
         if number % 16 == 4:
@@ -1347,6 +1501,7 @@ def test_beam_caster(config, lines, tmp_path):
     [
         # Small enough for every rectangle to matter in every pass.
         (beam_config(screen="tiny", rectangles=3, reflections=2, scale=1), 0, 300),
+        (beam_config(screen="tiny", rectangles=3, reflections=4, scale=1), 0, 60),
         (beam_config(screen="tiny", rectangles=3, reflections=2, pixels=2), 0, 40),
         (beam_config(screen="tiny", rectangles=3, reflections=2, pixels=2), 1, 40),
     ],

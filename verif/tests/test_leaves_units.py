@@ -28,7 +28,6 @@ from raycaster.rtl.common.widths import (
     unit_bits,
     unsigned,
 )
-from raycaster.rtl.engine.colour_average import colour_average
 from raycaster.rtl.engine.colour_combiner import colour_combiner
 from raycaster.rtl.engine.colour_share import colour_share
 from raycaster.rtl.engine.colour_sum import colour_sum
@@ -355,25 +354,6 @@ def test_magnitude(value_bits, bits, tmp_path):
     values = range(1 - (1 << bits), 1 << bits)
     outputs = leaf.run_both([{"value": value % (1 << value_bits)} for value in values])
     assert [output["result"] for output in outputs] == [abs(value) for value in values]
-
-
-@pytest.mark.parametrize("colour_bits", range(1, CHANNEL_BITS + 1))
-def test_colour_average(colour_bits, tmp_path):
-    """Of each sum that so many reflections may lead to."""
-    config = any_config(colour_bits=colour_bits, reflections=2)
-    leaf = Leaf(
-        colour_average,
-        lambda: {
-            "total": unsigned(CHANNEL_BITS + 2), "reflections": unsigned(2), "mean": unsigned(colour_bits),
-            "config": config,
-        },
-        tmp_path,
-    )  # fmt: skip
-    weights = (1, 2, 4)
-    sums = [(total, number) for number, weight in enumerate(weights) for total in range(255 * weight + 1)]
-    outputs = leaf.run_both([{"total": total, "reflections": number} for total, number in sums])
-    for (total, number), output in zip(sums, outputs, strict=True):
-        assert output["mean"] == total // weights[number] >> (CHANNEL_BITS - colour_bits), (total, number)
 
 
 def mirrored(random: np.random.Generator, run_time: int) -> list[tuple[bool, int]]:

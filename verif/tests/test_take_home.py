@@ -37,6 +37,7 @@ CONFIGURATIONS = [
     configure(engine="beam", rows=180),
     configure(engine="beam", screen="tiny", reflections=2, rectangles=3, scale=1),
     configure(engine="beam", reflections=0, rectangles=1, colour_bits=4),
+    configure(engine="beam", screen="tiny", reflections=4, rectangles=2),
     configure(engine="beam", rows=180, scale=6, pixels=2),
     configure(engine="beam", screen="tiny", rectangles=2, turn=True, materials=True, patterns=True, pixels=2),
     configure(engine="beam", screen="tiny", reflections=2, rectangles=2, turn=True, materials=True, patterns=True),

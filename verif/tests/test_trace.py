@@ -112,8 +112,8 @@ FAULTS = {
         ("ray_tester", "valid = ", "valid = 0 && "),
         ("fold_tester", "valid = ", "valid = 0 && "),
         ("nearest_of_two", "second_product < first_product", "second_product > first_product"),
-        ("ray_fold", "doubled = last_distance + last_distance", "doubled = last_distance"),
-        ("colour_mean", "mean <= ", "mean <= ~"),
+        ("ray_fold", "turned = ", "turned = 1 + "),
+        ("colour_mean", "mean = ", "mean = 1 + "),
     ],
 }
 

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""What a ray sees."""
+
+from myhdl import always, always_comb, block, concat, instances
+
+from raycaster.configuration import Configuration
+from raycaster.rtl.beam.word_of import word_of
+from raycaster.rtl.common.records import Look, facet_of
+from raycaster.rtl.common.widths import RGB_BITS, bit, unsigned
+from raycaster.rtl.engine.pattern_colour import pattern_colour
+
+LATENCY = 1
+
+
+@block
+def look_up(clk, step, facets, sight, seen, config: Configuration):
+    """seen, a `Seen`: of the rectangle that sight tells, LATENCY cycles after a step.
+
+    facets: each rectangle's `Facet`, side by side, the first in the lowest bits; sight: a `Winner`, with patterns a
+    `Sight`.
+    """
+    words = [unsigned(len(facet_of(config).word)) for _ in range(config.rectangles)]
+    takers = [word_of(facet_of(config).cut(facets, i), word) for i, word in enumerate(words)]
+    found, look = bit(), Look(config.materials, config.patterns)
+    look_bits = len(look.word)
+
+    @always(clk.posedge)
+    def find():
+        if step:
+            found.next = sight.valid
+            look.word.next = words[sight.index][look_bits:]
+
+    if config.patterns:
+        odd_u, odd_v, colour = bit(), bit(), unsigned(RGB_BITS)
+        painter = pattern_colour(look, odd_u=odd_u, odd_v=odd_v, colour=colour)
+
+        @always(clk.posedge)
+        def follow_cells():
+            if step:
+                odd_u.next = sight.odd_u
+                odd_v.next = sight.odd_v
+
+    else:
+        colour = look.colour
+
+    if "mirror" in seen.layout:
+
+        @always_comb
+        def join():
+            seen.word.next = concat(found, look.mirror, colour)
+
+    else:
+
+        @always_comb
+        def join():
+            seen.word.next = concat(found, colour)
+
+    return instances()
