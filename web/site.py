@@ -29,6 +29,7 @@ from raycaster.play.window import GAME_KEYS, TURN_KEYS, WALK_KEYS
 from raycaster.scene import load_scene, packaged_scenes
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware
+from raycaster.web.browser import browser_page
 from raycaster.web.scene_schema import scene_schema
 from raycaster.web.speed import speed, speed_table
 from raycaster.web.taps import tap_facts
@@ -222,6 +223,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     if arguments.measure:
         model = WALKS_MODELS[0]
         config = model.configuration
-        rows = speed(output, model.name, config, arguments.build, console)
+        with browser_page() as page:
+            rows = speed(page, output, model.name, config, arguments.build, console)
         console.print(speed_table(rows))
         keep(arguments, {"bytes": size, "scenes": rows}, scope_of(config))

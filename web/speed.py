@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from statistics import median
 from time import perf_counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.progress import track
@@ -17,7 +17,9 @@ from raycaster.configuration import Configuration
 from raycaster.play.machine import Machine, build_machine
 from raycaster.play.walk import Walker
 from raycaster.scene import load_scene, packaged_scenes
-from raycaster.web.browser import browser_page
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
 
 SCENES = ("mirror_room", "boxes", "floor", "gallery", "staircase")
 """That need no more than the fastest of the page's designs."""
@@ -46,10 +48,13 @@ def _native(config: Configuration, scene: str, build: Path) -> Iterator[float]:
                 yield 1000 * (perf_counter() - began)
 
 
-def speed(site: Path, model: str, config: Configuration, build: Path, console: Console) -> list[dict[str, Any]]:
+def speed(
+    page: Page, site: Path, model: str, config: Configuration, build: Path, console: Console
+) -> list[dict[str, Any]]:
     """Measure a model of the page, one scene after the other.
 
     Args:
+        page: of a browser, `browser_page`'s.
         site: the page's directory.
         model: its name in the page.
         config: the design in it.
@@ -59,29 +64,25 @@ def speed(site: Path, model: str, config: Configuration, build: Path, console: C
     Returns:
         For each scene its name, the medians of a frame's milliseconds in the browser and natively, and how many frames
         the walk shows in a second while it checks each of them.
-
-    Raises:
-        UserError: Chromium or Playwright is missing.
     """
     rows = []
-    with browser_page() as page:
-        for name in track(SCENES, "scenes", console=console, transient=True):
-            # The page of the scene's lives stands still, so that nothing else is drawn.
-            page.goto(f"{(site / 'index.html').absolute().as_uri()}#pixel")
-            page.wait_for_function("RayCaster.state.pixel")
-            source = packaged_scenes()[name].read_text()
-            in_browser = median(page.evaluate(RUN, [model, source, WARM, FRAMES]))
-            native = median(_native(config, name, build))
-            page.goto("about:blank")
-            page.goto((site / "index.html").absolute().as_uri())
-            page.wait_for_function("RayCaster.state.walk?.frames > 2")
-            page.select_option("#walk-scene", name)
-            shown = "RayCaster.state.walk.frames"
-            page.wait_for_timeout(2000)
-            began, first = perf_counter(), page.evaluate(shown)
-            page.wait_for_timeout(5000)
-            rate = (page.evaluate(shown) - first) / (perf_counter() - began)
-            rows.append({"scene": name, "browser_ms": in_browser, "native_ms": native, "shown": rate})
+    for name in track(SCENES, "scenes", console=console, transient=True):
+        # The page of the scene's lives stands still, so that nothing else is drawn.
+        page.goto(f"{(site / 'index.html').absolute().as_uri()}#pixel")
+        page.wait_for_function("RayCaster.state.pixel")
+        source = packaged_scenes()[name].read_text()
+        in_browser = median(page.evaluate(RUN, [model, source, WARM, FRAMES]))
+        native = median(_native(config, name, build))
+        page.goto("about:blank")
+        page.goto((site / "index.html").absolute().as_uri())
+        page.wait_for_function("RayCaster.state.walk?.frames > 2")
+        page.select_option("#walk-scene", name)
+        shown = "RayCaster.state.walk.frames"
+        page.wait_for_timeout(2000)
+        began, first = perf_counter(), page.evaluate(shown)
+        page.wait_for_timeout(5000)
+        rate = (page.evaluate(shown) - first) / (perf_counter() - began)
+        rows.append({"scene": name, "browser_ms": in_browser, "native_ms": native, "shown": rate})
     return rows
 
 

@@ -258,11 +258,12 @@ def test_the_engines_side_by_side(page, whole_site, fraction_bits):
     assert state["differs"] == np.any(perfect != rounded, axis=2).sum() > 0
 
 
-def test_frames_are_timed(site, monkeypatch):
+def test_frames_are_timed(page, whole_site, monkeypatch):
     """In the browser and natively, as a positive number of milliseconds; and the page shows some."""
     monkeypatch.setattr(speed, "SCENES", ("boxes",))
     monkeypatch.setattr(speed, "FRAMES", 2)
-    (row,) = speed.speed(site, MODELS[0].name, MODELS[0].configuration, BUILD, Console(quiet=True))
+    site, _ = whole_site
+    (row,) = speed.speed(page, site, MODELS[0].name, MODELS[0].configuration, BUILD, Console(quiet=True))
     assert row.pop("scene") == "boxes"
     assert min(row.values()) > 0
     assert speed.speed_table([row | {"scene": "boxes"}]).row_count == 1
