@@ -6,7 +6,7 @@ PYTHON3 ?= python3
 VENV := .venv
 PYTHON := $(VENV)/bin/python
 COMMANDS := sim scenes options play game web wave trace verilog fit area quartus bitstream registers report docs results commands
-CHECKS := soak prove mutate exhaustive coverage dvi verify-all
+CHECKS := soak prove mutate exhaustive coverage upsets dvi verify-all
 comma := ,
 ARGUMENTS = $(filter-out PYTHON3=% PYTHON=% VENV=%,$(MAKEOVERRIDES))
 
@@ -14,7 +14,7 @@ ARGUMENTS = $(filter-out PYTHON3=% PYTHON=% VENV=%,$(MAKEOVERRIDES))
 play game: EXTRAS := play
 web: EXTRAS := $(if $(filter-out 0,$(MEASURE)),play$(comma)test,play)
 fit area: EXTRAS := fpga
-results: EXTRAS := fpga,docs
+results: EXTRAS := fpga,docs$(if $(filter-out 0,$(SCALING)),$(comma)report)
 bitstream: EXTRAS := fpga,play
 report: EXTRAS := fpga,report
 docs: EXTRAS := docs,play

@@ -49,6 +49,7 @@ COMMANDS: Mapping[str, Command] = {
     "verify mutate": Command("raycaster.verif.mutation.mutate", "plant faults and see whether tests notice", "formal"),
     "verify exhaustive": Command("raycaster.verif.exhaustive.run", "check the arithmetic with every operand"),
     "verify coverage": Command("raycaster.verif.coverage.measure", "measure code and functional coverage", "coverage"),
+    "verify upsets": Command("raycaster.verif.upsets.upsets", "disturb a running design and see it come back"),
     "verify dvi": Command("raycaster.verif.dvi.watch", "decode and compare a board's video output"),
 }
 

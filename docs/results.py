@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster results`: measure the engines, and write all measured tables into the README and the manual."""
+"""`raycaster results`: measure the engines, or how they grow, and write all measured tables into the pages."""
 
 from __future__ import annotations
 
+import argparse
 import json
 import subprocess
 import sys
@@ -14,7 +15,7 @@ from rich.console import Console
 
 from raycaster.configuration import configure
 from raycaster.docs.facts import facts
-from raycaster.docs.pages import need_clone, render_all
+from raycaster.docs.pages import HERE, need_clone, render_all
 from raycaster.docs.proofs import proofs
 from raycaster.docs.tables import RESULTS, tables
 from raycaster.errors import UserError
@@ -68,10 +69,23 @@ def _run(*words: str) -> None:
         raise UserError(f"raycaster {' '.join(words)}: {(done.stderr or done.stdout).strip().splitlines()[-1]}")
 
 
+def _measure_scaling(arguments: argparse.Namespace, console: Console) -> None:
+    """Keep how the engines grow, and plot it."""
+    from raycaster.docs.scaling import draw_scaling, measure_scaling  # noqa: PLC0415 - wants what reports want
+
+    arguments.keep = arguments.keep or RESULTS / "scaling.json"
+    designs = measure_scaling(arguments.output / "scaling", arguments.output, console)
+    keep(arguments, {"designs": designs}, {}, left_out="placing and routing")
+    kept = json.loads(arguments.keep.read_text())
+    draw_scaling(designs, f"{kept['date']}, commit {kept['commit']}", HERE / "scaling.svg")
+
+
 def command_parser() -> CommandParser:
     """What the command takes."""
     parser = CommandParser("results", __doc__, "--render")
-    parser.add_argument("--render", action="store_true", help="only write the pages, from what results/ has")
+    asked = parser.add_mutually_exclusive_group()
+    asked.add_argument("--render", action="store_true", help="only write the pages, from what results/ has")
+    asked.add_argument("--scaling", action="store_true", help="measure designs of many sizes, which takes an hour")
     parser.add_argument("--output", type=Path, default=Path("build/results"), help="for what is made (%(default)s)")
     add_keep_option(parser)
     return parser
@@ -81,9 +95,12 @@ def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
     arguments = command_parser().parse_args(argv)
     need_clone()
-    if not arguments.render:
+    console = Console()
+    if arguments.scaling:
+        _measure_scaling(arguments, console)
+    elif not arguments.render:
         arguments.keep = arguments.keep or RESULTS / "engines.json"
-        console, designs = Console(), []
+        designs = []
         for options in DESIGNS:
             with console.status(f"measuring {configure(**options).name}"):
                 designs.append(measured(options, arguments.output / configure(**options).name))

@@ -6,6 +6,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from raycaster.configuration import Configuration, configure
@@ -36,6 +37,9 @@ class Job:
 
     stiff: bool = False
     """The seeds are places in the stiff catalogue instead."""
+
+    registers: Mapping[str, Sequence[str]] = dataclasses.field(default_factory=dict)
+    """By module of the design, names of its registers, for a bench that writes them."""
 
     buttons: tuple[int, ...] = ()
     """For a system with a processor: which are held from each frame's vertical sync on, a bit each."""

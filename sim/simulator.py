@@ -395,8 +395,8 @@ VERILATED_DEFINITIONS = tuple(
 )
 """What Verilator's own makefile would define."""
 
-_FEATURES = ("--trace", "--coverage")
-"""How flags begin that change what Verilator's library has in it."""
+_FEATURES = {"--trace", "--trace-fst", "--coverage-line", "--coverage-expr", "--coverage-toggle"}
+"""Flags that change what Verilator's library has in it; none takes a value."""
 
 _RUNTIME = "module runtime; initial #1 $finish; endmodule\n"
 """The least design that wants all of the library that others want."""
@@ -456,7 +456,7 @@ def _building(tool: Tool, parent: Path, arguments: Sequence[str]) -> Iterator[No
     before = dict(os.environ)
     environment = dict(tool.environment)
     if tool.name == "verilator":
-        library, _ = _runtime(tool, parent, tuple(flag for flag in arguments if flag.startswith(_FEATURES)))
+        library, _ = _runtime(tool, parent, tuple(flag for flag in arguments if flag in _FEATURES))
         # The shell that links takes the pattern apart.
         environment["MAKEFLAGS"] += f" VM_GLOBAL_FAST= LOADLIBES={library}/*.o"
     os.environ.update(environment)

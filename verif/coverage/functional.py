@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Functional coverage: which kinds of intersection the rays of the shown frames had, counted in cocotb-coverage's bins.
+"""Functional coverage: which kinds of intersection the seed engine's units found, counted in cocotb-coverage's bins.
 
-What is sampled is golden's own account of each ray and rectangle. The hardware's pixels are held against golden's in
-the same frames, so these are the intersections that the hardware performed.
+A probe in each unit counts what is offered to its z buffer, while the benches run. What culling gives up early is not
+offered, and not counted.
 """
 
 from __future__ import annotations
@@ -14,11 +14,8 @@ from pathlib import Path
 import numpy as np
 from cocotb_coverage.coverage import CoverCross, CoverPoint, coverage_db, coverage_section
 
-from raycaster.configuration import COORDINATE_BITS, Configuration
-from raycaster.golden import seed_engine
-from raycaster.golden.rays import primary_slopes
-from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.scene import Scene
+PROBE = Path(__file__).with_name("intersection_probe.v")
+"""Verilog beside the design's, which writes what `read_bins` reads."""
 
 POINTS = {
     "axis": ("x", "y", "z"),
@@ -56,6 +53,13 @@ IMPOSSIBLE: dict[str, tuple[Pattern, ...]] = {
     ),
     "the slope along x is 100 in magnitude, never 0": (("x", "zero", None, None, None),),
     "primary rays run along positive x": (("x", "negative", None, None, "primary"),),
+    "a group's primary rays run one way from one point; a plane that none runs towards is given up": (
+        (None, None, "on plane", None, "primary"),
+        (None, None, "behind", None, "primary"),
+    ),
+    "a group's rays have the row's slope along z, so a plane that one is parallel to is given up": (
+        ("z", None, "parallel", None, None),
+    ),
 }
 """Bins that no ray can hit, by the reason."""
 
@@ -79,27 +83,11 @@ class FunctionalCoverage:
 
         self._sample: Callable[..., None] = sample
 
-    def add_scene(self, scene: Scene, configuration: Configuration, reflections: int) -> None:
-        """Count the intersections of a frame."""
-        screen = configuration.screen_geometry
-        rectangles = Rectangles.of_scene(scene)
-        traced = seed_engine.trace(
-            rectangles,
-            scene.camera.position,
-            scene.background,
-            primary_slopes(screen).reshape(-1, 3),
-            reflections,
-            fraction_bits=configuration.fraction_bits,
-            rounding=configuration.rounding,
-            keep=True,
-        )
-        self.add(count(traced, rectangles, configuration.fraction_bits))
-
     def add(self, counts: np.ndarray) -> None:
         """Add to the bins.
 
         Args:
-            counts: as `count` returns them.
+            counts: as `read_bins` returns them.
 
         Raises:
             ValueError: an intersection that was held to be impossible.
@@ -151,39 +139,18 @@ class FunctionalCoverage:
         path.with_suffix(".json").write_text(json.dumps(result, indent=1) + "\n")
 
 
-def count(traced: seed_engine.Trace, rectangles: Rectangles, fraction_bits: int = 0) -> np.ndarray:
-    """How many intersections there were of each kind.
+def read_bins(directory: Path) -> np.ndarray:
+    """What the probes of a simulation counted in all its frames.
 
     Args:
-        traced: with its bounces.
-        rectangles: of its scene.
-        fraction_bits: F.
+        directory: in which it ran.
 
     Returns:
         int64, with an axis for each of `POINTS`, in order.
     """
     shape = tuple(map(len, POINTS.values()))
     counts = np.zeros(np.prod(shape), dtype=np.int64)
-    for number, bounce in enumerate(traced.bounces):
-        # Those that have hit nothing before go on missing, and nothing of them is seen.
-        alive = bounce.alive
-        nearest = np.full(alive.sum(), 1 << (COORDINATE_BITS + fraction_bits), dtype=np.int64)
-        found = np.zeros(alive.sum(), dtype=bool)
-        for index in np.flatnonzero(rectangles.visible):
-            axis = rectangles.axes[index]
-            numerator, slope = bounce.numerators[index][alive], bounce.denominators[index][alive]
-            hit, depth, point = (values[index][alive] for values in (bounce.hits, bounce.depths, bounce.points))
-            bounds = np.stack([rectangles.low[index], rectangles.high[index]]) << fraction_bits
-            extent = list(OTHER_AXES[axis])
-            on_bound = (point[:, None, extent] == bounds[:, extent]).any(axis=(1, 2))
-            result = np.select(
-                [slope == 0, numerator == 0, np.sign(numerator) != np.sign(slope)],
-                [0, 1, 2],
-                np.select([~bounce.valid[index][alive].all(axis=1), ~hit, on_bound], [3, 4, 5], 6),
-            )
-            rank = np.select([~hit, ~found, depth < nearest, depth == nearest], [0, 1, 2, 3], 4)
-            places = np.ravel_multi_index((axis, np.sign(slope) + 1, result, rank, number), shape)
-            counts += np.bincount(places, minlength=counts.size)
-            nearest = np.where(hit, np.minimum(nearest, depth), nearest)
-            found |= hit
+    for path in directory.glob("bins.*"):
+        place, times = np.array(path.read_text().split(), dtype=np.int64).reshape(-1, 2).T
+        np.add.at(counts, place, times)
     return counts.reshape(shape)

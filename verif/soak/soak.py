@@ -3,14 +3,9 @@
 
 from __future__ import annotations
 
-import json
-import shutil
 import time
 from collections import defaultdict
-from collections.abc import Callable, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor
-from dataclasses import dataclass, replace
-from pathlib import Path
+from collections.abc import Sequence
 
 from rich.console import Console
 from rich.table import Table
@@ -18,7 +13,7 @@ from rich.table import Table
 from raycaster.configuration import Configuration, configure
 from raycaster.errors import UserError
 from raycaster.golden.catalogue import catalogue
-from raycaster.jobs import add_job_options, executors, run_jobs
+from raycaster.jobs import add_job_options, executors
 from raycaster.options import (
     CommandParser,
     add_build_option,
@@ -27,66 +22,11 @@ from raycaster.options import (
     given_options,
 )
 from raycaster.outcomes import add_keep_option, keep, scope_of
-from raycaster.sim.job import Job
-from raycaster.sim.simulator import SimulationError, add_simulator_option, build_model, run_bench
+from raycaster.sim.simulator import add_simulator_option
+from raycaster.verif.campaign import Campaign, run_campaign
 from raycaster.verif.random_scenes import style_of
 
-SHARE = 5
-"""Scenes of a simulation: a few, so that the bar moves and little is lost with a worker."""
-
-
-@dataclass(frozen=True)
-class Share:
-    """Some of the scenes, for one simulation."""
-
-    configuration: Configuration
-    simulator: str
-    seeds: range
-    output: Path
-    """Of all of them."""
-
-    build: Path
-    stiff: bool
-
-
-def soak(
-    whole: Share, console: Console, make_executor: Callable[[], Executor] = ProcessPoolExecutor
-) -> tuple[list[dict], list[str]]:
-    """Show the scenes of all seeds, some at a time.
-
-    Args:
-        whole: all seeds, each of which makes a scene, or is its place in the stiff catalogue; its output is replaced:
-            `results.jsonl` is all results, failing scenes are `<seed>.toml` and `<seed>-shrunk.toml`.
-        console: for the progress bar.
-        make_executor: see `raycaster.jobs.executors`.
-
-    Returns:
-        The results by seed, and what each failed simulation said.
-    """
-    shutil.rmtree(whole.output, ignore_errors=True)
-    shares = [replace(whole, seeds=whole.seeds[first : first + SHARE]) for first in range(0, len(whole.seeds), SHARE)]
-    found = run_jobs("simulations", run_share, shares, make_executor, console)
-    results = [result for share, _ in found for result in share]
-    whole.output.mkdir(parents=True, exist_ok=True)
-    (whole.output / "results.jsonl").write_text("".join(json.dumps(result) + "\n" for result in results))
-    return results, [failure for _, failure in found if failure]
-
-
-def run_share(share: Share) -> tuple[list[dict], str]:
-    """The results of one simulation, and what it said if it failed."""
-    directory = (share.output / f"from{share.seeds[0]}").resolve()
-    shutil.rmtree(directory, ignore_errors=True)  # a worker that died may have begun it
-    directory.mkdir(parents=True)
-    job = Job(share.configuration, output=str(directory), seeds=tuple(share.seeds), stiff=share.stiff)
-    failure = ""
-    try:
-        model = build_model(share.configuration, share.simulator, build=share.build)
-        run_bench(model, "raycaster.verif.soak.bench", job, directory)
-    except SimulationError as error:
-        failure = str(error)
-    results = directory / "results.jsonl"
-    lines = results.read_text().splitlines() if results.exists() else []
-    return [json.loads(line) for line in lines], failure
+BENCH = "raycaster.verif.soak.bench"
 
 
 def show(
@@ -130,16 +70,16 @@ def main(argv: Sequence[str] | None = None) -> int:
         raise UserError("seeds: must be 1 or more, first: 0 or more")
     configuration = configure(**{"reflections": 2} | given_options(arguments))
     console = Console()
-    with console.status(f"building {configuration.name}"):
-        build_model(configuration, arguments.simulator, build=arguments.build)  # which the workers find
-    started = time.perf_counter()
     output = arguments.build / "soak"
     seeds = range(arguments.first, arguments.first + arguments.seeds)
     if arguments.stiff:
         seeds = range(len(catalogue(configuration.looks)))
-    whole = Share(configuration, arguments.simulator, seeds, output, arguments.build, arguments.stiff)
+    whole = Campaign(
+        BENCH, configuration, seeds, output, arguments.build, simulator=arguments.simulator, stiff=arguments.stiff
+    )
+    started = time.perf_counter()
     with executors(arguments.scheduler, arguments.jobs) as make_executor:
-        results, failures = soak(whole, console, make_executor)
+        results, failures = run_campaign(whole, console, make_executor)
     show(results, time.perf_counter() - started, configuration, console, stiff=arguments.stiff)
     for result in results:
         if result["wrong_vs_golden"]:

@@ -4,22 +4,25 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from conftest import BUILD, ROOT, SMALL_SCENE
+from conftest import BUILD, SMALL_SCENE
 from rich.console import Console
 
-from raycaster.configuration import configure
+from raycaster.configuration import COORDINATE_BITS, Configuration, configure
 from raycaster.errors import UserError
 from raycaster.golden import seed_engine
-from raycaster.golden.world import Rectangles
-from raycaster.scene import dump_scene, load_scene
-from raycaster.sim.simulator import build_model
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.scene import Scene, dump_scene, load_scene
+from raycaster.sim.job import Job
+from raycaster.sim.simulator import build_model, convert, run_bench
 from raycaster.verif.coverage.code import Explanation, Judgement, describe, judge, load_explanations, read_counts
-from raycaster.verif.coverage.functional import IMPOSSIBLE, POINTS, FunctionalCoverage, count
+from raycaster.verif.coverage.functional import HITS, IMPOSSIBLE, POINTS, PROBE, FunctionalCoverage, read_bins
 from raycaster.verif.coverage.measure import (
     EXTRA_SCENE,
     FLAGS,
@@ -32,7 +35,6 @@ from raycaster.verif.coverage.measure import (
 )
 from raycaster.verif.random_scenes import random_scene
 
-VGA = configure(reflections=2)
 SOURCE = """module counter (clk, on, value);
 always @(posedge clk) begin
     if (on) begin
@@ -191,63 +193,77 @@ def test_verilator_counts(output):
     assert any(module == "z_buffer" and "depth < nearest" in what for module, what in holes)
 
 
-def test_intersections_are_counted():
-    """Against one ray at a time, in all styles of random scenes."""
-    for seed in range(5):
-        scene = random_scene(seed, 12, 2)
-        rectangles = Rectangles.of_scene(scene)
-        rng = np.random.default_rng(seed)
-        slopes = np.stack([np.full(60, 100), rng.integers(-160, 160, 60), rng.integers(-49, 191, 60)], axis=1)
-        slopes[:20, 1:] //= 20
-        traced = seed_engine.trace(rectangles, scene.camera.position, scene.background, slopes, 2, keep=True)
-        counted = count(traced, rectangles)
-        expected = np.zeros_like(counted)
-        for number, bounce in enumerate(traced.bounces):
-            for ray in np.flatnonzero(bounce.alive):
-                for place in one_ray(bounce, rectangles, ray):
-                    expected[(*place, number)] += 1
-        assert counted.sum() > 60 and np.array_equal(counted, expected), f"seed {seed}"
+SMALL = configure(screen="tiny", units=16, rectangles=6, reflections=2, divider_bits=2, allow_underrun=True)
 
 
-def one_ray(bounce: seed_engine.Bounce, rectangles: Rectangles, ray: int) -> list[tuple[int, int, int, int]]:
-    """Axis, slope, result and rank of each of a ray's intersections, by the words of `POINTS`."""
-    places, nearest = [], None
-    for index in np.flatnonzero(rectangles.visible):
-        axis = int(rectangles.axes[index])
-        ahead, slope = int(bounce.numerators[index, ray]), int(bounce.denominators[index, ray])
-        point, depth = bounce.points[index, ray], int(bounce.depths[index, ray])
-        bounds = [(rectangles.low[index][u], point[u], rectangles.high[index][u]) for u in range(3) if u != axis]
-        rank = "none"
-        if slope == 0:
-            result = "parallel"
-        elif ahead == 0:
-            result = "on plane"
-        elif ahead * slope < 0:
-            result = "behind"
-        elif not bounce.valid[index, ray].all():
-            result = "overflow"
-        elif not all(low <= at <= high for low, at, high in bounds):
-            result = "miss"
+def counted(scene: Scene, config: Configuration) -> np.ndarray:
+    """As `read_bins` has it, of all intersections that golden computes, those that culling would give up among them."""
+    rectangles = Rectangles.of_scene(scene)
+    slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
+    position, background = scene.camera.position, scene.background
+    traced = seed_engine.trace(
+        rectangles, position, background, slopes, scene.reflections, fraction_bits=config.fraction_bits, keep=True
+    )
+    counts = np.zeros(np.prod(shape()), dtype=np.int64)
+    for number, bounce in enumerate(traced.bounces):
+        # Those that have hit nothing before go on missing, and nothing of them is seen.
+        alive = bounce.alive
+        nearest = np.full(alive.sum(), 1 << (COORDINATE_BITS + config.fraction_bits), dtype=np.int64)
+        found = np.zeros(alive.sum(), dtype=bool)
+        for index in np.flatnonzero(rectangles.visible):
+            axis = rectangles.axes[index]
+            numerator, slope = bounce.numerators[index][alive], bounce.denominators[index][alive]
+            hit, depth, point = (values[index][alive] for values in (bounce.hits, bounce.depths, bounce.points))
+            bounds = np.stack([rectangles.low[index], rectangles.high[index]]) << config.fraction_bits
+            extent = list(OTHER_AXES[axis])
+            on_bound = (point[:, None, extent] == bounds[:, extent]).any(axis=(1, 2))
+            result = np.select(
+                [slope == 0, numerator == 0, np.sign(numerator) != np.sign(slope)],
+                [0, 1, 2],
+                np.select([~bounce.valid[index][alive].all(axis=1), ~hit, on_bound], [3, 4, 5], 6),
+            )
+            rank = np.select([~hit, ~found, depth < nearest, depth == nearest], [0, 1, 2, 3], 4)
+            places = np.ravel_multi_index((axis, np.sign(slope) + 1, result, rank, number), shape())
+            counts += np.bincount(places, minlength=counts.size)
+            nearest = np.where(hit, np.minimum(nearest, depth), nearest)
+            found |= hit
+    return counts.reshape(shape())
+
+
+@pytest.mark.parametrize("options", [{}, {"culling": False}, {"culling": False, "fraction_bits": 3}])
+def test_the_hardware_counts_its_intersections(output, options):
+    """Without culling as golden computes them; with it all hits, fewer of what does not hit, and nothing impossible."""
+    config = replace(SMALL, **options)
+    model = build_model(config, build=BUILD, verilog=[*convert(config, BUILD), PROBE])
+    hits, total = [POINTS["result"].index(name) for name in HITS], 0
+    for seed in range(4):
+        scene = random_scene(seed, config.rectangles, config.reflections)
+        directory = output / f"{config.name}-{seed}"
+        directory.mkdir(parents=True)
+        (directory / "scene.toml").write_text(dump_scene(scene))
+        job = Job(config, scene=str(directory / "scene.toml"), output=str(directory))
+        run_bench(model, "raycaster.sim.frame_bench", job, directory)
+        found, expected = read_bins(directory), counted(scene, config)
+        if config.culling:
+            assert np.array_equal(found[:, :, hits], expected[:, :, hits]), f"seed {seed}"
+            assert (found <= expected).all() and found.sum() < expected.sum(), f"seed {seed}"
+            FunctionalCoverage().add(found)
         else:
-            result = "edge" if any(at in (low, high) for low, at, high in bounds) else "hit"
-            if nearest is None:
-                rank = "first"
-            else:
-                rank = "nearer" if depth < nearest else "tie" if depth == nearest else "farther"
-            nearest = depth if nearest is None else min(nearest, depth)
-        sign = "zero" if slope == 0 else "positive" if slope > 0 else "negative"
-        places.append((
-            axis, POINTS["slope"].index(sign), POINTS["result"].index(result), POINTS["rank"].index(rank),
-        ))  # fmt: skip
-    return places
+            assert np.array_equal(found, expected), f"seed {seed}"
+        total += found[:, :, hits].sum()
+    assert total > 1000
 
 
 def test_bins_that_were_not_hit_are_reported(tmp_path, capsys):
     """A primary ray only hits primary bins; every other possible one is a hole, and makes the command fail."""
     functional = FunctionalCoverage()
-    functional.add_scene(load_scene(ROOT / "scenes" / "floor.toml"), VGA, 0)
+    counts = np.zeros(shape(), np.int64)
+    bins = "z", "negative", "hit", "first", "primary"
+    counts[tuple(values.index(name) for values, name in zip(POINTS.values(), bins, strict=True))] = 7
+    functional.add(counts)
+    functional.add(counts)
     holes = set(functional.holes)
-    assert ("z", "negative", "hit", "first", "primary") not in holes
+    assert bins not in holes
     assert ("z", "negative", "hit", "first", "second") in holes
     assert verdict(NOTHING, functional, []) == 1
     show_functional(functional, 1, Console(width=120))
@@ -258,10 +274,9 @@ def test_bins_that_were_not_hit_are_reported(tmp_path, capsys):
     assert written["bins"] + sum(written["ignored"].values()) == np.prod(shape())
     assert all(written["ignored"][reason] > 0 for reason in IMPOSSIBLE)
     cross = ElementTree.parse(tmp_path / "functional.xml").find("raycaster/intersection")
-    assert cross.get("coverage") == str(written["covered"])
+    assert cross.get("coverage") == str(written["covered"]) == "1"
     points = ElementTree.parse(tmp_path / "functional.xml").find("raycaster/axis")
-    total = sum(int(found.get("hits")) for found in points)
-    assert total == sum(hits[-1] for hits in written["hits"]) > 640 * 480 // 4
+    assert sum(int(found.get("hits")) for found in points) == sum(hits[-1] for hits in written["hits"]) == 14
 
 
 def test_what_is_declared_impossible_must_not_come():
@@ -274,7 +289,7 @@ def test_what_is_declared_impossible_must_not_come():
 
 def test_the_extra_scene_has_what_it_is_for():
     """Ties on an edge, in a second reflection along negative x."""
-    functional = FunctionalCoverage()
     scene = load_scene(EXTRA_SCENE)
-    functional.add_scene(scene, VGA, scene.reflections)
-    assert functional.bins["x", "negative", "edge", "tie", "second"] >= 10
+    bins = "x", "negative", "edge", "tie", "second"
+    place = tuple(values.index(name) for values, name in zip(POINTS.values(), bins, strict=True))
+    assert counted(scene, configure(reflections=scene.reflections))[place] >= 10

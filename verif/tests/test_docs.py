@@ -18,14 +18,17 @@ from pathlib import Path
 
 import pytest
 from conftest import BUILD, ROOT
+from rich.console import Console
 
 from raycaster import outcomes
 from raycaster.configuration import configure
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.inside import find_block, look_inside
-from raycaster.docs import blocks, commands, drawings, facts, pages, proofs, results, tables, timing
+from raycaster.docs import blocks, commands, drawings, facts, pages, proofs, results, scaling, tables, timing
 from raycaster.docs.commands import commands_of, outside_make
 from raycaster.errors import UserError
+from raycaster.fpga.area import Area
+from raycaster.golden.picture import shown
 from raycaster.options import CommandParser
 from raycaster.rtl.system.ports import module_ports
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
@@ -399,7 +402,7 @@ def test_pages(tmp_path: Path):
     assert "raycaster.golden.exact.trace" in text, "the library's reference"
     assert "The RayCaster authors" in text
     drawings = {f"{drawing.name}.svg" for drawing in (*blocks.DRAWINGS, *timing.DIAGRAMS)}
-    assert {path.name for path in output.glob("_images/*.svg")} == drawings, "each drawing is on a page"
+    assert {path.name for path in output.glob("_images/*.svg")} == drawings | {"scaling.svg"}, "each is on a page"
     assert (output / "register_map" / "index.html").is_file()
 
 
@@ -431,3 +434,55 @@ def test_the_measured_designs_drew_what_they_had_to():
     for design in designs:
         assert design["wrong_vs_golden"] == 0
         assert (design["wrong_vs_exact"] > 0) == (design["options"]["engine"] == "seed")
+
+
+def test_a_straight_line():
+    start, slope, off = tables.line_through([1, 2, 4], [110, 120, 140])
+    assert (round(start, 9), round(slope, 9), round(off, 9)) == (100, 10, 0)
+    assert tables.line_through([1, 2, 3], [100, 100, 130])[2] == pytest.approx(0.1)
+
+
+def test_how_designs_grow(tmp_path: Path, monkeypatch):
+    """A row for each design, those that are refused too; a design of two series is counted once."""
+    counted = []
+
+    def count(config, family, directory):
+        counted.append(config.name)
+        return Area(100 * config.rectangles, 7, 0, 3, 0)
+
+    few = {value: {"rectangles": value} for value in (2, 12)}
+    series = [
+        scaling.Series("beam", "rectangles", few),
+        scaling.Series("beam", "reflections", {1: {"reflections": 1}, 4: {"reflections": 4, "fraction_bits": 1}}),
+    ]
+    monkeypatch.setattr(scaling, "SERIES", series)
+    monkeypatch.setattr(scaling, "measure", count)
+    monkeypatch.setattr(scaling, "frame_time", lambda config, build: 9.0)
+    rows = scaling.measure_scaling(tmp_path, tmp_path, Console())
+    assert sorted(counted) == ["beam-vga240-s2-u1-r12-m1-c8", "beam-vga240-s2-u1-r2-m1-c8"]
+    assert [(row["option"], row["value"], row.get("tables")) for row in rows] == [
+        ("rectangles", 2, 200), ("rectangles", 12, 1200), ("reflections", 1, 1200), ("reflections", 4, None),
+    ]  # fmt: skip
+    assert rows[0]["frame_cycles"] == 640 * 480
+    assert rows[3]["refused"].startswith("fraction_bits: ")
+
+
+@pytest.mark.parametrize("break_it", [False, True])
+def test_a_frame_is_timed(tmp_path: Path, monkeypatch, break_it):
+    """Of a scene that fills the table; a wrong pixel shows."""
+    config = configure(engine="beam", screen="tiny", rectangles=14)
+    assert len(scaling.scene_for(config).rect) == 14
+    if break_it:
+        monkeypatch.setattr(scaling, "shown", lambda picture, config: 255 - shown(picture, config))
+        with pytest.raises(AssertionError, match="wrong pixels"):
+            scaling.frame_time(config, BUILD)
+    else:
+        assert 0 <= scaling.frame_time(config, BUILD) < 1000
+
+
+def test_the_plot_of_the_growth():
+    """It is of what the tables are of."""
+    kept = tables.outcome("scaling")
+    plot = (pages.HERE / "scaling.svg").read_text()
+    assert f"measured {kept['date']}, commit {kept['commit']}" in plot
+    assert set(drawings.words(plot)) > {"seed", "exact", "beam", "rectangles", "reflections", "LUT4"}

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+"""A long run of numbered cases through a bench, some to a simulation, so that little is lost with a worker."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor, ProcessPoolExecutor
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from rich.console import Console
+
+from raycaster.configuration import Configuration
+from raycaster.jobs import run_jobs
+from raycaster.sim.job import Job
+from raycaster.sim.simulator import VERILATOR_FLAGS, Model, SimulationError, build_model, convert, run_bench
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """Cases, or some of them for one simulation.
+
+    Attributes:
+        bench: the module of its cocotb test, which takes the job's seeds for the cases' numbers and writes a line of
+            JSON for each to `results.jsonl` in the job's output.
+        configuration: the design.
+        cases: their numbers.
+        output: of all of them; replaced: `results.jsonl` is all results, `from<number>` what a simulation wrote.
+        build: the directory that holds `model/`.
+        simulator: one of `SIMULATORS`.
+        flags: for Verilator.
+        probes: Verilog beside the design's.
+        stiff: the job's.
+        registers: the job's.
+        share: cases of a simulation.
+    """
+
+    bench: str
+    configuration: Configuration
+    cases: range
+    output: Path
+    build: Path
+    simulator: str = "verilator"
+    flags: Sequence[str] = VERILATOR_FLAGS
+    probes: Sequence[Path] = ()
+    stiff: bool = False
+    registers: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    share: int = 5
+
+
+def run_campaign(
+    campaign: Campaign, console: Console, make_executor: Callable[[], Executor] = ProcessPoolExecutor
+) -> tuple[list[dict], list[str]]:
+    """Run all cases.
+
+    Args:
+        campaign: they.
+        console: for the progress bar.
+        make_executor: see `raycaster.jobs.executors`.
+
+    Returns:
+        The results in the order of the cases, and what each failed simulation said.
+
+    Raises:
+        UserError: a tool is missing.
+        SimulationError: the model cannot be built.
+    """
+    with console.status(f"building {campaign.configuration.name}"):
+        _build(campaign)  # which the workers find
+    shutil.rmtree(campaign.output, ignore_errors=True)
+    cases, share = campaign.cases, campaign.share
+    shares = [replace(campaign, cases=cases[first : first + share]) for first in range(0, len(cases), share)]
+    found = run_jobs("simulations", _run_share, shares, make_executor, console)
+    results = [result for results, _ in found for result in results]
+    campaign.output.mkdir(parents=True, exist_ok=True)
+    (campaign.output / "results.jsonl").write_text("".join(json.dumps(result) + "\n" for result in results))
+    return results, [failure for _, failure in found if failure]
+
+
+def _build(campaign: Campaign) -> Model:
+    verilog = [*convert(campaign.configuration, campaign.build), *campaign.probes]
+    return build_model(
+        campaign.configuration, campaign.simulator, build=campaign.build, verilog=verilog, flags=campaign.flags
+    )
+
+
+def _run_share(share: Campaign) -> tuple[list[dict], str]:
+    """The results of one simulation, and what it said if it failed."""
+    directory = (share.output / f"from{share.cases[0]}").resolve()
+    shutil.rmtree(directory, ignore_errors=True)  # a worker that died may have begun it
+    directory.mkdir(parents=True)
+    job = Job(
+        share.configuration, output=str(directory), seeds=tuple(share.cases), stiff=share.stiff,
+        registers=share.registers,
+    )  # fmt: skip
+    failure = ""
+    try:
+        run_bench(_build(share), share.bench, job, directory)
+    except SimulationError as error:
+        failure = str(error)
+    results = directory / "results.jsonl"
+    lines = results.read_text().splitlines() if results.exists() else []
+    return [json.loads(line) for line in lines], failure

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+"""Disturbances of a running design: what is flipped, that a sound design comes back, that one which hangs is told."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from conftest import BUILD
+
+from raycaster.configuration import configure
+from raycaster.sim.job import Job
+from raycaster.sim.simulator import SimulationError, build_model, convert, run_bench
+from raycaster.verif.upsets.bench import KINDS
+from raycaster.verif.upsets.upsets import FLAGS, registers_of
+
+BENCH = "raycaster.verif.upsets.bench"
+SMALL = configure(engine="exact", screen="tiny", rectangles=1, reflections=0, units=4)
+VERILOG = """module two (
+    input  wire clk
+);
+reg [3:0] count;
+reg [7:0] rows [0:3];
+wire less;
+assign less = count <= 3;
+always @(posedge clk) begin
+    if (count <= 2) begin
+        count <= count + 1;
+    end
+    rows[count[1:0]] <= 8'd3;
+end
+endmodule
+"""
+
+
+def test_what_is_assigned_at_an_edge_is_a_register(tmp_path: Path):
+    (tmp_path / "two.v").write_text(VERILOG)
+    assert registers_of([tmp_path / "two.v"]) == {"two": ("count", "rows")}
+
+
+def test_every_module_with_a_clocked_process_has_registers():
+    files = convert(SMALL, BUILD)
+    clocked = {file.stem for file in files if "posedge" in file.read_text()}
+    found = registers_of(files)
+    assert {module for module, names in found.items() if names} == clocked
+    assert {"x", "y", "hs", "vs"} <= set(found["video_generator"])
+
+
+def run_cases(files: list[Path], directory: Path, registers: dict, cases: range) -> list[dict]:
+    model = build_model(SMALL, build=BUILD, verilog=files, flags=FLAGS)
+    run_bench(model, BENCH, Job(SMALL, output=str(directory), seeds=tuple(cases), registers=registers), directory)
+    return read_results(directory)
+
+
+def read_results(directory: Path) -> list[dict]:
+    return [json.loads(line) for line in (directory / "results.jsonl").read_text().splitlines()]
+
+
+def test_a_sound_design_comes_back(tmp_path: Path):
+    """Where the line counter jumps, syncs are lost, and the picture is right again soon; so after reset, and misuse."""
+    results = run_cases(convert(SMALL, BUILD), tmp_path, {"video_generator": ("y",)}, range(24))
+    assert {result["outcome"] for result in results} <= {"StartScreen", "commit", "unseen"}
+    assert Counter(result["kind"] for result in results).keys() == set(KINDS)
+    flipped = [result for result in results if result["kind"] == "upset"]
+    assert all(result["where"].startswith("ray_caster_renderer_i.video_generator_i.y[") for result in flipped)
+    assert any(result["lost_sync"] and result["outcome"] == "StartScreen" for result in flipped)
+
+
+def test_one_that_hangs_is_told(tmp_path: Path):
+    """Lines above the picture are counted no more, once the count is where it never is."""
+    files = []
+    for source in convert(SMALL, BUILD):
+        files.append(tmp_path / source.name)
+        files[-1].write_text(source.read_text().replace("y <= y + 1;", "if (y >= -8) y <= y + 1;"))
+    assert sum("if (y >= -8)" in file.read_text() for file in files) == 1
+    with pytest.raises(SimulationError, match="did not come back in cases"):
+        run_cases(files, tmp_path, {"video_generator": ("y",)}, range(24))
+    assert "hangs" in {result["outcome"] for result in read_results(tmp_path)}
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        (("--cases", "0"), "error: cases: must be 1 or more"),
+        (("--engine", "exact", "--bus", "apb"), "error: bus: verify upsets drives the registers itself"),
+    ],
+)
+def test_bad_options_get_one_line(tmp_path, options, complaint):
+    call = (sys.executable, "-m", "raycaster.cli", "verify", "upsets", *options)
+    done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith(complaint)
+    assert done.stderr.count("\n") == 1
+    assert not any(tmp_path.iterdir())

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: MIT
+"""Disturb a running design: flip a bit, reset it, misuse its bus; and see when its picture is right again."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from raycaster.configuration import Configuration, configure, need_avalon
+from raycaster.errors import UserError
+from raycaster.jobs import add_job_options, executors
+from raycaster.options import (
+    CommandParser,
+    add_build_option,
+    add_configuration_options,
+    command_line,
+    given_options,
+)
+from raycaster.outcomes import add_keep_option, keep, scope_of
+from raycaster.sim.simulator import VERILATOR_FLAGS, convert
+from raycaster.verif.campaign import Campaign, run_campaign
+from raycaster.verif.upsets.bench import KINDS
+
+FLAGS = tuple(flag for flag in VERILATOR_FLAGS if flag != "--no-public-flat-rw")
+"""Each register can be written from outside."""
+
+SHARE = 50
+"""Cases of a simulation."""
+
+OUTCOMES = ("unseen", "StartScreen", "commit", "hangs")
+"""What mended the picture, the next StartScreen or the next commit; or nothing to see, or nothing that mends."""
+
+
+def registers_of(files: Sequence[Path]) -> dict[str, tuple[str, ...]]:
+    """By module, what is assigned at an edge of the clock: its registers and memories.
+
+    Args:
+        files: converted Verilog, a module a file, in which such an assignment has a line of its own.
+    """
+    found = {}
+    for file in files:
+        text = file.read_text()
+        for module in re.findall(r"^module (\w+)", text, re.MULTILINE):
+            found[module] = tuple(sorted(set(re.findall(r"^\s*(\w+)(?:\[[^=]*\])? <= ", text, re.MULTILINE))))
+    return found
+
+
+def show(results: Sequence[Mapping], seconds: float, configuration: Configuration, console: Console) -> None:
+    """Print what became of the cases, by kind."""
+    table = Table(title=f"{configuration.name}, {len(results)} cases in {seconds:.0f} s")
+    table.add_column("what happened, mended by")
+    for heading in (
+        "cases",
+        "unseen",
+        "mended by StartScreen",
+        "by a commit",
+        "never",
+        "frames wrong, at most",
+        "sync",
+    ):
+        table.add_column(heading, justify="right")
+    for kind in dict.fromkeys(KINDS):
+        of_kind = [result for result in results if result["kind"] == kind]
+        outcomes = Counter(result["outcome"] for result in of_kind)
+        most = max((result["wrong"] for result in of_kind), default=0)
+        counts = [len(of_kind), *(outcomes[each] for each in OUTCOMES), most]
+        table.add_row(kind, *(f"{count:,}" for count in [*counts, sum(each["lost_sync"] for each in of_kind)]))
+    console.print(table)
+
+
+def command_parser() -> CommandParser:
+    """What the command takes."""
+    parser = CommandParser("verify upsets", __doc__, "--engine exact --cases 200")
+    parser.add_argument("--cases", type=int, default=500, metavar="N", help="how many (default: %(default)s)")
+    parser.add_argument("--first", type=int, default=0, metavar="CASE", help="the first one's number (%(default)s)")
+    add_job_options(parser)
+    add_build_option(parser)
+    add_configuration_options(parser)
+    add_keep_option(parser)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command; returns its exit code."""
+    arguments = command_parser().parse_args(argv)
+    if arguments.cases < 1 or arguments.first < 0:
+        raise UserError("cases: must be 1 or more, first: 0 or more")
+    configuration = configure(**{"screen": "tiny", "allow_underrun": True} | given_options(arguments))
+    need_avalon(configuration, "verify upsets")
+    console = Console()
+    cases = range(arguments.first, arguments.first + arguments.cases)
+    campaign = Campaign(
+        "raycaster.verif.upsets.bench", configuration, cases, arguments.build / "upsets", arguments.build,
+        flags=FLAGS, registers=registers_of(convert(configuration, arguments.build)), share=SHARE,
+    )  # fmt: skip
+    started = time.perf_counter()
+    with executors(arguments.scheduler, arguments.jobs) as make_executor:
+        results, failures = run_campaign(campaign, console, make_executor)
+    show(results, time.perf_counter() - started, configuration, console)
+    for result in results:
+        if result["outcome"] == "hangs":
+            repeat = command_line(
+                "verify upsets", options={"cases": 1, "first": result["case"]} | given_options(arguments)
+            )
+            what = f"case {result['case']}: {result['kind']}, {result['where']}, clock {result['clock']:.0f}"
+            console.print(f"{what}: did not come back; repeat with: {repeat}", style="red", soft_wrap=True)
+    for failure in failures:
+        console.print(failure, style="red", markup=False, soft_wrap=True)
+    missing = len(cases) - len(results)
+    figures = {"cases": len(results), "not_run": missing} | {
+        kind: dict(Counter(result["outcome"] for result in results if result["kind"] == kind))
+        for kind in dict.fromkeys(KINDS)
+    }
+    figures["most_wrong"] = max((result["wrong"] for result in results), default=0)
+    figures["lost_sync"] = sum(result["lost_sync"] for result in results)
+    keep(arguments, figures, scope_of(configuration))
+    if missing:
+        console.print(f"{missing} cases were not run", style="red")
+    return int(bool(failures) or bool(missing))
