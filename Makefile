@@ -5,7 +5,7 @@
 PYTHON3 ?= python3
 VENV := .venv
 PYTHON := $(VENV)/bin/python
-COMMANDS := sim scenes options play game web wave trace verilog fit area quartus bitstream registers report docs results commands
+COMMANDS := sim scenes options play game web wave trace verilog fit area quartus bitstream tinytapeout registers report docs results commands
 CHECKS := soak prove mutate exhaustive coverage dvi verify-all
 comma := ,
 ARGUMENTS = $(filter-out PYTHON3=% PYTHON=% VENV=%,$(MAKEOVERRIDES))
@@ -13,7 +13,7 @@ ARGUMENTS = $(filter-out PYTHON3=% PYTHON=% VENV=%,$(MAKEOVERRIDES))
 # Extras of pyproject.toml that a target needs beside the program itself.
 play game: EXTRAS := play
 web: EXTRAS := $(if $(filter-out 0,$(MEASURE)),play$(comma)test,play)
-fit area: EXTRAS := fpga
+fit area tinytapeout: EXTRAS := fpga
 results: EXTRAS := fpga,docs
 bitstream: EXTRAS := fpga,play
 report: EXTRAS := fpga,report
