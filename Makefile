@@ -25,7 +25,7 @@ mutate: EXTRAS := formal,test
 lint: EXTRAS := test
 test verify-all: EXTRAS := formal,fpga,report,coverage,play,docs,test
 
-.PHONY: help $(COMMANDS) $(CHECKS) test lint clean
+.PHONY: help $(COMMANDS) $(CHECKS) flash test lint clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -35,6 +35,9 @@ help:
 $(COMMANDS) $(CHECKS): $(VENV)/base
 	@$(call install,$(EXTRAS))
 	@RAYCASTER_FROM_MAKE=1 $(PYTHON) -m raycaster.cli $(if $(filter $@,$(CHECKS)),verify )$(patsubst verify-%,%,$@) $(ARGUMENTS)
+
+flash:
+	@$(MAKE) --no-print-directory bitstream FLASH=1
 
 lint test: $(VENV)/base
 	@$(call install,$(EXTRAS))
