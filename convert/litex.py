@@ -116,7 +116,8 @@ def add_ray_caster(
         config: the design.
         directory: for its Verilog; replaced as a whole.
         name: of the module in the SoC.
-        origin: byte address of the registers, or None for where there is room.
+        origin: byte address of the registers, or None for where there is room for what a processor must not cache;
+            without a processor it is to be given.
 
     Returns:
         The module, `soc.<name>`, whose video is to be connected.

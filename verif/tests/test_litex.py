@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import re
 import subprocess
 import sys
@@ -15,7 +16,9 @@ import pytest
 from conftest import BUILD, ROOT
 from litex.build.generic_platform import GenericPlatform, Pins, Subsignal
 from litex.soc.cores.video import video_data_layout
+from litex.soc.integration.export import get_csr_json
 from litex.soc.integration.soc_core import SoCCore
+from migen.genlib.io import CRG
 
 from raycaster.configuration import configure
 from raycaster.convert.litex import add_ray_caster
@@ -116,6 +119,33 @@ def test_a_frame_is_golden(example, options, tmp_path):
     assert len(np.unique(expected.reshape(-1, 3), axis=0)) == 1 + len(SCENE.rect)
     assert np.array_equal(pixels(tmp_path / "pins.txt", shape, config.colour_bits), expected)
     assert np.array_equal(pixels(tmp_path / "stream.txt", shape, 8), expected)
+
+
+@pytest.mark.parametrize(("bus", "standard"), [("wishbone", "axi-lite"), ("axi4lite", "wishbone")])
+def test_the_map_is_that_of_the_driver(bus, standard, tmp_path):
+    """Of a SoC without a processor, whose bus is of another kind: each register is where C's own header has it."""
+    platform = GenericPlatform("none", [("clk", 0, Pins(1))])
+    soc = SoCCore(platform, 50e6, bus_standard=standard, cpu_type=None, with_uart=False, with_timer=False)
+    soc.crg = CRG(platform.request("clk"))
+    config = configure(screen="tiny", rectangles=3, bus=bus)
+    add_ray_caster(soc, config, tmp_path / "verilog", name="tracer", origin=0x8000_0000)
+    soc.finalize()
+    told = json.loads(get_csr_json(soc.csr_regions, soc.constants, soc.mem_regions))
+    assert told["memories"]["tracer"] == {"base": 0x8000_0000, "size": 128, "type": "io"}
+    offsets = {
+        name.removeprefix("tracer_").removesuffix("_offset"): value
+        for name, value in told["constants"].items()
+        if name.endswith("_offset")
+    }
+    assert len(offsets) == 14 + 3 * 4
+    members = {name: re.sub(r"^rectangle_(\d+)_", r"rectangle[\1].", name) for name in offsets}
+    lines = "".join(f'printf("%zu\\n", offsetof(ray_caster_t, {member}));' for member in members.values())
+    headers = "".join(f"#include <{name}>\n" for name in ("stddef.h", "stdio.h", "raycaster_regs.h"))
+    (tmp_path / "offsets.c").write_text(f"{headers}int main(void) {{ {lines} }}\n")
+    compiler = ["g++", "-x", "c++", f"-I{tmp_path / 'verilog'}", "offsets.c", "-o", "offsets"]
+    subprocess.run(compiler, cwd=tmp_path, check=True)
+    printed = subprocess.run([tmp_path / "offsets"], capture_output=True, text=True, check=True).stdout
+    assert list(offsets.values()) == [int(line) for line in printed.split()]
 
 
 @pytest.mark.parametrize(
