@@ -5,7 +5,7 @@
 PYTHON3 ?= python3
 VENV := .venv
 PYTHON := $(VENV)/bin/python
-COMMANDS := sim scenes options play game web wave trace verilog fit area quartus bitstream registers report docs results commands
+COMMANDS := sim scenes options play game web wave trace verilog fit area quartus bitstream tinytapeout registers report docs results commands
 CHECKS := soak prove mutate exhaustive coverage upsets dvi verify-all
 comma := ,
 ARGUMENTS = $(filter-out PYTHON3=% PYTHON=% VENV=%,$(MAKEOVERRIDES))
@@ -13,7 +13,7 @@ ARGUMENTS = $(filter-out PYTHON3=% PYTHON=% VENV=%,$(MAKEOVERRIDES))
 # Extras of pyproject.toml that a target needs beside the program itself.
 play game: EXTRAS := play
 web: EXTRAS := $(if $(filter-out 0,$(MEASURE)),play$(comma)test,play)
-fit area: EXTRAS := fpga
+fit area tinytapeout: EXTRAS := fpga
 results: EXTRAS := fpga,docs$(if $(filter-out 0,$(SCALING)),$(comma)report)
 bitstream: EXTRAS := fpga,play
 report: EXTRAS := fpga,report
@@ -25,7 +25,7 @@ mutate: EXTRAS := formal,test
 lint: EXTRAS := test
 test verify-all: EXTRAS := formal,fpga,report,coverage,play,docs,test
 
-.PHONY: help $(COMMANDS) $(CHECKS) test lint clean
+.PHONY: help $(COMMANDS) $(CHECKS) flash test lint clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
@@ -35,6 +35,9 @@ help:
 $(COMMANDS) $(CHECKS): $(VENV)/base
 	@$(call install,$(EXTRAS))
 	@RAYCASTER_FROM_MAKE=1 $(PYTHON) -m raycaster.cli $(if $(filter $@,$(CHECKS)),verify )$(patsubst verify-%,%,$@) $(ARGUMENTS)
+
+flash:
+	@$(MAKE) --no-print-directory bitstream FLASH=1
 
 lint test: $(VENV)/base
 	@$(call install,$(EXTRAS))

@@ -36,6 +36,7 @@ COMMANDS: Mapping[str, Command] = {
     "fit": Command("raycaster.fpga.fit", "find the smallest hardware for a scene", "fpga"),
     "area": Command("raycaster.fpga.area", "count the cells of a design", "fpga"),
     "bitstream": Command("raycaster.fpga.bitstream", "make a bitstream for a board", "fpga"),
+    "tinytapeout": Command("raycaster.fpga.tiny_tapeout", "write a Tiny Tapeout project, and count its gates", "fpga"),
     "quartus": Command("raycaster.fpga.quartus", "write a Quartus project for an Intel board"),
     "registers": Command("raycaster.register_views", "write the register map as a C header and a page"),
     "report": Command("raycaster.report.__main__", "compare error, run time and size of designs", "report"),
@@ -54,14 +55,19 @@ COMMANDS: Mapping[str, Command] = {
 }
 
 
+NOT_OF_MAKE = ("completion",)
+"""Commands that are no target of make: it completes words by itself."""
+
+
 def overview(*, from_make: bool = False) -> str:
     """All commands, a line each, on one screen; those of `verify` share one.
 
     Args:
-        from_make: in the form in which make takes them.
+        from_make: those that make takes, and in its form.
     """
     checks = [name.removeprefix("verify ") for name in COMMANDS if name.startswith("verify ")]
-    lines = [(name, command.purpose) for name, command in COMMANDS.items() if not name.startswith("verify ")]
+    others = [name for name in COMMANDS if not name.startswith("verify ") and not (from_make and name in NOT_OF_MAKE)]
+    lines = [(name, COMMANDS[name].purpose) for name in others]
     if from_make:
         head = "make sim SCENE=mirror_room ENGINE=beam PYTHON3=python3.12"
         lines += [

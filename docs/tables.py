@@ -312,6 +312,24 @@ def icebreaker() -> str:
     return table(headings, rows)
 
 
+def tinytapeout() -> str:
+    """What a scene takes as a Tiny Tapeout project, the chosen design first."""
+    figures = outcome("tinytapeout")["figures"]
+    rows = [
+        [
+            f"`ENGINE={row['engine']}`", f"{row['columns']} x {row['rows']}", row["gates"], row["registers"],
+            row["buffer_bits"], row["products"], f"{row['tiles']:.1f}",
+        ]
+        for row in figures["designs"]
+    ]  # fmt: skip
+    note = (
+        f"`{figures['scene']}`, built in. Tiles: one for {figures['gates_a_tile']:,} gates, and one for "
+        f"{figures['registers_a_tile']} registers."
+    )
+    headings = ["engine", "rays a frame", "gates", "registers", "of them line buffer", "multiplications", "tiles"]
+    return _with_source(f"{table(headings, rows)}\n\n{note}", "tinytapeout")
+
+
 def routed_again() -> str:
     """What another seed of the placement reaches."""
     figures = outcome("bitstream-beam-1280x720-seed-2")["figures"]
@@ -462,8 +480,8 @@ def not_mutated() -> str:
 def tables() -> dict[str, str]:
     """All of them, by the names that pages use."""
     made = (
-        engines, work, scenes, families, features, buses, page_speed, routed, boards, icebreaker, routed_again,
-        link_short, game_board, one_scene, error_and_time, checks, not_mutated, scaling_rectangles,
+        engines, work, scenes, families, features, buses, page_speed, routed, boards, icebreaker, tinytapeout,
+        routed_again, link_short, game_board, one_scene, error_and_time, checks, not_mutated, scaling_rectangles,
         scaling_reflections, scaling_units, scaling_resolution, scaling_growth,
     )  # fmt: skip
     return {each.__name__: each() for each in made}

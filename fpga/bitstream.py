@@ -11,6 +11,7 @@ import json
 import math
 import re
 import shutil
+import subprocess
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -28,7 +29,13 @@ from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.board import OpenBoard, board_names, find_board
 from raycaster.fpga.flows import FLOWS, Clocks, Flow, clocks_for
 from raycaster.memory_map import PROGRAM_FILE
-from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
+from raycaster.options import (
+    CommandParser,
+    add_configuration_options,
+    add_scene_argument,
+    command_line,
+    given_options,
+)
 from raycaster.outcomes import add_keep_option, keep, scope_of
 from raycaster.output import replaced
 from raycaster.rtl.system.scene_player import BUTTONS
@@ -42,6 +49,10 @@ GAME_ENGINE = "exact"
 
 TIMEOUT = 5400
 """Seconds that placing and routing may take."""
+
+LOADER = "openFPGALoader"
+LOAD_TIMEOUT = 300
+"""Seconds that it may take."""
 
 
 @dataclass(frozen=True)
@@ -335,6 +346,34 @@ def _is_net(name: str, net: str) -> bool:
     return net in re.split(r"[ $.]", name)
 
 
+def load(board: OpenBoard, made: Path) -> None:
+    """Load a bitstream into the board's chip; nothing is known of what the board then shows.
+
+    Args:
+        board: it is connected.
+        made: the bitstream.
+
+    Raises:
+        UserError: there is none, or openFPGALoader is missing, or could not load it.
+    """
+    if not made.exists():
+        raise UserError(f"{made}: is not there; run {command_line('bitstream', options={'board': board.name})} first")
+    loader = find_program(LOADER)
+    if loader is None:
+        raise UserError(
+            f"{LOADER} is not on the path, and loads {made} onto the board; install it (Debian: apt-get install "
+            "openfpgaloader)"
+        )
+    try:
+        done = run_program([loader, *board.loader, str(made)], Path.cwd(), LOAD_TIMEOUT)
+    except subprocess.TimeoutExpired:
+        raise UserError(f"{LOADER} took more than {LOAD_TIMEOUT:g} s on the {board.title}") from None
+    if done.returncode:
+        said = [line.strip() for line in (done.stderr + done.stdout).splitlines() if line.strip()]
+        reason = said[0] if said else f"exit code {done.returncode}"
+        raise UserError(f"{LOADER} failed on the {board.title}: {reason}")
+
+
 def show(board: OpenBoard, outcome: Outcome, console: Console) -> None:
     """Print what was used, and how fast it is."""
     table = Table("cell", "used", "there", "share", title=f"{board.name}, {board.chip}")
@@ -358,6 +397,7 @@ def command_parser() -> CommandParser:
     parser.add_argument("--board", default="ulx3s", help=f"{', '.join(board_names(OpenBoard))} (default: %(default)s)")
     add_scene_argument(parser, "what to show (mirror_room)")
     parser.add_argument("--game", action="store_true", help="the game on a processor, instead of a scene")
+    parser.add_argument("--flash", action="store_true", help="load what was made for the board into its chip")
     parser.add_argument("--output", type=Path, default=Path("build/bitstream"), help="(default: %(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="of the placement (default: %(default)s)")
     add_fix_option(parser)
@@ -372,6 +412,12 @@ def main(argv: Sequence[str] | None = None) -> None:
     board = find_board(arguments.board, OpenBoard)
     console = Console()
     options = given_options(arguments)
+    output, flow = arguments.output / board.name, FLOWS[board.flow]
+    made = output / f"{board.name}.{flow.bitstream}"
+    if arguments.flash:
+        load(board, made)
+        console.print(f"{made} is in the chip of the {board.title}; what it shows there was never seen", soft_wrap=True)
+        return
     if arguments.game:
         if arguments.scene or arguments.fix:
             raise UserError("game: it sets up its own scene; leave SCENE, FIX and FIT out")
@@ -380,10 +426,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     else:
         scene = arguments.scene or find_scene("mirror_room")
         design = design_of(scene, options, arguments.fix, console, **board.configuration)
-    output = arguments.output / board.name
     outcome = make_bitstream(board, design, output, seed=arguments.seed, console=console)
     show(board, outcome, console)
-    flow = FLOWS[board.flow]
     figures = {"board": board.name, "title": board.title, "chip": board.chip, "seed": arguments.seed}
     figures |= {"missed": outcome.missed, "crossings": dict(outcome.crossings)}
     figures |= {"kinds": dict(zip(("logic", "registers", "multipliers", "memories"), flow.cells, strict=True))}
@@ -392,6 +436,5 @@ def main(argv: Sequence[str] | None = None) -> None:
     keep(arguments, figures, scope_of(design.configuration), left_out="a run on the board")
     if outcome.missed:
         raise UserError(f"too slow: {', '.join(outcome.missed)}; the reports are in {output}; another SEED may do")
-    made = output / f"{board.name}.{flow.bitstream}"
     console.print(f"{made}, {made.stat().st_size:,} bytes, of {design.configuration.name} and {design.path}")
-    console.print(f"openFPGALoader {' '.join(board.loader)} {made}", soft_wrap=True)
+    console.print(f"{LOADER} {' '.join(board.loader)} {made}", soft_wrap=True)

@@ -44,8 +44,16 @@ class Line:
 class Monitor:
     """Collects lines in the background, and makes frames of them."""
 
-    def __init__(self, bench: HierarchyObject, configuration: Configuration):
+    def __init__(self, bench: HierarchyObject, configuration: Configuration, *, blanking: bool = True):
+        """Watch a bench's line sink.
+
+        Args:
+            bench: it has a `sink`.
+            configuration: the design in it.
+            blanking: whether its pins tell of blanking; see `decode_frame`.
+        """
         self._sink = bench.sink
+        self._blanking = blanking
         self._screen = configuration.screen_geometry
         self._colour_bits = configuration.colour_bits
         self._lines: Queue[Line] = Queue()
@@ -100,7 +108,7 @@ class Monitor:
             if on_row is not None and 0 < visible <= vertical.visible:
                 on_row(visible)
         self.frame_lines = lines
-        return decode_frame(lines, self._screen, self._colour_bits)
+        return decode_frame(lines, self._screen, self._colour_bits, blanking=self._blanking)
 
     async def _first_line(self) -> Line:
         """The first line in which VS is active after one in which it was not."""
@@ -129,13 +137,14 @@ class Monitor:
             raise VideoError(f"vga_clk did not change at {faults} clocks; it must be clk halved, or inverted")
 
 
-def decode_frame(lines: Sequence[Line], screen: Screen, colour_bits: int) -> np.ndarray:
+def decode_frame(lines: Sequence[Line], screen: Screen, colour_bits: int, *, blanking: bool = True) -> np.ndarray:
     """Check every sample of a frame against the standard and return its visible part.
 
     Args:
         lines: one frame from VS's leading edge on, `screen.vertical.total` lines.
         screen: the standard.
         colour_bits: bits a channel has.
+        blanking: whether BLANK_N tells of the picture; it is low all the time otherwise.
 
     Returns:
         Visible lines x visible pixels x 3, uint8; a channel of fewer than 8 bits stands in the top bits, the others 0.
@@ -162,7 +171,7 @@ def decode_frame(lines: Sequence[Line], screen: Screen, colour_bits: int) -> np.
     in_picture = _visible(row, vertical) & _visible(column, horizontal)
     _check("HS", bits[..., 0], (column < horizontal.sync) == horizontal.active_high)
     _check("VS", bits[..., 1], (row < vertical.sync) == vertical.active_high)
-    _check("BLANK_N", bits[..., 2], in_picture)
+    _check("BLANK_N", bits[..., 2], in_picture & blanking)
     _check("SYNC_N", bits[..., 3], np.False_)
     colours = np.packbits(bits[..., _CONTROL_BITS:].reshape(*in_picture.shape, 3, colour_bits), axis=-1)[..., 0]
     _check("any colour in blanking", np.where(in_picture, False, colours.any(axis=-1)), np.False_)

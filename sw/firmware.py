@@ -23,7 +23,10 @@ from raycaster.tools import run_program
 
 SOFTWARE = Path(__file__).parent
 FIRMWARE = SOFTWARE / "firmware"
-SOURCES = (FIRMWARE / "start.S", FIRMWARE / "main.c", SOFTWARE / "game" / "game.c", SOFTWARE / "raycaster.c")
+START, DRIVER = FIRMWARE / "start.S", SOFTWARE / "raycaster.c"
+"""What any program has."""
+
+SOURCES = (START, FIRMWARE / "main.c", SOFTWARE / "game" / "game.c", DRIVER)
 
 COMPILER = ("-m", "ziglang", "cc", "-target", "riscv32-freestanding-none", "-mcpu=generic_rv32+m")
 """For the Python that runs: clang for RV32IM without compressed instructions, and no C library."""
@@ -46,11 +49,13 @@ class Firmware:
     """Bytes of each section that takes up RAM."""
 
 
-def build_firmware(output: Path) -> Firmware:
-    """Compile and link the game.
+def build_firmware(output: Path, sources: Sequence[Path] = SOURCES, headers: Sequence[Path] = ()) -> Firmware:
+    """Compile and link the game, or another program for the same memory.
 
     Args:
         output: the directory; replaced as a whole.
+        sources: the program's, with what starts it and the driver.
+        headers: directories of more headers.
 
     Raises:
         UserError: the compiler is missing, or did not accept the sources.
@@ -62,8 +67,9 @@ def build_firmware(output: Path) -> Firmware:
         script = Path(scratch) / "link.ld"
         _compile("-E", "-P", "-x", "c", FIRMWARE / "link.ld", "-o", script)
         _compile(
-            *STRICT, "-Os", "-g", "-ffunction-sections", f"-I{SOFTWARE}", f"-I{FIRMWARE}", f"-Wl,-T,{script}",
-            "-Wl,--gc-sections", *SOURCES, "-o", work / "firmware.elf",
+            *STRICT, "-Os", "-g", "-ffunction-sections", f"-I{SOFTWARE}", f"-I{FIRMWARE}",
+            *(f"-I{path}" for path in headers), f"-Wl,-T,{script}", "-Wl,--gc-sections", *sources,
+            "-o", work / "firmware.elf",
         )  # fmt: skip
         memory, sections = _read_elf(work / "firmware.elf")
         lines = (f"{word:08x}\n" for (word,) in struct.iter_unpack("<I", memory))

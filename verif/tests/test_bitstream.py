@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -223,6 +224,45 @@ def test_bad_options_get_one_line(tmp_path, words, options, complaint):
     assert done.stderr.startswith(complaint)
     assert done.stderr.count("\n") == 1
     assert not list(tmp_path.rglob("*.bit"))
+
+
+@pytest.mark.parametrize(
+    ("script", "made", "complaint"),
+    [
+        ("true", False, r"\S+/ulx3s/ulx3s\.bit: is not there; run raycaster bitstream --board ulx3s first"),
+        (None, True, r"openFPGALoader is not on the path, and loads \S+/ulx3s\.bit onto the board; install it .*"),
+        ("echo; echo no device >&2; exit 1", True, r"openFPGALoader failed on the Radiona ULX3S.*: no device"),
+        ("exit 3", True, "openFPGALoader failed on the .*: exit code 3"),
+        ("while true; do :; done", True, "openFPGALoader took more than 0.5 s on the .*"),
+    ],
+)
+def test_nothing_is_loaded(script, made, complaint, tmp_path, monkeypatch, refuses):
+    """Each reason in one line; the script is what is called as openFPGALoader is."""
+    monkeypatch.setattr(bitstream, "LOAD_TIMEOUT", 0.5)
+    monkeypatch.setattr("raycaster.tools._search_path", lambda: str(tmp_path / "bin"))
+    (tmp_path / "bin").mkdir()
+    if script is not None:
+        program = tmp_path / "bin" / bitstream.LOADER
+        program.write_text(f"#!/bin/sh\n{script}\n")
+        program.chmod(0o755)
+    if made:
+        (tmp_path / "ulx3s").mkdir()
+        (tmp_path / "ulx3s" / "ulx3s.bit").touch()
+    error = refuses(bitstream.main, "--flash", "--output", str(tmp_path))
+    assert re.fullmatch(f"error: {complaint}\n", error), error
+
+
+def test_the_loader_is_called_for_the_board(tmp_path, monkeypatch, capsys):
+    program = tmp_path / bitstream.LOADER
+    program.write_text(f'#!/bin/sh\necho "$@" > {tmp_path / "said"}\n')
+    program.chmod(0o755)
+    monkeypatch.setattr("raycaster.tools._search_path", lambda: str(tmp_path))
+    made = tmp_path / "icebreaker" / "icebreaker.bin"
+    made.parent.mkdir()
+    made.touch()
+    bitstream.main(["--flash", "--board", "icebreaker", "--output", str(tmp_path)])
+    assert (tmp_path / "said").read_text() == f"--board ice40_generic {made}\n"
+    assert "never seen" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("given", [(str(SMALL_SCENE),), ("--fix", "all")], ids=["scene", "fix"])

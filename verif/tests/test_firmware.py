@@ -15,7 +15,7 @@ from host_software import CONFIG, FIRE, Registers, Session, compile_library
 from raycaster.memory_map import BUTTONS, MEMORY, MEMORY_BYTES, RAY_TRACER, UART, UART_BUSY, c_header
 from raycaster.registers import register_map
 from raycaster.sim.register_model import LiveScene
-from raycaster.sw.firmware import FIRMWARE, Firmware, build_firmware, main
+from raycaster.sw.firmware import FIRMWARE, SOURCES, Firmware, build_firmware, main
 from raycaster.sw.play_script import DEMO, load
 
 PAGE = 0x1000
@@ -209,14 +209,11 @@ def test_equal_sources_give_equal_words(firmware, tmp_path):
     assert build_firmware(tmp_path / "other").words.read_bytes() == firmware.words.read_bytes()
 
 
-def test_a_program_that_does_not_compile(tmp_path, monkeypatch):
+def test_a_program_that_does_not_compile(tmp_path):
     pytest.importorskip("ziglang", reason="the extra firmware is not installed")
-    from raycaster.sw import firmware as module  # noqa: PLC0415
-
     broken = tmp_path / "broken.c"
-    shutil.copy(module.SOURCES[1], broken)
+    shutil.copy(SOURCES[1], broken)
     broken.write_text(broken.read_text().replace("int main(void) {", "int main(void) { int unused;"))
-    monkeypatch.setattr(module, "SOURCES", (module.SOURCES[0], broken, *module.SOURCES[2:]))
     with pytest.raises(Exception, match=r"the compiler failed:\n.*unused"):
-        build_firmware(tmp_path / "output")
+        build_firmware(tmp_path / "output", (SOURCES[0], broken, *SOURCES[2:]))
     assert not (tmp_path / "output").exists()

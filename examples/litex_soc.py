@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: MIT
+"""RayCaster inside a SoC of LiteX: a VexRiscv draws with the C driver, on no board in particular.
+
+Run it to get the SoC's Verilog, with its memory and LiteX's headers beside it:
+
+    pip install raycaster[litex,play]
+    python examples/litex_soc.py build/litex_soc
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from litex.build.generic_platform import GenericPlatform, Pins, Subsignal
+from litex.soc.cores.gpio import GPIOOut
+from litex.soc.integration.export import get_csr_header, get_mem_header, get_soc_header
+from litex.soc.integration.soc_core import SoCCore
+from migen.genlib.io import CRG
+
+from raycaster.configuration import Configuration, configure
+from raycaster.convert.litex import add_ray_caster
+from raycaster.memory_map import MEMORY_BYTES
+from raycaster.rtl.common.interfaces import vga_of
+from raycaster.sw.firmware import DRIVER, START, build_firmware
+
+PROGRAM = Path(__file__).with_suffix(".c")
+
+
+def pins(config: Configuration) -> list[tuple]:
+    """The SoC's ports; a board's platform has pins for them."""
+    vga = (Subsignal(name, Pins(len(port))) for name, port in vars(vga_of(config)).items())
+    return [("clk", 0, Pins(1)), ("reset", 0, Pins(1)), ("leds", 0, Pins(8)), ("vga", 0, *vga)]
+
+
+class RayCasterSoC(SoCCore):
+    """A VexRiscv, a memory for its program, LEDs, and the ray tracer with a VGA output."""
+
+    def __init__(self, platform: GenericPlatform, config: Configuration, directory: Path):
+        self.crg = CRG(platform.request("clk"), platform.request("reset"))
+        super().__init__(
+            platform,
+            clk_freq=config.screen_geometry.clock_hz,
+            cpu_variant="lite",
+            integrated_rom_size=MEMORY_BYTES,
+            integrated_rom_mode="rwx",
+            integrated_sram_size=0,
+            with_uart=False,
+            with_timer=False,
+        )
+        self.leds = GPIOOut(platform.request("leds"))
+        ray_caster = add_ray_caster(self, config, directory)
+        vga = platform.request("vga")
+        self.comb += [getattr(vga, name).eq(signal) for name, signal in ray_caster.vga.items()]
+
+
+def make_soc(config: Configuration, directory: Path, more_pins: Sequence[tuple] = ()) -> RayCasterSoC:
+    """The SoC, with the ray tracer's Verilog in `directory`."""
+    platform = GenericPlatform("none", [*pins(config), *more_pins], name="soc")
+    return RayCasterSoC(platform, config, directory / "ray_caster")
+
+
+def write(soc: RayCasterSoC, directory: Path) -> list[Path]:
+    """Write Verilog, the top last, LiteX's headers, and `soc_rom.init`, which the memory is loaded from."""
+    soc.finalize()
+    headers = {
+        "mem.h": get_mem_header(soc.bus.regions),
+        "soc.h": get_soc_header(soc.constants, with_access_functions=False),
+        "csr.h": get_csr_header(
+            soc.csr.regions, soc.constants, soc.bus.regions["csr"].origin, with_access_functions=False
+        ),
+    }
+    for name, text in headers.items():
+        (directory / name).write_text(text)
+    firmware = build_firmware((directory / "firmware").absolute(), (START, PROGRAM, DRIVER), [directory.absolute()])
+    soc.init_rom("rom", [int(word, 16) for word in firmware.words.read_text().split()])
+    top = directory / "soc.v"
+    output = soc.platform.get_verilog(soc, name=top.stem)
+    for name, text in (output.data_files | {top.name: output.main_source}).items():
+        (directory / name).write_text(text)
+    return [*(Path(source) for source, *_ in soc.platform.sources), top]
+
+
+if __name__ == "__main__":
+    output = Path(sys.argv[1])
+    for path in write(make_soc(configure(bus="wishbone", engine="exact"), output), output):
+        print(path)

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+"""cocotb: a Tiny Tapeout project shows its scene on its pins; a frame is held against golden in every pixel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import cocotb
+from cocotb.handle import HierarchyObject
+from cocotb.triggers import ClockCycles
+
+from raycaster.configuration import Configuration
+from raycaster.golden import engines
+from raycaster.golden.picture import count_wrong, shown
+from raycaster.scene import load_scene
+from raycaster.sim import simulator
+from raycaster.sim.job import Job
+from raycaster.sim.monitor import Monitor
+
+RESET_CLOCKS = 10
+
+
+@dataclass(frozen=True)
+class PinsBench(simulator.Bench):
+    """With the project's ports, instead of those of the ray tracer."""
+
+    top: str = "tiny_tapeout_bench"
+
+    @property
+    def sources(self) -> list[Path]:
+        """Its Verilog."""
+        return [simulator.HERE / "line_sink.v", Path(__file__).with_suffix(".v")]
+
+    def parameters(self, configuration: Configuration) -> dict[str, int]:
+        """Of its Verilog, for a design."""
+        horizontal = configuration.screen_geometry.horizontal
+        return {"H_TOTAL": horizontal.total, "HS_ACTIVE": int(horizontal.active_high)}
+
+
+@cocotb.test()
+async def one_frame(bench: HierarchyObject) -> None:
+    """The first whole frame after reset shows the job's scene; the pins that are not used are inputs."""
+    job = Job.from_environment()
+    config = job.configuration
+    scene = load_scene(job.scene)
+    monitor = Monitor(bench, config, blanking=False)
+    bench.ena.value = 1
+    bench.ui_in.value = 0b10100101
+    bench.uio_in.value = 0b01011010
+    bench.rst_n.value = 0
+    await ClockCycles(bench.clk, RESET_CLOCKS)
+    monitor.forget()
+    bench.rst_n.value = 1
+    frame = await monitor.frame()
+    expected = shown(engines.render(config, scene, job.reflections), config)
+    wrong = count_wrong(frame, expected)
+    assert wrong == 0, f"{wrong} of {expected[..., 0].size} pixels are wrong"
+    assert expected.any(), "the expected picture is black"
+    assert int(bench.uio_oe.value) == 0, "pins that are not used are driven"
+    monitor.check_pins()

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: MIT
+"""The ray tracer in a SoC of LiteX: a VexRiscv runs the C driver, and the monitor shows what golden draws."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from conftest import BUILD, ROOT
+from litex.build.generic_platform import GenericPlatform, Pins, Subsignal
+from litex.soc.cores.video import video_data_layout
+from litex.soc.integration.export import get_csr_json
+from litex.soc.integration.soc_core import SoCCore
+from migen.genlib.io import CRG
+
+from raycaster.configuration import configure
+from raycaster.convert.litex import add_ray_caster
+from raycaster.errors import UserError
+from raycaster.golden import exact
+from raycaster.golden.picture import shown
+from raycaster.scene import load_scene
+from raycaster.sim.simulator import build_program
+
+SCENE = load_scene(ROOT / "docs" / "three_rectangles.toml")
+"""What examples/litex_soc.c draws."""
+
+VIDEO = ("video", 0, Subsignal("valid", Pins(1)), *(Subsignal(name, Pins(width)) for name, width in video_data_layout))
+
+# At the second interrupt a frame begins that has the whole scene; it is over with the next vertical sync.
+BENCH = """
+`timescale 1ns/1ns
+module soc_bench;
+reg clk = 0, reset = 1;
+wire [COLOUR_BITS-1:0] r, g, b;
+wire [7:0] leds, video_r, video_g, video_b;
+wire hs, vs, blank_n, vga_clk, valid, hsync, vsync, de;
+integer pins, stream, frames = 0, wrong_syncs = 0;
+soc soc (.clk(clk), .reset(reset), .leds(leds), .vga_r(r), .vga_g(g), .vga_b(b), .vga_hs(hs), .vga_vs(vs),
+    .vga_blank_n(blank_n), .vga_sync_n(), .vga_clk(vga_clk), .video_valid(valid), .video_hsync(hsync),
+    .video_vsync(vsync), .video_de(de), .video_r(video_r), .video_g(video_g), .video_b(video_b));
+always #10 clk = ~clk;
+initial begin
+    pins = $fopen("pins.txt", "w");
+    stream = $fopen("stream.txt", "w");
+    #100 reset = 0;
+end
+always @(negedge vs) if (!reset) begin
+    frames = frames + 1;
+    if (leds >= 2 || frames == 10) begin
+        $display("leds %0d, wrong syncs %0d", leds, wrong_syncs);
+        $finish;
+    end
+    else begin
+        $fclose(pins);
+        $fclose(stream);
+        pins = $fopen("pins.txt", "w");
+        stream = $fopen("stream.txt", "w");
+    end
+end
+always @(posedge vga_clk) if (!reset && blank_n) $fdisplay(pins, "%h", {r, g, b});
+always @(negedge clk) if (!reset && valid) begin
+    if (de) $fdisplay(stream, "%h", {video_r, video_g, video_b});
+    if (hsync == hs || vsync == vs) wrong_syncs = wrong_syncs + 1;
+end
+endmodule
+"""
+
+
+@pytest.fixture
+def example(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    spec = importlib.util.spec_from_file_location("litex_soc", ROOT / "examples" / "litex_soc.py")
+    module = importlib.util.module_from_spec(spec)
+    monkeypatch.setitem(sys.modules, "litex_soc", module)
+    spec.loader.exec_module(module)
+    return module
+
+
+def pixels(path: Path, shape: tuple[int, int], colour_bits: int) -> np.ndarray:
+    """Those of a frame, each a word of three channels."""
+    words = np.array([int(line, 16) for line in path.read_text().split()]).reshape(shape)
+    channels = [words >> shift * colour_bits & (1 << colour_bits) - 1 for shift in (2, 1, 0)]
+    return np.stack(channels, axis=-1) << 8 - colour_bits
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"bus": "wishbone", "engine": "exact"}, {"bus": "axi4lite", "engine": "beam", "colour_bits": 5}],
+    ids=["wishbone", "axi4lite"],
+)
+def test_a_frame_is_golden(example, options, tmp_path):
+    """At the VGA pins and in the video stream; the driver has found the registers, and interrupts come."""
+    config = configure(screen="tiny", rectangles=3, **options)
+    soc = example.make_soc(config, tmp_path, [VIDEO])
+    video = soc.platform.request("video")
+    source = soc.ray_caster.source
+    soc.comb += [getattr(video, name).eq(getattr(source, name)) for name in ("valid", *dict(video_data_layout))]
+    files = example.write(soc, tmp_path)
+    # Without LiteX's comments, which have the time, the model is found again.
+    files[-1].write_text(re.sub(r"^//.*\n", "", files[-1].read_text(), flags=re.MULTILINE))
+    bench = tmp_path / "soc_bench.v"
+    bench.write_text(BENCH.replace("COLOUR_BITS", str(config.colour_bits)))
+    # A processor's registers have no reset: the program may not look at what it has not written.
+    flags = ("--x-assign", "unique", "--x-initial", "unique", "-Wno-lint", "-Wno-style")
+    command = build_program(f"litex-{config.name}", bench.stem, [*files, bench], build=BUILD, flags=flags)
+    done = subprocess.run(
+        [*command, "+verilator+rand+reset+2"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.stdout.splitlines()[0] == "leds 2, wrong syncs 0", done.stdout + done.stderr
+    screen = config.screen_geometry
+    shape = screen.vertical.visible, screen.horizontal.visible
+    expected = shown(exact.render(SCENE, screen), config)
+    assert len(np.unique(expected.reshape(-1, 3), axis=0)) == 1 + len(SCENE.rect)
+    assert np.array_equal(pixels(tmp_path / "pins.txt", shape, config.colour_bits), expected)
+    assert np.array_equal(pixels(tmp_path / "stream.txt", shape, 8), expected)
+
+
+@pytest.mark.parametrize(("bus", "standard"), [("wishbone", "axi-lite"), ("axi4lite", "wishbone")])
+def test_the_map_is_that_of_the_driver(bus, standard, tmp_path):
+    """Of a SoC without a processor, whose bus is of another kind: each register is where C's own header has it."""
+    platform = GenericPlatform("none", [("clk", 0, Pins(1))])
+    soc = SoCCore(platform, 50e6, bus_standard=standard, cpu_type=None, with_uart=False, with_timer=False)
+    soc.crg = CRG(platform.request("clk"))
+    config = configure(screen="tiny", rectangles=3, bus=bus)
+    add_ray_caster(soc, config, tmp_path / "verilog", name="tracer", origin=0x8000_0000)
+    soc.finalize()
+    told = json.loads(get_csr_json(soc.csr_regions, soc.constants, soc.mem_regions))
+    assert told["memories"]["tracer"] == {"base": 0x8000_0000, "size": 128, "type": "io"}
+    offsets = {
+        name.removeprefix("tracer_").removesuffix("_offset"): value
+        for name, value in told["constants"].items()
+        if name.endswith("_offset")
+    }
+    assert len(offsets) == 14 + 3 * 4
+    members = {name: re.sub(r"^rectangle_(\d+)_", r"rectangle[\1].", name) for name in offsets}
+    lines = "".join(f'printf("%zu\\n", offsetof(ray_caster_t, {member}));' for member in members.values())
+    headers = "".join(f"#include <{name}>\n" for name in ("stddef.h", "stdio.h", "raycaster_regs.h"))
+    (tmp_path / "offsets.c").write_text(f"{headers}int main(void) {{ {lines} }}\n")
+    compiler = ["g++", "-x", "c++", f"-I{tmp_path / 'verilog'}", "offsets.c", "-o", "offsets"]
+    subprocess.run(compiler, cwd=tmp_path, check=True)
+    printed = subprocess.run([tmp_path / "offsets"], capture_output=True, text=True, check=True).stdout
+    assert list(offsets.values()) == [int(line) for line in printed.split()]
+
+
+@pytest.mark.parametrize(
+    ("options", "clock", "complaint"),
+    [
+        ({"bus": "apb"}, 50e6, "bus: LiteX takes wishbone or axi4lite, not apb"),
+        ({"bus": "wishbone"}, 48e6, r"clock: seed-tiny.* needs 50 MHz, and the SoC has 48"),
+        ({"bus": "wishbone", "engine": "beam", "pixels": 2}, 12.5e6, "pixels: LiteX's video has 1 a clock, not 2"),
+    ],
+)
+def test_what_does_not_fit_gets_one_line(options, clock, complaint, tmp_path):
+    soc = SoCCore(GenericPlatform("none", []), clock, cpu_type=None, with_uart=False, with_timer=False)
+    with pytest.raises(UserError, match=rf"^{complaint}$"):
+        add_ray_caster(soc, configure(screen="tiny", rectangles=3, **options), tmp_path / "verilog")
+    assert not any(tmp_path.iterdir())
