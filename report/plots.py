@@ -370,7 +370,7 @@ def stiffness(cases: Mapping[str, tuple[float, float, float]], labelled: Sequenc
         figure.draw_without_rendering()
         texts = [axes.text(*cases[name][:2], name, fontsize=LABEL_POINTS, zorder=4) for name in labelled]
         adjust_text(
-            texts, x=conditions, y=errors, ax=axes, expand=(1.1, 1.3),
+            texts, x=conditions, y=errors, ax=axes, expand=(1.3, 1.8), force_text=(0.6, 1.2),
             arrowprops={"arrowstyle": "-", "color": GREY, "lw": 0.5},
         )  # fmt: skip
     return figure

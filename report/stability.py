@@ -32,7 +32,7 @@ GROWING = ("facing_y_40", "facing_z", "box_20", "box_off_centre", "corner_reflec
 LABELLED = 6
 """Cases of the plot that have a label: the stiffest, and those with the greatest error."""
 
-LEAST = 1e-3
+LEAST = 0.1
 """World units: smaller errors are drawn as this."""
 
 HOLDS, EXCEEDED, EXACT, WRONG = "holds", "EXCEEDED", "as the model", "WRONG"
