@@ -16,6 +16,7 @@ together, with 2^(F + 1) for the half.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -24,6 +25,9 @@ import numpy as np
 from raycaster.golden import exact, seed_engine
 from raycaster.golden.seed_engine import Rounding
 from raycaster.golden.world import OTHER_AXES, Rectangles
+
+NEAR = 1e-9
+"""Parts by which two quotients in floating point may be off, many times over."""
 
 
 @dataclass(frozen=True)
@@ -52,51 +56,30 @@ class DepthErrors:
     """Coordinates whose error is more than their bound."""
 
 
-@dataclass(frozen=True)
-class Errors:
-    """What rounding did to a picture."""
-
-    pixels: int
-    wrong: int
-    """Pixels whose colour is not the exact one."""
-
-    psnr: float
-    """Peak signal-to-noise ratio of the colours in dB, of a peak of 255; infinite where none is wrong."""
-
-    depths: tuple[DepthErrors, ...]
-    """By depth of reflection, the primary rays first."""
-
-
 def compare(
     rectangles: Rectangles,
     camera: Sequence[int],
-    background: Sequence[int],
     slopes: np.ndarray,
     reflections: int,
     fraction_bits: int,
     rounding: Rounding,
-) -> Errors:
-    """Trace rays both ways and compare.
+) -> tuple[DepthErrors, ...]:
+    """Trace rays both ways and compare; see `depth_errors`.
 
     Args:
         rectangles: the table.
         camera: where the rays start, in world units.
-        background: red, green, blue.
         slopes: int (rays, 3), none 0 along x.
-        reflections: 0 or more; above 2 the integers become Python's own, which takes a hundred times as long.
+        reflections: 0 or more.
         fraction_bits: F.
         rounding: of quotients.
     """
-    perfect = exact.trace(rectangles, camera, background, slopes, reflections)
+    dark = (0, 0, 0)
+    perfect = exact.trace(rectangles, camera, dark, slopes, reflections)
     rounded = seed_engine.trace(
-        rectangles, camera, background, slopes, reflections, fraction_bits=fraction_bits, rounding=rounding
+        rectangles, camera, dark, slopes, reflections, fraction_bits=fraction_bits, rounding=rounding
     )
-    return Errors(
-        pixels=len(slopes),
-        wrong=int((perfect.colours != rounded.colours).any(axis=1).sum()),
-        psnr=_psnr(rounded.colours, perfect.colours),
-        depths=depth_errors(rectangles, slopes, perfect, rounded.winners, rounded.points, fraction_bits, rounding),
-    )
+    return depth_errors(rectangles, slopes, perfect, rounded.winners, rounded.points, fraction_bits, rounding)
 
 
 def depth_errors(
@@ -118,10 +101,16 @@ def depth_errors(
         points: for each depth, int64 (rays, 3): where, in units of 2^-F.
         fraction_bits: F.
         rounding: of quotients.
+
+    Returns:
+        By depth of reflection, the primary rays first.
     """
     # Slopes only change signs, so the magnitudes serve all depths.
-    kind = object if len(winners) > 3 else np.int64
-    magnitude = np.abs(np.asarray(slopes)).T.astype(kind)
+    magnitude = np.abs(np.asarray(slopes)).T
+    # A bound's numerator at most doubles with each depth beside the slope that it is multiplied with, and starts at 4.
+    if len(winners) * math.log2(2 * magnitude.max()) + 2 >= 63:
+        # Python's own integers, which take a hundred times as long.
+        magnitude = magnitude.astype(object)
     scale = 1 << fraction_bits
     last_place = 2 if rounding == "truncate" else 1
     # A bound is `allowed` / (`common` * 2 * scale).
@@ -136,9 +125,9 @@ def depth_errors(
         axes = rectangles.axes[winner]
         hit = agree & (winner >= 0)
         allowed, common = _next_bound(allowed, common, magnitude, axes, hit, last_place)
-        denominator = perfect.denominators[depth].astype(kind)
+        denominator = perfect.denominators[depth]
         # Errors over denominator * scale.
-        off = np.abs(points[depth].T.astype(kind) * denominator - perfect.points[depth].T.astype(kind) * scale)
+        off = np.abs(points[depth].T * denominator - perfect.points[depth].T * scale)
         found.append(_summary(off, allowed, common, denominator, hit, flips, scale))
         # A ray that hits nothing has ended, and agrees from then on.
         same = hit
@@ -179,9 +168,13 @@ def _summary(
     if not hit.any():
         return DepthErrors(0, flips, 0.0, 0.0, 0.0, 0.0, 0)
     off, allowed, common, denominator = off[:, hit], allowed[:, hit], common[hit], denominator[hit]
-    exceeded = int((off * (2 * common) > allowed * denominator).sum())
-    errors = off.astype(float) / (denominator * scale).astype(float)
-    bounds = allowed.astype(float) / (common * 2 * scale).astype(float)
+    errors = off / (denominator * scale).astype(float)
+    bounds = allowed.astype(float) / (common.astype(float) * 2 * scale)
+    # Only where the two are next to each other are the products compared themselves, which no machine word holds.
+    exceeded = sum(
+        int(off[place]) * 2 * int(common[place[1]]) > int(allowed[place]) * int(denominator[place[1]])
+        for place in map(tuple, np.argwhere(errors > bounds * (1 - NEAR)))
+    )
     bounded = bounds > 0
     return DepthErrors(
         rays=int(hit.sum()),
@@ -194,6 +187,35 @@ def _summary(
     )
 
 
-def _psnr(picture: np.ndarray, reference: np.ndarray) -> float:
-    error = float(((picture.astype(float) - reference.astype(float)) ** 2).mean())
-    return float("inf") if error == 0 else float(10 * np.log10(255**2 / error))
+def conditions(
+    rectangles: Rectangles, camera: Sequence[int], slopes: np.ndarray, perfect: exact.Trace
+) -> tuple[np.ndarray, ...]:
+    """How far a hit moves for each unit by which a slope is off: the condition number of the intersection.
+
+    A ray hits at P[u] = E[u] + D[u] t with t = n / e and e = D[a]. A change of D[u] moves it by t along u, one of D[a]
+    by t |D[u] / e|: the greatest of these. Mirrors do not change it, as t runs on through them.
+
+    Args:
+        rectangles: the table.
+        camera: where the rays start, in world units.
+        slopes: int (rays, 3), none of them all 0.
+        perfect: what they meet.
+
+    Returns:
+        By depth of reflection, float (rays,): in world units; not a number where nothing is hit.
+    """
+    magnitude = np.abs(np.asarray(slopes))
+    # Along the steepest axis, whose slope is not 0.
+    steepest = magnitude.argmax(axis=1)[:, None]
+    start = np.take_along_axis(np.broadcast_to(np.asarray(camera, dtype=float), magnitude.shape), steepest, axis=1)
+    t = np.zeros(len(magnitude))
+    found = []
+    for winner, points, denominator in zip(perfect.winners, perfect.points, perfect.denominators, strict=True):
+        hit = winner >= 0
+        place = np.take_along_axis(points, steepest, axis=1) / np.where(hit, denominator, 1)[:, None]
+        t = t + (np.abs(place - start) / np.take_along_axis(magnitude, steepest, axis=1))[:, 0]
+        start = place
+        across = magnitude.copy()
+        across[np.arange(len(winner)), rectangles.axes[winner]] = 0
+        found.append(np.where(hit, t * np.maximum(1, across.max(axis=1) / np.where(hit, denominator, 1)), np.nan))
+    return tuple(found)

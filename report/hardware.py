@@ -1,49 +1,99 @@
 # SPDX-License-Identifier: MIT
-"""What a design's arithmetic costs in time and cells: foretold for many designs, measured for those that matter."""
+"""What a design costs in time and cells: foretold for many, simulated and counted for those that matter."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping, Sequence
+import json
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 from raycaster.configuration import Configuration, ConfigurationError, configure
+from raycaster.fpga.area import with_units
+
+RESULTS = Path("results")
+"""What commands measured, of the clone that the report runs in."""
+
+BEAMS: Sequence[Mapping[str, Any]] = (
+    {"scale": 1},
+    {},
+    {"pixels": 2},
+    {"rows": 180},
+    {"rows": 180, "pixels": 2},
+    {"rows": 180, "scale": 6},
+    {"rows": 180, "scale": 6, "pixels": 2},
+)
+"""The beam engine at scales 1, 2, 4 and 6, with one pixel and two a clock."""
+
+CULLED: Sequence[Mapping[str, Any]] = (
+    {},
+    {"rounding": "nearest", "divider_bits": 3},
+    {"fraction_bits": 4, "rounding": "nearest", "divider_bits": 3},
+    {"engine": "exact"},
+)
+"""Designs that are looked at with culling, where the time is the scene's."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Candidate:
-    """A design, and what it is foretold to need."""
+    """A design, what it is foretold to need, and what it was found to need."""
 
     config: Configuration
     error: float
-    """Mean share of wrong pixels over the scenes."""
+    """Mean share of wrong pixels."""
 
-    cells: int
+    foretold: int | None = None
     """LUT4 of an ECP5: the shared part, and one unit so many times."""
 
-    multipliers: int
+    counted: Mapping[str, int] | None = None
+    """Its cells as a whole, by kind."""
+
+    timing: Mapping[str, Any] | None = None
+    """What simulation found, as `raycaster.report.points.TimePoint`."""
 
     @property
-    def row_cycles(self) -> int:
-        """Cycles of the slowest row: as many groups, each with all its rectangles."""
-        return self.config.group_cycles * self.config.groups
+    def cells(self) -> int:
+        """LUT4, counted where they were."""
+        return self.counted["cells"] if self.counted else self.foretold
+
+    @property
+    def frame_cycles(self) -> int:
+        """Cycles in which a frame is computed: its counter's, where it was simulated."""
+        if self.timing:
+            return self.timing["frame_cycles"]
+        return foretold_cycles(self.config)
+
+    @property
+    def pixel_ns(self) -> float:
+        """Nanoseconds for each pixel of a frame, at the clock that the design needs."""
+        return self.frame_ms * 1e6 / pixels(self.config)
 
     @property
     def frame_ms(self) -> float:
-        """Time to render a frame, if it were rendered without waiting for the monitor."""
-        return frame_ms(self.config, self.row_cycles)
+        """Milliseconds in which a frame is computed, likewise."""
+        return 1000 * self.frame_cycles / self.config.screen_geometry.clock_hz
 
-    def dominates(self, other: Candidate) -> bool:
-        """Nowhere worse, and somewhere better."""
-        mine, others = ((one.error, one.row_cycles, one.cells) for one in (self, other))
-        return mine != others and all(a <= b for a, b in zip(mine, others, strict=True))
+    @property
+    def is_found(self) -> bool:
+        """Nothing of it is foretold."""
+        return self.counted is not None and self.timing is not None
 
 
-def frame_ms(config: Configuration, row_cycles: int) -> float:
-    """Milliseconds that all rows of a frame take at the system's clock."""
-    return 1000 * config.screen_geometry.rows * row_cycles / config.screen_geometry.clock_hz
+Measure = Callable[[Candidate], float]
+
+
+def foretold_cycles(config: Configuration) -> int:
+    """Cycles of a frame in the worst case: rows of so many groups, each with all its rectangles."""
+    return config.group_cycles * config.groups * config.screen_geometry.rows
+
+
+def pixels(config: Configuration) -> int:
+    """That are computed for a frame."""
+    return config.screen_geometry.columns * config.screen_geometry.rows
 
 
 def seed_designs(fractions: Iterable[int], units: Iterable[int], screen: str) -> list[Configuration]:
@@ -70,6 +120,18 @@ def exact_designs(units: Iterable[int], screen: str) -> list[Configuration]:
     return _possible({"engine": "exact", "units": count, "screen": screen} for count in units)
 
 
+def beam_designs(screen: str) -> list[Configuration]:
+    """The same of the beam engine; of a screen other than VGA, the one that it has."""
+    return _possible({"engine": "beam", "screen": screen} | one for one in (BEAMS if screen == "vga" else [{}]))
+
+
+def culled_designs(fractions: Iterable[int], screen: str) -> list[Configuration]:
+    """Designs with culling, of those fraction bits."""
+    return _possible(
+        {"screen": screen, "culling": True} | one for one in CULLED if one.get("fraction_bits", 0) in set(fractions)
+    )
+
+
 def _possible(choices: Iterable[Mapping[str, Any]]) -> list[Configuration]:
     found = []
     for choice in choices:
@@ -78,14 +140,83 @@ def _possible(choices: Iterable[Mapping[str, Any]]) -> list[Configuration]:
     return found
 
 
-def frontier(candidates: Sequence[Candidate]) -> list[Candidate]:
-    """Those that no other dominates, the fastest first."""
-    best = [one for one in candidates if not any(other.dominates(one) for other in candidates)]
-    return sorted(best, key=lambda one: (one.row_cycles, one.error, one.cells))
+def unit_of(config: Configuration) -> Configuration:
+    """The design whose unit is synthesised by itself."""
+    return with_units(config, 1)
 
 
-def checks(config: Configuration) -> tuple[Configuration, Configuration]:
-    """Two whole designs that the cells are checked on: one that the shared part is taken from, and one far from it."""
+def with_foretold(candidates: Sequence[Candidate], whole: Mapping[str, int], base: Configuration,
+                  units: Mapping[Configuration, int]) -> list[Candidate]:  # fmt: skip
+    """The same designs, each with the cells that it is foretold.
+
+    Args:
+        candidates: of one engine behind a line buffer.
+        whole: the cells of one of its designs.
+        base: that design.
+        units: by `unit_of` each design, the cells of one unit by itself.
+    """
+    shared = whole["cells"] - base.units * units[unit_of(base)]
+    return [replace(one, foretold=shared + one.config.units * units[unit_of(one.config)]) for one in candidates]
+
+
+def frontier(candidates: Sequence[Candidate], *measures: Measure) -> list[Candidate]:
+    """Those that no other is better than: nowhere worse, and somewhere better; in the order of the first measure."""
+    values = {one: tuple(measure(one) for measure in measures) for one in candidates}
+
+    def dominated(one: Candidate) -> bool:
+        mine = values[one]
+        return any(
+            theirs != mine and all(a <= b for a, b in zip(theirs, mine, strict=True)) for theirs in values.values()
+        )
+
+    return sorted((one for one in candidates if not dominated(one)), key=values.get)
+
+
+def time(one: Candidate) -> float:
+    """What is shown as time."""
+    return one.pixel_ns
+
+
+def error(one: Candidate) -> float:
+    """What is shown as error."""
+    return one.error
+
+
+def cells(one: Candidate) -> float:
+    """What is shown as size."""
+    return one.cells
+
+
+@cache
+def routed_clocks() -> dict[str, float]:
+    """By name of a configuration, the MHz that the system clock of its placed and routed board design reached."""
+    found: dict[str, float] = {}
+    for path in sorted(RESULTS.glob("bitstream-*.json")):
+        kept = json.loads(path.read_text())
+        name = kept["scope"].get("configuration")
+        clock = kept["figures"]["clocks"].get("clk")
+        if name and clock and name not in found:
+            found[name] = clock[0]
+    return found
+
+
+def clock_words(config: Configuration) -> str:
+    """The clock that a time is at, and the one that was reached where the design was placed and routed."""
+    needed = f"{config.screen_geometry.clock_hz / 1e6:g} MHz"
+    reached = routed_clocks().get(config.name)
+    return f"{needed}, routed at {reached:g}" if reached else f"{needed}, required"
+
+
+def describe(config: Configuration) -> str:
+    """A design in a few words."""
+    screen = config.screen_geometry
+    if config.engine == "beam":
+        return f"beam {screen.columns}x{screen.rows}" + (", 2 pixels a clock" if config.pixels == 2 else "")
     if config.engine == "exact":
-        return config, replace(config, units=4 * config.units)
-    return config, replace(config, fraction_bits=4, rounding="nearest", divider_bits=2, allow_underrun=True)
+        words = f"exact, {config.units} units"
+    else:
+        words = (
+            f"seed F = {config.fraction_bits} {config.rounding}, {config.units} units, "
+            f"{config.divider_bits} bit{'s' if config.divider_bits > 1 else ''} a cycle"
+        )
+    return words + (", culling" if config.culling else "")

@@ -1,14 +1,22 @@
 # SPDX-License-Identifier: MIT
-"""The report's plots, each a PNG."""
+"""The report's plots: as wide as a phone's page at most, in colours that the colour-blind can tell apart."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations, pairwise
 from pathlib import Path
+from textwrap import fill
 
+import matplotlib as mpl
 import numpy as np
-from matplotlib.colors import Normalize
+from adjustText import adjust_text
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.text import Text
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from raycaster.golden import exact, seed_engine
 from raycaster.golden.errors import DepthErrors
@@ -17,196 +25,424 @@ from raycaster.report.hardware import Candidate
 from raycaster.report.points import PicturePoint, View
 from raycaster.screens import SCREENS
 
-DPI = 110
-COLOURS = {"truncate": "#c0392b", "nearest": "#2471a3"}
-FLOOR = 1e-4
-"""Per cent: below it a share is drawn as none on logarithmic axes."""
+WIDTH = 4.6
+"""Inches: a printed page's column. A phone shows that at three quarters of its size, which 9 points survive."""
 
-FLIPPED = 5
+STYLE = {
+    "font.size": 9,
+    "axes.titlesize": 9,
+    "legend.fontsize": 8,
+    "axes.grid": True,
+    "grid.alpha": 0.3,
+    "axes.axisbelow": True,
+    "svg.hashsalt": "raycaster",
+    "svg.fonttype": "none",
+}
+LABEL_POINTS = 7.5
+
+BLUE, VERMILION, GREEN, ORANGE, GREY = "#0072B2", "#D55E00", "#009E73", "#E69F00", "#7f7f7f"
+"""Of Okabe and Ito, who chose them for this, and a grey."""
+
+COLOURS = {"truncate": VERMILION, "nearest": BLUE}
+ENGINES = {"seed": (VERMILION, "o"), "exact": (BLUE, "s"), "beam": (GREEN, "^")}
+"""Colour and marker."""
+
+LEAST_SHARE = 1e-5
+"""Shares of wrong pixels of a picture below it, less than a pixel, are drawn as none."""
+
+LEAST_MEAN = 1e-4
+"""Means below it are drawn as none."""
+
+FLIPPED = 10
 """Cases whose pictures are shown."""
 
-Results = Mapping[PicturePoint, Mapping]
+
+def new_figure(height: float, rows: int = 1, columns: int = 1, **options) -> tuple[Figure, np.ndarray]:
+    """An empty figure of a height in inches, and its axes, (rows, columns)."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(WIDTH, height), layout="constrained")
+        FigureCanvasAgg(figure)  # which knows how large texts are
+        return figure, figure.subplots(rows, columns, squeeze=False, **options)
 
 
-def error_by_fraction(results: Results, path: Path) -> None:
-    """Wrong pixels of every scene over the fraction bits, and their mean."""
-    figure, axes = _subplots(figsize=(9, 5))
-    for rounding, colour in COLOURS.items():
-        scenes: dict[str, list[tuple[int, float]]] = {}
-        for point, result in results.items():
-            if point.rounding == rounding:
-                share = max(100 * result["wrong_share"], FLOOR)
-                scenes.setdefault(point.view.name, []).append((point.fraction_bits, share))
-        for curve in scenes.values():
-            axes.plot(*zip(*sorted(curve), strict=True), color=colour, alpha=0.25, linewidth=1)
-        fractions = sorted({fraction for curve in scenes.values() for fraction, _ in curve})
-        means = [np.mean([share for curve in scenes.values() for at, share in curve if at == f]) for f in fractions]
-        axes.plot(fractions, means, color=colour, linewidth=2.5, marker="o", label=f"{rounding}, mean")
-    axes.set(xlabel="fraction bits F", ylabel="wrong pixels, %", yscale="log", xticks=fractions)
-    axes.set_title("Error over fraction bits, a line a scene")
-    axes.grid(alpha=0.3, which="both")
-    axes.legend()
-    _save(figure, path)
+def save(figure: Figure, path: Path) -> None:
+    """Write an SVG that is the same each time."""
+    with mpl.rc_context(STYLE):
+        figure.savefig(path, metadata={"Date": None})
 
 
-def culling(shares: Mapping[str, Mapping[str, float]], path: Path) -> None:
-    """By engine and scene, the share of a frame's cycles that is left with culling: a bar each."""
-    scenes = sorted({name for of_engine in shares.values() for name in of_engine}, reverse=True)
-    figure, axes = _subplots(figsize=(9, 1.5 + 0.4 * len(scenes)))
-    height = 0.8 / len(shares)
-    for place, (engine, of_engine) in enumerate(shares.items()):
-        offsets = np.arange(len(scenes)) + 0.4 - (place + 0.5) * height
-        bars = axes.barh(offsets, [100 * of_engine[name] for name in scenes], height, label=engine)
-        axes.bar_label(bars, fmt="%.0f", padding=3, fontsize=8)
-    axes.axvline(100, color="black", linewidth=1)
-    axes.set(xlabel="cycles of a frame with culling, % of those without", xlim=(0, 115))
-    axes.set_yticks(np.arange(len(scenes)), scenes)
-    axes.set_title("What culling leaves")
-    axes.legend()
-    _save(figure, path)
+def crowded(figure: Figure) -> Iterator[str]:
+    """What makes labels of a figure illegible: those that touch one another, or the figure's edge."""
+    figure.draw_without_rendering()
+    renderer = figure.canvas.get_renderer()
+    boxes = [
+        (text.get_text(), Text.get_window_extent(text, renderer))
+        for axes in figure.axes
+        for text in axes.texts
+        if text.get_visible() and text.get_text()
+    ]
+    for text, box in boxes:
+        if box.x0 < 0 or box.y0 < 0 or box.x1 > figure.bbox.x1 or box.y1 > figure.bbox.y1:
+            yield f"{text} is cut off"
+    for (one, box), (other, its) in combinations(boxes, 2):
+        if box.overlaps(its):
+            yield f"{one} touches {other}"
 
 
-def work_precision(
-    candidates: Sequence[Candidate], best: Sequence[Candidate], of_seed: Sequence[Candidate], path: Path
-) -> None:
-    """Error over the time of a frame, cells in colour; the frontiers of all designs and of the seed engine's."""
-    figure, axes = _subplots(figsize=(11, 6.5))
-    shapes = {"seed": "o", "exact": "s"}
-    norm = Normalize(min(one.cells for one in candidates), max(one.cells for one in candidates))
-    for engine, shape in shapes.items():
-        of_engine = [one for one in candidates if one.config.engine == engine]
-        if of_engine:
-            times, errors, cells = np.array([(one.frame_ms, _per_cent(one), one.cells) for one in of_engine]).T
-            dots = axes.scatter(
-                times,
-                errors,
-                c=cells,
-                cmap="viridis",
-                norm=norm,
-                marker=shape,
-                s=30,
-                alpha=0.7,
-                label=f"{engine} engine",
-            )
-    figure.colorbar(dots, label="LUT4 of an ECP5, foretold")
-    for frontier, colour, label in (
-        (of_seed, "#c0392b", "seed engine's frontier"),
-        (best, "#1e8449", "frontier of all"),
-    ):
-        places = [(one.frame_ms, _per_cent(one)) for one in frontier]
-        axes.scatter(
-            *zip(*places, strict=True), facecolors="none", edgecolors=colour, s=100, linewidths=1.4, label=label
-        )
-        steps = sorted({time: min(error for at, error in places if at == time) for time, _ in places}.items())
-        lowest = np.minimum.accumulate([error for _, error in steps])
-        axes.step([time for time, _ in steps], lowest, where="post", color=colour, linewidth=1.2)
-        for place, ((time, error), low) in enumerate(zip(steps, lowest, strict=True)):
-            if error == low and (place == 0 or low < lowest[place - 1] or frontier is best):
-                one = min((o for o in frontier if (o.frame_ms, _per_cent(o)) == (time, error)), key=lambda o: o.cells)
-                axes.annotate(
-                    _short(one), (time, error), textcoords="offset points", xytext=(5, 7), fontsize=7, rotation=25
-                )
-    axes.set(xlabel="time to render a frame at 50 MHz, ms", ylabel="wrong pixels, mean over scenes, %", yscale="log")
-    axes.set_title(f"Work and precision; {FLOOR:g} % stands for none")
-    axes.grid(alpha=0.3, which="both")
-    # Room for the words at the uppermost dots.
-    axes.margins(y=0.12)
-    axes.legend()
-    _save(figure, path)
+def _percent(axes: Axes, none: float) -> None:
+    """A logarithmic axis of shares, its lowest tick none."""
+    axes.set_yscale("log")
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda share, _: "0" if share <= none else f"{100 * share:g}%"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    axes.set_ylim(bottom=none / 2)
 
 
-def _per_cent(one: Candidate) -> float:
-    return max(100 * one.error, FLOOR)
+def _plain(axis: Axis) -> None:
+    """Ticks of a logarithmic axis that are written as numbers."""
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+# Designs --------------------------------------------------------------------------------------------------------------
 
 
 def _short(one: Candidate) -> str:
     config = one.config
+    if config.engine == "beam":
+        return f"{config.screen_geometry.rows}p" + (" x2" if config.pixels == 2 else "")
     if config.engine == "exact":
-        return f"{config.units} units"
-    return f"F{config.fraction_bits} {config.rounding}, {config.divider_bits} bit, {config.units} units"
+        return f"{config.units}"
+    return f"F{config.fraction_bits}{config.rounding[0]}"
 
 
-def growth(cases: Mapping[str, tuple[DepthErrors, ...]], path: Path) -> None:
-    """The worst error and its bound from bounce to bounce, a panel a case."""
-    columns = 3
-    rows = -(-len(cases) // columns)
-    figure, panels = _subplots(rows, columns, figsize=(12, 3.2 * rows), squeeze=False, sharex=True)
-    for panel, (name, depths) in zip(panels.flat, cases.items(), strict=False):
-        place = range(len(depths))
-        panel.plot(place, [max(one.bound, 1e-3) for one in depths], "--", color="#7f8c8d", label="bound")
-        panel.plot(place, [max(one.worst, 1e-3) for one in depths], "o-", color="#c0392b", label="worst")
-        panel.plot(place, [max(one.mean, 1e-3) for one in depths], "o-", color="#2471a3", label="mean")
-        panel.set(title=name, yscale="log")
-        panel.grid(alpha=0.3)
-    for panel in panels.flat[len(cases) :]:
-        panel.set_visible(False)
-    for panel in panels[-1]:
-        panel.set_xlabel("bounces")
-    panels[0][0].set_ylabel("world units")
-    panels[0][0].legend()
-    _save(figure, path)
+def _dots(axes: Axes, every: Sequence[Candidate], across: str, up: str) -> None:
+    """Each design, filled where it was simulated and counted; small where it has culling."""
+    for engine, (colour, marker) in ENGINES.items():
+        for found in (False, True):
+            dots = [one for one in every if one.config.engine == engine and one.is_found == found]
+            if not dots:
+                continue
+            xs, ys = ([_value(one, name) for one in dots] for name in (across, up))
+            label = engine if found else f"{engine}, foretold"
+            axes.scatter(
+                xs, ys, marker=marker, s=[10 if one.config.culling else 22 for one in dots], linewidths=0.8, zorder=3,
+                facecolors=colour if found else "none", edgecolors=colour, alpha=1 if found else 0.45, label=label,
+            )  # fmt: skip
 
 
-def picture_of_the_day(view: View, path: Path) -> None:
-    """A scene at F = 0, 2, 4 and exact, and where the first three are wrong."""
-    screen = SCREENS["vga", 240]
-    perfect = exact.render(view.scene, screen)
-    figure, panels = _subplots(2, 4, figsize=(16, 7))
-    for column, fraction_bits in enumerate((0, 2, 4)):
-        picture = seed_engine.render(view.scene, screen, fraction_bits)
-        panels[0][column].imshow(picture)
-        panels[0][column].set_title(f"F = {fraction_bits}")
-        panels[1][column].imshow(diff_picture(picture, perfect))
-        panels[1][column].set_title(f"{count_wrong(picture, perfect):,} wrong pixels of {perfect[..., 0].size:,}")
-    panels[0][3].imshow(perfect)
-    panels[0][3].set_title("exact")
-    for panel in panels.flat:
-        panel.axis("off")
-    figure.suptitle(f"{view.name}, truncated")
-    _save(figure, path)
+def _value(one: Candidate, name: str) -> float:
+    value = getattr(one, name)
+    return max(value, LEAST_MEAN) if name == "error" else value
 
 
-def flips(points: Sequence[PicturePoint], path: Path) -> None:
+def _label(axes: Axes, labelled: Sequence[Candidate], across: str, up: str, every: Sequence[Candidate]) -> None:
+    texts = [
+        axes.text(_value(one, across), _value(one, up), _short(one), fontsize=LABEL_POINTS, zorder=4)
+        for one in labelled
+    ]
+    adjust_text(
+        texts, x=[_value(one, across) for one in every], y=[_value(one, up) for one in every], ax=axes,
+        expand=(1.15, 1.3), force_text=(0.3, 0.6), arrowprops={"arrowstyle": "-", "color": GREY, "lw": 0.5},
+    )  # fmt: skip
+
+
+WORDS = {
+    "pixel_ns": "time for a pixel, ns",
+    "cells": "cells, LUT4 of an ECP5",
+    "error": "wrong pixels, mean share",
+}
+
+
+def designs(
+    every: Sequence[Candidate], across: str, up: str, frontiers: Sequence[Sequence[Candidate]],
+    labelled: Sequence[Candidate],
+) -> Figure:  # fmt: skip
+    """Every design, by two of `pixel_ns`, `cells` and `error`.
+
+    Args:
+        every: the designs.
+        across: attribute along x.
+        up: attribute along y.
+        frontiers: those through which a line goes, each in the order of what is along x.
+        labelled: those with a label.
+    """
+    figure, [[axes]] = new_figure(4.2)
+    with mpl.rc_context(STYLE):
+        axes.set(xscale="log", yscale="log", xlabel=WORDS[across], ylabel=WORDS[up])
+        _dots(axes, every, across, up)
+        for frontier in frontiers:
+            xs, ys = ([_value(one, name) for one in frontier] for name in (across, up))
+            axes.step(xs, ys, where="post", color=ENGINES[frontier[0].config.engine][0], linewidth=0.9, alpha=0.7)
+        if up == "error":
+            _percent(axes, LEAST_MEAN)
+        else:
+            _plain(axes.yaxis)
+        _plain(axes.xaxis)
+        axes.margins(0.12)
+        figure.legend(loc="outside upper center", ncols=3, handletextpad=0.2, columnspacing=1)
+        figure.draw_without_rendering()
+        _label(axes, labelled, across, up, every)
+    return figure
+
+
+# Errors ---------------------------------------------------------------------------------------------------------------
+
+
+def shares(by: Mapping[str, Mapping[int, Sequence[float]]]) -> Figure:
+    """By rounding and fraction bits, the shares of wrong pixels of all worlds."""
+    figure, [[axes]] = new_figure(3.6)
+    with mpl.rc_context(STYLE):
+        for side, (rounding, of) in zip((-0.2, 0.2), by.items(), strict=False):
+            colour = COLOURS[rounding]
+            axes.boxplot(
+                [[max(share, LEAST_SHARE) for share in values] for values in of.values()],
+                positions=[place + side for place in range(len(of))], widths=0.32, whis=(0, 100), showmeans=True,
+                patch_artist=True, boxprops={"facecolor": colour, "alpha": 0.35, "edgecolor": colour},
+                medianprops={"color": "black"}, whiskerprops={"color": colour}, capprops={"color": colour},
+                meanprops={"marker": "o", "markersize": 3.5, "markerfacecolor": colour, "markeredgecolor": colour},
+                label=rounding,
+            )  # fmt: skip
+        fractions = list(next(iter(by.values())))
+        axes.set_xticks(range(len(fractions)), fractions)
+        axes.set(xlabel="fraction bits F", ylabel="wrong pixels of a world")
+        _percent(axes, LEAST_SHARE)
+        figure.legend(loc="outside upper center", ncols=2)
+    return figure
+
+
+def likeness(
+    psnr: Mapping[str, Mapping[int, Sequence[float]]], ssim: Mapping[str, Mapping[int, Sequence[float]]]
+) -> Figure:
+    """By rounding and fraction bits, median and extent of PSNR, of pictures with wrong pixels, and of SSIM."""
+    figure, [[upper], [lower]] = new_figure(4.4, 2, 1, sharex=True)
+    with mpl.rc_context(STYLE):
+        for axes, of in ((upper, psnr), (lower, ssim)):
+            for rounding, colour in COLOURS.items():
+                found = {f: values for f, values in of[rounding].items() if len(values)}
+                low, middle, high = (
+                    [part(values) for values in found.values()] for part in (np.min, np.median, np.max)
+                )
+                axes.fill_between(list(found), low, high, color=colour, alpha=0.15, linewidth=0)
+                axes.plot(list(found), middle, marker="o", markersize=4, color=colour, label=rounding)
+        upper.set(ylabel="PSNR, dB")
+        lower.set(ylabel="SSIM", xlabel="fraction bits F", xticks=list(of["truncate"]))
+        handles, labels = upper.get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper center", ncols=2)
+    return figure
+
+
+def hit_errors(by: Mapping[str, Sequence[Mapping[str, float]]]) -> Figure:
+    """By rounding and reflections, mean, median of the worlds' worst, and worst errors of hit points, and bounds."""
+    figure, [panels] = new_figure(3.4, 1, len(by), sharey=True)
+    kinds = {
+        "greatest bound": (GREY, "--", "_"), "worst": (VERMILION, "-", "v"), "median world's worst": (ORANGE, "-", "s"),
+        "mean": (BLUE, "-", "o"),
+    }  # fmt: skip
+    with mpl.rc_context(STYLE):
+        for axes, (rounding, rows) in zip(panels, by.items(), strict=True):
+            for kind, (colour, line, marker) in kinds.items():
+                axes.plot([row[kind] for row in rows], line, color=colour, marker=marker, markersize=4, label=kind)
+            axes.set(title=rounding, yscale="log", xlabel="reflections before", xticks=range(len(rows)))
+        panels[0].set_ylabel("error of a hit point, world units")
+        handles, labels = panels[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper center", ncols=2)
+    return figure
+
+
+def falling(by: Mapping[str, Mapping[int, float]], hits: Mapping[str, Mapping[int, float]]) -> Figure:
+    """By rounding and fraction bits, the mean share of wrong pixels, and the mean error of primary hit points."""
+    figure, [panels] = new_figure(3.0, 1, 2)
+    with mpl.rc_context(STYLE):
+        for axes, of, label in zip(panels, (by, hits), (WORDS["error"], "mean error of a hit, units"), strict=True):
+            for rounding, colour in COLOURS.items():
+                axes.plot(*zip(*of[rounding].items(), strict=True), "o-", markersize=4, color=colour, label=rounding)
+            axes.set(yscale="log", xlabel="F", xticks=list(of["truncate"]))
+            axes.set_title(label)
+        for axes, form in zip(
+            panels, (lambda share, _: f"{100 * share:g}%", lambda value, _: f"{value:g}"), strict=True
+        ):
+            axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            axes.yaxis.set_major_formatter(FuncFormatter(form))
+            axes.yaxis.set_minor_formatter(NullFormatter())
+        handles, labels = panels[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper center", ncols=2)
+    return figure
+
+
+def by_reflections(by: Mapping[str, Mapping[int, Sequence[float]]]) -> Figure:
+    """By rounding and reflections, the shares of wrong pixels of the packaged scenes: each, and their mean."""
+    figure, [[axes]] = new_figure(3.0)
+    with mpl.rc_context(STYLE):
+        for side, (rounding, of) in zip((-0.06, 0.06), by.items(), strict=False):
+            for place, values in of.items():
+                drawn = [max(value, LEAST_SHARE) for value in values]
+                axes.plot([place + side] * len(drawn), drawn, "o", color=COLOURS[rounding], markersize=3, alpha=0.5)
+            means = [np.mean(values) for values in of.values()]
+            axes.plot(list(of), means, color=COLOURS[rounding], label=f"{rounding}, mean")
+        axes.set(xlabel="reflections", ylabel="wrong pixels of a scene", xticks=list(of))
+        _percent(axes, LEAST_SHARE)
+        figure.legend(loc="outside upper center", ncols=2)
+    return figure
+
+
+def heat(by: Mapping[str, np.ndarray]) -> Figure:
+    """By rounding, the share of wrong pixels in each block of the picture, over all worlds."""
+    figure, panels = new_figure(2.9 * len(by), len(by), 1)
+    most = max(float(shares.max()) for shares in by.values())
+    with mpl.rc_context(STYLE):
+        for [axes], (rounding, blocks) in zip(panels, by.items(), strict=True):
+            image = axes.imshow(
+                100 * blocks, cmap="cividis", vmin=0, vmax=100 * most, extent=(0, 320, 240, 0), interpolation="nearest"
+            )
+            axes.set(title=rounding, xticks=(0, 160, 320), yticks=(0, 120, 240))
+            axes.grid(visible=False)
+        figure.colorbar(image, ax=panels, label="wrong pixels, %", shrink=0.7)
+    return figure
+
+
+def _pictures(rows: Sequence[Sequence[tuple[str, np.ndarray]]], height: float) -> Figure:
+    """Pictures with titles, in rows."""
+    figure, panels = new_figure(height * len(rows), len(rows), len(rows[0]))
+    with mpl.rc_context(STYLE):
+        for axes in panels.flat:
+            axes.axis("off")
+        for line, row in zip(panels, rows, strict=True):
+            for axes, (title, picture) in zip(line, row, strict=False):
+                axes.imshow(picture)
+                axes.set_title(title, fontsize=LABEL_POINTS)
+    return figure
+
+
+def wrong_by_scene(scenes: Sequence[View], rounding: str) -> Figure:
+    """Of each scene, where the seed engine is wrong without fraction bits."""
+    columns, shown = 3, []
+    for scene in scenes:
+        screen = SCREENS["vga", 240]
+        perfect = exact.render(scene.scene, screen)
+        picture = seed_engine.render(scene.scene, screen, rounding=rounding)
+        share = count_wrong(picture, perfect) / perfect[..., 0].size
+        shown.append((f"{scene.name}: {share:.2%}", diff_picture(picture, perfect)))
+    return _pictures([shown[at : at + columns] for at in range(0, len(shown), columns)], 1.35)
+
+
+# Stability ------------------------------------------------------------------------------------------------------------
+
+
+def flips(points: Sequence[PicturePoint]) -> Figure:
     """Of each point the picture, the exact one, and where they differ."""
-    figure, panels = _subplots(3, len(points), figsize=(3.2 * len(points), 7.6), squeeze=False)
-    for column, point in zip(panels.T, points, strict=True):
+    rows = []
+    for point in points:
         screen = SCREENS["vga", 240]
         picture = seed_engine.render(
             point.scene, screen, point.fraction_bits, rounding=point.rounding, reflections=point.reflections
         )
         perfect = exact.render(point.scene, screen, reflections=point.reflections)
-        for axes, shown in zip(column, (picture, perfect, diff_picture(picture, perfect)), strict=True):
-            axes.imshow(shown)
-            axes.axis("off")
-        column[0].set_title(f"{point.view.name}\nF = {point.fraction_bits}, {point.rounding}", fontsize=9)
-        column[1].set_title("exact", fontsize=9)
-        column[2].set_title(f"{count_wrong(picture, perfect):,} wrong pixels", fontsize=9)
-    _save(figure, path)
+        rows.append(
+            [
+                (f"{_two_lines(point.view.name)}\nF = {point.fraction_bits}, {point.rounding}", picture),
+                ("exact", perfect),
+                (f"{count_wrong(picture, perfect):,} wrong", diff_picture(picture, perfect)),
+            ]
+        )
+    return _pictures(rows, 1.45)
 
 
-def catalogue_verdict(
-    names: Sequence[str], tightest: Mapping[str, Sequence[float]], flips: Mapping[str, Sequence[float]], path: Path
-) -> None:
-    """Of every case the part of its bound that is reached, and the rays that flip."""
-    figure, (left, right) = _subplots(1, 2, figsize=(13, 0.2 * len(names) + 1.5), sharey=True)
-    rows = np.arange(len(names))
-    for offset, (label, values) in zip((-0.2, 0.2), tightest.items(), strict=False):
-        left.barh(rows + offset, values, 0.4, label=label, color=COLOURS[label.split()[-1]])
-        right.barh(rows + offset, flips[label], 0.4, label=label, color=COLOURS[label.split()[-1]])
-    left.axvline(1, color="black", linewidth=1)
-    left.set(yticks=rows, yticklabels=names, xlabel="worst error as a part of its bound", ylim=(len(names) - 0.5, -0.5))
-    left.tick_params(axis="y", labelsize=7)
-    right.set(xlabel="rays that hit something else than the exact ray, %", xscale="symlog")
-    figure.legend(loc="outside upper center", ncols=2, fontsize=9, handles=left.get_legend_handles_labels()[0])
-    for axes in (left, right):
-        axes.grid(alpha=0.3, axis="x")
-    _save(figure, path)
+def _two_lines(name: str) -> str:
+    """A case's name, at most as wide as its picture."""
+    return fill(name.replace("_", " "), 18)
 
 
-def _subplots(rows: int = 1, columns: int = 1, *, figsize: tuple[float, float], **options):
-    figure = Figure(figsize=figsize, layout="constrained")
-    return figure, figure.subplots(rows, columns, **options)
+def stiffness(cases: Mapping[str, tuple[float, float, float]], labelled: Sequence[str]) -> Figure:
+    """Of each case how far a hit moves for a pixel, its worst error, and the bound that belongs to it."""
+    figure, [[axes]] = new_figure(3.8)
+    with mpl.rc_context(STYLE):
+        conditions, errors, bounds = np.array(list(cases.values())).T
+        axes.vlines(conditions, errors, bounds, color=GREY, linewidth=0.5, alpha=0.6)
+        axes.scatter(conditions, bounds, marker="_", color=GREY, s=30, label="greatest bound")
+        axes.scatter(conditions, errors, marker="o", color=BLUE, s=14, label="worst error", zorder=3)
+        axes.set(
+            xscale="log", yscale="log", xlabel="condition: world units that a hit moves for a pixel",
+            ylabel="world units",
+        )  # fmt: skip
+        axes.margins(0.2, 0.1)
+        figure.legend(loc="outside upper center", ncols=2)
+        figure.draw_without_rendering()
+        texts = [axes.text(*cases[name][:2], name, fontsize=LABEL_POINTS, zorder=4) for name in labelled]
+        adjust_text(
+            texts, x=conditions, y=errors, ax=axes, expand=(1.3, 1.8), force_text=(0.6, 1.2),
+            arrowprops={"arrowstyle": "-", "color": GREY, "lw": 0.5},
+        )  # fmt: skip
+    return figure
 
 
-def _save(figure: Figure, path: Path) -> None:
-    figure.savefig(path, dpi=DPI)
+def growth(cases: Mapping[str, tuple[DepthErrors, ...]]) -> Figure:
+    """The worst error and its bound from bounce to bounce, a panel a case."""
+    columns = 2
+    rows = -(-len(cases) // columns)
+    figure, panels = new_figure(1.7 * rows + 0.5, rows, columns, sharex=True)
+    lines = {"bound": (GREY, "--"), "worst": (VERMILION, "o-"), "mean": (BLUE, "o-")}
+    with mpl.rc_context(STYLE):
+        for panel, (name, depths) in zip(panels.flat, cases.items(), strict=False):
+            for kind, (colour, style) in lines.items():
+                values = [max(getattr(one, kind), 1e-3) for one in depths]
+                panel.plot(values, style, color=colour, markersize=3, label=kind)
+            panel.set(title=name, yscale="log", xticks=range(0, len(depths), 2))
+        for panel in panels.flat[len(cases) :]:
+            panel.set_visible(False)
+        for panel in panels[-1]:
+            panel.set_xlabel("bounces")
+        for panel in panels[:, 0]:
+            panel.set_ylabel("world units")
+        handles, labels = panels[0][0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper center", ncols=3)
+    return figure
+
+
+# What is left out -----------------------------------------------------------------------------------------------------
+
+
+def waterfall(title: str, steps: Sequence[tuple[str, int]]) -> Figure:
+    """The cells of a design, and what each step takes away; steps that take nothing are left out."""
+    changed = [(what, before, after) for (_, before), (what, after) in pairwise(steps) if after != before]
+    figure, [[axes]] = new_figure(0.9 + 0.24 * (len(changed) + 2))
+    (first, whole), (_, left) = steps[0], steps[-1]
+    with mpl.rc_context(STYLE):
+        names = [first, *(f"- {what}" for what, _, _ in changed), "this scene alone"]
+        rows = np.arange(len(names))
+        axes.barh(rows[[0, -1]], [whole, left], 0.7, color=BLUE)
+        for row, (_, before, after) in zip(rows[1:], changed, strict=False):
+            axes.barh(row, before - after, 0.7, left=after, color=ORANGE if after < before else VERMILION)
+        ends = [whole, *(max(before, after) for _, before, after in changed), left]
+        words = [
+            f"{whole:,}",
+            *(f"{after - before:+,}" for _, before, after in changed),
+            f"{left:,} ({left / whole:.0%})",
+        ]
+        for row, end, word in zip(rows, ends, words, strict=True):
+            axes.text(end, row, f" {word}", va="center", fontsize=LABEL_POINTS)
+        axes.set_yticks(rows, names)
+        axes.invert_yaxis()
+        axes.set(xlabel="LUT4", title=title, xlim=(0, 1.25 * max(ends)))
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
+        axes.xaxis.set_major_locator(mpl.ticker.MaxNLocator(4))
+        axes.grid(visible=False, axis="y")
+    return figure
+
+
+def culling(by: Mapping[str, Mapping[str, float]]) -> Figure:
+    """By engine and scene, the share of a frame's cycles that is left with culling: a bar each."""
+    scenes = sorted({name for of_engine in by.values() for name in of_engine}, reverse=True)
+    figure, [[axes]] = new_figure(1.0 + 0.34 * len(scenes))
+    height = 0.8 / len(by)
+    with mpl.rc_context(STYLE):
+        for place, (engine, of_engine) in enumerate(by.items()):
+            offsets = np.arange(len(scenes)) + 0.4 - (place + 0.5) * height
+            bars = axes.barh(offsets, [100 * of_engine[name] for name in scenes], height, label=engine,
+                             color=ENGINES[engine][0])  # fmt: skip
+            axes.bar_label(bars, fmt="%.0f", padding=3, fontsize=LABEL_POINTS)
+        axes.axvline(100, color="black", linewidth=1)
+        axes.set(xlabel="cycles of a frame with culling, % of those without", xlim=(0, 118))
+        axes.set_yticks(np.arange(len(scenes)), scenes)
+        figure.legend(loc="outside upper center", ncols=2)
+    return figure

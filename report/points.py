@@ -5,49 +5,73 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import inspect
 import json
-import math
 import tempfile
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
-from functools import cache
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
+from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
 from raycaster.configuration import Configuration, configure
 from raycaster.convert.take_home import TOP
+from raycaster.design import design_for
 from raycaster.errors import UserError
+from raycaster.fit.fixing import fix, fixed_rectangle
+from raycaster.fixed import FixedScene
 from raycaster.fpga.area import FAMILIES, measure
 from raycaster.golden import exact, seed_engine
 from raycaster.golden.catalogue import catalogue
-from raycaster.golden.errors import compare, depth_errors
+from raycaster.golden.errors import conditions, depth_errors
+from raycaster.golden.picture import wrong_pixels
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.seed_engine import Rounding
 from raycaster.golden.world import Rectangles
-from raycaster.options import add_configuration_options, as_options, given_options, run_command
-from raycaster.scene import Scene, dump_scene, load_scene
+from raycaster.options import BUILD, add_configuration_options, as_options, given_options, run_command
+from raycaster.scene import BASIS_SCALE, Scene, dump_scene, load_scene
 from raycaster.screens import SCREENS, Screen
 from raycaster.sim.job import Job
-from raycaster.sim.simulator import build_model, run_bench
+from raycaster.sim.simulator import SimulationError, build_model, run_bench
 from raycaster.verif.hit_points import build_probed_model, hit_points
+from raycaster.verif.random_scenes import random_scene
+from raycaster.verif.soak.soak import Share, run_share
 
 CASE = "case:"
 """Before the name of a scene of the catalogue, where a scene file's path would stand."""
+
+SEED = "seed:"
+"""Before the seed of a random world, likewise."""
+
+WORLD_ROWS = 120
+"""Of the pictures of random worlds: a quarter of the pixels, of the same view."""
+
+RECTANGLES = 12
+"""That random worlds have at most, and designs for any scene at least."""
+
+GRID = 30, 40
+"""Blocks, from top to bottom and from left to right, in which the wrong pixels of a picture are counted."""
 
 FAMILY = FAMILIES["ecp5"]
 UNITS = {"seed": "ray_unit", "exact": "exact_unit"}
 """By engine, the module of which there are as many as the configuration's units."""
 
+GENERAL_REFLECTIONS = 2
+"""Of the design that things are left out of."""
+
 ROOT = Path(__file__).parent.parent
+_OF_CELLS = "rtl", "raycaster", "convert", "fpga/area.py", "fpga/hard_multiplier.v"
+_OF_SIMULATIONS = "rtl", "raycaster", "golden", "convert", "sim"
 
 
 class Point(Protocol):
     """Something to find out that takes a while. Points travel to other processes, and carry all that they need."""
 
-    folders: ClassVar[Sequence[str]]
-    """Whose sources a result depends on."""
+    sources: ClassVar[Sequence[str]]
+    """Files and folders that a result depends on, beside the point's own class."""
 
     @property
     def arguments(self) -> str:
@@ -63,7 +87,7 @@ class Point(Protocol):
 
 @dataclass(frozen=True)
 class View:
-    """A scene, by path or by `CASE` and a name."""
+    """A scene, by path, by `CASE` and a name, or by `SEED` and a number."""
 
     source: str
     scene: Scene = field(compare=False, repr=False)
@@ -73,8 +97,15 @@ class View:
         """Find the scene.
 
         Raises:
-            UserError: it is a file that cannot be read or is no scene, or the catalogue has no such case.
+            UserError: it is a file that cannot be read or is no scene, the catalogue has no such case, or a seed is no
+                number.
         """
+        if source.startswith(SEED):
+            number = source.removeprefix(SEED)
+            if not number.isdecimal():
+                raise UserError(f"{source}: a seed is a whole number, 0 or more")
+            scene = random_scene(int(number), RECTANGLES, 0, ("materials", "patterns"))
+            return cls(source, scene.model_copy(update={"rows": WORLD_ROWS}))
         if not source.startswith(CASE):
             return cls(source, load_scene(source))
         if source.removeprefix(CASE) not in _cases():
@@ -84,24 +115,24 @@ class View:
     @property
     def name(self) -> str:
         """For people."""
-        return self.source.removeprefix(CASE) if self.source.startswith(CASE) else Path(self.source).stem
+        return self.source.removeprefix(CASE) if self.source.startswith((CASE, SEED)) else Path(self.source).stem
 
 
 @cache
 def _cases() -> dict[str, Scene]:
-    return {case.name: case.scene for case in catalogue()}
+    return {case.name: case.scene for case in catalogue(("turn", "materials", "patterns"))}
 
 
 @dataclass(frozen=True)
 class PicturePoint:
-    """A picture of the golden model under one arithmetic, against the exact one: `raycaster.golden.errors.Errors`."""
+    """A picture of the golden model under one arithmetic, against the exact one."""
 
     view: View
     fraction_bits: int
     rounding: Rounding
     reflections: int
     screen: str = "vga"
-    folders: ClassVar[Sequence[str]] = ("golden", "raycaster")
+    sources: ClassVar[Sequence[str]] = ("golden", "raycaster", "verif/random_scenes.py")
 
     @property
     def arguments(self) -> str:
@@ -117,16 +148,41 @@ class PicturePoint:
         return self.view.scene
 
     def compute(self) -> dict[str, Any]:
-        """An infinite ratio is None."""
-        errors = compare(
-            Rectangles.of_scene(self.scene), self.scene.camera.position, self.scene.background,
-            primary_slopes(_screen(self.screen, self.scene.rows)).reshape(-1, 3),
-            self.reflections, self.fraction_bits, self.rounding,
+        """Wrong pixels, and in which blocks they are; PSNR in dB, None where no pixel is wrong; SSIM; and by depth of
+        reflection, as `raycaster.golden.errors.DepthErrors`."""
+        slopes, perfect = _perfect(self.scene, self.screen, self.reflections)
+        rectangles = Rectangles.of_scene(self.scene)
+        rays = slopes.reshape(-1, 3)
+        rounded = seed_engine.trace(
+            rectangles, self.scene.camera.position, self.scene.background, rays, self.reflections,
+            fraction_bits=self.fraction_bits, rounding=self.rounding,
         )  # fmt: skip
-        result = asdict(errors) | {"depths": [asdict(depth) for depth in errors.depths]}
-        result["psnr"] = errors.psnr if math.isfinite(errors.psnr) else None
-        result["wrong_share"] = errors.wrong / errors.pixels
-        return result
+        depths = depth_errors(
+            rectangles, rays, perfect, rounded.winners, rounded.points, self.fraction_bits, self.rounding
+        )
+        picture, right = (traced.colours.reshape(slopes.shape) for traced in (rounded, perfect))
+        wrong = wrong_pixels(picture, right)
+        count = int(wrong.sum())
+        where, *_ = np.histogram2d(*np.nonzero(wrong), bins=GRID, range=[(0, side) for side in wrong.shape])
+        return {
+            "pixels": wrong.size,
+            "wrong": count,
+            "wrong_share": count / wrong.size,
+            "psnr": float(peak_signal_noise_ratio(right, picture, data_range=255)) if count else None,
+            "ssim": float(structural_similarity(right, picture, data_range=255, channel_axis=2)),
+            "where": where.astype(int).ravel().tolist(),
+            "depths": [asdict(depth) for depth in depths],
+        }
+
+
+@lru_cache(maxsize=2)
+def _perfect(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, exact.Trace]:
+    """The slopes of a picture, int64 (rows, columns, 3), and the exact trace, which one after the other ask for."""
+    slopes = primary_slopes(_screen(screen, scene.rows), scene.camera.basis)
+    perfect = exact.trace(
+        Rectangles.of_scene(scene), scene.camera.position, scene.background, slopes.reshape(-1, 3), reflections
+    )
+    return slopes, perfect
 
 
 def _screen(name: str, rows: int) -> Screen:
@@ -135,13 +191,46 @@ def _screen(name: str, rows: int) -> Screen:
 
 
 @dataclass(frozen=True)
+class ConditionPoint:
+    """How far a scene's hits move for each pixel by which a ray is off; see `raycaster.golden.errors.conditions`."""
+
+    view: View
+    reflections: int
+    screen: str = "vga"
+    sources: ClassVar[Sequence[str]] = ("golden", "raycaster")
+
+    @property
+    def arguments(self) -> str:
+        """As the command wants them."""
+        return f"condition {self.view.source} --reflections {self.reflections} --screen {self.screen}"
+
+    @property
+    def scene(self) -> Scene:
+        """That is looked at."""
+        return self.view.scene
+
+    def compute(self) -> dict[str, Any]:
+        """Median and greatest over the hits of all depths, in world units a pixel; None where nothing is hit."""
+        camera = self.scene.camera
+        slopes, perfect = _perfect(self.scene, self.screen, self.reflections)
+        rays = slopes.reshape(-1, 3)
+        found = conditions(Rectangles.of_scene(self.scene), camera.position, rays, perfect)
+        # The slopes of a camera that is turned are in fractions of a pixel.
+        found = np.concatenate(found) * (BASIS_SCALE if camera.turned else 1)
+        found = found[~np.isnan(found)]
+        if not len(found):
+            return {"median": None, "worst": None}
+        return {"median": float(np.median(found)), "worst": float(found.max())}
+
+
+@dataclass(frozen=True)
 class CellsPoint:
-    """LUT4 and multipliers of an ECP5 that a design or one module of it takes, by itself."""
+    """What a design or one module of it takes of an ECP5, by itself."""
 
     config: Configuration
     top: str = TOP
     scene: ClassVar[None] = None
-    folders: ClassVar[Sequence[str]] = ("rtl", "raycaster", "fpga")
+    sources: ClassVar[Sequence[str]] = _OF_CELLS
 
     @property
     def arguments(self) -> str:
@@ -150,9 +239,73 @@ class CellsPoint:
 
     def compute(self) -> dict[str, Any]:
         """The counts."""
-        with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
-            area = measure(self.config, FAMILY, Path(scratch) / "area", self.top)
-        return {"cells": area.tables, "multipliers": area.multipliers}
+        return _cells(self.config, self.top)
+
+
+def _cells(config: Configuration, top: str = TOP) -> dict[str, Any]:
+    with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
+        area = measure(config, FAMILY, Path(scratch) / "area", top)
+    return {"cells": area.tables, "registers": area.registers, "multipliers": area.multipliers}
+
+
+def leaving_out(view: View, engine: str) -> Iterator[tuple[str, Configuration]]:
+    """From the design that draws any scene to the one that draws this scene alone, by what each step leaves out.
+
+    Raises:
+        UserError: the scene is more than the engine can draw.
+    """
+    scene = view.scene
+    own = design_for(Path(view.source), {"engine": engine}).configuration
+    options: dict[str, Any] = {
+        "engine": engine, "rows": own.rows, "rectangles": max(RECTANGLES, len(scene.rect)), "allow_underrun": True,
+        "reflections": GENERAL_REFLECTIONS, "turn": own.facts.turns, "materials": True, "patterns": True,
+        "culling": False,
+    }  # fmt: skip
+    yield "any scene", configure(**options)
+    for what, one in (
+        ("unused rectangles", {"rectangles": len(scene.rect)}),
+        ("unused reflections", {"reflections": scene.reflections}),
+        ("turned camera", {"turn": own.turn}),
+        ("mirrors' strengths", {"materials": own.materials}),
+        ("patterns", {"patterns": own.patterns}),
+    ):
+        options |= one
+        yield what, configure(**options)
+    every = (1 << len(scene.rect)) - 1
+    fixed = FixedScene(tuple(map(fixed_rectangle, scene.rect)), (every,) * (scene.reflections + 1))
+    yield "registers of rectangles", configure(**options, fixed=fixed)
+    background = int.from_bytes(bytes(scene.background), "big")
+    fixed = replace(fixed, camera=scene.camera.position, background=background, basis=scene.camera.basis)
+    yield "registers of the camera", configure(**options, fixed=fixed)
+    yield (
+        "hidden rectangles",
+        fix(Path(view.source), {"engine": engine, "allow_underrun": True}, "all").design.configuration,
+    )
+
+
+@dataclass(frozen=True)
+class LeftPoint:
+    """What is left of a design of an ECP5 at one of the steps of `leaving_out`."""
+
+    view: View
+    engine: str
+    step: int
+    sources: ClassVar[Sequence[str]] = (*_OF_CELLS, "golden", "fit")
+
+    @property
+    def arguments(self) -> str:
+        """As the command wants them."""
+        return f"left {self.view.source} --engine {self.engine} --step {self.step}"
+
+    @property
+    def scene(self) -> Scene:
+        """That the design is for."""
+        return self.view.scene
+
+    def compute(self) -> dict[str, Any]:
+        """The counts."""
+        configs = [config for _, config in leaving_out(self.view, self.engine)]
+        return _cells(configs[self.step])
 
 
 @dataclass(frozen=True)
@@ -161,7 +314,7 @@ class TimePoint:
 
     view: View
     config: Configuration
-    folders: ClassVar[Sequence[str]] = ("rtl", "raycaster", "golden", "verif")
+    sources: ClassVar[Sequence[str]] = _OF_SIMULATIONS
 
     @property
     def arguments(self) -> str:
@@ -174,7 +327,7 @@ class TimePoint:
         return self.view.scene
 
     def compute(self) -> dict[str, Any]:
-        """Of the slowest group and row, and of the frame."""
+        """Of the slowest group and row, and of the frame; and the seconds that its simulation took."""
         with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
             file = Path(scratch) / "scene.toml"
             file.write_text(dump_scene(self.scene))
@@ -186,7 +339,40 @@ class TimePoint:
             "row_cycles": result["worst_row_cycles"],
             "frame_cycles": result["frame_cycles"],
             "wrong": result["wrong_vs_golden"],
+            "seconds": result["sim_seconds"],
         }
+
+
+@dataclass(frozen=True)
+class CasesPoint:
+    """Some cases of the catalogue in the converted Verilog, a frame each, held against golden in every pixel."""
+
+    config: Configuration
+    first: int
+    """Place of the first one among those that the design can show."""
+
+    count: int
+    scene: ClassVar[None] = None
+    sources: ClassVar[Sequence[str]] = (*_OF_SIMULATIONS, "verif/soak")
+
+    @property
+    def arguments(self) -> str:
+        """As the command wants them."""
+        return " ".join(["cases", f"{self.first}+{self.count}", *as_options(self.config)])
+
+    def compute(self) -> dict[str, Any]:
+        """By case, the pixels, and those that are not golden's.
+
+        Raises:
+            SimulationError: it ended before the last case.
+        """
+        places = range(self.first, self.first + self.count)
+        names = [case.name for case in catalogue(self.config.looks)]
+        with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
+            shown, failure = run_share(Share(self.config, "verilator", places, Path(scratch), BUILD, stiff=True))
+        if failure and len(shown) < self.count:
+            raise SimulationError(failure)
+        return {names[one["seed"]]: {"pixels": one["pixels"], "wrong": one["wrong_vs_golden"]} for one in shown}
 
 
 @dataclass(frozen=True)
@@ -195,7 +381,7 @@ class HitsPoint:
 
     view: View
     config: Configuration
-    folders: ClassVar[Sequence[str]] = ("rtl", "raycaster", "golden", "verif")
+    sources: ClassVar[Sequence[str]] = (*_OF_SIMULATIONS, "verif/hit_points.py", "verif/hit_probe.v")
 
     @property
     def arguments(self) -> str:
@@ -238,35 +424,58 @@ def fingerprint(point: Point) -> str:
     """Of all that a point's result depends on: a stored result with another one is not looked at."""
     digest = hashlib.sha256(point.arguments.encode())
     digest.update(dump_scene(point.scene).encode() if point.scene else b"")
-    for folder in point.folders:
-        digest.update(_sources_digest(folder))
+    digest.update(_class_digest(type(point)))
+    for name in point.sources:
+        digest.update(_sources_digest(name))
     return digest.hexdigest()
 
 
 @cache
-def _sources_digest(folder: str) -> bytes:
+def _class_digest(kind: type) -> bytes:
+    return hashlib.sha256(inspect.getsource(kind).encode()).digest()
+
+
+@cache
+def _sources_digest(name: str) -> bytes:
+    """Of a file, or of all sources in a folder and the folders in it."""
     digest = hashlib.sha256()
-    for path in sorted((ROOT / folder).iterdir()):
+    place = ROOT / name
+    for path in sorted(place.rglob("*")) if place.is_dir() else [place]:
         if path.suffix in (".py", ".rdl", ".v"):
             digest.update(path.read_bytes())
     return digest.digest()
 
 
 def _parse(arguments: argparse.Namespace, options: Mapping[str, Any]) -> Point:
-    config = configure(**{"allow_underrun": True, **options} if arguments.kind == "picture" else options)
-    if arguments.kind == "cells":
-        return CellsPoint(config, arguments.what)
-    view = View.of(arguments.what)
-    if arguments.kind == "picture":
+    kind, what = arguments.kind, arguments.what
+    looks = kind in ("picture", "condition")
+    config = configure(**{"allow_underrun": True, **options} if looks else options)
+    if kind == "cells":
+        return CellsPoint(config, what)
+    if kind == "cases":
+        first, _, count = what.partition("+")
+        if not (first.isdecimal() and count.isdecimal()):
+            raise UserError(f"cases: FIRST+COUNT, such as 0+10, not {what}")
+        return CasesPoint(config, int(first), int(count))
+    view = View.of(what)
+    if kind == "picture":
         return PicturePoint(view, config.fraction_bits, config.rounding, config.reflections, config.screen)
-    return (TimePoint if arguments.kind == "time" else HitsPoint)(view, config)
+    if kind == "condition":
+        return ConditionPoint(view, config.reflections, config.screen)
+    if kind == "left":
+        return LeftPoint(view, config.engine, arguments.step)
+    return (TimePoint if kind == "time" else HitsPoint)(view, config)
 
 
 def main() -> None:
     """The command."""
     parser = argparse.ArgumentParser(prog="python -m raycaster.report.points", description=__doc__.splitlines()[0])
-    parser.add_argument("kind", choices=("picture", "cells", "time", "hits"))
-    parser.add_argument("what", help=f"a scene file, {CASE}NAME of the catalogue, or, of cells, a module")
+    parser.add_argument("kind", choices=("picture", "condition", "cells", "left", "time", "cases", "hits"))
+    parser.add_argument(
+        "what",
+        help=f"a scene file, {CASE}NAME of the catalogue, or {SEED}NUMBER; of cells, a module; of cases, FIRST+COUNT",
+    )
+    parser.add_argument("--step", type=int, default=0, help="of what is left out")
     add_configuration_options(parser)
     arguments = parser.parse_args()
     print(json.dumps(_parse(arguments, given_options(arguments)).compute(), indent=1))

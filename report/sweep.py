@@ -9,6 +9,7 @@ import re
 import tempfile
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
+from dataclasses import dataclass
 from operator import attrgetter, methodcaller
 from pathlib import Path
 from typing import Any, TypeVar
@@ -47,6 +48,19 @@ class Store:
     def _path(self, point: Point) -> Path:
         name = re.sub(r"[^\w.]+", "-", point.arguments)
         return self._directory / f"{name}.json"
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Finds points out, those that were stored before excepted."""
+
+    store: Store
+    make_executor: Callable[[], Executor]
+    console: Console
+
+    def __call__(self, what: str, points: Sequence[P]) -> dict[P, dict[str, Any]]:
+        """As `run`."""
+        return run(what, points, self.store, self.make_executor, self.console)
 
 
 def run(

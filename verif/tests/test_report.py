@@ -13,7 +13,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -40,10 +40,24 @@ from raycaster.golden.world import Rectangles
 from raycaster.jobs import executors
 from raycaster.options import add_configuration_options, as_options, given_options
 from raycaster.report import __main__ as report
-from raycaster.report import conclusions, hardware
-from raycaster.report.page import Section, write_html, write_markdown
-from raycaster.report.points import CASE, UNITS, CellsPoint, HitsPoint, PicturePoint, View, command
-from raycaster.report.sweep import Store, run
+from raycaster.report import hardware, plots, stability
+from raycaster.report.extent import Extent
+from raycaster.report.page import Page, Plot, Section, Table, write_html, write_markdown
+from raycaster.report.points import (
+    CASE,
+    UNITS,
+    CasesPoint,
+    CellsPoint,
+    ConditionPoint,
+    HitsPoint,
+    LeftPoint,
+    PicturePoint,
+    View,
+    command,
+    leaving_out,
+)
+from raycaster.report.statistics import slope
+from raycaster.report.sweep import Store, Sweep, run
 from raycaster.scene import find_scene
 from raycaster.screens import SCREENS
 from raycaster.verif.seeds import repeat, seed
@@ -89,13 +103,58 @@ def test_errors_and_bounds_are_those_of_fractions(fraction_bits, rounding):
     for _ in range(60):
         table = random_rectangles(rng)
         camera, [slope] = random_camera(rng, table), random_slopes(rng, 1)
-        found = compare(table, camera, (0, 0, 0), slope[None, :], 2, fraction_bits, rounding).depths
+        found = compare(table, camera, slope[None, :], 2, fraction_bits, rounding)
         for depth, error, bound in fraction_errors(table, camera, slope, 2, fraction_bits, rounding):
             assert found[depth].worst == pytest.approx(float(max(error)), rel=1e-12), repeat()
             assert found[depth].bound == pytest.approx(float(max(bound)), rel=1e-12), repeat()
             assert all(e <= b for e, b in zip(error, bound, strict=True)), repeat()
             compared += 1
     assert compared > 40, repeat()
+
+
+def test_more_reflections_are_compared_as_exactly():
+    """At six reflections some bounds leave machine words, at seven all do."""
+    rng = np.random.default_rng(seed())
+    compared = 0
+    for _ in range(20):
+        table = random_rectangles(rng, closed=True)
+        camera, [slope] = random_camera(rng, table), random_slopes(rng, 1)
+        found = compare(table, camera, slope[None, :], 7, 8, "nearest")
+        for depth, error, bound in fraction_errors(table, camera, slope, 7, 8, "nearest"):
+            assert found[depth].worst == pytest.approx(float(max(error)), rel=1e-9), repeat()
+            assert found[depth].bound == pytest.approx(float(max(bound)), rel=1e-9), repeat()
+            assert found[depth].exceeded == 0, repeat()
+            compared += depth > 4
+    assert compared > 5, repeat()
+
+
+def test_a_condition_is_how_far_a_hit_moves():
+    """Each slope is changed by a millionth, and the exact hit looked at again."""
+    rng = np.random.default_rng(seed())
+    fine, compared = 1_000_000, 0
+    for _ in range(30):
+        table = random_rectangles(rng, closed=True)
+        camera, slopes = random_camera(rng, table), random_slopes(rng, 20)
+        perfect = exact.trace(table, camera, (0, 0, 0), slopes, 2)
+        # The paths stay below 2^50, as `exact` wants its slopes.
+        moved = [
+            exact.trace(table, camera, (0, 0, 0), fine * slopes + np.eye(3, dtype=np.int64)[u], 2) for u in range(3)
+        ]
+        for depth, one in enumerate(golden_errors.conditions(table, camera, slopes, perfect)):
+            hit = perfect.winners[depth] >= 0
+            assert (np.isnan(one) == ~hit).all()
+            for ray in np.flatnonzero(hit):
+                same = [
+                    all(other.winners[d][ray] == perfect.winners[d][ray] for d in range(depth + 1)) for other in moved
+                ]
+                if not all(same) or (slopes[ray] == 0).any():
+                    continue
+                place = perfect.points[depth][ray] / perfect.denominators[depth][ray]
+                places = [other.points[depth][ray] / other.denominators[depth][ray] for other in moved]
+                far = fine * max(np.abs(each - place).max() for each in places)
+                assert one[ray] == pytest.approx(far, rel=1e-3, abs=1e-3), repeat()
+                compared += 1
+    assert compared > 500, repeat()
 
 
 @pytest.mark.parametrize("rounding", ["truncate", "nearest"])
@@ -107,7 +166,7 @@ def test_no_bound_is_exceeded_in_random_scenes(fraction_bits, rounding):
         table = random_rectangles(rng)
         camera = random_camera(rng, table)
         slopes = random_slopes(rng, 500)
-        for depth, one in enumerate(compare(table, camera, (0, 0, 0), slopes, 2, fraction_bits, rounding).depths):
+        for depth, one in enumerate(compare(table, camera, slopes, 2, fraction_bits, rounding)):
             assert one.exceeded == 0, repeat()
             hits[depth] += one.rays
     assert min(hits) > 100, repeat()
@@ -191,9 +250,13 @@ SMALL = configure(screen="tiny", units=1, rectangles=1, reflections=0, allow_und
     [
         PicturePoint(View.of("case:facing_x"), 4, "nearest", 2, "tiny"),
         PicturePoint(View.of(str(ROOT / "scenes" / "letterbox.toml")), 1, "truncate", 0),
+        PicturePoint(View.of("seed:5"), 0, "nearest", 1),
+        ConditionPoint(View.of("case:turned_any"), 2, "tiny"),
         CellsPoint(SMALL, UNITS["seed"]),
+        CasesPoint(configure(engine="exact", screen="tiny", reflections=2, allow_underrun=True), 7, 2),
+        LeftPoint(View.of(str(ROOT / "scenes" / "corners.toml")), "exact", 8),
     ],
-    ids=["case", "scene", "cells"],
+    ids=["case", "scene", "world", "condition", "cells", "cases", "left"],
 )
 def test_a_command_repeats_its_point(point, tmp_path):
     program, *rest = command(point).split()
@@ -208,6 +271,8 @@ def test_a_command_repeats_its_point(point, tmp_path):
     [
         (("points", "picture", "case:nothing"), "error: case:nothing: the catalogue has no such case; it has "),
         (("points", "time", "nowhere.toml"), "error: nowhere.toml: cannot be read"),
+        (("points", "picture", "seed:one"), "error: seed:one: a seed is a whole number, 0 or more"),
+        (("points", "cases", "all"), "error: cases: FIRST+COUNT, such as 0+10, not all"),
         (("points", "cells", "ray_unit", "--units", "7"), "error: units: 7 does not divide"),
         (("report",), "error: scenes: has no scene files; run this in the project's directory"),
         (("report", "--scheduler", "nowhere"), "error: scheduler: no Dask scheduler answers at nowhere"),
@@ -236,7 +301,7 @@ class Task:
     deadly: bool = False
     seconds: float = 0.0
     scene: ClassVar[None] = None
-    folders: ClassVar[tuple[str, ...]] = ()
+    sources: ClassVar[tuple[str, ...]] = ()
 
     @property
     def arguments(self) -> str:
@@ -333,7 +398,7 @@ def test_what_a_result_depends_on_makes_it_stale(tmp_path, monkeypatch):
     assert store.find(replace(point, fraction_bits=3)) is None
     moved = View("case:facing_x", point.scene.model_copy(update={"background": (1, 2, 3)}))
     assert store.find(replace(point, view=moved)) is None
-    monkeypatch.setattr("raycaster.report.points._sources_digest", lambda folder: b"edited")
+    monkeypatch.setattr("raycaster.report.points._sources_digest", lambda name: b"edited")
     assert store.find(point) is None
 
 
@@ -383,13 +448,22 @@ def test_a_dask_cluster_whose_worker_is_killed(tmp_path):
 # Designs and pages ----------------------------------------------------------------------------------------------------
 
 
+def found(config, error: float, cells: int, cycles: int) -> hardware.Candidate:
+    """A design of which nothing is foretold."""
+    return hardware.Candidate(config, error, None, {"cells": cells}, {"frame_cycles": cycles})
+
+
 def test_the_frontier():
     config = configure()
-    best, dear = hardware.Candidate(config, 0.01, 100, 64), hardware.Candidate(config, 0.01, 101, 64)
-    exacter = hardware.Candidate(config, 0.001, 200, 64)
-    slower = hardware.Candidate(replace(config, rectangles=13), 0.0005, 200, 64)
-    slowest = hardware.Candidate(replace(config, rectangles=14), 0.0005, 200, 64)
-    assert hardware.frontier([dear, slowest, slower, exacter, best, best]) == [exacter, best, best, slower]
+    best, dear, same = found(config, 0.01, 100, 50), found(config, 0.01, 101, 50), found(config, 0.01, 100, 50)
+    exacter, slower = found(config, 0.001, 200, 50), found(config, 0.0005, 200, 60)
+    slowest = found(config, 0.0005, 200, 70)
+    every = [dear, slowest, slower, exacter, best, same]
+    by_time = hardware.frontier(every, hardware.time, hardware.error)
+    assert by_time == [exacter, slower]
+    assert hardware.frontier(every, hardware.cells, hardware.error)[:2] == [best, same]
+    three = hardware.frontier(every, hardware.time, hardware.error, hardware.cells)
+    assert three == [exacter, best, same, slower]
 
 
 def test_designs_meet_the_row_budget():
@@ -400,42 +474,142 @@ def test_designs_meet_the_row_budget():
     assert [config.units for config in found if config.engine == "exact"] == [4, 8]
 
 
+def test_beams_are_of_every_scale_and_lane():
+    found = {(config.scale, config.pixels) for config in hardware.beam_designs("vga")}
+    assert found == {(1, 1), (2, 1), (2, 2), (4, 1), (4, 2), (6, 1), (6, 2)}
+
+
+def test_foretold_cells_are_counted_ones_where_they_must_be():
+    """A shared part of 1000 and units of 500 or 600."""
+    base, other = configure(culling=False), configure(culling=False, fraction_bits=8, divider_bits=3)
+    units = {hardware.unit_of(base): 500, hardware.unit_of(other): 600}
+    whole = {"cells": 1000 + 32 * 500}
+    both = [hardware.Candidate(config, 0.0) for config in (base, other)]
+    foretold = hardware.with_foretold(both, whole, base, units)
+    assert [one.cells for one in foretold] == [17_000, 20_200]
+    assert [one.frame_cycles for one in foretold] == [556_800, 240 * 10 * other.group_cycles]
+    assert found(base, 0.0, 123, 556_800).pixel_ns == pytest.approx(556_800 / 50e6 / 76_800 * 1e9)
+
+
+def test_a_slope_and_its_interval():
+    rng = np.random.default_rng(seed())
+    places = np.arange(5)
+    straight = slope(places, 3 * places + rng.normal(size=(300, 5)))
+    assert straight.low < straight.slope < straight.high
+    assert straight.slope == pytest.approx(3, abs=0.3), repeat()
+    assert straight.high - straight.low < 0.5, repeat()
+    assert slope(places, np.ones((9, 5)) * 2.0**-places, binary=True).slope == pytest.approx(-1)
+    # Means over rays, not over worlds: the world of nine rays counts nine times.
+    sums, counts = np.array([[0.0, 9.0], [0.0, 0.0]]), np.array([[9, 9], [1, 1]])
+    assert slope([0, 1], sums, counts).slope == pytest.approx(0.9)
+    with pytest.raises(ValueError, match="no line"):
+        slope([0, 1], np.zeros((2, 2)), np.zeros((2, 2)))
+
+
+def test_what_is_left_out_step_by_step():
+    """Every step's design is one that the scene fits, and the last is the smallest: without what no ray sees."""
+    view = View.of(str(ROOT / "scenes" / "corners.toml"))
+    steps = dict(leaving_out(view, "exact"))
+    first, *_, last = steps.values()
+    assert first.looks == ("turn", "materials", "patterns") and first.reflections == 2 and first.rectangles == 12
+    assert steps["patterns"].looks == () and steps["patterns"].fixed is None
+    assert steps["registers of rectangles"].fixed.camera is None
+    assert steps["registers of the camera"].fixed.camera == view.scene.camera.position
+    assert len(steps["registers of the camera"].fixed.rectangles) == len(view.scene.rect) > len(last.fixed.rectangles)
+
+
 def test_pages_need_nothing_else(tmp_path):
-    (tmp_path / "plot.png").write_bytes(b"not looked at")
-    sections = [
-        Section("One <title>", "text", ["a & b"], "plot.png"),
-        Section("Two", columns=("name", "count"), rows=[["<x>", 12345], ["y", None]]),
-    ]
-    html = write_html("what it is", sections, tmp_path).read_text()
-    assert "data:image/png;base64,bm90IGxvb2tlZCBhdA==" in html
-    assert not re.search(r"(src|href)=\"(?!data:)", html)
-    assert "One &lt;title&gt;" in html and "a &amp; b" in html and "&lt;x&gt;" in html and "12,345" in html
-    text = write_markdown("what it is", sections, tmp_path).read_text()
-    assert "![One <title>](plot.png)" in text and "| <x> | 12,345 |" in text and "| y |  |" in text
-
-
-def test_conclusions_are_drawn_from_the_numbers():
-    view = View.of("case:facing_x")
-
-    def results(*shares: float) -> dict[PicturePoint, dict]:
-        return {
-            PicturePoint(view, f, rounding, 1): {"wrong_share": share, "wrong": int(1e5 * share)}
-            for f, share in enumerate(shares)
-            for rounding in ("truncate", "nearest")
-        }
-
-    [enough] = conclusions.enough_fraction(results(0.1, 0.0005, 0.002, 0.0001))
-    assert enough == (
-        "facing_x: at most 0.1% of the pixels are wrong from F = 3 when truncated, from F = 3 when rounded to nearest."
+    (tmp_path / "plot.svg").write_text(
+        '<?xml version="1.0"?>\n<svg width="3pt" height="2pt" viewBox="0 0 3 2">'
+        '<defs><path id="a"/></defs><use href="#a" clip-path="url(#b)"/></svg>'
     )
-    [never] = conclusions.enough_fraction(results(0.1, 0.1))
-    assert "no F up to 1 when truncated" in never
-    numbers = results(0.1)
-    [same] = conclusions.where_roundings_differ(numbers, 0)
-    assert same.startswith("At F = 0 neither rounding")
-    numbers[PicturePoint(view, 0, "nearest", 1)]["wrong"] = 7
-    [differ] = conclusions.where_roundings_differ(numbers, 0)
-    assert differ.endswith("wrong when truncated as when rounded to nearest in: facing_x (10,000 against 7).")
+    for name in ("plot", "table"):
+        (tmp_path / f"{name}.csv").write_text(f"{name}\n")
+    sections = [
+        Section("One <title>", "text", ["a & b"], [Plot("plot", "what it <shows>")]),
+        Section("Two", tables=[Table("table", ("name", "count"), [["<x>", 12345], ["y", None]])]),
+    ]
+    page = Page(["It <broke>."], ["In short."], sections)
+    html = write_html(page, tmp_path).read_text()
+    assert '<use href="#plot-a" clip-path="url(#plot-b)"/>' in html and '<path id="plot-a"/>' in html
+    assert '<svg viewBox="0 0 3 2">' in html
+    assert html.count("data:text/csv;base64,cGxvdAo=") == html.count("data:text/csv;base64,dGFibGUK") == 1
+    assert not re.search(r"(src|href)=\"(?!data:|#)", html)
+    assert '<p class="alarm" role="alert">It &lt;broke&gt;.</p>' in html
+    assert "One &lt;title&gt;" in html and "a &amp; b" in html and "&lt;x&gt;" in html and "12,345" in html
+    assert 'data-n="12345"' in html
+    text = write_markdown(page, tmp_path).read_text()
+    assert (
+        "![plot](plot.svg)" in text and "| <x> | 12,345 |" in text and "| y |  |" in text and "**It <broke>.**" in text
+    )
+    assert 'alarm"' not in write_html(Page([], [], sections), tmp_path).read_text()
+
+
+def test_labels_that_touch_are_noticed():
+    figure, [[axes]] = plots.new_figure(3)
+    axes.text(0.5, 0.5, "one")
+    assert list(plots.crowded(figure)) == []
+    axes.text(0.51, 0.5, "two")
+    axes.text(1, 0.1, "too far to the right").set_in_layout(False)
+    assert list(plots.crowded(figure)) == ["too far to the right is cut off", "one touches two"]
+
+
+def test_labels_of_many_designs_do_not_touch():
+    """As many as the whole report has, about where they are."""
+
+    def seed_design(config) -> hardware.Candidate:
+        error = 0.0013 + 0.01 * 0.5**config.fraction_bits * (1 if config.rounding == "truncate" else 0.9)
+        cells = 2000 + config.units * (520 + 40 * config.divider_bits + 30 * config.fraction_bits)
+        return found(config, error, cells, hardware.foretold_cycles(config))
+
+    seeds = [seed_design(config) for config in hardware.seed_designs(range(9), (20, 32), "vga")]
+    others = [
+        found(config, 0.0, cells, hardware.foretold_cycles(config))
+        for config, cells in zip(
+            [*hardware.exact_designs((4, 5, 8, 10, 16, 20, 32), "vga"), *hardware.beam_designs("vga")],
+            [3800, 4400, 5800, 6700, 9600, 11_600, 17_300, 14_700, 15_000, 24_000, 15_100, 24_100, 15_300, 24_800],
+            strict=True,
+        )
+    ]
+    every = [*seeds, *others]
+    by_time, by_cells = (hardware.frontier(seeds, by, hardware.error) for by in (hardware.time, hardware.cells))
+    for across, up, labelled in (
+        ("pixel_ns", "error", [*by_time, others[0], others[-1]]),
+        ("cells", "error", [*by_cells, others[0]]),
+        ("pixel_ns", "cells", others),
+    ):
+        figure = plots.designs(every, across, up, [by_time], labelled)
+        assert len(figure.axes[0].texts) == len(labelled) > 5
+        assert list(plots.crowded(figure)) == []
+
+
+def test_a_bound_that_is_exceeded_is_a_red_line(tmp_path, monkeypatch):
+    """As if truncation were rounding to nearest."""
+    right = golden_errors._next_bound
+    monkeypatch.setattr(golden_errors, "_next_bound", lambda *arguments: right(*arguments[:-1], 1))
+    monkeypatch.setattr(stability, "GROWING", ("facing_x",))
+    monkeypatch.setattr(plots, "FLIPPED", 1)
+    cases = [case for case in catalogue() if case.name.startswith(("box", "facing", "grazing"))]
+    what = small_extent(cases, [], [])
+    drawn = []
+    monkeypatch.setattr(plots, "save", lambda figure, path: drawn.extend(plots.crowded(figure)))
+    sweep = Sweep(Store(tmp_path / "points"), lambda: ThreadPoolExecutor(1), QUIET)
+    _, alarms, _, _ = stability.stability_sections(what, tmp_path, sweep)
+    assert drawn == []
+    assert any(alarm.startswith("A bound is exceeded: box_20, F = 0, truncate. .venv/bin/python") for alarm in alarms)
+    assert not any("nearest" in alarm for alarm in alarms)
+
+
+def small_extent(cases, probed_cases, probed, **others) -> Extent:
+    """As little as there is of everything."""
+    return Extent(
+        **{
+            "fractions": (0, 4), "reflections": (0, 1, 2), "worlds": 6, "design_fractions": (0,), "units": (16,),
+            "exact_units": (4,), "cases": cases, "case_fractions": (0,), "case_screen": "tiny",
+            "probed_cases": probed_cases, "probed": probed, "shown": [], "screen": "tiny", "frontier": 1,
+            "culled": ("exact",), "left_scenes": 1,
+        } | others
+    )  # fmt: skip
 
 
 def test_a_small_report(tmp_path, monkeypatch):
@@ -449,59 +623,61 @@ def test_a_small_report(tmp_path, monkeypatch):
     monkeypatch.setattr("raycaster.report.points.measure", cells)
     scenes = tmp_path / "scenes"
     scenes.mkdir()
-    for name in ("mirror_room", "matte"):
+    for name in ("corners", "mirror_room"):
         (scenes / f"{name}.toml").write_text(find_scene(name).read_text())
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(report, "GROWING", ("facing_x",))
-    cases = catalogue()[::20]
+    monkeypatch.setattr(stability, "GROWING", ("facing_x",))
+    cases = [*catalogue()[::20], *catalogue(("turn",))[-1:]]
     probed = configure(screen="tiny", units=16, reflections=2, divider_bits=3)
     # Its rays hit at every depth.
     [facing] = [case for case in catalogue() if case.name == "facing_y_40"]
-    extent = report.Extent(
-        (0, 4), (0, 1), (0,), (16,), (4,), cases, (0,), "tiny", [facing], [probed], "tiny", 1, ["exact"]
-    )
+    extent = small_extent(cases, [facing], [probed])
     output = tmp_path / "report"
     output.mkdir()
-    sweeper = report.Sweeper(Store(output / "points"), lambda: ProcessPoolExecutor(2), QUIET)
-    page = report.write_report(output, extent, sweeper)
+    sweep = Sweep(Store(output / "points"), lambda: ProcessPoolExecutor(2), QUIET)
+    page, figures = report.write_report(output, extent, sweep, "raycaster report")
     html = unescape(page.read_text())
-    assert html.count("data:image/png;base64,") == html.count("<img") == 7
+    assert 'class="alarm"' not in html
+    assert {name: figures[name] for name in ("alarms", "stiff_cases", "unlike_golden", "over_bound")} == {
+        "alarms": 0, "stiff_cases": 1, "unlike_golden": 0, "over_bound": 0,
+    }  # fmt: skip
+    assert all(configure(**one["options"]) for one in figures["designs"])
+    assert html.count("<figure") == html.count("<svg ") == 15
     for name in (
         "index.html",
         "report.md",
-        "points.csv",
-        "frontier.csv",
-        "culling.csv",
+        "pictures.csv",
+        "designs.csv",
         "catalogue.csv",
-        "catalogue_hardware.csv",
+        "hit_points.csv",
+        "left.csv",
     ):
         assert (output / name).stat().st_size > 0
-    assert "0 took other cycles than foretold, 0 pixels were not golden's" in html
-    assert "a shared part of 3,000 LUT4" in html and "(+0.0%)" in html
-    with (output / "points.csv").open() as file:
+    with (output / "pictures.csv").open() as file:
         points = list(csv.DictReader(file))
-    assert len(points) == 2 * 2 * 2 * 2 + len(cases) * 2
+    assert len(points) == 2 * (6 * 3 + 2 * 2 * 3)
     [one] = [
-        p for p in points if (p["scene"], p["F"], p["rounding"], p["reflections"]) == ("matte", "4", "nearest", "0")
+        p for p in points if (p["scene"], p["F"], p["rounding"], p["reflections"]) == ("corners", "4", "nearest", "0")
     ]
     assert one["command"].endswith(
-        "points picture scenes/matte.toml --fraction-bits 4 --rounding nearest --reflections 0 --screen vga"
+        "points picture scenes/corners.toml --fraction-bits 4 --rounding nearest --reflections 0 --screen vga"
     )
-    with (output / "frontier.csv").open() as file:
-        [first, *others] = csv.DictReader(file)
-    [exact_row] = [row for row in (first, *others) if row["engine"] == "exact"]
-    assert (exact_row["wrong, mean share"], exact_row["on the frontier of all"]) == ("0.0", "yes")
-    assert first["cycles a group: a pixel and unit"] == first["cycles a group, foretold"]
-    assert "raycaster.report.points time scenes/mirror_room.toml" in first["command"]
+    with (output / "designs.csv").open() as file:
+        designs = list(csv.DictReader(file))
+    assert all(one["simulated and counted"] == "yes" for one in designs if one["on a frontier"] == "yes")
+    assert {one["engine"] for one in designs if one["simulated and counted"] == "yes"} == {"seed", "exact", "beam"}
+    assert all(one["wrong against golden"] in ("", "0") for one in designs)
+    assert "raycaster.report.points time scenes/mirror_room.toml" in designs[0]["command of time"]
+    assert "0 took other cycles than were foretold, 0 pixels were not golden's" in html
     with (output / "culling.csv").open() as file:
         for row in csv.DictReader(file):
-            assert 0 < int(row["frame cycles with"]) < int(row["frame cycles without"])
+            assert 0 < int(row["cycles with"]) < int(row["cycles without"])
             assert row["wrong against golden"] == "0"
-            assert row["command"].endswith("--culling 1")
-    with (output / "catalogue_hardware.csv").open() as file:
+            assert "--culling 1 " in row["command"]
+    with (output / "hit_points.csv").open() as file:
         [seen] = csv.DictReader(file)
     assert (seen["hit points not golden's"], seen["over the bound"]) == ("0", "0")
-    assert float(seen["worst, depth 2"]) > 0
+    assert float(seen["worst error"]) > 0
     # Nothing is found out twice: the pages are made anew from what is stored.
-    sweeper = report.Sweeper(Store(output / "points"), lambda: pytest.fail("not stored"), QUIET)
-    assert unescape(report.write_report(output, extent, sweeper).read_text()) == html
+    again = Sweep(Store(output / "points"), lambda: pytest.fail("not stored"), QUIET)
+    assert unescape(report.write_report(output, extent, again, "raycaster report")[0].read_text()) == html

@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: MIT
+"""The chapter of designs: error against run time and cells, of all engines."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from raycaster.configuration import configure
+from raycaster.golden.seed_engine import Rounding
+from raycaster.report import hardware, plots
+from raycaster.report.extent import Extent
+from raycaster.report.hardware import Candidate, cells, describe, error, foretold_cycles, time, unit_of
+from raycaster.report.page import Plot, Section, Table, write_csv
+from raycaster.report.points import UNITS, CellsPoint, TimePoint, View, command
+from raycaster.report.statistics import Spread
+from raycaster.report.sweep import Sweep
+
+WORST_SCENE = Path("scenes/mirror_room.toml")
+"""That designs are simulated with: it has as many rectangles as they, so that no row takes longer."""
+
+Errors = Mapping[tuple[int, Rounding], float]
+
+
+@dataclass(frozen=True)
+class Designs:
+    """Every design that was thought of, and those that are best."""
+
+    every: Sequence[Candidate]
+    by_time: Sequence[Candidate]
+    """Of the seed engine, those of which none has less error in as little time."""
+
+    by_cells: Sequence[Candidate]
+    """Of the seed engine, those of which none has less error with as few cells."""
+
+    without_error: Sequence[Candidate]
+    """Of all without error, those of which none has fewer cells in as little time."""
+
+    said: Sequence[str]
+
+    @property
+    def best(self) -> list[Candidate]:
+        """All of these, each once."""
+        return list(dict.fromkeys([*self.without_error, *self.by_time, *self.by_cells]))
+
+
+def find_designs(what: Extent, errors: Errors, sweep: Sweep) -> Designs:
+    """Foretell all, and simulate and count those that are best until none of these is foretold.
+
+    Args:
+        what: the extent.
+        errors: by fraction bits and rounding, the mean share of wrong pixels.
+        sweep: finds points out.
+    """
+    seeds = [
+        Candidate(config, errors[config.fraction_bits, config.rounding])
+        for config in hardware.seed_designs(what.design_fractions, what.units, what.screen)
+    ]
+    base = configure(units=max(what.units), screen=what.screen, culling=False)
+    units = {
+        config: CellsPoint(config, UNITS["seed"])
+        for config in dict.fromkeys(unit_of(one.config) for one in [*seeds, Candidate(base, 0)])
+    }
+    found = sweep("cells of units", [CellsPoint(base), *units.values()])
+    alone = {config: found[point]["cells"] for config, point in units.items()}
+    seeds = hardware.with_foretold(seeds, found[CellsPoint(base)], base, alone)
+    # Without error, so that all are on the page with what they need.
+    exacts = [
+        Candidate(config, 0.0)
+        for config in [
+            *hardware.exact_designs(what.exact_units, what.screen),
+            *hardware.beam_designs(what.screen),
+        ]
+    ]
+    culled = [
+        Candidate(config, errors[config.fraction_bits, config.rounding] if config.engine == "seed" else 0.0)
+        for config in hardware.culled_designs(what.design_fractions, what.screen)
+        if config.engine in what.culled
+    ]
+    exacts, culled = (_find(some, sweep) for some in (exacts, culled))
+    while True:
+        by_time, by_cells = (hardware.frontier(seeds, measure, error)[: what.frontier] for measure in (time, cells))
+        missing = [one for one in dict.fromkeys([*by_time, *by_cells]) if not one.is_found]
+        if not missing:
+            break
+        now = dict(zip(missing, _find(missing, sweep), strict=True))
+        seeds = [now.get(one, one) for one in seeds]
+    checked = [one for one in seeds if one.counted]
+    off = [one.foretold / one.counted["cells"] - 1 for one in checked]
+    said = [
+        f"{len(checked)} designs of the seed engine are on a frontier; each of them, and each of the "
+        f"{len(exacts)} of the other engines, was simulated with {WORST_SCENE.stem} and counted as a whole. The cells "
+        f"of the {len(seeds) - len(checked)} others are foretold, as those of a shared part and so many units: by "
+        f"{min(off):+.1%} to {max(off):+.1%} off where they were counted too.",
+    ]
+    every = [*seeds, *exacts, *culled]
+    return Designs(every, by_time, by_cells, hardware.frontier(exacts, time, cells), said)
+
+
+def _find(candidates: Sequence[Candidate], sweep: Sweep) -> list[Candidate]:
+    """The same designs, simulated and counted."""
+    counting = {one: CellsPoint(one.config) for one in candidates}
+    counted = sweep("cells", list(dict.fromkeys(counting.values())))
+    timing = {one: time_point(one) for one in candidates}
+    timed = sweep("designs", list(dict.fromkeys(timing.values())))
+    return [replace(one, counted=counted[counting[one]], timing=timed[timing[one]]) for one in candidates]
+
+
+def time_point(one: Candidate) -> TimePoint:
+    """What simulates it."""
+    return TimePoint(View.of(str(WORST_SCENE)), one.config)
+
+
+COLUMNS = (
+    "design", "wrong pixels: mean, %", "median", "most", "LUT4", "multipliers", "pixel, ns", "frame, ms", "clock",
+    "simulation, s",
+)  # fmt: skip
+EVERY_COLUMNS = (
+    "engine", "F", "rounding", "quotient bits a cycle", "units", "culling", "screen", "mean share of wrong pixels",
+    "LUT4", "LUT4 foretold", "registers", "multipliers", "cycles of a frame", "simulated and counted", "pixel, ns",
+    "frame, ms", "clock MHz", "routed MHz", "simulation, s", "wrong against golden", "on a frontier", "command of time",
+    "command of cells",
+)  # fmt: skip
+
+
+def design_sections(
+    found: Designs, spreads: Mapping[tuple[int, Rounding], Spread], directory: Path
+) -> tuple[list[Section], list[str], list[str]]:
+    """The sections, alarms, and what a reader should know in two sentences.
+
+    Args:
+        found: every design.
+        spreads: by fraction bits and rounding, of the shares of wrong pixels.
+        directory: for plots and tables.
+    """
+    every, best = found.every, found.best
+    write_csv(EVERY_COLUMNS, [_whole_row(one, one in best) for one in every], directory / "designs.csv")
+    rounded = [one for one in every if one.config.engine == "seed"]
+    exact = [one for one in every if one.config.engine != "seed"]
+    fewest, fastest = (min(found.without_error, key=measure) for measure in (cells, time))
+    ends = [fewest, fastest]
+    figures = (
+        ("work_precision", "pixel_ns", "error", [found.by_time], [*found.by_time, *ends],
+         "Error against the time in which a pixel is computed, at the clock that the design needs."),
+        ("cells_precision", "cells", "error", [found.by_cells], [*found.by_cells, *ends], "Error against cells."),
+        ("cells_time", "pixel_ns", "cells", [found.without_error], exact, "Cells against time."),
+    )  # fmt: skip
+    drawn = []
+    for name, across, up, frontiers, labelled, caption in figures:
+        figure = plots.designs(every, across, up, frontiers, list(dict.fromkeys(labelled)))
+        plots.save(figure, directory / f"{name}.svg")
+        drawn.append(Plot(name, caption, "designs"))
+    rows = [_row(one, spreads) for one in dict.fromkeys([*exact, *best, *rounded]) if one.is_found]
+    write_csv(COLUMNS, rows, directory / "best.csv")
+    wrong = sum(one.timing["wrong"] for one in every if one.timing)
+    foretold = [one for one in best if not one.is_found]
+    off = sum(
+        one.timing["frame_cycles"] != foretold_cycles(one.config)
+        for one in every
+        if one.timing and not one.config.culling
+    )
+    alarms = [f"In simulation {wrong} pixels of designs are not golden's."] if wrong else []
+    alarms += [f"{len(foretold)} designs on a frontier were not simulated and counted."] if foretold else []
+    said = [
+        *found.said,
+        f"{len(best)} designs are on a frontier, {len(foretold)} of them foretold; {off} took other cycles than were "
+        f"foretold, {wrong} pixels were not golden's.",
+        *_beaten(rounded, exact),
+    ]
+    exactest = min(found.by_cells, key=error)
+    summary = [
+        f"No design that rounds is worth its error: {describe(fewest.config)} is the smallest without any, with "
+        f"{fewest.cells:,} LUT4 and {fewest.pixel_ns:.3g} ns a pixel, and {describe(fastest.config)} the fastest, with "
+        f"{fastest.cells:,} and {fastest.pixel_ns:.3g} ns; the most exact of the seed engine's best, "
+        f"{describe(exactest.config)}, takes {exactest.cells:,} and {exactest.pixel_ns:.3g} ns for "
+        f"{exactest.error:.3%} of "
+        "the pixels wrong."
+        if _all_beaten(rounded, exact)
+        else f"The smallest design without error, {describe(fewest.config)}, takes {fewest.cells:,} LUT4 and "
+        f"{fewest.pixel_ns:.3g} ns a pixel."
+    ]
+    text = (
+        f"Each mark is a design that meets its row budget, with one reflection; filled, it was simulated with "
+        f"{WORST_SCENE.stem} and its cells were counted, hollow, both are foretold. Time is by the hardware's own "
+        "counter "
+        "of cycles in which it computes, at the clock that the design needs for its monitor; the table says which were "
+        "placed and routed for it. Lines go through those that none is better than in both respects. Labels: "
+        "fraction bits "
+        "and rounding (n nearest, t truncate) of the seed engine, units of the exact one, rows of the beam one's "
+        "picture, "
+        "x2 with two pixels a clock. Small marks have culling, where the time is this scene's. No joules are given: "
+        "no power model of these chips is published that open tools could apply."
+    )
+    sections = [
+        Section("Error against run time", text, said, drawn[:1]),
+        Section("Cells", plots=drawn[1:], tables=[Table("best", COLUMNS, rows)]),
+    ]
+    return sections, alarms, summary
+
+
+def _row(one: Candidate, spreads: Mapping[tuple[int, Rounding], Spread]) -> list:
+    config = one.config
+    spread = spreads[config.fraction_bits, config.rounding] if config.engine == "seed" else Spread(0, 0, 0, 0)
+    row = [describe(config), *(round(100 * share, 4) for share in (spread.mean, spread.median, spread.most))]
+    row += [one.cells, one.counted["multipliers"], one.pixel_ns, one.frame_ms]
+    return [*row, hardware.clock_words(config), one.timing["seconds"]]
+
+
+def _whole_row(one: Candidate, is_best: bool) -> list:
+    config, counted, timing = one.config, one.counted or {}, one.timing or {}
+    quotients = [config.fraction_bits, config.rounding, config.divider_bits]
+    screen = config.screen_geometry
+    return [
+        config.engine, *(quotients if config.engine == "seed" else [None] * 3), config.units, int(bool(config.culling)),
+        f"{screen.columns}x{screen.rows}", one.error, counted.get("cells"), one.foretold, counted.get("registers"),
+        counted.get("multipliers"), one.frame_cycles, "yes" if one.is_found else "no", one.pixel_ns, one.frame_ms,
+        screen.clock_hz / 1e6, hardware.routed_clocks().get(config.name), timing.get("seconds"), timing.get("wrong"),
+        "yes" if is_best else "no", command(time_point(one)), command(CellsPoint(config)),
+    ]  # fmt: skip
+
+
+def _is_beaten(one: Candidate, exact: Sequence[Candidate]) -> bool:
+    return any(other.is_found and other.cells <= one.cells and other.pixel_ns <= one.pixel_ns for other in exact)
+
+
+def _all_beaten(rounded: Sequence[Candidate], exact: Sequence[Candidate]) -> bool:
+    return all(_is_beaten(one, exact) for one in rounded)
+
+
+def _beaten(rounded: Sequence[Candidate], exact: Sequence[Candidate]) -> list[str]:
+    count = sum(_is_beaten(one, exact) for one in rounded)
+    return [
+        f"Of {len(rounded)} designs of the seed engine {count} have no fewer cells and are no faster than one "
+        "without error."
+    ]
