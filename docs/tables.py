@@ -331,15 +331,27 @@ def tinytapeout() -> str:
 
 
 def routed_again() -> str:
-    """What another seed of the placement reaches."""
-    figures = outcome("bitstream-beam-1280x720-seed-2")["figures"]
-    return f"{figures['clocks']['shift_clk'][0]} MHz with `SEED={figures['seed']}`"
+    """What other seeds of the placement reach of the routed design at 1280x720."""
+    found = []
+    for path in sorted(RESULTS.glob("bitstream-beam-1280x720-seed-*.json")):
+        figures = outcome(path.stem)["figures"]
+        clocks = f"system clock {_clock(figures, 'clk')}, shift clock {_clock(figures, 'shift_clk')}"
+        found.append(f"`SEED={figures['seed']}`: {clocks}")
+    return "; ".join(found)
 
 
-def link_short() -> str:
-    """How far the link's clock is from what 1280x720 needs."""
-    reached, required = outcome("bitstream-beam-1280x720")["figures"]["clocks"]["shift_clk"]
-    return f"{reached} MHz of {required:g} MHz"
+def modules_routed() -> str:
+    """Modules without a board, placed and routed between registers at their pins."""
+    rows = []
+    for path in sorted(RESULTS.glob("area-beam-*.json")):
+        kept = outcome(path.stem)
+        figures = kept["figures"]
+        counts = [f"{used:,} of {there:,}" for used, there in (figures["cells"][cell] for cell in CELLS)]
+        clock = f"{figures['routed_mhz']:.2f} of {figures['clock_mhz']:g} MHz"
+        missed = ", **missed**" if figures["routed_mhz"] < figures["clock_mhz"] else ""
+        command = kept["command"].partition(" --output")[0].strip()
+        rows.append([f"`{command}`", *counts, clock + missed, f"{kept['date']}, {kept['commit']}"])
+    return table(["command", *CELLS, "clock", "measured at"], rows)
 
 
 def game_board() -> str:
@@ -481,7 +493,7 @@ def tables() -> dict[str, str]:
     """All of them, by the names that pages use."""
     made = (
         engines, work, scenes, families, features, buses, page_speed, routed, boards, icebreaker, tinytapeout,
-        routed_again, link_short, game_board, one_scene, error_and_time, checks, not_mutated, scaling_rectangles,
+        routed_again, modules_routed, game_board, one_scene, error_and_time, checks, not_mutated, scaling_rectangles,
         scaling_reflections, scaling_units, scaling_resolution, scaling_growth,
     )  # fmt: skip
     return {each.__name__: each() for each in made}

@@ -36,9 +36,10 @@ from raycaster.scene import BASIS_SCALE, Scene, dump_scene, load_scene
 from raycaster.screens import SCREENS, Screen
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import SimulationError, build_model, run_bench
+from raycaster.verif.campaign import Campaign, run_share
 from raycaster.verif.hit_points import build_probed_model, hit_points
 from raycaster.verif.random_scenes import random_scene
-from raycaster.verif.soak.soak import Share, run_share
+from raycaster.verif.soak.soak import BENCH as SOAK
 
 CASE = "case:"
 """Before the name of a scene of the catalogue, where a scene file's path would stand."""
@@ -353,7 +354,7 @@ class CasesPoint:
 
     count: int
     scene: ClassVar[None] = None
-    sources: ClassVar[Sequence[str]] = (*_OF_SIMULATIONS, "verif/soak")
+    sources: ClassVar[Sequence[str]] = (*_OF_SIMULATIONS, "verif/soak", "verif/campaign.py")
 
     @property
     def arguments(self) -> str:
@@ -369,7 +370,7 @@ class CasesPoint:
         places = range(self.first, self.first + self.count)
         names = [case.name for case in catalogue(self.config.looks)]
         with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
-            shown, failure = run_share(Share(self.config, "verilator", places, Path(scratch), BUILD, stiff=True))
+            shown, failure = run_share(Campaign(SOAK, self.config, places, Path(scratch), BUILD, stiff=True))
         if failure and len(shown) < self.count:
             raise SimulationError(failure)
         return {names[one["seed"]]: {"pixels": one["pixels"], "wrong": one["wrong_vs_golden"]} for one in shown}

@@ -72,7 +72,7 @@ def run_campaign(
     shutil.rmtree(campaign.output, ignore_errors=True)
     cases, share = campaign.cases, campaign.share
     shares = [replace(campaign, cases=cases[first : first + share]) for first in range(0, len(cases), share)]
-    found = run_jobs("simulations", _run_share, shares, make_executor, console)
+    found = run_jobs("simulations", run_share, shares, make_executor, console)
     results = [result for results, _ in found for result in results]
     campaign.output.mkdir(parents=True, exist_ok=True)
     (campaign.output / "results.jsonl").write_text("".join(json.dumps(result) + "\n" for result in results))
@@ -86,7 +86,7 @@ def _build(campaign: Campaign) -> Model:
     )
 
 
-def _run_share(share: Campaign) -> tuple[list[dict], str]:
+def run_share(share: Campaign) -> tuple[list[dict], str]:
     """The results of one simulation, and what it said if it failed."""
     directory = (share.output / f"from{share.cases[0]}").resolve()
     shutil.rmtree(directory, ignore_errors=True)  # a worker that died may have begun it
