@@ -29,6 +29,7 @@ from raycaster.rtl.common.widths import (
     unit_bits,
     walk_bits,
 )
+from raycaster.rtl.engine.colour_blend import blend_latency
 from raycaster.rtl.engine.rect_setup import LATENCY as SETUP_LATENCY
 from raycaster.scene import Camera, Rectangle, Scene
 from raycaster.screens import Screen, Span
@@ -444,6 +445,25 @@ def _walked(config: Configuration, lane: int, small: bool) -> Property:
     )
 
 
+def _blend(config: Configuration, small: bool) -> Property:
+    mirrors = config.reflections
+    means, seen = (
+        ["colour_mean", *(f"colour_mean_{number}" for number in range(1, mirrors))],
+        ["colour_seen", *(f"colour_seen_{number}" for number in range(1, mirrors + 1))],
+    )
+    return Property(
+        "blend-exact",
+        "a pixel is what its rays saw, blended as golden does, at full width",
+        config,
+        _label(config),
+        ("colour_blend", *means, *seen),
+        {"MIRRORS": mirrors, "COLOUR_BITS": config.colour_bits, "LATENCY": blend_latency(config)},
+        induction=blend_latency(config) + 1,
+        reach=blend_latency(config) + 3,
+        small=small,
+    )
+
+
 def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: int, small: bool) -> Property:
     widths = FoldWidths(coordinate_bits, slope_bits, mirrors)
     turned = "" if view_distance else ", turned"
@@ -618,6 +638,8 @@ PROPERTIES: list[Property] = [
     _slope(configure(engine="exact", rows=200), small=False),
     _slope(configure(engine="exact", turn=True), small=True),
     _slope(configure(engine="exact", turn=True, reflections=2), small=False),
+    _blend(BEAM, small=False),
+    _blend(_beam(reflections=2), small=True),
     _row_setup(configure(engine="beam"), small=True),
     _row_setup(BEAM_TURN_PAIRS, small=False),
     _line_start(BEAM_TURN, small=True),

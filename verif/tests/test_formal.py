@@ -48,6 +48,7 @@ ROW = chosen("row-setup", "beam-vga240-s2-u1-r12-m1-c8")
 LINE = chosen("line-start", "beam-vga240-s2-u1-r2-m1-c8-turn")
 WALK = chosen("walked-products", "beam-vga240-s2-u1-r2-m1-c8")
 SECOND_LANE = chosen("walked-products", "beam-vga180-s6-u2-r2-m1-c8 lane 1")
+HALF = chosen("blend-exact", "beam-vga240-s2-u1-r2-m2-c8")
 FOLD = chosen("fold-exact", "2 and 1 bits, 1 mirrors")
 TABLE = chosen("fixed-rects", "seed, different")
 DIVIDER = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d3-c8 digits")
@@ -209,6 +210,9 @@ FAULTS = {
     "slope-runs-back": (WALK, "slope_walker", "slope_y <= slope_y + 1;", "slope_y <= slope_y - 1;"),
     "second-lane-at-the-first": (SECOND_LANE, "lane_start", "low_q <= start_low_q + growth_low_q;",
                                  "low_q <= start_low_q;"),
+    "mean-two-bits-short": (HALF, "colour_mean_1", "reg [9:0] other;", "reg [7:0] other;"),
+    "own-counts-once": (HALF, "colour_mean", "if (reflections == 1) begin", "if (reflections == 2) begin"),
+    "background-too-late": (HALF, "colour_seen_1", "here = reached && seen_found;", "here = seen_found;"),
     "corner-missed": (FOLD, "fold_tester", "beyond = !met_2", "beyond = 1'b0"),
     "mirror-again": (FOLD, "fold_tester", "facet_distance > mirror_distance",
                      "facet_distance >= mirror_distance"),
@@ -225,7 +229,7 @@ FAULTS = {
 @pytest.mark.parametrize(
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
-     TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, FOLD, TABLE],
+     TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, HALF, FOLD, TABLE],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):
