@@ -9,21 +9,28 @@ from raycaster.fixed import FixedScene
 from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.beam.beam_lane import beam_latency
+from raycaster.rtl.beam.line_starter import AIM_LATENCY
 from raycaster.rtl.bus.avalon_interface import engine_word, size_word
 from raycaster.rtl.common.records import camera_of, look_fields, rect_of, surface_of
 from raycaster.rtl.common.widths import (
     BASIS_BITS,
     COORDINATE_BITS,
+    DISTANCE_BITS,
     bits_for,
     exact_slope_bits,
     eye_bits,
+    factor_bits,
     index_bits,
     offset_bits,
     pixel_bits,
     position_bits,
     row_bits,
+    steepest_slope,
     unit_bits,
+    walk_bits,
 )
+from raycaster.rtl.engine.colour_blend import blend_latency
+from raycaster.rtl.engine.rect_setup import LATENCY as SETUP_LATENCY
 from raycaster.scene import Camera, Rectangle, Scene
 from raycaster.screens import Screen, Span
 from raycaster.verif.formal.prover import BridgeWidths, FixedTable, FoldWidths, HostWidths, Property, TesterWidths
@@ -361,6 +368,102 @@ def _slope(config: Configuration, small: bool) -> Property:
     )
 
 
+def _row_setup(config: Configuration, small: bool) -> Property:
+    return Property(
+        "row-setup",
+        "each rectangle is loaded once, in order, with its distances and their products with the slope, at full width",
+        config,
+        _label(config),
+        ("rect_setup",),
+        {
+            "TURN": int(config.turn),
+            "RECTANGLES": config.rectangles,
+            "INDEX_BITS": index_bits(config),
+            "COORDINATE_BITS": COORDINATE_BITS,
+            "LOOK_BITS": _look_bits(config),
+            "BASIS_BITS": len(camera_of(config).word) - 3 * COORDINATE_BITS,
+            "SLOPE_BITS": exact_slope_bits(config) + 1,
+            "WALK_BITS": walk_bits(config),
+        },
+        induction=5,
+        any_product=True,
+        reach=10,
+        small=small,
+    )
+
+
+def _line_start(config: Configuration, small: bool) -> Property:
+    screen = config.screen_geometry
+    return Property(
+        "line-start",
+        "a turned camera's line starts with its first column's slope, then has what a step adds, at full width",
+        config,
+        _label(config),
+        ("line_starter",),
+        {
+            "PIXELS": config.pixels,
+            "CAMERA_BITS": len(camera_of(config).word),
+            "BASIS_BITS": BASIS_BITS,
+            "FACTOR_BITS": factor_bits(config),
+            "SLOPE_BITS": exact_slope_bits(config) + 1,
+            "VIEW_DISTANCE": screen.view_distance,
+            "CENTRE": screen.centre_column,
+            "AIM_LATENCY": AIM_LATENCY,
+            "LATENCY": SETUP_LATENCY,
+        },
+        induction=AIM_LATENCY + 1,
+        any_product=True,
+        reach=14,
+        small=small,
+    )
+
+
+def _walked(config: Configuration, lane: int, small: bool) -> Property:
+    screen = config.screen_geometry
+    return Property(
+        "walked-products",
+        "at each column a rectangle's registers are its distances' products with the slope there, at full width",
+        config,
+        f"{_label(config)} lane {lane}" if config.pixels > 1 else _label(config),
+        ("rect_walker", "slope_walker", *(("lane_start",) if lane else ())),
+        {
+            "LANE": lane,
+            "PIXELS": config.pixels,
+            "RECTANGLES": config.rectangles,
+            "WALK_BITS": walk_bits(config),
+            "DISTANCE_BITS": DISTANCE_BITS,
+            "SLOPE_BITS": exact_slope_bits(config) + 1,
+            "VIEW_DISTANCE": screen.view_distance,
+            "CENTRE": screen.centre_column,
+            "STEEPEST": steepest_slope(config),
+            "COLUMNS": screen.columns,
+        },
+        induction=1,
+        any_product=True,
+        reach=6,
+        small=small,
+    )
+
+
+def _blend(config: Configuration, small: bool) -> Property:
+    mirrors = config.reflections
+    means, seen = (
+        ["colour_mean", *(f"colour_mean_{number}" for number in range(1, mirrors))],
+        ["colour_seen", *(f"colour_seen_{number}" for number in range(1, mirrors + 1))],
+    )
+    return Property(
+        "blend-exact",
+        "a pixel is what its rays saw, blended as golden does, at full width",
+        config,
+        _label(config),
+        ("colour_blend", *means, *seen),
+        {"MIRRORS": mirrors, "COLOUR_BITS": config.colour_bits, "LATENCY": blend_latency(config)},
+        induction=blend_latency(config) + 1,
+        reach=blend_latency(config) + 3,
+        small=small,
+    )
+
+
 def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: int, small: bool) -> Property:
     widths = FoldWidths(coordinate_bits, slope_bits, mirrors)
     turned = "" if view_distance else ", turned"
@@ -466,6 +569,17 @@ EXACT = tuple(
 )
 """The exact engine at every width that it is offered at, the narrowest first and the widest last."""
 
+
+def _beam(**options: int | str) -> Configuration:
+    """For what does not depend on the number of rectangles."""
+    return configure(engine="beam", rectangles=2, **options)
+
+
+BEAM = _beam()
+BEAM_PAIRS = _beam(rows=180, scale=6, pixels=2)
+BEAM_TURN = _beam(turn=True)
+BEAM_TURN_PAIRS = _beam(rows=180, scale=6, pixels=2, turn=True)
+
 PROPERTIES: list[Property] = [
     _video(_one_unit(), "vga240", small=True),
     _video(_one_unit(rows=200), "vga200", small=True),
@@ -524,6 +638,15 @@ PROPERTIES: list[Property] = [
     _slope(configure(engine="exact", rows=200), small=False),
     _slope(configure(engine="exact", turn=True), small=True),
     _slope(configure(engine="exact", turn=True, reflections=2), small=False),
+    _blend(BEAM, small=False),
+    _blend(_beam(reflections=2), small=True),
+    _row_setup(configure(engine="beam"), small=True),
+    _row_setup(BEAM_TURN_PAIRS, small=False),
+    _line_start(BEAM_TURN, small=True),
+    _line_start(BEAM_TURN_PAIRS, small=False),
+    _walked(BEAM, 0, small=True),
+    _walked(BEAM_PAIRS, 0, small=False),
+    _walked(BEAM_PAIRS, 1, small=False),
     _fold(2, 1, 1, 1, small=True),
     _fold(2, 1, 0, 1, small=False),
     _fold(2, 1, 1, 2, small=False),

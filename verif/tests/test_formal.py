@@ -44,6 +44,11 @@ EYE = chosen("eye-exact", "exact-vga240-u1-r12-m2-c8-turn-materials-patterns")
 SLOPE = chosen("slope-exact", "exact-vga240-u4-r12-m1-c8")
 TURNED = chosen("slope-exact", "exact-vga240-u4-r12-m1-c8-turn")
 CELL = chosen("cell-products", "exact-vga240-u1-r12-m1-c8-patterns")
+ROW = chosen("row-setup", "beam-vga240-s2-u1-r12-m1-c8")
+LINE = chosen("line-start", "beam-vga240-s2-u1-r2-m1-c8-turn")
+WALK = chosen("walked-products", "beam-vga240-s2-u1-r2-m1-c8")
+SECOND_LANE = chosen("walked-products", "beam-vga180-s6-u2-r2-m1-c8 lane 1")
+HALF = chosen("blend-exact", "beam-vga240-s2-u1-r2-m2-c8")
 FOLD = chosen("fold-exact", "2 and 1 bits, 1 mirrors")
 TABLE = chosen("fixed-rects", "seed, different")
 DIVIDER = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d3-c8 digits")
@@ -190,6 +195,24 @@ FAULTS = {
     "point-a-bit-short": (CELL, "cell_finder", "remainder <= point[17:10];", "remainder <= point[16:10];"),
     "way-not-turned": (CELL, "cell_finder", "turned_way = ~way;", "turned_way = way;"),
     "a-cell-too-small": (CELL, "cell_finder", "odd_v = digits_2[size];", "odd_v = digits_1[size];"),
+    "loaded-a-cycle-early": (ROW, "rect_setup", "load[number_2] <= 1'b1;", "load[number_1] <= 1'b1;"),
+    "one-rectangle-too-few": (ROW, "rect_setup", "if (number == 11) begin", "if (number == 10) begin"),
+    "bound-of-another-axis": (ROW, "rect_setup", "to_low_q_2 * slope_a_2", "to_low_q_2 * slope_q_2"),
+    "distance-turned": (ROW, "rect_setup", "distance = plane - eye_a;", "distance = eye_a - plane;"),
+    "distance-a-bit-short-there": (ROW, "rect_setup", "wire signed [9:0] to_high_p;", "wire signed [8:0] to_high_p;"),
+    "first-column-missed": (LINE, "line_starter", "(ages[3:1] != 0)", "(ages[3:2] != 0)"),
+    "aim-a-bit-short": (LINE, "line_starter", "reg signed [19:0] y_product;", "reg signed [18:0] y_product;"),
+    "centre-on-the-left": (LINE, "line_starter", "factor = -320;", "factor = 320;"),
+    "swept-once": (LINE, "line_starter", "start_sweep = ages[1] || enter;", "start_sweep = ages[1];"),
+    "walk-a-bit-short": (WALK, "rect_walker", "reg signed [18:0] high_q;", "reg signed [17:0] high_q;"),
+    "growth-unsigned": (WALK, "rect_walker", "wire signed [9:0] growth_low_p", "wire [9:0] growth_low_p"),
+    "walked-in-the-other-step": (WALK, "rect_walker", "else if (step_bounds) begin", "else if (step_way) begin"),
+    "slope-runs-back": (WALK, "slope_walker", "slope_y <= slope_y + 1;", "slope_y <= slope_y - 1;"),
+    "second-lane-at-the-first": (SECOND_LANE, "lane_start", "low_q <= start_low_q + growth_low_q;",
+                                 "low_q <= start_low_q;"),
+    "mean-two-bits-short": (HALF, "colour_mean_1", "reg [9:0] other;", "reg [7:0] other;"),
+    "own-counts-once": (HALF, "colour_mean", "if (reflections == 1) begin", "if (reflections == 2) begin"),
+    "background-too-late": (HALF, "colour_seen_1", "here = reached && seen_found;", "here = seen_found;"),
     "corner-missed": (FOLD, "fold_tester", "beyond = !met_2", "beyond = 1'b0"),
     "mirror-again": (FOLD, "fold_tester", "facet_distance > mirror_distance",
                      "facet_distance >= mirror_distance"),
@@ -206,7 +229,7 @@ FAULTS = {
 @pytest.mark.parametrize(
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
-     TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, FOLD, TABLE],
+     TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, HALF, FOLD, TABLE],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):

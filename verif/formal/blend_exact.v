@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// The beam engine's colours against golden's definition, at full width, of mirrors that show half: what the last ray
+// sees shows alone, and each mirror before it two quarters of its own colour; nothing is rounded before the end. From
+// the first ray that found nothing on, the background is seen.
+//
+// Assumed, as the registers have it: no more reflections than the design has; a picture that is constant while a pixel
+// is computed. What is seen may change in every cycle.
+
+module blend_exact #(
+    parameter MIRRORS = 1, parameter COLOUR_BITS = 8, parameter LATENCY = 2
+) (
+    input clk, input [MIRRORS:0] found, input [24*MIRRORS+23:0] colours, input [2:0] reflections,
+    input [23:0] background
+);
+localparam SEEN_BITS = 25, QUARTERS = 2, WIDE = 12 + 2 * MIRRORS;
+
+wire [(MIRRORS+1)*SEEN_BITS-1:0] seen;
+wire [3*COLOUR_BITS-1:0] pixel;
+reg [2:0] last_reflections;
+reg [23:0] last_background;
+reg [LATENCY:0] age = 0;
+always @(posedge clk) begin
+    last_reflections <= reflections;
+    last_background <= background;
+    age <= {age, 1'b1};
+end
+always @* begin
+    assume (reflections <= MIRRORS);
+    if (age[0]) assume (reflections == last_reflections && background == last_background);
+end
+generate
+    genvar ray;
+    for (ray = 0; ray <= MIRRORS; ray = ray + 1) begin: rays
+        assign seen[ray*SEEN_BITS +: SEEN_BITS] = {found[ray], colours[24*ray +: 24]};
+    end
+endgenerate
+colour_blend dut (
+    .clk(clk), .seen(seen), .picture_reflections(reflections), .picture_background(background), .pixel_word(pixel)
+);
+
+function [7:0] defined(input integer channel, input [MIRRORS:0] hit, input [24*MIRRORS+23:0] colour,
+                       input [23:0] nothing, input [2:0] last);
+    integer each;
+    reg reached;
+    reg [8*MIRRORS+7:0] seen_there;
+    reg [WIDE-1:0] total;
+    begin
+        reached = 1;
+        for (each = 0; each <= MIRRORS; each = each + 1) begin
+            reached = reached && hit[each];
+            seen_there[8*each +: 8] = reached ? colour[24*each + 8*channel +: 8] : nothing[8*channel +: 8];
+        end
+        total = 0;
+        for (each = MIRRORS; each >= 0; each = each - 1) begin
+            if (each == last) total = seen_there[8*each +: 8];
+            else if (each < last)
+                total = ((4 - QUARTERS) * seen_there[8*each +: 8] << 2 * (last - 1 - each)) + QUARTERS * total;
+        end
+        defined = total >> 2 * last;
+    end
+endfunction
+
+generate
+    genvar channel;
+    for (channel = 0; channel < 3; channel = channel + 1) begin: channels
+        reg [7:0] expected [0:LATENCY-1];
+        integer stage;
+        always @(posedge clk) begin
+            expected[0] <= defined(channel, found, colours, background, reflections);
+            for (stage = 1; stage < LATENCY; stage = stage + 1) expected[stage] <= expected[stage-1];
+        end
+        always @* if (age[LATENCY-1])
+            assert (pixel[channel*COLOUR_BITS +: COLOUR_BITS] == expected[LATENCY-1] >> 8 - COLOUR_BITS);
+    end
+endgenerate
+
+always @* cover (age[LATENCY-1] && pixel == {3{8'd77}} && reflections == MIRRORS);
+endmodule

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+// A row's start at its own widths, with any function in the place of multiplication: after start_line each rectangle
+// is fetched once, in order, and four cycles after its fetch its load bit, and no other, says that the outputs are its
+// own: the distances from the camera, their products with the slope, and what a column of a camera that does not turn
+// adds.
+//
+// Assumed, as the renderer has it: a start no sooner than the last fetch, an axis of three, a rectangle two cycles
+// after its fetch. The slope and the camera are those of that cycle. Reset may come at any time.
+
+module row_setup #(
+    parameter TURN = 0, parameter RECTANGLES = 12, parameter INDEX_BITS = 4, parameter COORDINATE_BITS = 9,
+    parameter LOOK_BITS = 24, parameter BASIS_BITS = 0, parameter SLOPE_BITS = 10, parameter WALK_BITS = 19
+) (
+    input clk, input reset, input start_line, input [RECTANGLES-1:0] usable, input [1:0] axis,
+    input [COORDINATE_BITS-1:0] position, input [LOOK_BITS-1:0] look, input [COORDINATE_BITS-1:0] u_low,
+    input [COORDINATE_BITS-1:0] u_high, input [COORDINATE_BITS-1:0] v_low, input [COORDINATE_BITS-1:0] v_high,
+    input [COORDINATE_BITS-1:0] x, input [COORDINATE_BITS-1:0] y, input [COORDINATE_BITS-1:0] z,
+    input [BASIS_BITS:0] basis, input signed [SLOPE_BITS-1:0] dx, input signed [SLOPE_BITS-1:0] dy,
+    input signed [SLOPE_BITS-1:0] dz
+);
+localparam DISTANCE_BITS = COORDINATE_BITS + 1, WIDE = COORDINATE_BITS + 3;
+
+wire [RECTANGLES-1:0] load;
+wire [INDEX_BITS-1:0] index;
+wire fetch, facet_usable;
+wire [1:0] facet_axis;
+wire signed [DISTANCE_BITS-1:0] distance;
+wire [LOOK_BITS-1:0] facet_look;
+wire signed [WALK_BITS-1:0] way_p, way_q, low_p, high_p, low_q, high_q;
+wire signed [DISTANCE_BITS-1:0] more_way, more_low_p, more_high_p, more_low_q, more_high_q;
+wire [2 + LOOK_BITS + 5 * COORDINATE_BITS - 1:0] rect = {axis, position, look, u_low, u_high, v_low, v_high};
+wire [3 * COORDINATE_BITS + BASIS_BITS:0] camera = {x, y, z, basis};
+generate
+    if (TURN) begin: design
+        rect_setup dut (
+            .clk(clk), .reset(reset), .start_line(start_line), .load(load), .rects_usable(usable), .rects_index(index),
+            .rects_fetch(fetch), .rects_rect_word(rect), .camera_word(camera[3 * COORDINATE_BITS + BASIS_BITS:1]),
+            .slope_x(dx), .slope_y(dy), .slope_z(dz),
+            .facet_word({facet_usable, facet_axis, distance, facet_look}),
+            .start_word({way_p, way_q, low_p, high_p, low_q, high_q})
+        );
+    end
+    else begin: design
+        rect_setup dut (
+            .clk(clk), .reset(reset), .start_line(start_line), .load(load), .rects_usable(usable), .rects_index(index),
+            .rects_fetch(fetch), .rects_rect_word(rect), .camera_word(camera[3 * COORDINATE_BITS + BASIS_BITS:1]),
+            .slope_x(dx), .slope_y(dy), .slope_z(dz),
+            .facet_word({facet_usable, facet_axis, distance, way_q, facet_look}),
+            .start_word({way_p, low_p, high_p, low_q, high_q}),
+            .growth_word({more_way, more_low_p, more_high_p, more_low_q, more_high_q})
+        );
+    end
+endgenerate
+always @* assume (axis < 3);
+
+// Which rectangle is fetched, and which ones were in the cycles before; the design is known from the first reset on.
+reg ready = 1'b0, busy;
+reg [INDEX_BITS-1:0] number, number_1, number_2, number_3, number_4;
+reg [3:0] fetched;
+always @(posedge clk) begin
+    ready <= ready || reset;
+    busy <= !reset && (start_line || busy && number != RECTANGLES - 1);
+    number <= start_line && !reset ? 0 : number + (busy && number != RECTANGLES - 1);
+    fetched <= reset ? 0 : {fetched[2:0], busy};
+    number_1 <= number;
+    number_2 <= number_1;
+    number_3 <= number_2;
+    number_4 <= number_3;
+end
+always @* begin
+    if (busy) assume (!start_line || number == RECTANGLES - 1);
+    assume (ready || reset);
+    if (ready) begin
+        assert (fetch == busy);
+        if (busy) assert (index == number && number < RECTANGLES);
+        assert (load == (fetched[3] ? 1 << number_4 : 0));
+    end
+end
+
+// The definition, in numbers that hold any distance. p is y unless the plane is on y, then x; q is z unless the plane
+// is on z, then x.
+wire on_y = axis == 1, on_z = axis == 2;
+wire signed [WIDE-1:0] wide_x = {1'b0, x}, wide_y = {1'b0, y}, wide_z = {1'b0, z}, plane = {1'b0, position};
+wire signed [WIDE-1:0] first_low = {1'b0, u_low}, first_high = {1'b0, u_high}, then_low = {1'b0, v_low};
+wire signed [WIDE-1:0] then_high = {1'b0, v_high};
+wire signed [WIDE-1:0] to_plane = plane - (axis == 0 ? wide_x : on_y ? wide_y : wide_z);
+wire signed [WIDE-1:0] eye_p = on_y ? wide_x : wide_y, eye_q = on_z ? wide_x : wide_z;
+wire signed [WIDE-1:0] to_low_p = (on_z ? then_low : first_low) - eye_p;
+wire signed [WIDE-1:0] to_high_p = (on_z ? then_high : first_high) - eye_p;
+wire signed [WIDE-1:0] to_low_q = (on_z ? first_low : then_low) - eye_q;
+wire signed [WIDE-1:0] to_high_q = (on_z ? first_high : then_high) - eye_q;
+reg was_usable_3, was_usable_2, was_usable_1, was_usable;
+reg [1:0] axis_1, axis_2;
+reg [LOOK_BITS-1:0] look_1, look_2;
+reg signed [WIDE-1:0] n_1, n_2, low_p_1, low_p_2, high_p_1, high_p_2, low_q_1, low_q_2, high_q_1, high_q_2;
+reg signed [SLOPE_BITS-1:0] slope_a, slope_p, slope_q;
+always @(posedge clk) begin
+    {was_usable_3, was_usable_2, was_usable_1} <= {usable[number], was_usable_3, was_usable_2};
+    was_usable <= was_usable_1;
+    axis_1 <= axis;
+    look_1 <= look;
+    n_1 <= to_plane;
+    low_p_1 <= to_low_p;
+    high_p_1 <= to_high_p;
+    low_q_1 <= to_low_q;
+    high_q_1 <= to_high_q;
+    slope_a <= axis == 0 ? dx : on_y ? dy : dz;
+    slope_p <= on_y ? dx : dy;
+    slope_q <= on_z ? dx : dz;
+end
+function fits(input signed [WIDE-1:0] value);
+    fits = value > -(1 << DISTANCE_BITS - 1) && value < 1 << DISTANCE_BITS - 1;
+endfunction
+always @* assert (fits(to_plane) && fits(to_low_p) && fits(to_high_p) && fits(to_low_q) && fits(to_high_q));
+
+wire signed [DISTANCE_BITS-1:0] n = n_1, low_p_part = low_p_1, high_p_part = high_p_1, low_q_part = low_q_1;
+wire signed [DISTANCE_BITS-1:0] high_q_part = high_q_1;
+wire signed [WALK_BITS-1:0] product_p = n * slope_p, product_q = n * slope_q;
+wire signed [WALK_BITS-1:0] product_low_p = low_p_part * slope_a, product_high_p = high_p_part * slope_a;
+wire signed [WALK_BITS-1:0] product_low_q = low_q_part * slope_a, product_high_q = high_q_part * slope_a;
+reg signed [WALK_BITS-1:0] is_p, is_q, is_low_p, is_high_p, is_low_q, is_high_q;
+always @(posedge clk) begin
+    axis_2 <= axis_1;
+    look_2 <= look_1;
+    n_2 <= n_1;
+    low_p_2 <= low_p_1;
+    high_p_2 <= high_p_1;
+    low_q_2 <= low_q_1;
+    high_q_2 <= high_q_1;
+    {is_p, is_q} <= {product_p, product_q};
+    {is_low_p, is_high_p, is_low_q, is_high_q} <= {product_low_p, product_high_p, product_low_q, product_high_q};
+end
+always @* if (ready && load != 0) begin
+    assert (facet_usable == was_usable && facet_axis == axis_2 && distance == n_2 && facet_look == look_2);
+    assert (way_p == is_p && way_q == is_q);
+    assert (low_p == is_low_p && high_p == is_high_p && low_q == is_low_q && high_q == is_high_q);
+    if (!TURN) begin
+        assert (more_way == (axis_2 == 1 ? 0 : n_2));
+        assert (more_low_p == (axis_2 == 1 ? low_p_2 : 0) && more_high_p == (axis_2 == 1 ? high_p_2 : 0));
+        assert (more_low_q == (axis_2 == 1 ? low_q_2 : 0) && more_high_q == (axis_2 == 1 ? high_q_2 : 0));
+    end
+end
+
+always @* cover (ready && load == 2 && facet_usable);
+endmodule
