@@ -178,6 +178,7 @@ def draw_scaling(rows: Sequence[Mapping[str, Any]], measured: str, path: Path) -
                 axes.plot(*zip(*points, strict=True), color=colour, marker="o", markersize=4)
                 axes.annotate(engine, points[-1], (8, 0), textcoords="offset points", color=colour, va="center")
             axes.set(xlabel=option, ylabel=title, ylim=(0, None))
+            axes.xaxis.get_major_locator().set_params(integer=True)
             axes.spines[["top", "right"]].set_visible(False)
             axes.grid(axis="y", alpha=0.3)
         figure.savefig(path, metadata={"Date": None, "Description": f"measured {measured}"})

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 import json
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from statistics import linear_regression
 from typing import Any
 
 from raycaster.configuration import configure
@@ -180,6 +181,71 @@ def page_speed() -> str:
     ]  # fmt: skip
     headings = ["scene", "a frame in Chromium", "natively", "ratio", "frames a second on the page"]
     return _with_source(table(headings, rows), "web")
+
+
+LINEAR = 0.05
+"""A count is called linear where no design is off its straight line by more than this share."""
+
+
+def _scaling(option: str) -> str:
+    """The designs that differ in one option, all engines."""
+    lines = []
+    for row in outcome("scaling")["figures"]["designs"]:
+        if row["option"] != option:
+            continue
+        if "refused" in row:
+            lines.append([f"`{row['engine']}`", row["value"], "refused", *6 * [""]])
+            continue
+        counts = [f"{row[name]:,}" for name in ("tables", "registers", "multipliers", "units", "frame_cycles")]
+        time = f"{row['frame_ms']:.0f} ms" if "frame_ms" in row else ""
+        lines.append([f"`{row['engine']}`", row["value"], *counts, f"{row['clock_mhz']:g} MHz", time])
+    headings = [
+        "engine", option, "LUT4", "registers", "multipliers", "units", "cycles a frame, at most", "clock it needs",
+        "a frame in Verilator",
+    ]  # fmt: skip
+    return table(headings, lines)
+
+
+def scaling_rectangles() -> str:
+    """Designs of few and many rectangles."""
+    return _with_source(_scaling("rectangles"), "scaling")
+
+
+def scaling_reflections() -> str:
+    """Designs of no and of many reflections."""
+    return _scaling("reflections")
+
+
+def scaling_units() -> str:
+    """Designs of few and many ray units."""
+    return _scaling("units")
+
+
+def scaling_resolution() -> str:
+    """Designs of few and many pixels."""
+    return _scaling("resolution")
+
+
+def line_through(values: Sequence[float], counts: Sequence[float]) -> tuple[float, float, float]:
+    """The straight line of least squares: its value at 0, its slope, and by what share it is off at most."""
+    slope, start = linear_regression(values, counts)
+    off = max(abs(start + slope * value - count) / count for value, count in zip(values, counts, strict=True))
+    return start, slope, off
+
+
+def scaling_growth() -> str:
+    """Which counts grow by a straight line, and by which."""
+    found: dict[tuple[str, str], list[Mapping[str, Any]]] = defaultdict(list)
+    for row in outcome("scaling")["figures"]["designs"]:
+        if "refused" not in row and isinstance(row["value"], int):
+            found[row["engine"], row["option"]].append(row)
+    lines = []
+    for (engine, option), series in found.items():
+        for count, title in (("tables", "LUT4"), ("registers", "registers"), ("multipliers", "multipliers")):
+            start, slope, off = line_through([row["value"] for row in series], [row[count] for row in series])
+            formula = f"{start:,.1f} + {slope:,.1f} x {option}" if off <= LINEAR else "no straight line"
+            lines.append([f"`{engine}`", option, title, formula, f"{off:.1%}"])
+    return table(["engine", "over", "count", "it is", "off by at most"], lines)
 
 
 ROUTED = ("seed", "exact", "beam-320x240", "beam-640x480", "beam-1280x720")
@@ -427,6 +493,7 @@ def tables() -> dict[str, str]:
     """All of them, by the names that pages use."""
     made = (
         engines, work, scenes, families, features, buses, page_speed, routed, boards, icebreaker, tinytapeout,
-        routed_again, modules_routed, game_board, one_scene, error_and_time, checks, not_mutated,
+        routed_again, modules_routed, game_board, one_scene, error_and_time, checks, not_mutated, scaling_rectangles,
+        scaling_reflections, scaling_units, scaling_resolution, scaling_growth,
     )  # fmt: skip
     return {each.__name__: each() for each in made}

@@ -402,7 +402,7 @@ def test_pages(tmp_path: Path):
     assert "raycaster.golden.exact.trace" in text, "the library's reference"
     assert "The RayCaster authors" in text
     drawings = {f"{drawing.name}.svg" for drawing in (*blocks.DRAWINGS, *timing.DIAGRAMS)}
-    assert {path.name for path in output.glob("_images/*.svg")} == drawings, "each drawing is on a page"
+    assert {path.name for path in output.glob("_images/*.svg")} == drawings | {"scaling.svg"}, "each is on a page"
     assert (output / "register_map" / "index.html").is_file()
 
 
@@ -434,6 +434,12 @@ def test_the_measured_designs_drew_what_they_had_to():
     for design in designs:
         assert design["wrong_vs_golden"] == 0
         assert (design["wrong_vs_exact"] > 0) == (design["options"]["engine"] == "seed")
+
+
+def test_a_straight_line():
+    start, slope, off = tables.line_through([1, 2, 4], [110, 120, 140])
+    assert (round(start, 9), round(slope, 9), round(off, 9)) == (100, 10, 0)
+    assert tables.line_through([1, 2, 3], [100, 100, 130])[2] == pytest.approx(0.1)
 
 
 def test_how_designs_grow(tmp_path: Path, monkeypatch):
@@ -472,3 +478,11 @@ def test_a_frame_is_timed(tmp_path: Path, monkeypatch, break_it):
             scaling.frame_time(config, BUILD)
     else:
         assert 0 <= scaling.frame_time(config, BUILD) < 1000
+
+
+def test_the_plot_of_the_growth():
+    """It is of what the tables are of."""
+    kept = tables.outcome("scaling")
+    plot = (pages.HERE / "scaling.svg").read_text()
+    assert f"measured {kept['date']}, commit {kept['commit']}" in plot
+    assert set(drawings.words(plot)) > {"seed", "exact", "beam", "rectangles", "reflections", "LUT4"}
