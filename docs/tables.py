@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -34,14 +35,18 @@ def outcome(name: str) -> Outcome:
         raise UserError(f"{path}: cannot be read: {error.strerror}; a command with --keep {path} writes it") from None
 
 
+def _asked(kept: Outcome, command: str = "") -> str:
+    """The command line, without this beginning of it and without where it writes, which come last."""
+    return re.split(r" --(?:output|keep)\b", kept["command"])[0].removeprefix(command).strip()
+
+
 def measured(*names: str) -> str:
     """When, with what and by which command."""
     lines = []
     for name in names:
         kept = outcome(name)
         left_out = f"; not measured: {kept['scope']['left_out']}" if kept["scope"].get("left_out") else ""
-        command = kept["command"].partition(" --keep")[0].strip()
-        lines.append(f"`{command}`, {kept['date']}, commit {kept['commit']}{left_out}")
+        lines.append(f"`{_asked(kept)}`, {kept['date']}, commit {kept['commit']}{left_out}")
     return f"Measured: {'; '.join(lines)}."
 
 
@@ -264,7 +269,7 @@ def routed() -> str:
         kept = outcome(f"bitstream-{name}")
         figures = kept["figures"]
         counts = [f"{used:,} of {there:,}" for used, there in (figures["cells"][cell] for cell in CELLS)]
-        command = kept["command"].removeprefix("raycaster bitstream").partition(" --keep")[0].strip()
+        command = _asked(kept, "raycaster bitstream")
         rows.append(
             [f"`{command}`" if command else "default", *counts, _clock(figures, "clk"), _clock(figures, "shift_clk"),
              f"{kept['date']}, {kept['commit']}"]
@@ -273,19 +278,19 @@ def routed() -> str:
 
 
 def boards() -> str:
-    """What was placed and routed for boards, but for what `routed` has."""
+    """What was placed and routed for boards, but for what `routed` has, with any seed."""
     rows = []
     for path in sorted(RESULTS.glob("bitstream-*.json")):
         kept = outcome(path.stem)
         figures = kept["figures"]
-        if "kinds" not in figures:
+        if "kinds" not in figures or path.stem.partition("-seed-")[0].removeprefix("bitstream-") in ROUTED:
             continue
         kinds = figures["kinds"]
         counts = []
         for kind in (kinds["logic"], kinds["multipliers"]):
             used, there = figures["cells"][kind]
             counts.append(f"{used:,} of {there:,} {kind}")
-        command = kept["command"].removeprefix("raycaster bitstream").partition(" --output")[0].strip()
+        command = _asked(kept, "raycaster bitstream")
         link = _clock(figures, "shift_clk") if "shift_clk" in figures["clocks"] else ""
         rows.append([figures["title"], figures["chip"], f"`{command}`", *counts, _clock(figures, "clk"), link,
                      f"{kept['date']}, {kept['commit']}"])  # fmt: skip
@@ -302,7 +307,7 @@ def icebreaker() -> str:
         figures = kept["figures"]
         cells, kinds = figures["cells"], figures["kinds"]
         used, there = cells[kinds["logic"]]
-        command = kept["command"].removeprefix("raycaster bitstream").partition(" --output")[0].strip()
+        command = _asked(kept, "raycaster bitstream")
         rows.append(
             [f"`{command}`", figures["rectangles"], figures["reflections"], figures["rows"], figures["units"],
              f"{used:,} of {there:,}", _clock(figures, "clk"), f"{kept['date']}, {kept['commit']}"]
@@ -349,8 +354,7 @@ def modules_routed() -> str:
         counts = [f"{used:,} of {there:,}" for used, there in (figures["cells"][cell] for cell in CELLS)]
         clock = f"{figures['routed_mhz']:.2f} of {figures['clock_mhz']:g} MHz"
         missed = ", **missed**" if figures["routed_mhz"] < figures["clock_mhz"] else ""
-        command = kept["command"].partition(" --output")[0].strip()
-        rows.append([f"`{command}`", *counts, clock + missed, f"{kept['date']}, {kept['commit']}"])
+        rows.append([f"`{_asked(kept)}`", *counts, clock + missed, f"{kept['date']}, {kept['commit']}"])
     return table(["command", *CELLS, "clock", "measured at"], rows)
 
 
@@ -437,11 +441,11 @@ def _proofs() -> str:
 def _upsets(*names: str) -> str:
     figures = [outcome(name)["figures"] for name in names]
     cases = sum(one["cases"] for one in figures)
-    outcomes = Counter(each for one in figures for kind in set(KINDS) for each in Counter(one[kind]).elements())
-    flips = Counter(each for one in figures for each in Counter(one["upset"]).elements())
+    hung = sum(one[kind].get("hangs", 0) for one in figures for kind in set(KINDS))
+    flips = sum((Counter(one["upset"]) for one in figures), Counter())
     most = max(one["most_wrong"] for one in figures)
     return (
-        f"{cases:,} cases, {outcomes['hangs']} never came back. Of {flips.total():,} flipped bits "
+        f"{cases:,} cases, {hung} never came back. Of {flips.total():,} flipped bits "
         f"{flips['unseen']:,} did not show, the next StartScreen mended {flips['StartScreen']:,}, a commit "
         f"{flips['commit']:,}; at most {most} frames were wrong"
     )
@@ -479,7 +483,7 @@ def checks() -> str:
     rows = []
     for what, scope, figure, names in lines:
         kept = [outcome(name) for name in names]
-        commands = "<br>".join(f"`{one['command'].partition(' --keep')[0].strip()}`" for one in kept)
+        commands = "<br>".join(f"`{_asked(one)}`" for one in kept)
         rows.append([what, scope, figure, commands, f"{kept[0]['date']}, {kept[0]['commit']}"])
     return table(["what", "engine", "found", "command", "measured at"], rows)
 

@@ -88,17 +88,13 @@ def _method(what: Extent, command_line: str) -> Section:
             *(["This is the quick report: it has few worlds and designs."] if what.worlds < ENOUGH_WORLDS else []),
             f"Seeds: random worlds 0 to {what.worlds - 1}; {RESAMPLED} bootstrap samples from seed {RESAMPLING_SEED}.",
             "Errors are of the golden model, which the hardware equals in every bit, as the simulations here check "
-            "again. "
-            "Every row of a CSV file has the command that finds it out again; a picture's is `python -m "
+            "again. Every row of a CSV file has the command that finds it out again; a picture's is `python -m "
             "raycaster.report.points picture SCENE --fraction-bits F --rounding R --reflections N`, where SCENE is a "
-            "file, "
-            "seed:NUMBER or case:NAME, and pictures.csv beside this page has them all.",
+            "file, seed:NUMBER or case:NAME, and pictures.csv beside this page has them all.",
             "Results are stored beside the page, each with a digest of the sources that it depends on, and are found "
-            "out "
-            "again only where these have changed.",
+            "out again only where these have changed.",
             "Cells are of a Lattice ECP5 as Yosys counts them, before placing. Simulation is Verilator's of the "
-            "converted "
-            "Verilog. SSIM and PSNR are scikit-image's.",
+            "converted Verilog. SSIM and PSNR are scikit-image's.",
         ],
     )
 

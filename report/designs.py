@@ -171,26 +171,22 @@ def design_sections(
     exactest = min(found.by_cells, key=error)
     summary = [
         f"No design that rounds is worth its error: {describe(fewest.config)} is the smallest without any, with "
-        f"{fewest.cells:,} LUT4 and {fewest.pixel_ns:.3g} ns a pixel, and {describe(fastest.config)} the fastest, with "
-        f"{fastest.cells:,} and {fastest.pixel_ns:.3g} ns; the most exact of the seed engine's best, "
+        f"{fewest.cells:,} LUT4 and {fewest.pixel_ns:.3g} ns a pixel, and {describe(fastest.config)} the fastest, "
+        f"with {fastest.cells:,} and {fastest.pixel_ns:.3g} ns; the most exact of the seed engine's best, "
         f"{describe(exactest.config)}, takes {exactest.cells:,} and {exactest.pixel_ns:.3g} ns for "
-        f"{exactest.error:.3%} of "
-        "the pixels wrong."
+        f"{exactest.error:.3%} of the pixels wrong."
         if _all_beaten(rounded, exact)
         else f"The smallest design without error, {describe(fewest.config)}, takes {fewest.cells:,} LUT4 and "
         f"{fewest.pixel_ns:.3g} ns a pixel."
     ]
     text = (
-        f"Each mark is a design that meets its row budget, with one reflection; filled, it was simulated with "
+        "Each mark is a design that meets its row budget, with one reflection; filled, it was simulated with "
         f"{WORST_SCENE.stem} and its cells were counted, hollow, both are foretold. Time is by the hardware's own "
-        "counter "
-        "of cycles in which it computes, at the clock that the design needs for its monitor; the table says which were "
-        "placed and routed for it. Lines go through those that none is better than in both respects. Labels: "
-        "fraction bits "
-        "and rounding (n nearest, t truncate) of the seed engine, units of the exact one, rows of the beam one's "
-        "picture, "
-        "x2 with two pixels a clock. Small marks have culling, where the time is this scene's. No joules are given: "
-        "no power model of these chips is published that open tools could apply."
+        "counter of cycles in which it computes, at the clock that the design needs for its monitor; the table says "
+        "which were placed and routed for it. Lines go through those that none is better than in both respects. "
+        "Labels: fraction bits and rounding (n nearest, t truncate) of the seed engine, units of the exact one, rows "
+        "of the beam one's picture, x2 with two pixels a clock. Small marks have culling, where the time is this "
+        "scene's. No joules are given: the tools that were used have no power model of the chip."
     )
     sections = [
         Section("Error against run time", text, said, drawn[:1]),

@@ -139,17 +139,14 @@ def _distribution(what: Extent, pictures: Pictures, by: Mapping, directory: Path
     first = (
         f"Rounding to nearest with F = {fewest} leaves {_percent(at_first.median)} of a picture's pixels wrong in the "
         f"median world, {_percent(at_first.mean)} in the mean and {_percent(at_first.most)} in the worst of "
-        f"{len(every)}; "
-        f"with F = {most} it is {_percent(at_last.median)}, {_percent(at_last.mean)} and {_percent(at_last.most)}."
+        f"{len(every)}; with F = {most} it is {_percent(at_last.median)}, {_percent(at_last.mean)} and "
+        f"{_percent(at_last.most)}."
     )
     text = (
         f"The seed engine's pictures against exact arithmetic, with {REFLECTIONS} reflection: {len(pictures.worlds)} "
-        "random "
-        f"worlds (seeds 0 to {len(pictures.worlds) - 1}, {pictures.worlds[0].scene.rows} rows; six styles, made so "
-        "that "
-        f"ties, edges and slits are common) and the {len(pictures.scenes)} packaged scenes whose cameras are not "
-        "turned. "
-        "The exact and the beam engine have no wrong pixel."
+        f"random worlds (seeds 0 to {len(pictures.worlds) - 1}, {pictures.worlds[0].scene.rows} rows; six styles, "
+        f"made so that ties, edges and slits are common) and the {len(pictures.scenes)} packaged scenes whose cameras "
+        "are not turned. The exact and the beam engine have no wrong pixel."
     )
     return Section(
         "Error is a distribution", text, _enough(what, by),
@@ -241,10 +238,9 @@ def _trends(what: Extent, pictures: Pictures, by: Mapping, directory: Path) -> t
     )
     text = (
         "A hit point's coordinate u is off by at most d'[u] = d[u] + |D[u] / e| d[a] + q, where d are the errors of "
-        "the "
-        "ray's origin, D its slopes, a the axis of the plane, e the slope along it, and q one unit in the last place "
-        "(truncated) or half of one (nearest). It holds for rays that hit what the exact ray hits; the others are "
-        "counted as flips. Intervals are of a bootstrap over worlds."
+        "the ray's origin, D its slopes, a the axis of the plane, e the slope along it, and q one unit in the last "
+        "place (truncated) or half of one (nearest). It holds for rays that hit what the exact ray hits; the others "
+        "are counted as flips. Intervals are of a bootstrap over worlds."
     )
     return Section(
         "How errors fall and grow", text, said,

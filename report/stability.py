@@ -84,9 +84,8 @@ def stability_sections(
     text = (
         "Scenes that strain fixed point: grazed planes, corners, slits, points, mirrors face to face, turned cameras, "
         "patterns on the borders of their cells. The condition number of a case is how far its hits move for a ray "
-        "that "
-        "is off by one pixel, in world units: the greatest of all rays and reflections. The exact and the beam engine "
-        "round nothing, so that they have no error in any case; the seed engine's camera cannot turn."
+        "that is off by one pixel, in world units: the greatest of all rays and reflections. The exact and the beam "
+        "engine round nothing, so that they have no error in any case; the seed engine's camera cannot turn."
     )
     sections = [
         Section(
@@ -180,9 +179,8 @@ def _judged(
         f"The stiffest of {len(conditions)} cases is {stiffest}: for a pixel a hit moves by up to "
         f"{conditions[stiffest]:,.0f} world units.",
         f"{len(over)} of {len(pictures)} pictures of the seed engine, of {len(cases)} cases, have a coordinate over "
-        "its "
-        f"bound; the closest to it is {tightest.view.name} (F = {tightest.fraction_bits}, {tightest.rounding}), at "
-        f"{part:.2%} of it.",
+        f"its bound; the closest to it is {tightest.view.name} (F = {tightest.fraction_bits}, {tightest.rounding}), "
+        f"at {part:.2%} of it.",
     ]
     for rounding in ROUNDINGS:
         most = max((p for p in pictures if p.rounding == rounding), key=lambda point: pictures[point]["wrong"])
@@ -194,15 +192,13 @@ def _judged(
     if measured:
         said.append(
             f"The seed engine's converted Verilog: {different} hit points of {len(measured)} frames are not the "
-            "model's "
-            f"to the bit, {over_seen} coordinates are over their bound."
+            f"model's to the bit, {over_seen} coordinates are over their bound."
         )
     if shown:
         said.append(f"In simulation {engines} cases drew: {wrong} pixels are not those of exact arithmetic.")
     summary = (
         f"In {len(conditions)} stiff and extreme cases {len(over)} bounds are exceeded, the closest error is at "
-        f"{part:.1%} "
-        f"of its bound, and the engines without rounding "
+        f"{part:.1%} of its bound, and the engines without rounding "
         + (f"have {wrong} wrong pixels in simulation." if shown else "were not simulated here.")
     )
     return said, alarms, summary

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import dataclass, field, replace
@@ -34,7 +35,7 @@ class Campaign:
         probes: Verilog beside the design's.
         stiff: the job's.
         registers: the job's.
-        share: cases of a simulation.
+        share: cases of a simulation; 0 chooses.
     """
 
     bench: str
@@ -47,12 +48,37 @@ class Campaign:
     probes: Sequence[Path] = ()
     stiff: bool = False
     registers: Mapping[str, Sequence[str]] = field(default_factory=dict)
-    share: int = 5
+    share: int = 0
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of a campaign.
+
+    Attributes:
+        results: in the order of the cases.
+        failures: what each failed simulation said.
+        missing: how many cases have no result.
+        seconds: that the simulations took together.
+    """
+
+    results: list[dict]
+    failures: list[str]
+    missing: int
+    seconds: float
+
+    def verdict(self, cases: str, console: Console) -> int:
+        """Print what failed, and how many cases, as they are called, have no result; the command's exit code."""
+        for failure in self.failures:
+            console.print(failure, style="red", markup=False, soft_wrap=True)
+        if self.missing:
+            console.print(f"{self.missing} {cases} have no result", style="red")
+        return int(bool(self.failures or self.missing))
 
 
 def run_campaign(
     campaign: Campaign, console: Console, make_executor: Callable[[], Executor] = ProcessPoolExecutor
-) -> tuple[list[dict], list[str]]:
+) -> Outcome:
     """Run all cases.
 
     Args:
@@ -60,23 +86,23 @@ def run_campaign(
         console: for the progress bar.
         make_executor: see `raycaster.jobs.executors`.
 
-    Returns:
-        The results in the order of the cases, and what each failed simulation said.
-
     Raises:
         UserError: a tool is missing.
         SimulationError: the model cannot be built.
     """
     with console.status(f"building {campaign.configuration.name}"):
         _build(campaign)  # which the workers find
+    started = time.perf_counter()
     shutil.rmtree(campaign.output, ignore_errors=True)
-    cases, share = campaign.cases, campaign.share
+    cases = campaign.cases
+    share = campaign.share or min(max(len(cases) // 20, 5), 20)  # starting one takes as long as showing a scene
     shares = [replace(campaign, cases=cases[first : first + share]) for first in range(0, len(cases), share)]
     found = run_jobs("simulations", run_share, shares, make_executor, console)
     results = [result for results, _ in found for result in results]
     campaign.output.mkdir(parents=True, exist_ok=True)
     (campaign.output / "results.jsonl").write_text("".join(json.dumps(result) + "\n" for result in results))
-    return results, [failure for _, failure in found if failure]
+    failures = [failure for _, failure in found if failure]
+    return Outcome(results, failures, len(cases) - len(results), time.perf_counter() - started)
 
 
 def _build(campaign: Campaign) -> Model:

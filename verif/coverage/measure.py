@@ -244,13 +244,13 @@ def main(argv: list[str] | None = None) -> int:
     judgement = judge(counts, explanations)
 
     whole = Campaign(SOAK, SOAK_DESIGN, range(arguments.seeds), output / "soak", arguments.build, probes=[PROBE])
-    results, complaints = run_campaign(whole, console, partial(ProcessPoolExecutor, arguments.jobs))
-    failures += complaints
+    soaked = run_campaign(whole, console, partial(ProcessPoolExecutor, arguments.jobs))
+    failures += soaked.failures
     functional = FunctionalCoverage()
     for directory in [*(output / "runs").iterdir(), *(output / "soak").glob("from*")]:
         functional.add(read_bins(directory))
 
-    figures = {"scenes": len(scenes) + len(results)}
+    figures = {"scenes": len(scenes) + len(soaked.results)}
     figures |= {name: _hits(counts, None, types) for name, types in KINDS.items()}
     figures["bins"] = (len(functional.bins) - len(functional.holes), len(functional.bins))
     figures["intersections"] = sum(functional.bins.values())
@@ -259,7 +259,7 @@ def main(argv: list[str] | None = None) -> int:
     export_code(counts, judgement, output / "code.json")
     functional.export(output / "functional")
     show_code(counts, judgement, console)
-    show_functional(functional, len(scenes) + len(results), console)
+    show_functional(functional, len(scenes) + len(soaked.results), console)
     for failure in failures:
         console.print(failure, style="red", markup=False, soft_wrap=True)
     console.print(f"{time.perf_counter() - started:.0f} s; figures and holes are in {output}/", highlight=False)

@@ -102,7 +102,7 @@ generate
         wire signed [WALK_BITS-1:0] value = walk[(FIELDS-1-field)*WALK_BITS +: WALK_BITS];
         always @* if (valid && field != 1) assert (value == product);
 
-        // What the walker loads.
+        // The second lane starts a column on: there it must load the product with that column's slope.
         wire signed [SLOPE_BITS-1:0] loaded_slope = narrow(first, which);
         wire signed [WALK_BITS-1:0] to_load = distance * loaded_slope;
         wire signed [WALK_BITS-1:0] loading = loads[(FIELDS-1-field)*WALK_BITS +: WALK_BITS];

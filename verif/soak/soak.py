@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import time
 from collections import defaultdict
 from collections.abc import Sequence
 
@@ -77,10 +76,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     whole = Campaign(
         BENCH, configuration, seeds, output, arguments.build, simulator=arguments.simulator, stiff=arguments.stiff
     )
-    started = time.perf_counter()
     with executors(arguments.scheduler, arguments.jobs) as make_executor:
-        results, failures = run_campaign(whole, console, make_executor)
-    show(results, time.perf_counter() - started, configuration, console, stiff=arguments.stiff)
+        outcome = run_campaign(whole, console, make_executor)
+    results = outcome.results
+    show(results, outcome.seconds, configuration, console, stiff=arguments.stiff)
     for result in results:
         if result["wrong_vs_golden"]:
             which = {"stiff": True} if arguments.stiff else {"seeds": 1, "first": result["seed"]}
@@ -91,12 +90,7 @@ def main(argv: Sequence[str] | None = None) -> int:
                 style="red",
                 soft_wrap=True,
             )
-    for failure in failures:
-        console.print(failure, style="red", markup=False, soft_wrap=True)
-    missing = len(seeds) - len(results)
     counts = {name: sum(one[name] for one in results) for name in ("pixels", "wrong_vs_golden", "wrong_vs_exact")}
-    figures = {"scenes": len(results), "not_shown": missing, **counts}
+    figures = {"scenes": len(results), "not_shown": outcome.missing, **counts}
     keep(arguments, figures, scope_of(configuration) | {"stiff": arguments.stiff})
-    if missing:
-        console.print(f"{missing} scenes were not shown", style="red")
-    return int(bool(failures) or bool(missing))
+    return outcome.verdict("scenes", console)

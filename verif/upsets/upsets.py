@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import re
-import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -99,10 +98,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         "raycaster.verif.upsets.bench", configuration, cases, arguments.build / "upsets", arguments.build,
         flags=FLAGS, registers=registers_of(convert(configuration, arguments.build)), share=SHARE,
     )  # fmt: skip
-    started = time.perf_counter()
     with executors(arguments.scheduler, arguments.jobs) as make_executor:
-        results, failures = run_campaign(campaign, console, make_executor)
-    show(results, time.perf_counter() - started, configuration, console)
+        outcome = run_campaign(campaign, console, make_executor)
+    results = outcome.results
+    show(results, outcome.seconds, configuration, console)
     for result in results:
         if result["outcome"] == "hangs":
             repeat = command_line(
@@ -110,16 +109,11 @@ def main(argv: Sequence[str] | None = None) -> int:
             )
             what = f"case {result['case']}: {result['kind']}, {result['where']}, clock {result['clock']:.0f}"
             console.print(f"{what}: did not come back; repeat with: {repeat}", style="red", soft_wrap=True)
-    for failure in failures:
-        console.print(failure, style="red", markup=False, soft_wrap=True)
-    missing = len(cases) - len(results)
-    figures = {"cases": len(results), "not_run": missing} | {
+    figures = {"cases": len(results), "not_run": outcome.missing} | {
         kind: dict(Counter(result["outcome"] for result in results if result["kind"] == kind))
         for kind in dict.fromkeys(KINDS)
     }
     figures["most_wrong"] = max((result["wrong"] for result in results), default=0)
     figures["lost_sync"] = sum(result["lost_sync"] for result in results)
     keep(arguments, figures, scope_of(configuration))
-    if missing:
-        console.print(f"{missing} cases were not run", style="red")
-    return int(bool(failures) or bool(missing))
+    return outcome.verdict("cases", console)
