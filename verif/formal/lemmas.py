@@ -295,4 +295,26 @@ LEMMAS: tuple[Lemma, ...] = (
         "(c == 1) == (a != b)",
         integers=True,
     ),
+    Lemma(
+        "quotient-truncated", "with w = e q + r, 0 <= r < e, the quotient q is less than 1 below w/e",
+        "w e q r x", ("w == e*q + r", "0 <= r < e", "x*e == w"),
+        "0 <= x - q < 1",
+    ),
+    Lemma(
+        "quotient-nearest", "with 2 w + e = 2 e q + r, 0 <= r < 2 e, the quotient q is at most a half from w/e",
+        "w e q r x", ("2*w + e == 2*e*q + r", "0 <= r < 2*e", "x*e == w"),
+        "-1 <= 2*(x - q) < 1",
+    ),
+    Lemma(
+        "way-of-magnitudes", "ahead n and e have one sign s, so D n/e is the quotient of magnitudes, with D's sign",
+        "A n e t s d", ("s*s == 1", "d*d == 1", "e > 0", "t*(s*e) == s*n"),
+        "(d*A)*t*e == d*(A*n)",
+    ),
+    Lemma(
+        "point-error", "an origin off by c, along a by b, and a quotient off by q: the point is off by c + b A/e + q",
+        "O o I i D A k e X Y P p b c q",
+        ("e > 0", "X*e == D*(k - I)", "Y*e == D*(k - i)", "P == O + X", "-c <= o - O <= c", "-A*b <= D*(I - i) <= A*b",
+         "-q <= p - (o + Y) <= q"),
+        "-(c*e + A*b + q*e) <= (p - P)*e <= c*e + A*b + q*e",
+    ),
 )  # fmt: skip

@@ -229,6 +229,29 @@ def _divider(config: Configuration, part: int, small: bool) -> Property:
     )
 
 
+def _finder(config: Configuration, small: bool) -> Property:
+    magnitude = "magnitude_1" if config.fraction_bits else "magnitude"  # slopes have the first
+    cut = ("divider", *(("cell_parity",) if config.patterns else ()))
+    return Property(
+        "finder-quotients",
+        "a rectangle is hit, how far and where, as golden's a + b * (c - d) / e says, at full width",
+        config,
+        _label(config),
+        ("intersection_finder", "intersection_helper", magnitude, *cut),
+        {
+            "POSITION_BITS": position_bits(config),
+            "FRACTION_BITS": config.fraction_bits,
+            "LOOK_BITS": _look_bits(config),
+            "STEPS": config.divider_steps,
+        },
+        induction=1,
+        cut=cut,
+        any_product=True,
+        reach=config.divider_steps + 5,
+        small=small,
+    )
+
+
 def _tester(coordinate_bits: int, reflections: int, small: bool) -> Property:
     last = (1 << coordinate_bits) - 1
     eye_bits = (last * (reflections + 1)).bit_length() + 1
@@ -625,6 +648,9 @@ PROPERTIES: list[Property] = [
     _counters(_tiny(rectangles=2), small=True),
     _counters(_tiny(rectangles=2, culling=False), small=False),
     _counters(configure(units=16, rectangles=4), small=False),
+    _finder(_one_unit(), small=True),
+    _finder(_one_unit(patterns=True, materials=True), small=False),
+    _finder(_one_unit(fraction_bits=8, rounding="nearest", divider_bits=2), small=False),
     _tester(1, 2, small=True),
     _tester(2, 1, small=True),
     _tester(2, 2, small=False),

@@ -34,6 +34,7 @@ NO_EARLY_OUT = chosen("ray-order", "tiny48-u2-r2-m1-f3t-d3-c8-k0")
 PIPELINED = chosen("ray-order", "exact-tiny48-u2-r2-m1-c8-k1")
 SECTIONS = chosen("line-sections", "tiny48-u2-r2-m1-f0t-d3-c8")
 COUNTERS = chosen("render-counters", "vga240-u16-r4-m1-f0t-d1-c8")
+FINDER = chosen("finder-quotients", "vga240-u1-r12-m1-f0t-d3-c8")
 TESTER = chosen("tester-exact", "2 bits, 1 mirrors")
 CORNERS = chosen("tester-exact", "1 bits, 2 mirrors")
 PRODUCTS = chosen("tester-products", "exact-vga240-u1-r12-m1-c8")
@@ -158,6 +159,12 @@ FAULTS = {
                         "scan_start_screen || done;"),
     "read-too-far": (COUNTERS, "ray_caster_renderer", "read_offset}) != 19)", "read_offset}) != 20)"),
     "divisor-equal": (DIVIDER, "divider_step", "if (difference < 0) begin", "if (difference <= 0) begin"),
+    "bound-left-out": (FINDER, "intersection_finder", "u_value <= $signed", "u_value < $signed"),
+    "axes-crossed": (FINDER, "intersection_finder", "v_origin = ray_y;", "v_origin = ray_z;"),
+    "back-and-forth": (FINDER, "intersection_helper", "if (stored_negative) begin", "if (!stored_negative) begin"),
+    "plane-behind": (FINDER, "intersection_helper", "(difference < 0) == e_negative", "(difference > 0) == e_negative"),
+    "away-a-bit-short": (FINDER, "intersection_helper", "wire [8:0] away;", "wire [7:0] away;"),
+    "way-of-the-next": (FINDER, "intersection_helper", "stored_word <= loaded_word;", "stored_word <= started_word;"),
     "mirror-hits-itself": (TESTER, "rect_tester", "(seen_1_n > mirror_distance)", "(seen_1_n >= mirror_distance)"),
     "behind-the-mirror": (TESTER, "rect_tester", "(seen_1_passed_v || (to_near_v_1 <= mirror_distance))",
                           "seen_1_passed_v"),
@@ -229,7 +236,7 @@ FAULTS = {
 @pytest.mark.parametrize(
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
-     TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, HALF, FOLD, TABLE],
+     FINDER, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, HALF, FOLD, TABLE],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):

@@ -52,6 +52,11 @@ FAULTS = {
     "division-step": [("2*r + b >= e", "2*r + b > e"), ("s < e", "s < e - 1"), ("- d*e", "+ d*e"),
                       ("0 <= b <= 1", "0 <= b <= 2")],
     "cell-number": [("(i + 1)", "i + 1"), ("0 <= j < c", "0 <= j <= c"), ("0 <= r < e", "0 <= r <= e")],
+    "quotient-truncated": [("x - q < 1", "x - q <= 0"), ("0 <= r < e", "0 <= r <= e"), ("w == e*q", "w == -e*q")],
+    "quotient-nearest": [("2*(x - q) < 1", "2*(x - q) < 0"), ("-1 <=", "0 <="), ("0 <= r < 2*e", "0 <= r < 3*e")],
+    "way-of-magnitudes": [("d*(A*n)", "A*n"), ("s*s == 1", None), ("t*(s*e) == s*n", "t*e == s*n")],
+    "point-error": [("<= c*e + A*b + q*e", "<= c*e + A*b"), ("P == O + X", "P == O - X"),
+                    ("<= D*(I - i) <=", "<= D*(I + i) <="), ("<= c*e + A*b + q*e", "<= c*e + b + q*e")],
     "cell-parity": [("a != b", "a == b"), ("(c == 1)", "(c == 0)"), ("0 <= b <= 1", "0 <= b <= 2")],
 }  # fmt: skip
 

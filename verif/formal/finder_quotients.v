@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+// The seed engine's intersection at full width, with any function in the place of multiplication and of division: hit,
+// depth and point are golden's a + b * (c - d) / e within the bounds, whatever products and quotients are. What the
+// quotient is, and when, divider-exact says.
+//
+// Assumed, as the control has it: a division starts two cycles after its plane was taken, with none taken between, lasts
+// STEPS cycles, and follows the one before after as many; it may be given up as it starts. The ray holds still while a
+// rectangle is under way. `offered` is the rectangle that has left the dividers.
+
+// A product of a width that nothing else has, which is any function; overflow and quotient are bits of it.
+module any_division #(parameter POSITION_BITS = 9) (
+    input [POSITION_BITS+8:0] dividend, input [8:0] divisor, output [POSITION_BITS:0] result
+);
+wire [47:0] value = dividend * divisor;
+assign result = value;
+endmodule
+
+module finder_quotients #(
+    parameter POSITION_BITS = 9, parameter FRACTION_BITS = 0, parameter LOOK_BITS = 24, parameter STEPS = 9
+) (
+    input clk, input find, input load, input give_up, input [LOOK_BITS+46:0] rect, input [POSITION_BITS-1:0] x,
+    input [POSITION_BITS-1:0] y, input [POSITION_BITS-1:0] z, input [2:0] backward, input [8:0] dx, input [8:0] dy,
+    input [8:0] dz
+);
+localparam P = POSITION_BITS, RECT_BITS = LOOK_BITS + 47, RAY_BITS = 3 * P + 30;
+
+// How many cycles ago planes were taken, and divisions started.
+reg [1:0] found = 0;
+reg [STEPS+1:0] loaded = 0;
+wire store = loaded[STEPS-1], verdict = loaded[STEPS+1];
+wire [RAY_BITS-1:0] ray = {x, y, z, backward, dx, dy, dz};
+reg [RAY_BITS-1:0] last_ray;
+always @(posedge clk) begin
+    found <= {found, find};
+    loaded <= {loaded, load && !give_up};
+    last_ray <= ray;
+end
+always @* begin
+    if (load) assume (found[1] && !found[0] && loaded[STEPS-2:0] == 0);
+    if (found != 0 || loaded != 0) assume (ray == last_ray);
+end
+generate
+    genvar apart;
+    for (apart = 1; apart < STEPS; apart = apart + 1) begin: spaced
+        always @* assert ((loaded & loaded << apart) == 0);
+    end
+endgenerate
+
+// c - d: how far the plane is.
+function signed [P:0] numerator(
+    input [RECT_BITS-1:0] of, input signed [P:0] from_x, input signed [P:0] from_y, input signed [P:0] from_z
+);
+    reg signed [P:0] plane;
+    begin
+        plane = of[RECT_BITS-3 -: 9] << FRACTION_BITS;
+        numerator = plane - (of[RECT_BITS-1 -: 2] == 0 ? from_x : of[RECT_BITS-1 -: 2] == 1 ? from_y : from_z);
+    end
+endfunction
+function [P-1:0] size(input signed [P:0] number);
+    size = number < 0 ? -number : number;
+endfunction
+
+// Golden's operands: the axis of the plane divides (e, and d beside it); u is x, or y where that is the axis.
+wire [1:0] axis = rect[RECT_BITS-1 -: 2];
+wire signed [P:0] n = numerator(rect, x, y, z);
+wire [8:0] e = axis == 0 ? dx : axis == 1 ? dy : dz, b_u = axis == 0 ? dy : dx, b_v = axis < 2 ? dz : dy;
+wire e_negative = axis == 0 ? backward[0] : axis == 1 ? backward[1] : backward[2];
+wire u_negative = axis == 0 ? backward[1] : backward[0], v_negative = axis < 2 ? backward[2] : backward[1];
+wire towards = e != 0 && (e_negative ? n < 0 : n > 0);
+wire [P-1:0] distance = size(n);
+wire [P+8:0] product_u = b_u * distance, product_v = b_v * distance;
+wire [P:0] result_u, result_v;
+any_division #(P) golden_u (.dividend(product_u), .divisor(e), .result(result_u));
+any_division #(P) golden_v (.dividend(product_v), .divisor(e), .result(result_v));
+
+// What follows a rectangle into the dividers and out of them.
+localparam WAY_BITS = 2 * P + 5;
+wire [WAY_BITS-1:0] ways = {towards, u_negative, v_negative, result_u, result_v};
+reg [RECT_BITS-1:0] taken_rect, divided_rect, offered;
+reg [WAY_BITS-1:0] taken_ways, divided_ways, offered_ways;
+wire [P-1:0] taken_distance = size(numerator(taken_rect, x, y, z));
+wire [P-1:0] divided_distance = size(numerator(divided_rect, x, y, z));
+wire [P-1:0] offered_distance = size(numerator(offered, x, y, z));
+reg [P+8:0] taken_product_u, taken_product_v;
+reg [8:0] taken_b_u, taken_b_v, taken_e;
+always @(posedge clk) begin
+    if (find) begin
+        {taken_rect, taken_ways} <= {rect, ways};
+        {taken_product_u, taken_product_v} <= {product_u, product_v};
+        {taken_b_u, taken_b_v, taken_e} <= {b_u, b_v, e};
+    end
+    if (load) {divided_rect, divided_ways} <= {taken_rect, taken_ways};
+    if (store) {offered, offered_ways} <= {divided_rect, divided_ways};
+end
+
+// Golden's verdict.
+wire ahead, back_u, back_v;
+wire [P:0] far_u, far_v;
+assign {ahead, back_u, back_v, far_u, far_v} = offered_ways;
+wire [1:0] across = offered[RECT_BITS-1 -: 2];
+wire [P-1:0] depth_there = offered[RECT_BITS-3 -: 9] << FRACTION_BITS;
+wire signed [P+1:0] low_u = offered[35:27] << FRACTION_BITS, high_u = offered[26:18] << FRACTION_BITS;
+wire signed [P+1:0] low_v = offered[17:9] << FRACTION_BITS, high_v = offered[8:0] << FRACTION_BITS;
+wire signed [P+1:0] a_u = across == 0 ? y : x, a_v = across < 2 ? z : y;
+wire signed [P+1:0] way_u = far_u[P-1:0], way_v = far_v[P-1:0];
+wire signed [P+1:0] at_u = back_u ? a_u - way_u : a_u + way_u, at_v = back_v ? a_v - way_v : a_v + way_v;
+wire golden_hit = ahead && !far_u[P] && !far_v[P] && low_u <= at_u && at_u <= high_u && low_v <= at_v && at_v <= high_v;
+wire [P-1:0] golden_x = across == 0 ? depth_there : at_u, golden_z = across < 2 ? at_v : depth_there;
+wire [P-1:0] golden_y = across == 0 ? at_u : across == 1 ? depth_there : at_v;
+wire [P-1:0] golden_depth = golden_x < x ? x - golden_x : golden_x - x;
+
+wire hit, is_towards;
+wire [P-1:0] depth;
+wire [3*P-1:0] point;
+intersection_finder dut (
+    .clk(clk), .steps_find_intersection(find), .steps_load_divider(load), .steps_store_quotient(store),
+    .rect_word(rect), .offered_word(offered), .ray_word({x, y, z, backward[0], backward[1], backward[2]}),
+    .slope_dx(dx), .slope_dy(dy), .slope_dz(dz), .hit(hit), .depth(depth), .towards(is_towards), .point_word(point)
+);
+always @* if (found != 0) assert (is_towards == taken_ways[WAY_BITS-1]);
+always @* if (verdict) begin
+    assert (hit == golden_hit);
+    if (hit) assert (depth == golden_depth && point == {golden_x, golden_y, golden_z});
+end
+
+// Both axes' units, and the dividers' contract: a result is of the operands at load_divider, and stands from the cycle
+// after its store on.
+(* hierconn *) wire [8:0] \dut.intersection_helper_0_i.started_b , \dut.intersection_helper_1_i.started_b ;
+(* hierconn *) wire [8:0] \dut.intersection_helper_0_i.started_e , \dut.intersection_helper_1_i.started_e ;
+(* hierconn *) wire [P+1:0] \dut.intersection_helper_0_i.started_word , \dut.intersection_helper_1_i.started_word ;
+(* hierconn *) wire [P+1:0] \dut.intersection_helper_0_i.loaded_word , \dut.intersection_helper_1_i.loaded_word ;
+(* hierconn *) wire [P+1:0] \dut.intersection_helper_0_i.stored_word , \dut.intersection_helper_1_i.stored_word ;
+(* hierconn *) wire [P+8:0] \dut.intersection_helper_0_i.product , \dut.intersection_helper_1_i.product ;
+(* hierconn *) wire \dut.intersection_helper_0_i.overflow , \dut.intersection_helper_1_i.overflow ;
+(* hierconn *) wire [P-1:0] \dut.intersection_helper_0_i.quotient , \dut.intersection_helper_1_i.quotient ;
+generate
+    genvar unit;
+    for (unit = 0; unit < 2; unit = unit + 1) begin: units
+        wire [8:0] started_b = unit ? \dut.intersection_helper_1_i.started_b : \dut.intersection_helper_0_i.started_b ;
+        wire [8:0] started_e = unit ? \dut.intersection_helper_1_i.started_e : \dut.intersection_helper_0_i.started_e ;
+        wire [P+1:0] started = unit ? \dut.intersection_helper_1_i.started_word : \dut.intersection_helper_0_i.started_word ;
+        wire [P+1:0] in_divider = unit ? \dut.intersection_helper_1_i.loaded_word : \dut.intersection_helper_0_i.loaded_word ;
+        wire [P+1:0] stored = unit ? \dut.intersection_helper_1_i.stored_word : \dut.intersection_helper_0_i.stored_word ;
+        wire [P+8:0] product = unit ? \dut.intersection_helper_1_i.product : \dut.intersection_helper_0_i.product ;
+        wire overflow = unit ? \dut.intersection_helper_1_i.overflow : \dut.intersection_helper_0_i.overflow ;
+        wire [P-1:0] quotient = unit ? \dut.intersection_helper_1_i.quotient : \dut.intersection_helper_0_i.quotient ;
+
+        wire [P:0] result;
+        reg [P:0] result_held, result_stored;
+        any_division #(P) division (.dividend(product), .divisor(started_e), .result(result));
+        always @(posedge clk) begin
+            if (load) result_held <= result;
+            if (store) result_stored <= result_held;
+        end
+        always @* assume ({overflow, quotient} == result_stored);
+
+        // Invariants: what is on its way is of the rectangle that came in.
+        wire [P:0] far_taken = unit ? taken_ways[P:0] : taken_ways[2*P+1 -: P+1];
+        wire [P:0] far_divided = unit ? divided_ways[P:0] : divided_ways[2*P+1 -: P+1];
+        wire [P+8:0] product_taken = unit ? taken_product_v : taken_product_u;
+        wire [8:0] b_taken = unit ? taken_b_v : taken_b_u;
+        wire [P+8:0] way = b_taken * taken_distance;
+        wire [P:0] quotient_taken;
+        any_division #(P) again (.dividend(product_taken), .divisor(taken_e), .result(quotient_taken));
+        always @* if (found != 0) begin
+            assert (started_b == b_taken && started_e == taken_e && product_taken == way);
+            assert (started == {taken_distance, taken_ways[WAY_BITS-2-unit], taken_ways[WAY_BITS-1]});
+            assert (far_taken == quotient_taken);
+        end
+        always @* if (found == 2) assert (product == product_taken);
+        always @* if (loaded[STEPS-1:0] != 0) begin
+            assert (in_divider == {divided_distance, divided_ways[WAY_BITS-2-unit], divided_ways[WAY_BITS-1]});
+            assert (result_held == far_divided);
+        end
+        always @* if (loaded[STEPS+1:STEPS] != 0) begin
+            assert (stored == {offered_distance, offered_ways[WAY_BITS-2-unit], offered_ways[WAY_BITS-1]});
+            assert (result_stored == (unit ? far_v : far_u));
+        end
+    end
+endgenerate
+
+always @* cover (verdict && hit && depth == 7);
+always @* cover (loaded[STEPS] && found != 0);
+endmodule
