@@ -317,4 +317,10 @@ LEMMAS: tuple[Lemma, ...] = (
          "-q <= p - (o + Y) <= q"),
         "-(c*e + A*b + q*e) <= (p - P)*e <= c*e + A*b + q*e",
     ),
+    Lemma(
+        "between", "what grows evenly and is less than another at both ends of a row is less between them",
+        "x y a g b h N i",
+        ("0 <= i <= N", "a < b", "a + N*g < b + N*h", "x == a + i*g", "y == b + i*h"),
+        "x < y",
+    ),
 )  # fmt: skip

@@ -16,6 +16,7 @@ from raycaster.rtl.common.widths import (
     BASIS_BITS,
     COORDINATE_BITS,
     DISTANCE_BITS,
+    WIDE_BITS,
     bits_for,
     exact_slope_bits,
     eye_bits,
@@ -28,6 +29,7 @@ from raycaster.rtl.common.widths import (
     steepest_slope,
     unit_bits,
     walk_bits,
+    wide_walk_bits,
 )
 from raycaster.rtl.engine.colour_blend import blend_latency
 from raycaster.rtl.engine.rect_setup import LATENCY as SETUP_LATENCY
@@ -391,6 +393,31 @@ def _slope(config: Configuration, small: bool) -> Property:
     )
 
 
+def _group(config: Configuration, small: bool) -> Property:
+    return Property(
+        "group-safe",
+        "no rectangle is left out that a ray of the group hits, at full width",
+        config,
+        _label(config),
+        ("group_tester",),
+        {
+            "UNITS": config.units,
+            "UNIT_BITS": unit_bits(config),
+            "RECTANGLES": config.rectangles,
+            "INDEX_BITS": index_bits(config),
+            "SLOPE_BITS": exact_slope_bits(config) + 1,
+            "DISTANCE_BITS": DISTANCE_BITS,
+            "WAY_BITS": walk_bits(config),
+            "WALK_BITS": wide_walk_bits(config),
+            "GROWTH_BITS": WIDE_BITS,
+            "LOOK_BITS": _look_bits(config),
+        },
+        induction=3,
+        reach=8,
+        small=small,
+    )
+
+
 def _row_setup(config: Configuration, small: bool) -> Property:
     return Property(
         "row-setup",
@@ -651,6 +678,8 @@ PROPERTIES: list[Property] = [
     _finder(_one_unit(), small=True),
     _finder(_one_unit(patterns=True, materials=True), small=False),
     _finder(_one_unit(fraction_bits=8, rounding="nearest", divider_bits=2), small=False),
+    _group(configure(engine="exact", culling=True), small=True),
+    _group(configure(), small=False),
     _tester(1, 2, small=True),
     _tester(2, 1, small=True),
     _tester(2, 2, small=False),

@@ -35,6 +35,7 @@ PIPELINED = chosen("ray-order", "exact-tiny48-u2-r2-m1-c8-k1")
 SECTIONS = chosen("line-sections", "tiny48-u2-r2-m1-f0t-d3-c8")
 COUNTERS = chosen("render-counters", "vga240-u16-r4-m1-f0t-d1-c8")
 FINDER = chosen("finder-quotients", "vga240-u1-r12-m1-f0t-d3-c8")
+GROUP = chosen("group-safe", "exact-vga240-u4-r12-m1-c8-k1")
 TESTER = chosen("tester-exact", "2 bits, 1 mirrors")
 CORNERS = chosen("tester-exact", "1 bits, 2 mirrors")
 PRODUCTS = chosen("tester-products", "exact-vga240-u1-r12-m1-c8")
@@ -165,6 +166,11 @@ FAULTS = {
     "plane-behind": (FINDER, "intersection_helper", "(difference < 0) == e_negative", "(difference > 0) == e_negative"),
     "away-a-bit-short": (FINDER, "intersection_helper", "wire [8:0] away;", "wire [7:0] away;"),
     "way-of-the-next": (FINDER, "intersection_helper", "stored_word <= loaded_word;", "stored_word <= started_word;"),
+    "edge-of-a-group-missed": (GROUP, "group_tester", "(way_p_1 < end_least_p)", "(way_p_1 <= end_least_p)"),
+    "end-a-bit-short": (GROUP, "group_tester", "wire signed [17:0] end_way_p;", "wire signed [16:0] end_way_p;"),
+    "sign-of-the-slope": (GROUP, "group_tester", "back = column_slope < 0;", "back = column_slope > 0;"),
+    "one-end-behind": (GROUP, "group_tester", "behind = back && end_back;", "behind = back || end_back;"),
+    "ends-run-apart": (GROUP, "group_tester", "same_way_1 <= back == end_back;", "same_way_1 <= 1'b1;"),
     "mirror-hits-itself": (TESTER, "rect_tester", "(seen_1_n > mirror_distance)", "(seen_1_n >= mirror_distance)"),
     "behind-the-mirror": (TESTER, "rect_tester", "(seen_1_passed_v || (to_near_v_1 <= mirror_distance))",
                           "seen_1_passed_v"),
@@ -236,7 +242,7 @@ FAULTS = {
 @pytest.mark.parametrize(
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
-     FINDER, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, HALF, FOLD, TABLE],
+     FINDER, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, HALF, FOLD, TABLE],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):

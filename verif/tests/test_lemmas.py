@@ -57,6 +57,7 @@ FAULTS = {
     "way-of-magnitudes": [("d*(A*n)", "A*n"), ("s*s == 1", None), ("t*(s*e) == s*n", "t*e == s*n")],
     "point-error": [("<= c*e + A*b + q*e", "<= c*e + A*b"), ("P == O + X", "P == O - X"),
                     ("<= D*(I - i) <=", "<= D*(I + i) <="), ("<= c*e + A*b + q*e", "<= c*e + b + q*e")],
+    "between": [("x < y", "x + 1 < y"), ("i <= N", "i <= N + 1"), ("a + N*g < b", "a + N*g <= b")],
     "cell-parity": [("a != b", "a == b"), ("(c == 1)", "(c == 0)"), ("0 <= b <= 1", "0 <= b <= 2")],
 }  # fmt: skip
 

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Culling at full width: a rectangle that a ray of the group hits is never left out. `ray` is any one of the group's, so
+// what is asserted of it holds of each.
+//
+// Products and bounds are any numbers that grow along the row; that they are products is row-setup's. Assumed of them is
+// the lemma between, and that they fit their bits at the group's end, as at its start.
+
+module group_safe #(
+    parameter UNITS = 4, parameter UNIT_BITS = 2, parameter RECTANGLES = 12, parameter INDEX_BITS = 4,
+    parameter SLOPE_BITS = 9, parameter DISTANCE_BITS = 10, parameter WAY_BITS = 18, parameter WALK_BITS = 18,
+    parameter GROWTH_BITS = 11, parameter LOOK_BITS = 24
+) (
+    input clk, input [RECTANGLES-1:0] load, input signed [SLOPE_BITS-1:0] column, input signed [SLOPE_BITS-1:0] row,
+    input usable, input [1:0] axis, input signed [DISTANCE_BITS-1:0] distance, input signed [WAY_BITS-1:0] way_q,
+    input [LOOK_BITS-1:0] look, input [5*GROWTH_BITS-1:0] growth, input [5*WALK_BITS-1:0] start,
+    input [5*WALK_BITS-1:0] at_ray, input [UNIT_BITS-1:0] ray, input [INDEX_BITS-1:0] rectangle
+);
+localparam WIDE = WALK_BITS + UNIT_BITS + 2;
+
+wire [RECTANGLES-1:0] may_hit;
+group_tester dut (
+    .clk(clk), .load(load), .column_slope(column), .row_slope(row), .may_hit(may_hit),
+    .facet_word({usable, axis, distance, way_q, look}), .growth_word(growth), .start_word(start)
+);
+
+// The five, the way along p and the bounds low and high on p and on q, at both ends of the group, and at this ray.
+wire signed [WALK_BITS-1:0] first [0:4], there [0:4];
+wire signed [WIDE-1:0] last [0:4];
+generate
+    genvar each;
+    for (each = 0; each < 5; each = each + 1) begin: walks
+        wire signed [GROWTH_BITS-1:0] a_column = growth[(4-each)*GROWTH_BITS +: GROWTH_BITS];
+        wire signed [WIDE-1:0] reach = a_column * UNITS;
+        assign first[each] = start[(4-each)*WALK_BITS +: WALK_BITS];
+        assign last[each] = first[each] + reach;
+        assign there[each] = at_ray[(4-each)*WALK_BITS +: WALK_BITS];
+        always @* assume (last[each] >= -(1 <<< WALK_BITS - 1) && last[each] < 1 <<< WALK_BITS - 1);
+    end
+    for (each = 1; each < 5; each = each + 1) begin: between
+        wire signed [WIDE-1:0] way_first = each < 3 ? first[0] : way_q, way_last = each < 3 ? last[0] : way_q;
+        wire signed [WIDE-1:0] way_there = each < 3 ? there[0] : way_q;
+        always @* begin
+            if (way_first < first[each] && way_last < last[each]) assume (way_there < there[each]);
+            if (way_first > first[each] && way_last > last[each]) assume (way_there > there[each]);
+        end
+    end
+endgenerate
+wire signed [SLOPE_BITS:0] column_there = column + $signed({1'b0, ray});
+wire forward = axis == 1 ? column_there > 0 : axis == 2 ? row > 0 : 1'b1;
+wire back = axis == 1 ? column_there < 0 : axis == 2 ? row < 0 : 1'b0;
+
+// The cross-multiplied definition: ahead, and within the bounds, which a slope below 0 turns around.
+wire hits_forward = distance > 0 && forward && there[1] <= there[0] && there[0] <= there[2] && there[3] <= way_q
+    && way_q <= there[4];
+wire hits_back = distance < 0 && back && there[2] <= there[0] && there[0] <= there[1] && there[4] <= way_q
+    && way_q <= there[3];
+
+reg [1:0] hits = 2'b00;
+reg [INDEX_BITS-1:0] rectangle_1, rectangle_2;
+always @(posedge clk) begin
+    hits <= {hits, load[rectangle] && (hits_forward || hits_back)};
+    rectangle_1 <= rectangle;
+    rectangle_2 <= rectangle_1;
+end
+always @* begin
+    assume (axis < 3 && ray < UNITS && rectangle < RECTANGLES);
+    if (hits[1]) assert (may_hit[rectangle_2]);
+end
+
+always @* cover (hits[1]);
+always @* cover (may_hit == 5);
+endmodule
