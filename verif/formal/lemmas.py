@@ -323,4 +323,9 @@ LEMMAS: tuple[Lemma, ...] = (
         ("0 <= i <= N", "a < b", "a + N*g < b + N*h", "x == a + i*g", "y == b + i*h"),
         "x < y",
     ),
+    Lemma(
+        "shares", "of m quarters of a mirror: a weight's worth is what the mirror keeps of it and what it passes on",
+        "w v m s T U", ("4*T == (4 - m)*s + m*U", "4*v == w*m"),
+        "w*T == (w - v)*s + v*U",
+    ),
 )  # fmt: skip

@@ -26,6 +26,7 @@ from raycaster.rtl.common.widths import (
     pixel_bits,
     position_bits,
     row_bits,
+    share_bits,
     steepest_slope,
     unit_bits,
     walk_bits,
@@ -514,6 +515,25 @@ def _blend(config: Configuration, small: bool) -> Property:
     )
 
 
+def _shares(config: Configuration, small: bool) -> Property:
+    return Property(
+        "shares-exact",
+        "a pixel is what its rays saw one after the other, weighed as golden does, at full width",
+        config,
+        _label(config),
+        ("colour_combiner", "colour_share", "colour_sum"),
+        {
+            "MATERIALS": int(config.materials),
+            "REFLECTIONS": config.reflections,
+            "COLOUR_BITS": config.colour_bits,
+            "SHARE_BITS": share_bits(config),
+        },
+        induction=1,
+        reach=config.reflections + 5,
+        small=small,
+    )
+
+
 def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: int, small: bool) -> Property:
     widths = FoldWidths(coordinate_bits, slope_bits, mirrors)
     turned = "" if view_distance else ", turned"
@@ -678,6 +698,10 @@ PROPERTIES: list[Property] = [
     _finder(_one_unit(), small=True),
     _finder(_one_unit(patterns=True, materials=True), small=False),
     _finder(_one_unit(fraction_bits=8, rounding="nearest", divider_bits=2), small=False),
+    _shares(_one_unit(engine="exact"), small=True),
+    _shares(_one_unit(engine="exact", materials=True), small=False),
+    _shares(_one_unit(engine="exact", reflections=2), small=False),
+    _shares(_one_unit(engine="exact", reflections=2, materials=True), small=True),
     _group(configure(engine="exact", culling=True), small=True),
     _group(configure(), small=False),
     _tester(1, 2, small=True),

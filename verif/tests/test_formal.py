@@ -51,6 +51,8 @@ LINE = chosen("line-start", "beam-vga240-s2-u1-r2-m1-c8-turn")
 WALK = chosen("walked-products", "beam-vga240-s2-u1-r2-m1-c8")
 SECOND_LANE = chosen("walked-products", "beam-vga180-s6-u2-r2-m1-c8 lane 1")
 HALF = chosen("blend-exact", "beam-vga240-s2-u1-r2-m2-c8")
+SHARES = chosen("shares-exact", "exact-vga240-u1-r12-m2-c8-materials")
+HALVES = chosen("shares-exact", "exact-vga240-u1-r12-m1-c8")
 FOLD = chosen("fold-exact", "2 and 1 bits, 1 mirrors")
 TABLE = chosen("fixed-rects", "seed, different")
 DIVIDER = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d3-c8 digits")
@@ -226,6 +228,13 @@ FAULTS = {
     "mean-two-bits-short": (HALF, "colour_mean_1", "reg [9:0] other;", "reg [7:0] other;"),
     "own-counts-once": (HALF, "colour_mean", "if (reflections == 1) begin", "if (reflections == 2) begin"),
     "background-too-late": (HALF, "colour_seen_1", "here = reached && seen_found;", "here = seen_found;"),
+    "three-quarters-are-half": (SHARES, "colour_share", "some = half + quarter;", "some = half;"),
+    "all-passed-on-at-a-miss": (SHARES, "colour_share", "if (found && steps_store_ray) begin",
+                                "if (steps_store_ray) begin"),
+    "weight-a-bit-short": (SHARES, "colour_share", "wire [4:0] left;", "wire [3:0] left;"),
+    "one-summand-only": (SHARES, "colour_sum", "at_even + at_odd", "at_even | at_odd"),
+    "last-keeps-half": (HALVES, "colour_share", "if (steps_store_ray) begin", "if (1'b1) begin"),
+    "what-is-lost-seen": (HALVES, "colour_combiner", "if (found && !missed) begin", "if (found) begin"),
     "corner-missed": (FOLD, "fold_tester", "beyond = !met_2", "beyond = 1'b0"),
     "mirror-again": (FOLD, "fold_tester", "facet_distance > mirror_distance",
                      "facet_distance >= mirror_distance"),
@@ -242,7 +251,8 @@ FAULTS = {
 @pytest.mark.parametrize(
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
-     FINDER, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, HALF, FOLD, TABLE],
+     FINDER, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, HALF, SHARES, HALVES,
+     FOLD, TABLE],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):

@@ -58,6 +58,7 @@ FAULTS = {
     "point-error": [("<= c*e + A*b + q*e", "<= c*e + A*b"), ("P == O + X", "P == O - X"),
                     ("<= D*(I - i) <=", "<= D*(I + i) <="), ("<= c*e + A*b + q*e", "<= c*e + b + q*e")],
     "between": [("x < y", "x + 1 < y"), ("i <= N", "i <= N + 1"), ("a + N*g < b", "a + N*g <= b")],
+    "shares": [("(w - v)*s", "w*s"), ("(4 - m)*s", "(3 - m)*s"), ("4*v == w*m", "4*v == m")],
     "cell-parity": [("a != b", "a == b"), ("(c == 1)", "(c == 0)"), ("0 <= b <= 1", "0 <= b <= 2")],
 }  # fmt: skip
 

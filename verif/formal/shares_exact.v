@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// The colours of the engines that add up what rays saw, at full width: each ray has a weight, passes as many quarters of
+// it on as it mirrors, or half where MATERIALS is 0, and adds what it saw with the rest. The last one, and one that found
+// nothing, passes none on. No quarter is lost. That the sum is golden's, which blends from the last ray back, is the
+// lemma shares. From the first ray that found nothing on, the background is seen.
+//
+// Assumed, as the control has it: rays come one after the other, each with one addition, and all but the last store a
+// reflected one in its cycle; the picture's reflections are constant while they do. Assumed, as the registers have it: a
+// mirror is 0 to 4 quarters, and a picture has no more reflections than the design.
+
+module shares_exact #(
+    parameter MATERIALS = 0, parameter REFLECTIONS = 1, parameter COLOUR_BITS = 8, parameter SHARE_BITS = 2
+) (
+    input clk, input reset, input add, input found, input [23:0] colour, input [2:0] mirror, input [23:0] background,
+    input [2:0] reflections
+);
+localparam SUM_BITS = 7 + SHARE_BITS;
+
+reg running = 1'b0, reached;
+reg [2:0] rays, last_reflections;
+wire is_last = rays == reflections, hit = reached && found;
+wire [2:0] quarters = MATERIALS ? mirror : 3'd2;
+reg [SHARE_BITS-1:0] weight;
+// Without materials a background that was reached goes on being mirrored by half: it is all that is left to see.
+wire [SHARE_BITS+2:0] product = is_last || MATERIALS && !hit ? 0 : weight * quarters;
+wire [SHARE_BITS-1:0] passed = product >> 2;
+always @(posedge clk) begin
+    last_reflections <= reflections;
+    if (reset) begin
+        running <= 1'b1;
+        reached <= 1'b1;
+        rays <= 0;
+        weight <= 1 << SHARE_BITS - 1;
+    end
+    else if (add) begin
+        reached <= hit;
+        rays <= rays + 1;
+        weight <= passed;
+    end
+end
+always @* begin
+    assume (mirror <= 4);
+    assume (reflections <= REFLECTIONS);
+    if (add) assume (running && !reset && rays <= reflections);
+    if (running && rays > 0) assume (reflections == last_reflections);
+    if (add) assert (product[1:0] == 0);
+end
+
+wire [3*COLOUR_BITS-1:0] pixel;
+wire missed;
+generate
+    if (MATERIALS) begin: design
+        colour_combiner dut (
+            .clk(clk), .found(found), .found_colour(colour), .found_mirror(mirror), .missed(missed),
+            .steps_reset_colour(reset), .steps_add_colour(add), .steps_store_ray(add && !is_last),
+            .picture_background(background), .pixel_word(pixel)
+        );
+    end
+    else begin: design
+        colour_combiner dut (
+            .clk(clk), .found(found), .found_colour(colour), .missed(missed), .steps_reset_colour(reset),
+            .steps_add_colour(add), .steps_store_ray(add && !is_last), .picture_background(background),
+            .pixel_word(pixel)
+        );
+    end
+endgenerate
+
+// Invariants: a weight is a product of one number 0 to 4 for each mirror before, and of a 4 for each that may follow.
+function multiple_of_4(input [SHARE_BITS-1:0] number, input [2:0] times);
+    multiple_of_4 = (number & (1 << 2 * times) - 1) == 0;
+endfunction
+function of_mirrors(input [SHARE_BITS-1:0] number);
+    integer one, other;
+    begin
+        of_mirrors = 0;
+        for (one = 0; one <= 4; one = one + 1)
+            for (other = 0; other <= 4; other = other + 1)
+                if (number == one * other && number <= 1 << SHARE_BITS - 1) of_mirrors = 1;
+    end
+endfunction
+(* hierconn *) wire [SHARE_BITS-1:0] \design.dut.colour_share_i.weight ;
+(* hierconn *) wire [SUM_BITS-1:0] \design.dut.colour_sum_0_i.total ;
+(* hierconn *) wire [SUM_BITS-1:0] \design.dut.colour_sum_1_i.total ;
+(* hierconn *) wire [SUM_BITS-1:0] \design.dut.colour_sum_2_i.total ;
+wire [3*SUM_BITS-1:0] totals = {
+    \design.dut.colour_sum_0_i.total , \design.dut.colour_sum_1_i.total , \design.dut.colour_sum_2_i.total
+};
+always @* if (running) begin
+    assert (rays <= reflections + 1);
+    if (rays <= reflections) begin
+        assert (weight == \design.dut.colour_share_i.weight );
+        if (MATERIALS) assert (multiple_of_4(weight, REFLECTIONS - rays) && of_mirrors(weight) && (reached || weight == 0));
+        else assert (weight << rays == 1 << SHARE_BITS - 1);
+        assert (missed == (MATERIALS ? weight == 0 : !reached));
+    end
+end
+
+// A product, number by number: the solver looks at one after the other.
+function [SUM_BITS-1:0] times(input [SHARE_BITS-1:0] share, input [7:0] saw);
+    integer number;
+    begin
+        times = 0;
+        for (number = 0; number <= 1 << SHARE_BITS - 1; number = number + 1)
+            if (share == number) times = number * saw;
+    end
+endfunction
+generate
+    genvar channel;
+    for (channel = 0; channel < 3; channel = channel + 1) begin: channels
+        wire [7:0] saw = hit ? colour[8*channel +: 8] : background[8*channel +: 8];
+        reg [SUM_BITS-1:0] sum;
+        always @(posedge clk) begin
+            if (reset) sum <= 0;
+            else if (add) sum <= sum + times(weight - passed, saw);
+        end
+        always @* if (running) begin
+            assert (totals[SUM_BITS*channel +: SUM_BITS] == sum);
+            assert (pixel[COLOUR_BITS*channel +: COLOUR_BITS] == sum >> SUM_BITS - COLOUR_BITS);
+        end
+    end
+endgenerate
+
+always @* cover (running && rays == REFLECTIONS + 1 && reached && pixel == 24'h4d4d4d);
+endmodule
