@@ -328,4 +328,9 @@ LEMMAS: tuple[Lemma, ...] = (
         "w v m s T U", ("4*T == (4 - m)*s + m*U", "4*v == w*m"),
         "w*T == (w - v)*s + v*U",
     ),
+    Lemma(
+        "product-in-parts", "a product is that of the low part of a factor, and c times that of the high part",
+        "n e l h c", ("e == l + c*h",),
+        "n*e == n*l + c*(n*h)",
+    ),
 )  # fmt: skip

@@ -11,7 +11,7 @@ from raycaster.registers import address_bits, register_map
 from raycaster.rtl.beam.beam_lane import beam_latency
 from raycaster.rtl.beam.line_starter import AIM_LATENCY
 from raycaster.rtl.bus.avalon_interface import engine_word, size_word
-from raycaster.rtl.common.records import camera_of, look_fields, rect_of, surface_of
+from raycaster.rtl.common.records import camera_of, candidate_of, look_fields, rect_of, surface_of
 from raycaster.rtl.common.widths import (
     BASIS_BITS,
     COORDINATE_BITS,
@@ -515,6 +515,27 @@ def _blend(config: Configuration, small: bool) -> Property:
     )
 
 
+def _contest(config: Configuration, small: bool) -> Property:
+    candidate = candidate_of(config)
+    numerator, denominator = len(candidate.numerator), len(candidate.denominator)
+    return Property(
+        "contest-products",
+        "of two candidates the nearer goes on, by cross-multiplication, or the first of two as near, at full width",
+        config,
+        _label(config),
+        ("nearest_of_two",),
+        {
+            "NUMERATOR_BITS": numerator,
+            "DENOMINATOR_BITS": denominator,
+            "REST_BITS": len(candidate.word) - 2 - numerator - denominator,
+        },
+        induction=3,
+        any_product=True,
+        reach=5,
+        small=small,
+    )
+
+
 def _shares(config: Configuration, small: bool) -> Property:
     return Property(
         "shares-exact",
@@ -698,6 +719,9 @@ PROPERTIES: list[Property] = [
     _finder(_one_unit(), small=True),
     _finder(_one_unit(patterns=True, materials=True), small=False),
     _finder(_one_unit(fraction_bits=8, rounding="nearest", divider_bits=2), small=False),
+    _contest(BEAM, small=True),
+    _contest(BEAM_TURN, small=False),
+    _contest(_beam(turn=True, patterns=True, reflections=4), small=True),
     _shares(_one_unit(engine="exact"), small=True),
     _shares(_one_unit(engine="exact", materials=True), small=False),
     _shares(_one_unit(engine="exact", reflections=2), small=False),

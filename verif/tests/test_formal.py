@@ -50,6 +50,7 @@ ROW = chosen("row-setup", "beam-vga240-s2-u1-r12-m1-c8")
 LINE = chosen("line-start", "beam-vga240-s2-u1-r2-m1-c8-turn")
 WALK = chosen("walked-products", "beam-vga240-s2-u1-r2-m1-c8")
 SECOND_LANE = chosen("walked-products", "beam-vga180-s6-u2-r2-m1-c8 lane 1")
+CONTEST = chosen("contest-products", "beam-vga240-s2-u1-r2-m4-c8-turn-patterns")
 HALF = chosen("blend-exact", "beam-vga240-s2-u1-r2-m2-c8")
 SHARES = chosen("shares-exact", "exact-vga240-u1-r12-m2-c8-materials")
 HALVES = chosen("shares-exact", "exact-vga240-u1-r12-m1-c8")
@@ -225,6 +226,11 @@ FAULTS = {
     "slope-runs-back": (WALK, "slope_walker", "slope_y <= slope_y + 1;", "slope_y <= slope_y - 1;"),
     "second-lane-at-the-first": (SECOND_LANE, "lane_start", "low_q <= start_low_q + growth_low_q;",
                                  "low_q <= start_low_q;"),
+    "the-second-of-equals": (CONTEST, "nearest_of_two", "(second_product < first_product)",
+                             "(second_product <= first_product)"),
+    "high-bits-crossed": (CONTEST, "nearest_of_two", "if (second_high[0]) begin", "if (first_high[1]) begin"),
+    "high-part-a-bit-short": (CONTEST, "nearest_of_two", "reg [12:0] second_more;", "reg [10:0] second_more;"),
+    "a-miss-wins": (CONTEST, "nearest_of_two", "take_second = second_1_valid && ", "take_second = "),
     "mean-two-bits-short": (HALF, "colour_mean_1", "reg [9:0] other;", "reg [7:0] other;"),
     "own-counts-once": (HALF, "colour_mean", "if (reflections == 1) begin", "if (reflections == 2) begin"),
     "background-too-late": (HALF, "colour_seen_1", "here = reached && seen_found;", "here = seen_found;"),
@@ -251,8 +257,8 @@ FAULTS = {
 @pytest.mark.parametrize(
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
-     FINDER, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, HALF, SHARES, HALVES,
-     FOLD, TABLE],
+     FINDER, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, CONTEST, HALF, SHARES,
+     HALVES, FOLD, TABLE],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// One contest of the beam engine at full width, with any function in the place of multiplication: of two candidates the
+// nearer goes on, by cross-multiplication, the first where both are as near, and with all that belongs to it.
+//
+// Assumed of products, where a factor is wider than a multiplier, is the lemma product-in-parts. All may change in every
+// cycle.
+
+module contest_products #(
+    parameter NUMERATOR_BITS = 10, parameter DENOMINATOR_BITS = 9, parameter REST_BITS = 4
+) (
+    input clk, input first_valid, input [NUMERATOR_BITS-1:0] first_n, input [DENOMINATOR_BITS-1:0] first_e,
+    input first_corner, input [REST_BITS-1:0] first_rest, input second_valid, input [NUMERATOR_BITS-1:0] second_n,
+    input [DENOMINATOR_BITS-1:0] second_e, input second_corner, input [REST_BITS-1:0] second_rest
+);
+localparam N = NUMERATOR_BITS, E = DENOMINATOR_BITS, WAY_BITS = N + E, WORD_BITS = 2 + WAY_BITS + REST_BITS;
+localparam MULTIPLIER_BITS = 18;
+
+wire [WORD_BITS-1:0] nearest;
+wire [WORD_BITS-1:0] first = {first_valid, first_corner, first_n, first_e, first_rest};
+wire [WORD_BITS-1:0] second = {second_valid, second_corner, second_n, second_e, second_rest};
+nearest_of_two dut (.clk(clk), .first_word(first), .second_word(second), .nearest_word(nearest));
+
+wire [WAY_BITS-1:0] first_way = first_n * second_e, second_way = second_n * first_e;
+generate
+    if (E > MULTIPLIER_BITS) begin: parts
+        function [WAY_BITS-1:0] above(input [WAY_BITS-1:0] n, input [E-1:0] e);
+            integer place;
+            begin
+                above = 0;
+                for (place = MULTIPLIER_BITS; place < E; place = place + 1)
+                    if (e[place]) above = above + (n << place);
+            end
+        endfunction
+        wire [N+MULTIPLIER_BITS-1:0] first_below = first_n * second_e[MULTIPLIER_BITS-1:0];
+        wire [N+MULTIPLIER_BITS-1:0] second_below = second_n * first_e[MULTIPLIER_BITS-1:0];
+        always @* begin
+            assume (first_way == first_below + above(first_n, second_e));
+            assume (second_way == second_below + above(second_n, first_e));
+        end
+    end
+endgenerate
+
+reg [1:0] age = 2'b00;
+reg [WORD_BITS-1:0] expected_1, expected_2;
+always @(posedge clk) begin
+    age <= {age, 1'b1};
+    expected_1 <= second_valid && (!first_valid || second_way < first_way) ? second : first;
+    expected_2 <= expected_1;
+end
+always @* if (age[1]) assert (nearest == expected_2);
+
+always @* cover (age[1] && nearest[WORD_BITS-1] && nearest[REST_BITS-1:0] == 1);
+endmodule
