@@ -515,6 +515,24 @@ def _blend(config: Configuration, small: bool) -> Property:
     )
 
 
+def _depth(config: Configuration, small: bool) -> Property:
+    return Property(
+        "nearest-depth",
+        "of all hits offered the first of the nearest along x is kept, and all of it, at full width",
+        config,
+        _label(config),
+        ("z_buffer",),
+        {
+            "POSITION_BITS": position_bits(config),
+            "LOOK_BITS": _look_bits(config),
+            "MATERIALS": int(config.materials),
+        },
+        induction=2,
+        reach=6,
+        small=small,
+    )
+
+
 def _contest(config: Configuration, small: bool) -> Property:
     candidate = candidate_of(config)
     numerator, denominator = len(candidate.numerator), len(candidate.denominator)
@@ -719,6 +737,8 @@ PROPERTIES: list[Property] = [
     _finder(_one_unit(), small=True),
     _finder(_one_unit(patterns=True, materials=True), small=False),
     _finder(_one_unit(fraction_bits=8, rounding="nearest", divider_bits=2), small=False),
+    _depth(_one_unit(), small=True),
+    _depth(_one_unit(materials=True, patterns=True, fraction_bits=8), small=False),
     _contest(BEAM, small=True),
     _contest(BEAM_TURN, small=False),
     _contest(_beam(turn=True, patterns=True, reflections=4), small=True),

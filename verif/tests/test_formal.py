@@ -35,6 +35,7 @@ PIPELINED = chosen("ray-order", "exact-tiny48-u2-r2-m1-c8-k1")
 SECTIONS = chosen("line-sections", "tiny48-u2-r2-m1-f0t-d3-c8")
 COUNTERS = chosen("render-counters", "vga240-u16-r4-m1-f0t-d1-c8")
 FINDER = chosen("finder-quotients", "vga240-u1-r12-m1-f0t-d3-c8")
+DEPTH = chosen("nearest-depth", "vga240-u1-r12-m1-f0t-d3-c8")
 GROUP = chosen("group-safe", "exact-vga240-u4-r12-m1-c8-k1")
 TESTER = chosen("tester-exact", "2 bits, 1 mirrors")
 CORNERS = chosen("tester-exact", "1 bits, 2 mirrors")
@@ -169,6 +170,10 @@ FAULTS = {
     "plane-behind": (FINDER, "intersection_helper", "(difference < 0) == e_negative", "(difference > 0) == e_negative"),
     "away-a-bit-short": (FINDER, "intersection_helper", "wire [8:0] away;", "wire [7:0] away;"),
     "way-of-the-next": (FINDER, "intersection_helper", "stored_word <= loaded_word;", "stored_word <= started_word;"),
+    "the-last-as-near": (DEPTH, "z_buffer", "(depth < nearest)", "(depth <= nearest)"),
+    "depth-a-bit-short": (DEPTH, "z_buffer", "nearest <= depth;", "nearest <= depth[7:0];"),
+    "point-of-another": (DEPTH, "z_buffer", "        found_point_word <= point_word;\n    end",
+                         "    end\n    if (steps_write_z_buf) found_point_word <= point_word;"),
     "edge-of-a-group-missed": (GROUP, "group_tester", "(way_p_1 < end_least_p)", "(way_p_1 <= end_least_p)"),
     "end-a-bit-short": (GROUP, "group_tester", "wire signed [17:0] end_way_p;", "wire signed [16:0] end_way_p;"),
     "sign-of-the-slope": (GROUP, "group_tester", "back = column_slope < 0;", "back = column_slope > 0;"),
@@ -257,8 +262,8 @@ FAULTS = {
 @pytest.mark.parametrize(
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
-     FINDER, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, CONTEST, HALF, SHARES,
-     HALVES, FOLD, TABLE],
+     FINDER, DEPTH, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, CONTEST, HALF,
+     SHARES, HALVES, FOLD, TABLE],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):
