@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// The beam engine's colours against golden's definition, at full width, of mirrors that show half: what the last ray
-// sees shows alone, and each mirror before it two quarters of its own colour; nothing is rounded before the end. From
-// the first ray that found nothing on, the background is seen.
+// The beam engine's colours against golden's definition, at full width: what the last ray sees shows alone, and behind
+// each mirror before it as many quarters as it mirrors, two where MIXES is 0; nothing is rounded before the end. From the
+// first ray that found nothing on, the background is seen.
 //
-// Assumed, as the registers have it: no more reflections than the design has; a picture that is constant while a pixel
-// is computed. What is seen may change in every cycle.
+// Assumed, as the registers have it: no more reflections than the design has; a mirror of 0 to 4 quarters; a picture that
+// is constant while a pixel is computed. What is seen may change in every cycle.
 
 module blend_exact #(
-    parameter MIRRORS = 1, parameter COLOUR_BITS = 8, parameter LATENCY = 2
+    parameter MIRRORS = 1, parameter MIXES = 0, parameter COLOUR_BITS = 8, parameter LATENCY = 2
 ) (
-    input clk, input [MIRRORS:0] found, input [24*MIRRORS+23:0] colours, input [2:0] reflections,
-    input [23:0] background
+    input clk, input [MIRRORS:0] found, input [24*MIRRORS+23:0] colours, input [3*MIRRORS+2:0] quarters,
+    input [2:0] reflections, input [23:0] background
 );
-localparam SEEN_BITS = 25, QUARTERS = 2, WIDE = 12 + 2 * MIRRORS;
+localparam SEEN_BITS = MIXES ? 28 : 25, WIDE = 12 + 2 * MIRRORS;
 
 wire [(MIRRORS+1)*SEEN_BITS-1:0] seen;
 wire [3*COLOUR_BITS-1:0] pixel;
@@ -31,15 +31,21 @@ end
 generate
     genvar ray;
     for (ray = 0; ray <= MIRRORS; ray = ray + 1) begin: rays
-        assign seen[ray*SEEN_BITS +: SEEN_BITS] = {found[ray], colours[24*ray +: 24]};
+        if (MIXES) assign seen[ray*SEEN_BITS +: SEEN_BITS] = {found[ray], quarters[3*ray +: 3], colours[24*ray +: 24]};
+        else assign seen[ray*SEEN_BITS +: SEEN_BITS] = {found[ray], colours[24*ray +: 24]};
+        always @* assume (MIXES ? quarters[3*ray +: 3] <= 4 : quarters[3*ray +: 3] == 2);
     end
 endgenerate
 colour_blend dut (
     .clk(clk), .seen(seen), .picture_reflections(reflections), .picture_background(background), .pixel_word(pixel)
 );
 
+// A product, number by number: the solver looks at one after the other.
+function [WIDE-1:0] times(input [2:0] factor, input [WIDE-1:0] value);
+    times = factor == 4 ? value << 2 : factor == 3 ? (value << 1) + value : factor == 2 ? value << 1 : factor == 1 ? value : 0;
+endfunction
 function [7:0] defined(input integer channel, input [MIRRORS:0] hit, input [24*MIRRORS+23:0] colour,
-                       input [23:0] nothing, input [2:0] last);
+                       input [3*MIRRORS+2:0] mirror, input [23:0] nothing, input [2:0] last);
     integer each;
     reg reached;
     reg [8*MIRRORS+7:0] seen_there;
@@ -54,7 +60,8 @@ function [7:0] defined(input integer channel, input [MIRRORS:0] hit, input [24*M
         for (each = MIRRORS; each >= 0; each = each - 1) begin
             if (each == last) total = seen_there[8*each +: 8];
             else if (each < last)
-                total = ((4 - QUARTERS) * seen_there[8*each +: 8] << 2 * (last - 1 - each)) + QUARTERS * total;
+                total = (times(4 - mirror[3*each +: 3], seen_there[8*each +: 8]) << 2 * (last - 1 - each))
+                    + times(mirror[3*each +: 3], total);
         end
         defined = total >> 2 * last;
     end
@@ -66,7 +73,7 @@ generate
         reg [7:0] expected [0:LATENCY-1];
         integer stage;
         always @(posedge clk) begin
-            expected[0] <= defined(channel, found, colours, background, reflections);
+            expected[0] <= defined(channel, found, colours, quarters, background, reflections);
             for (stage = 1; stage < LATENCY; stage = stage + 1) expected[stage] <= expected[stage-1];
         end
         always @* if (age[LATENCY-1])

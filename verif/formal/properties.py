@@ -32,7 +32,7 @@ from raycaster.rtl.common.widths import (
     walk_bits,
     wide_walk_bits,
 )
-from raycaster.rtl.engine.colour_blend import blend_latency
+from raycaster.rtl.engine.colour_blend import blend_latency, mixes
 from raycaster.rtl.engine.rect_setup import LATENCY as SETUP_LATENCY
 from raycaster.scene import Camera, Rectangle, Scene
 from raycaster.screens import Screen, Span
@@ -498,21 +498,30 @@ def _walked(config: Configuration, lane: int, small: bool) -> Property:
 
 def _blend(config: Configuration, small: bool) -> Property:
     mirrors = config.reflections
-    means, seen = (
-        ["colour_mean", *(f"colour_mean_{number}" for number in range(1, mirrors))],
-        ["colour_seen", *(f"colour_seen_{number}" for number in range(1, mirrors + 1))],
-    )
+    joint = "colour_mix" if mixes(config) else "colour_mean"
+    joints = [_numbered(joint, number) for number in range(mirrors)]
+    seen = [_numbered("colour_seen", number) for number in range(mirrors + 1)]
     return Property(
         "blend-exact",
         "a pixel is what its rays saw, blended as golden does, at full width",
         config,
         _label(config),
-        ("colour_blend", *means, *seen),
-        {"MIRRORS": mirrors, "COLOUR_BITS": config.colour_bits, "LATENCY": blend_latency(config)},
+        ("colour_blend", *joints, *seen),
+        {
+            "MIRRORS": mirrors,
+            "MIXES": int(mixes(config)),
+            "COLOUR_BITS": config.colour_bits,
+            "LATENCY": blend_latency(config),
+        },
         induction=blend_latency(config) + 1,
         reach=blend_latency(config) + 3,
         small=small,
     )
+
+
+def _numbered(module: str, number: int) -> str:
+    """The name of a block's module of its own for each set of widths."""
+    return f"{module}_{number}" if number else module
 
 
 def _depth(config: Configuration, small: bool) -> Property:
@@ -763,6 +772,7 @@ PROPERTIES: list[Property] = [
     _slope(configure(engine="exact", turn=True, reflections=2), small=False),
     _blend(BEAM, small=False),
     _blend(_beam(reflections=2), small=True),
+    _blend(_beam(materials=True), small=True),
     _row_setup(configure(engine="beam"), small=True),
     _row_setup(BEAM_TURN_PAIRS, small=False),
     _line_start(BEAM_TURN, small=True),

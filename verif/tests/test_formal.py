@@ -53,6 +53,7 @@ WALK = chosen("walked-products", "beam-vga240-s2-u1-r2-m1-c8")
 SECOND_LANE = chosen("walked-products", "beam-vga180-s6-u2-r2-m1-c8 lane 1")
 CONTEST = chosen("contest-products", "beam-vga240-s2-u1-r2-m4-c8-turn-patterns")
 HALF = chosen("blend-exact", "beam-vga240-s2-u1-r2-m2-c8")
+MIXED = chosen("blend-exact", "beam-vga240-s2-u1-r2-m1-c8-materials")
 SHARES = chosen("shares-exact", "exact-vga240-u1-r12-m2-c8-materials")
 HALVES = chosen("shares-exact", "exact-vga240-u1-r12-m1-c8")
 FOLD = chosen("fold-exact", "2 and 1 bits, 1 mirrors")
@@ -239,6 +240,9 @@ FAULTS = {
     "mean-two-bits-short": (HALF, "colour_mean_1", "reg [9:0] other;", "reg [7:0] other;"),
     "own-counts-once": (HALF, "colour_mean", "if (reflections == 1) begin", "if (reflections == 2) begin"),
     "background-too-late": (HALF, "colour_seen_1", "here = reached && seen_found;", "here = seen_found;"),
+    "difference-unsigned": (MIXED, "colour_mix", "wire signed [8:0] apart;", "wire [8:0] apart;"),
+    "one-quarter-lost": (MIXED, "colour_mix", "if (mirror[0]) begin", "if (mirror[0] && !mirror[1]) begin"),
+    "mirror-behind-nothing": (MIXED, "colour_seen", "if (picture_reflections > 0) begin", "if (1'b1) begin"),
     "three-quarters-are-half": (SHARES, "colour_share", "some = half + quarter;", "some = half;"),
     "all-passed-on-at-a-miss": (SHARES, "colour_share", "if (found && steps_store_ray) begin",
                                 "if (steps_store_ray) begin"),
@@ -263,7 +267,7 @@ FAULTS = {
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
      FINDER, DEPTH, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, CONTEST, HALF,
-     SHARES, HALVES, FOLD, TABLE],
+     MIXED, SHARES, HALVES, FOLD, TABLE],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):
