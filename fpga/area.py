@@ -411,11 +411,9 @@ def route(config: Configuration, directory: Path, seed: int) -> dict[str, Any]:
     prepare_wasm(nextpnr)
     command = [nextpnr, "--85k", "--package", "CABGA381", "--speed", "6", "--json", "netlist.json"]
     command += ["--freq", f"{config.screen_geometry.clock_hz / 1e6:g}"]
-    command += ["--lpf-allow-unconstrained", "--timing-allow-fail", "--report", "report.json", "-q"]
-    command += ["--seed", str(seed)]
-    done = run_program(command, directory, 6 * TIMEOUT)
-    if done.returncode:
-        (directory / "nextpnr.log").write_text(done.stdout + done.stderr)
+    command += ["--lpf-allow-unconstrained", "--timing-allow-fail", "--report", "report.json", "--log", "nextpnr.log"]
+    command += ["-q", "--seed", str(seed)]
+    if run_program(command, directory, 6 * TIMEOUT).returncode:
         raise UserError(f"{NEXTPNR} failed; its log is {directory / 'nextpnr.log'}")
     report = json.loads((directory / "report.json").read_text())
     [clock] = report["fmax"].values()
