@@ -413,8 +413,8 @@ def _group(config: Configuration, small: bool) -> Property:
             "GROWTH_BITS": WIDE_BITS,
             "LOOK_BITS": _look_bits(config),
         },
-        induction=3,
-        reach=8,
+        induction=2,
+        reach=4,
         small=small,
     )
 
@@ -513,8 +513,8 @@ def _blend(config: Configuration, small: bool) -> Property:
             "COLOUR_BITS": config.colour_bits,
             "LATENCY": blend_latency(config),
         },
-        induction=blend_latency(config) + 1,
-        reach=blend_latency(config) + 3,
+        induction=blend_latency(config),
+        reach=blend_latency(config) + 2,
         small=small,
     )
 
@@ -556,9 +556,9 @@ def _contest(config: Configuration, small: bool) -> Property:
             "DENOMINATOR_BITS": denominator,
             "REST_BITS": len(candidate.word) - 2 - numerator - denominator,
         },
-        induction=3,
+        induction=2,
         any_product=True,
-        reach=5,
+        reach=4,
         small=small,
     )
 
