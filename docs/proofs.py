@@ -18,8 +18,8 @@ TESTS = RTL.parent / "verif" / "tests"
 FULL = (
     "video-timing", "host-transfers", "ray-order", "line-sections", "render-counters", "divider-exact",
     "finder-quotients", "nearest-depth", "tester-products", "nearest-products", "slope-exact", "eye-exact",
-    "cell-products", "group-safe", "row-setup", "line-start", "walked-products", "contest-products", "blend-exact",
-    "shares-exact",
+    "cell-products", "group-safe", "row-setup", "line-start", "walked-products", "turned-walks", "contest-products",
+    "blend-exact", "shares-exact",
 )  # fmt: skip
 """The properties that are proved of blocks as wide as in a default design, among others."""
 

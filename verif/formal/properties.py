@@ -496,6 +496,26 @@ def _walked(config: Configuration, lane: int, small: bool) -> Property:
     )
 
 
+def _turned_walks(config: Configuration, small: bool) -> Property:
+    return Property(
+        "turned-walks",
+        "where a camera turns, a rectangle's registers are its distances' products with the slope, at full width",
+        config,
+        _label(config),
+        ("rect_walker", "slope_walker"),
+        {
+            "WALK_BITS": walk_bits(config),
+            "DISTANCE_BITS": DISTANCE_BITS,
+            "SLOPE_BITS": exact_slope_bits(config) + 1,
+            "STEEPEST": steepest_slope(config),
+        },
+        induction=1,
+        any_product=True,
+        reach=5,
+        small=small,
+    )
+
+
 def _blend(config: Configuration, small: bool) -> Property:
     mirrors = config.reflections
     joint = "colour_mix" if mixes(config) else "colour_mean"
@@ -780,6 +800,8 @@ PROPERTIES: list[Property] = [
     _walked(BEAM, 0, small=True),
     _walked(BEAM_PAIRS, 0, small=False),
     _walked(BEAM_PAIRS, 1, small=False),
+    _turned_walks(BEAM_TURN, small=True),
+    _turned_walks(BEAM_TURN_PAIRS, small=False),
     _fold(2, 1, 1, 1, small=True),
     _fold(2, 1, 0, 1, small=False),
     _fold(2, 1, 1, 2, small=False),

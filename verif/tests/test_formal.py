@@ -51,6 +51,7 @@ ROW = chosen("row-setup", "beam-vga240-s2-u1-r12-m1-c8")
 LINE = chosen("line-start", "beam-vga240-s2-u1-r2-m1-c8-turn")
 WALK = chosen("walked-products", "beam-vga240-s2-u1-r2-m1-c8")
 SECOND_LANE = chosen("walked-products", "beam-vga180-s6-u2-r2-m1-c8 lane 1")
+TURNED_WALK = chosen("turned-walks", "beam-vga240-s2-u1-r2-m1-c8-turn")
 CONTEST = chosen("contest-products", "beam-vga240-s2-u1-r2-m4-c8-turn-patterns")
 HALF = chosen("blend-exact", "beam-vga240-s2-u1-r2-m2-c8")
 MIXED = chosen("blend-exact", "beam-vga240-s2-u1-r2-m1-c8-materials")
@@ -232,6 +233,9 @@ FAULTS = {
     "slope-runs-back": (WALK, "slope_walker", "slope_y <= slope_y + 1;", "slope_y <= slope_y - 1;"),
     "second-lane-at-the-first": (SECOND_LANE, "lane_start", "low_q <= start_low_q + growth_low_q;",
                                  "low_q <= start_low_q;"),
+    "turned-walk-a-bit-short": (TURNED_WALK, "rect_walker", "reg signed [28:0] low_q;", "reg signed [27:0] low_q;"),
+    "turned-walk-back": (TURNED_WALK, "rect_walker", "way_q + growth_way_q;", "way_q - growth_way_q;"),
+    "turned-walk-late": (TURNED_WALK, "slope_walker", "slope_z <= 0;", "slope_z <= slope_z;"),
     "the-second-of-equals": (CONTEST, "nearest_of_two", "(second_product < first_product)",
                              "(second_product <= first_product)"),
     "high-bits-crossed": (CONTEST, "nearest_of_two", "if (second_high[0]) begin", "if (first_high[1]) begin"),
@@ -266,8 +270,8 @@ FAULTS = {
 @pytest.mark.parametrize(
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
-     FINDER, DEPTH, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, CONTEST, HALF,
-     MIXED, SHARES, HALVES, FOLD, TABLE],
+     FINDER, DEPTH, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, TURNED_WALK, CONTEST,
+     HALF, MIXED, SHARES, HALVES, FOLD, TABLE],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// The walkers of a beam engine whose camera turns, at their own widths, with any function in the place of
+// multiplication: whatever steps add up to a slope, a rectangle's registers are the products of its distances with that
+// slope. The first step of a row adds its first slope to 0, each other what a column adds. The ways, the bounds and the
+// slope may be stepped in different cycles.
+//
+// Assumed of products are the lemma next-column, and that one with 0 is 0. Assumed of a step is what row-setup proves:
+// it adds a distance's product with what the slope grows by. By slope-in-range no slope along a row is too steep.
+
+module turned_walks #(
+    parameter WALK_BITS = 29, parameter DISTANCE_BITS = 10, parameter SLOPE_BITS = 20, parameter STEEPEST = 400000
+) (
+    input clk, input start_line, input step_way, input step_bounds, input step_slope, input [1:0] any_axis,
+    input [5*DISTANCE_BITS-1:0] any_distances, input [3*SLOPE_BITS-1:0] aim
+);
+localparam WIDE = SLOPE_BITS + 1, FIELDS = 6;
+
+// Of a rectangle: its axis, and n and the distances to the four bounds, n in the lowest bits.
+reg started = 1'b0;
+reg [1:0] axis;
+reg [5*DISTANCE_BITS-1:0] distances;
+always @(posedge clk) begin
+    started <= started || start_line;
+    if (start_line) {axis, distances} <= {any_axis, any_distances};
+end
+always @* assume (any_axis < 3);
+
+// The sums of what steps added, x in the lowest bits.
+wire [3*WIDE-1:0] way_slope, bounds_slope, slope;
+slope_sum #(.SLOPE_BITS(SLOPE_BITS), .STEEPEST(STEEPEST)) ways (
+    .clk(clk), .start(start_line), .started(started), .step(step_way), .aim(aim), .slope(way_slope)
+), bounds (
+    .clk(clk), .start(start_line), .started(started), .step(step_bounds), .aim(aim), .slope(bounds_slope)
+), slopes (
+    .clk(clk), .start(start_line), .started(started), .step(step_slope), .aim(aim), .slope(slope)
+);
+
+// p is y unless the plane is on y, then x; q is z unless the plane is on z, then x.
+function [1:0] along(input integer field, input [1:0] plane);
+    along = field == 0 ? (plane == 1 ? 0 : 1) : field == 1 ? (plane == 2 ? 0 : 2) : plane;
+endfunction
+wire [FIELDS*WALK_BITS-1:0] walk, growth;
+rect_walker walker (
+    .clk(clk), .load(start_line), .step_way(step_way), .step_bounds(step_bounds), .start_word({FIELDS*WALK_BITS{1'b0}}),
+    .growth_word(growth), .walk_word(walk)
+);
+generate
+    genvar field;
+    for (field = 0; field < FIELDS; field = field + 1) begin: fields
+        localparam AT = field < 2 ? 0 : field - 1;
+        wire signed [DISTANCE_BITS-1:0] distance = distances[AT*DISTANCE_BITS +: DISTANCE_BITS];
+        wire [1:0] which = along(field, axis);
+        wire signed [WIDE-1:0] here = (field < 2 ? way_slope : bounds_slope) >> which * WIDE;
+        wire signed [SLOPE_BITS-1:0] grows = aim >> which * SLOPE_BITS;
+        wire signed [WIDE-1:0] step = grows, there = here + grows;
+        wire signed [WALK_BITS-1:0] product = distance * here, stride = distance * step, next_product = distance * there;
+        assign growth[(FIELDS-1-field)*WALK_BITS +: WALK_BITS] = stride;
+        always @* begin
+            assume (next_product == product + stride);  // next-column
+            if (here == 0) assume (product == 0);
+        end
+        wire signed [WALK_BITS-1:0] value = walk[(FIELDS-1-field)*WALK_BITS +: WALK_BITS];
+        always @* if (started) assert (value == product);
+    end
+
+    // By product-in-range no product is further from 0 than this.
+    localparam [63:0] FARTHEST = STEEPEST * ((64'd1 << DISTANCE_BITS - 1) - 1);
+    always @* assert (FARTHEST < 64'd1 << WALK_BITS - 1);
+endgenerate
+
+wire signed [SLOPE_BITS-1:0] x, y, z;
+slope_walker slope_dut (
+    .clk(clk), .start_line(start_line), .step(step_slope), .aim_x(aim[0 +: SLOPE_BITS]),
+    .aim_y(aim[SLOPE_BITS +: SLOPE_BITS]), .aim_z(aim[2*SLOPE_BITS +: SLOPE_BITS]), .slope_x(x), .slope_y(y), .slope_z(z)
+);
+always @* if (started) begin
+    assert (x == $signed(slope[0 +: WIDE]));
+    assert (y == $signed(slope[WIDE +: WIDE]));
+    assert (z == $signed(slope[2*WIDE +: WIDE]));
+end
+
+always @* cover (started && way_slope != bounds_slope && bounds_slope != 0 && slope != way_slope);
+endmodule
+
+// What steps have added up to, within the steepest slope.
+module slope_sum #(parameter SLOPE_BITS = 20, parameter STEEPEST = 400000) (
+    input clk, input start, input started, input step, input [3*SLOPE_BITS-1:0] aim, output [3*(SLOPE_BITS+1)-1:0] slope
+);
+localparam WIDE = SLOPE_BITS + 1;
+generate
+    genvar axis;
+    for (axis = 0; axis < 3; axis = axis + 1) begin: each
+        reg signed [WIDE-1:0] now;
+        wire signed [SLOPE_BITS-1:0] grows = aim[axis*SLOPE_BITS +: SLOPE_BITS];
+        wire signed [WIDE:0] then = now + grows;
+        always @(posedge clk) begin
+            if (start) now <= 0;
+            else if (step) now <= then;
+        end
+        assign slope[axis*WIDE +: WIDE] = now;
+        always @* begin
+            if (step && !start) assume (started && then >= -STEEPEST && then <= STEEPEST);
+            if (started) assert (now >= -STEEPEST && now <= STEEPEST);
+        end
+    end
+endgenerate
+endmodule
