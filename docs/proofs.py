@@ -27,6 +27,9 @@ REDUCED = {
     "avalon-agent": "2 rectangles",
     "fixed-rects": "3 rectangles",
     "tester-exact": "1 to 3 bits",
+    "axi4lite-transfers": "full width, bounded waits",
+    "wishbone-transfers": "full width, bounded waits",
+    "apb-transfers": "full width, bounded waits",
     "fold-exact": "2 bits, 8 cycles from reset only",
 }
 """In what the designs of others are smaller; of one that is in neither list no more is claimed than that it is."""
@@ -80,6 +83,19 @@ def proved_blocks() -> str:
     )
 
 
+def properties() -> str:
+    """Every property, with how much of a design it is of."""
+    rows = []
+    for name in dict.fromkeys(proof.name for proof in PROPERTIES):
+        of_it = [proof for proof in PROPERTIES if proof.name == name]
+        claim = of_it[0].claim.removesuffix(", at full width")
+        depths = sorted({proof.induction for proof in of_it})
+        products = "any function" if any(proof.any_product for proof in of_it) else "bits"
+        width = "full width" if name in FULL else REDUCED.get(name, "smaller")
+        rows.append([name, claim, width, products, len(of_it), ", ".join(map(str, depths))])
+    return table(["property", "what it says", "of", "products", "designs", "induction depth"], rows)
+
+
 def lemmas() -> str:
     """Every lemma, as it is proved."""
     rows = []
@@ -92,4 +108,4 @@ def lemmas() -> str:
 
 def proofs() -> dict[str, str]:
     """All of them, by the names that pages use."""
-    return {"proved_blocks": proved_blocks(), "lemmas": lemmas()}
+    return {"proved_blocks": proved_blocks(), "properties": properties(), "lemmas": lemmas()}
