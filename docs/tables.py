@@ -458,7 +458,7 @@ def checks() -> str:
     report = outcome("report")["figures"]
     lines: Sequence[tuple[str, str, str, tuple[str, ...]]] = (
         ("every scene, full size", of_seed, _shown("sim-seed"), ("sim-seed",)),
-        ("random scenes, full size", before, _pixels("soak-seed"), ("soak-seed",)),
+        ("random scenes, surfaces of all kinds, full size", of_seed, _pixels("soak-seed"), ("soak-seed",)),
         ("random and stiff scenes, turned cameras and surfaces of all kinds, full size", of_exact,
          _pixels("soak-exact", "soak-exact-stiff"), ("soak-exact", "soak-exact-stiff")),
         ("the same, 640x480", of_beam, _pixels("soak-beam", "soak-beam-stiff"), ("soak-beam", "soak-beam-stiff")),
