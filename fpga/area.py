@@ -413,8 +413,12 @@ def route(config: Configuration, directory: Path, seed: int) -> dict[str, Any]:
     command += ["--freq", f"{config.screen_geometry.clock_hz / 1e6:g}"]
     command += ["--lpf-allow-unconstrained", "--timing-allow-fail", "--report", "report.json", "--log", "nextpnr.log"]
     command += ["-q", "--seed", str(seed)]
-    if run_program(command, directory, 6 * TIMEOUT).returncode:
-        raise UserError(f"{NEXTPNR} failed; its log is {directory / 'nextpnr.log'}")
+    done = run_program(command, directory, 6 * TIMEOUT)
+    if done.returncode:
+        log = directory / "nextpnr.log"
+        with log.open("a") as file:  # it may have failed before it began one
+            file.write(done.stdout + done.stderr)
+        raise UserError(f"{NEXTPNR} failed; its log is {log}")
     report = json.loads((directory / "report.json").read_text())
     [clock] = report["fmax"].values()
     cells = {name: [of["used"], of["available"]] for name, of in report["utilization"].items() if of["used"]}

@@ -216,7 +216,7 @@ def _counters(config: Configuration, small: bool) -> Property:
 def _divider(config: Configuration, part: int, small: bool) -> Property:
     return Property(
         "divider-exact",
-        "quotient * divisor + remainder = dividend, rounded as configured, or overflow",
+        "quotient * divisor + remainder = dividend, rounded as configured, or overflow; without fraction bits",
         config,
         f"{_label(config)} {('digits', 'product', 'result')[part]}",
         ("divider", "divider_step"),
@@ -367,7 +367,7 @@ def _slope(config: Configuration, small: bool) -> Property:
     turned, plain = ("turned_generator", "slope_component", "magnitude"), ("ray_generator", "magnitude", "magnitude_1")
     return Property(
         "slope-exact",
-        "a pixel's slope is the definition's, in sign and magnitude, and fits, at full width",
+        "a pixel's slope in the exact engine is the definition's, in sign and magnitude, and fits, at full width",
         config,
         _label(config),
         turned if config.turn else plain,
@@ -473,7 +473,7 @@ def _walked(config: Configuration, lane: int, small: bool) -> Property:
     screen = config.screen_geometry
     return Property(
         "walked-products",
-        "at each column a rectangle's registers are its distances' products with the slope there, at full width",
+        "where no camera turns, a rectangle's registers are its distances' products with the slope, at full width",
         config,
         f"{_label(config)} lane {lane}" if config.pixels > 1 else _label(config),
         ("rect_walker", "slope_walker", *(("lane_start",) if lane else ())),
@@ -523,7 +523,7 @@ def _blend(config: Configuration, small: bool) -> Property:
     seen = [_numbered("colour_seen", number) for number in range(mirrors + 1)]
     return Property(
         "blend-exact",
-        "a pixel is what its rays saw, blended as golden does, at full width",
+        "a pixel is golden's blend of what rays saw, with two mirrors of half or one of any quarters, at full width",
         config,
         _label(config),
         ("colour_blend", *joints, *seen),
@@ -586,7 +586,7 @@ def _contest(config: Configuration, small: bool) -> Property:
 def _shares(config: Configuration, small: bool) -> Property:
     return Property(
         "shares-exact",
-        "a pixel is what its rays saw one after the other, weighed as golden does, at full width",
+        "a pixel is golden's blend of what its rays saw one after the other, with two mirrors at most, at full width",
         config,
         _label(config),
         ("colour_combiner", "colour_share", "colour_sum"),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The colours of the engines that add up what rays saw, at full width: each ray has a weight, passes as many quarters of
-// it on as it mirrors, or half where MATERIALS is 0, and adds what it saw with the rest. The last one, and one that found
-// nothing, passes none on. No quarter is lost. That the sum is golden's, which blends from the last ray back, is the
+// it on as it mirrors, or half where MATERIALS is 0, and adds what it saw with the rest. The last one passes none on, nor,
+// with MATERIALS, one that found nothing. No quarter is lost. That the sum is golden's, which blends from the last ray back, is the
 // lemma shares. From the first ray that found nothing on, the background is seen.
 //
 // Assumed, as the control has it: rays come one after the other, each with one addition, and all but the last store a
