@@ -54,7 +54,7 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
     copies = rect_copy(clk, rects=rects, copy=copy, margin=config.facts.margin, config=config)
     sweep = rect_setup(
         clk, reset_ray_caster, start_line=start_sweep, rects=copy, camera=camera, slope=slope, load=load,
-        facet=facet, growth=growth, start=start, config=config,
+        facet=facet, growth=growth, start=start, config=config, in_adders=True,
     )  # fmt: skip
     tester = group_tester(
         clk, load=load, facet=facet, growth=growth, start=start, column_slope=column_slope, row_slope=row_slope,

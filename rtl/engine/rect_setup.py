@@ -14,13 +14,16 @@ from raycaster.rtl.common.widths import (
     signed,
     unsigned,
 )
+from raycaster.rtl.engine.array_multiplier import array_multiplier
 
 LATENCY = 5
 """Cycles from start_line to the first load, beside one for each rectangle."""
 
 
 @block
-def rect_setup(clk, reset, start_line, rects, camera, slope, load, facet, growth, start, config: Configuration):
+def rect_setup(
+    clk, reset, start_line, rects, camera, slope, load, facet, growth, start, config: Configuration, in_adders=False
+):  # fmt: skip
     """From start_line on, fetch a rectangle a cycle; LATENCY cycles later the outputs are its own.
 
     Six products of a distance and a component of the ray through the first column (Kensler and Shirley 2006); along the
@@ -28,7 +31,7 @@ def rect_setup(clk, reset, start_line, rects, camera, slope, load, facet, growth
     where the outputs are its own; growth: what a column adds to start. Where the camera turns there is no growth: it is
     the products with what a column adds to the slope, in its place. rects: the rectangle, with or without a look, comes
     two cycles after fetch. slope: a `Direction`, constant from the third cycle after start_line on. reset: synchronous.
-    Distances to bounds have growth's width, their products start's.
+    Distances to bounds have growth's width, their products start's. in_adders: products take no multipliers.
     """
     slope_bits = exact_slope_bits(config) + 1
     bound_bits = DISTANCE_BITS if config.turn else len(growth.low_p)
@@ -147,14 +150,25 @@ def rect_setup(clk, reset, start_line, rects, camera, slope, load, facet, growth
             slope_p_2.next = slope_p
             slope_q_2.next = slope_q
 
-    @always_comb
-    def multiply():
-        way_p.next = distance_2 * slope_p_2
-        way_q.next = distance_2 * slope_q_2
-        way_low_p.next = to_low_p_2 * slope_a_2
-        way_high_p.next = to_high_p_2 * slope_a_2
-        way_low_q.next = to_low_q_2 * slope_a_2
-        way_high_q.next = to_high_q_2 * slope_a_2
+    if in_adders:
+        products = [
+            array_multiplier(multiplicand=distance_2, multiplier=slope_p_2, product=way_p),
+            array_multiplier(multiplicand=distance_2, multiplier=slope_q_2, product=way_q),
+            array_multiplier(multiplicand=to_low_p_2, multiplier=slope_a_2, product=way_low_p),
+            array_multiplier(multiplicand=to_high_p_2, multiplier=slope_a_2, product=way_high_p),
+            array_multiplier(multiplicand=to_low_q_2, multiplier=slope_a_2, product=way_low_q),
+            array_multiplier(multiplicand=to_high_q_2, multiplier=slope_a_2, product=way_high_q),
+        ]
+    else:
+
+        @always_comb
+        def multiply():
+            way_p.next = distance_2 * slope_p_2
+            way_q.next = distance_2 * slope_q_2
+            way_low_p.next = to_low_p_2 * slope_a_2
+            way_high_p.next = to_high_p_2 * slope_a_2
+            way_low_q.next = to_low_q_2 * slope_a_2
+            way_high_q.next = to_high_q_2 * slope_a_2
 
     @always(clk.posedge)
     def announce():

@@ -7,6 +7,7 @@ import json
 import re
 import subprocess
 import sys
+from collections import Counter
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
@@ -17,6 +18,7 @@ from raycaster.configuration import configure
 from raycaster.convert.write import write_verilog
 from raycaster.fpga import area
 from raycaster.fpga.area import CHIPS, FAMILIES, Area, Chip, Model, measure, measure_modules
+from raycaster.rtl.common.widths import exact_slope_bits
 
 YOSYS = "0.70.0.0.post1259"
 SMALL = configure(screen="tiny", units=2, rectangles=2, divider_bits=1, allow_underrun=True, culling=False)
@@ -58,15 +60,17 @@ def test_modules_and_their_multipliers(family, tmp_path):
     assert 0.6 * registers < AREAS[family.name].registers <= registers
 
 
-@pytest.mark.parametrize(("family", "multipliers"), [("ecp5", 6), ("cycloneive", 12), ("cyclonev", 12)])
-def test_what_culling_takes(family, multipliers, tmp_path):
-    """Six products, each wider than 9 by 9 bits; its adders are no multipliers where units are a power of two."""
-    modules = measure_modules(replace(SMALL, culling=True), FAMILIES[family], tmp_path / "area")
-    found = {name: instances for name, (instances, _) in modules.items() if name not in INSTANCES}
-    assert found == {"group_culler": 1, "group_tester": 1, "rect_copy": 1, "rect_setup": 1}
-    assert {name: modules[name][1].multipliers for name in found} == dict.fromkeys(found, 0) | {
-        "rect_setup": multipliers
-    }
+@families
+def test_what_culling_takes(family, tmp_path):
+    """No multiplier: where units are a power of two the reach of a group is a shift, and products are sums."""
+    modules = measure_modules(replace(SMALL, culling=True), family, tmp_path / "area")
+    found = Counter()
+    for name, (instances, counted) in modules.items():
+        if name not in INSTANCES:
+            found[re.sub(r"_\d+$", "", name)] += instances
+            assert not counted.multipliers, name
+    products = {"array_multiplier": 6, "multiplier_step": 6 * (exact_slope_bits(SMALL) + 1)}
+    assert found == {"group_culler": 1, "group_tester": 1, "rect_copy": 1, "rect_setup": 1} | products
 
 
 @pytest.mark.parametrize(("family", "multipliers"), [("ecp5", 1), ("cycloneive", 2)])

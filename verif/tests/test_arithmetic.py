@@ -8,7 +8,9 @@ from raycaster.configuration import Configuration, configure
 from raycaster.golden import seed_engine
 from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
+from raycaster.rtl.engine.array_multiplier import array_multiplier
 from raycaster.rtl.engine.divider_step import divider_step
+from raycaster.rtl.engine.multiplier_step import multiplier_step
 from raycaster.rtl.seed.divider import divider
 from raycaster.rtl.seed.intersection_helper import intersection_helper
 from raycaster.verif.leaf import Leaf
@@ -75,6 +77,62 @@ def test_divider_step(width, count, tmp_path):
         digit, others = divmod(inputs["digits"], 1 << count - 1)
         quotient, remainder = divmod(2 * inputs["remainder"] + digit, inputs["divisor"])
         assert outputs == {"next_remainder": remainder, "next_digits": 2 * others + quotient}, (inputs, repeat())
+
+
+@pytest.mark.parametrize("subtract", [False, True])
+@pytest.mark.parametrize(("width", "count"), [(3, 3), (4, 2), (11, 9)])
+def test_multiplier_step(width, count, subtract, tmp_path):
+    leaf = Leaf(
+        multiplier_step,
+        lambda: {
+            "multiplicand": signed(width),
+            "total": signed(width),
+            "digits": unsigned(count),
+            "next_total": signed(width),
+            "next_digits": unsigned(count),
+            "subtract": subtract,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    stimulus = [
+        {"multiplicand": multiplicand, "total": total, "digits": digits}
+        for multiplicand in factors(random, width)
+        for total in factors(random, width)
+        for digits in {0, (1 << count) - 1, 1, int(random.integers(1 << count))}
+    ]
+    for inputs, outputs in zip(stimulus, leaf.run_both(stimulus), strict=True):
+        others, digit = divmod(inputs["digits"], 2)
+        added = inputs["total"] + (-digit if subtract else digit) * inputs["multiplicand"]
+        total, digits = added >> 1, (added & 1) << count - 1 | others
+        assert outputs == {"next_total": total % (1 << width), "next_digits": digits}, (inputs, repeat())
+
+
+def factors(random: np.random.Generator, width: int) -> list[int]:
+    """All of them if they are few, else those at which digits and signs change, and some at random."""
+    least, most = -(1 << width - 1), (1 << width - 1) - 1
+    if width < 6:
+        return list(range(least, most + 1))
+    powers = {sign * (1 << place) + more for place in range(width - 1) for sign in (1, -1) for more in (-1, 0)}
+    return sorted(powers | {least, most} | {int(value) for value in random.integers(least, most, size=8)})
+
+
+@pytest.mark.parametrize(("width", "count", "kept"), [(4, 5, 9), (5, 3, 6), (10, 9, 18), (11, 9, 20)])
+def test_array_multiplier(width, count, kept, tmp_path):
+    leaf = Leaf(
+        array_multiplier,
+        lambda: {"multiplicand": signed(width), "multiplier": signed(count), "product": signed(kept)},
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    stimulus = [
+        {"multiplicand": multiplicand, "multiplier": multiplier}
+        for multiplicand in factors(random, width)
+        for multiplier in factors(random, count)
+    ]
+    for inputs, outputs in zip(stimulus, leaf.run_both(stimulus), strict=True):
+        product = inputs["multiplicand"] * inputs["multiplier"]
+        assert outputs == {"product": product % (1 << kept)}, (inputs, repeat())
 
 
 @arithmetic

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+"""A product in adders, where a chip's multipliers are wanted elsewhere."""
+
+from myhdl import always_comb, block, concat, instances
+
+from raycaster.rtl.common.ties import Signed, tied
+from raycaster.rtl.common.widths import signed, unsigned
+from raycaster.rtl.engine.multiplier_step import multiplier_step
+
+
+@block
+def array_multiplier(multiplicand, multiplier, product):
+    """product = multiplicand * multiplier, all signed, by an adder for each of the multiplier's bits. Combinational.
+
+    product: its low bits, if it is narrower than both factors together.
+    """
+    width, count = len(multiplicand), len(multiplier)
+    totals = [tied(0, Signed(width)), *(signed(width) for _ in range(count))]
+    digits = [unsigned(count) for _ in range(count + 1)]
+    first_digits, last_total, last_digits = digits[0], totals[-1], digits[-1]
+    whole = signed(width + count)
+    kept = len(product)
+    steps = [
+        multiplier_step(
+            multiplicand=multiplicand, total=totals[i], digits=digits[i], next_total=totals[i + 1],
+            next_digits=digits[i + 1], subtract=i == count - 1,
+        )
+        for i in range(count)
+    ]  # fmt: skip
+
+    @always_comb
+    def begin():
+        first_digits.next = multiplier[count:]
+
+    @always_comb
+    def join():
+        whole.next = concat(last_total[width:], last_digits).signed()
+
+    @always_comb
+    def keep():
+        product.next = whole[kept:].signed()
+
+    return instances()
