@@ -28,6 +28,7 @@ from raycaster.convert.write import write_verilog
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, configuration_of
+from raycaster.fpga.multipliers import register_products
 from raycaster.jobs import run_jobs
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.outcomes import add_keep_option, keep, scope_of
@@ -408,6 +409,7 @@ def route(config: Configuration, directory: Path, seed: int) -> dict[str, Any]:
     if nextpnr is None:
         raise UserError(not_installed(NEXTPNR, "fpga"))
     _synthesise(config, FAMILIES["ecp5"], directory, PINS_TOP)
+    register_products(directory / "netlist.json")
     prepare_wasm(nextpnr)
     command = [nextpnr, "--85k", "--package", "CABGA381", "--speed", "6", "--json", "netlist.json"]
     command += ["--freq", f"{config.screen_geometry.clock_hz / 1e6:g}"]

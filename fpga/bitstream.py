@@ -287,6 +287,8 @@ def _synthesise(board: OpenBoard, design: Design | ProcessorDesign, work: Path) 
     # The type that Yosys's own mapping gives to what it leaves to logic.
     script += [f"chtype -set $__soft_mul c:{name}" for name in spared]
     run_yosys(work, "synthesis", [*script, f"{synthesis} -run coarse: -json {board.name}.json"])
+    if flow.after is not None:
+        flow.after(work / f"{board.name}.json")
 
 
 def left_to_logic(netlist: str, most: int, factor_bits: int) -> list[str]:

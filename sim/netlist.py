@@ -120,7 +120,7 @@ def synthesise(
         NetlistError: Yosys does not accept the files, or uses a cell that has no model.
     """
     library = LIBRARIES[family]
-    models = _cell_models(library, find_yosys() / family)
+    models = cell_models(library, find_yosys() / family)
     script = [
         *(f"read_verilog {source.name}" for source in verilog),
         # Without its last step, which gives long names to all that is new.
@@ -151,7 +151,7 @@ def synthesise(
     return Netlist(files, cells, fresh)
 
 
-def _cell_models(library: Library, directory: Path) -> str:
+def cell_models(library: Library, directory: Path) -> str:
     """Yosys's own models, of the cells that occur: some of the others are not Verilog that every simulator reads."""
     text = "".join((directory / name).read_text() for name in library.files)
     modules = re.findall(r"^module (\w+) ?(\(.*?^\s*endmodule\b)", text, re.MULTILINE | re.DOTALL)
