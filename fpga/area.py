@@ -28,6 +28,7 @@ from raycaster.convert.write import write_verilog
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, configuration_of
+from raycaster.fpga.flows import ECP5_EFFORT
 from raycaster.fpga.multipliers import register_products
 from raycaster.jobs import run_jobs
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
@@ -403,18 +404,26 @@ def route(config: Configuration, directory: Path, seed: int) -> dict[str, Any]:
         The clock that it needs and the one that it reaches, in MHz, and its cells, used and there, by nextpnr's name.
 
     Raises:
-        UserError: a program is missing or refuses something.
+        UserError: a program is missing, or refuses something.
+    """
+    _synthesise(config, FAMILIES["ecp5"], directory, PINS_TOP)
+    return place_and_route(directory, config.screen_geometry.clock_hz / 1e6, seed)
+
+
+def place_and_route(directory: Path, clock_mhz: float, seed: int) -> dict[str, Any]:
+    """The same of the netlist in `netlist.json`, whatever design it is of; it has one clock, which needs clock_mhz.
+
+    Raises:
+        UserError: nextpnr is missing, or refuses something; its log is beside the netlist.
     """
     nextpnr = find_program(NEXTPNR)
     if nextpnr is None:
         raise UserError(not_installed(NEXTPNR, "fpga"))
-    _synthesise(config, FAMILIES["ecp5"], directory, PINS_TOP)
     register_products(directory / "netlist.json")
     prepare_wasm(nextpnr)
     command = [nextpnr, "--85k", "--package", "CABGA381", "--speed", "6", "--json", "netlist.json"]
-    command += ["--freq", f"{config.screen_geometry.clock_hz / 1e6:g}"]
-    command += ["--lpf-allow-unconstrained", "--timing-allow-fail", "--report", "report.json", "--log", "nextpnr.log"]
-    command += ["-q", "--seed", str(seed)]
+    command += ["--freq", f"{clock_mhz:g}", "--lpf-allow-unconstrained", "--timing-allow-fail"]
+    command += ["--report", "report.json", "--log", "nextpnr.log", "-q", "--seed", str(seed), *ECP5_EFFORT]
     done = run_program(command, directory, 6 * TIMEOUT)
     if done.returncode:
         log = directory / "nextpnr.log"
@@ -424,8 +433,7 @@ def route(config: Configuration, directory: Path, seed: int) -> dict[str, Any]:
     report = json.loads((directory / "report.json").read_text())
     [clock] = report["fmax"].values()
     cells = {name: [of["used"], of["available"]] for name, of in report["utilization"].items() if of["used"]}
-    required = config.screen_geometry.clock_hz / 1e6
-    return {"seed": seed, "clock_mhz": required, "routed_mhz": round(clock["achieved"], 2), "cells": cells}
+    return {"seed": seed, "clock_mhz": clock_mhz, "routed_mhz": round(clock["achieved"], 2), "cells": cells}
 
 
 def show_routed(routed: Mapping[str, Any], console: Console) -> None:

