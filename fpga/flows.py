@@ -185,9 +185,9 @@ def _gowin_pll(source: float, wanted: float, per_clk: float) -> tuple[Mapping[st
     return dict(zip(names, parameters, strict=True)), made / (1 + halved)
 
 
-ECP5_EFFORT = "--placer", "static", "--router", "router2"
+ECP5_EFFORT = "--placer", "static", "--router", "router2", "--tmg-ripup"
 """nextpnr's options: its other placer leaves wires a quarter longer, so that neither router gets to an end of a large
-design within an hour."""
+design within an hour; and what is too late is routed again."""
 
 FLOWS: Mapping[str, Flow] = {
     "ecp5": Flow(
