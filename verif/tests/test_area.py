@@ -16,7 +16,7 @@ import pytest
 
 from raycaster.configuration import configure
 from raycaster.convert.write import write_verilog
-from raycaster.fpga import area
+from raycaster.fpga import area, flows
 from raycaster.fpga.area import CHIPS, FAMILIES, Area, Chip, Model, measure, measure_modules
 from raycaster.rtl.common.widths import exact_slope_bits
 
@@ -172,7 +172,7 @@ def test_placing_and_routing_alone(tmp_path, monkeypatch, capsys):
     """What nextpnr reports is kept, with the seed that it was given."""
     calls = []
 
-    def place_and_route(command, directory, timeout):
+    def run_nextpnr(command, directory, timeout):
         calls.append(command)
         report = {
             "fmax": {"$glbnet$clk": {"achieved": 81.256, "constraint": 74.25}},
@@ -186,7 +186,8 @@ def test_placing_and_routing_alone(tmp_path, monkeypatch, capsys):
 
     monkeypatch.setattr(area, "find_program", lambda name: name)
     monkeypatch.setattr(area, "prepare_wasm", lambda name: None)
-    monkeypatch.setattr(area, "run_program", place_and_route)
+    monkeypatch.setattr(area, "register_products", lambda netlist: 0)
+    monkeypatch.setattr(flows, "run_program", run_nextpnr)
     monkeypatch.setattr(area, "_synthesise", lambda config, family, directory, top: directory.mkdir(parents=True))
     options = ("--engine", "beam", "--rows", "180", "--scale", "6", "--pixels", "2", "--route-only", "--seed", "3")
     kept = tmp_path / "routed.json"
@@ -200,6 +201,40 @@ def test_placing_and_routing_alone(tmp_path, monkeypatch, capsys):
         "cells": {"TRELLIS_COMB": [41_000, 83_640]},
     }  # fmt: skip
     assert "81.26 MHz of 74.25, 41,000 of 83,640 TRELLIS_COMB" in " ".join(capsys.readouterr().out.split())
+
+
+@pytest.mark.parametrize(
+    ("reached", "code", "kept", "calls"),
+    [
+        ((75.0,), 0, 75.0, 1),
+        ((70.0, 76.0), 0, 76.0, 2),
+        ((70.0, 72.0), 0, 72.0, 2),
+        ((70.0, None), 0, 70.0, 2),
+        ((70.0, 76.0), 1, 70.0, 1),
+    ],
+    ids=["met", "met then", "missed", "no end", "failed"],
+)
+def test_what_is_late_is_routed_again(reached, code, kept, calls, tmp_path, monkeypatch):
+    """Once, where the first result misses a clock; None takes too long, which leaves the first result."""
+    made = []
+
+    def run_nextpnr(command, directory, timeout):
+        clock = reached[len(made)]
+        made.append((command, timeout))
+        if clock is None:
+            raise subprocess.TimeoutExpired(command, timeout)
+        report = {"fmax": {"clk": {"achieved": clock, "constraint": 74.25}}}
+        (directory / "report.json").write_text(json.dumps(report))
+        return subprocess.CompletedProcess(command, code, "", "")
+
+    monkeypatch.setattr(flows, "run_program", run_nextpnr)
+    done = flows.place_and_route(["nextpnr", "--seed", "1"], ("--again",), tmp_path)
+    assert done.returncode == code
+    assert json.loads((tmp_path / "report.json").read_text())["fmax"]["clk"]["achieved"] == kept
+    assert [("--again" in command, command[-1]) for command, _ in made] == [
+        (False, "nextpnr.log"), (True, "again.log"),
+    ][:calls]  # fmt: skip
+    assert made[-1][1] == (flows.LONGEST, flows.LEAST_AGAIN)[calls - 1]
 
 
 def test_every_chip_belongs_to_a_family():
