@@ -80,12 +80,25 @@ def _measure_scaling(arguments: argparse.Namespace, console: Console) -> None:
     draw_scaling(designs, f"{kept['date']}, commit {kept['commit']}", HERE / "scaling.svg")
 
 
+def _measure_beside(arguments: argparse.Namespace, console: Console) -> None:
+    """What others take, which may be rendered without what reports want."""
+    from raycaster.report.beside import checkouts_of, measure_beside  # noqa: PLC0415 - wants what reports want
+
+    arguments.keep = arguments.keep or RESULTS / "beside.json"
+    scene, checkouts = "boxes", checkouts_of(arguments.beside)
+    rows = measure_beside(scene, checkouts, arguments.output / "beside", console)
+    keep(arguments, {"designs": rows}, {"scene": scene})
+
+
 def command_parser() -> CommandParser:
     """What the command takes."""
     parser = CommandParser("results", __doc__, "--render")
     asked = parser.add_mutually_exclusive_group()
     asked.add_argument("--render", action="store_true", help="only write the pages, from what results/ has")
     asked.add_argument("--scaling", action="store_true", help="measure designs of many sizes, which takes an hour")
+    asked.add_argument(
+        "--beside", nargs="*", metavar="NAME=CHECKOUT", help="measure software, and others' designs where they are"
+    )
     parser.add_argument("--output", type=Path, default=Path("build/results"), help="for what is made (%(default)s)")
     add_keep_option(parser)
     return parser
@@ -98,6 +111,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     console = Console()
     if arguments.scaling:
         _measure_scaling(arguments, console)
+    elif arguments.beside is not None:
+        _measure_beside(arguments, console)
     elif not arguments.render:
         arguments.keep = arguments.keep or RESULTS / "engines.json"
         designs = []

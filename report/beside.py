@@ -1,0 +1,307 @@
+# SPDX-License-Identifier: MIT
+"""What else one could take, through the same tools in one run.
+
+Others' designs stay where they are: `raycaster results --beside` is told where a checkout is, and leaves out what it
+has none of.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.box import SIMPLE
+from rich.console import Console
+from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from raycaster.convert.take_home import TOP
+from raycaster.convert.write import write_verilog
+from raycaster.design import design_for
+from raycaster.errors import UserError
+from raycaster.fit.fixing import fix
+from raycaster.fpga.area import FAMILIES, Area, measure, place_and_route, route
+from raycaster.golden import exact
+from raycaster.golden.picture import wrong_pixels
+from raycaster.golden.world import Rectangles
+from raycaster.output import replaced
+from raycaster.scene import Scene, load_scene, packaged_scenes
+from raycaster.screens import SCREENS, Screen
+from raycaster.sim.simulator import build_program
+from raycaster.tools import run_yosys
+
+HERE = Path(__file__).parent
+CLOCKED, SOFTWARE, MULTIPLIER = (HERE / name for name in ("beside.cpp", "software.cpp", "spartan_multiplier.v"))
+FRAMES = 5
+"""That a time is the mean of."""
+
+FRAME = 800 * 525
+"""Clocks of a frame of 640x480, at a pixel a clock."""
+
+
+@dataclass(frozen=True)
+class Other:
+    """Somebody else's design.
+
+    Attributes:
+        title: its name.
+        address: where it is from.
+        top: the module that is measured.
+        sources: its Verilog, in order, within a checkout.
+        data: files that it reads as it starts, likewise.
+        ours: Verilog in place of a cell that only its own chip has.
+        defines: for the C++ program that clocks it.
+        clock_mhz: that its screen needs.
+        draws: what, in a few words.
+    """
+
+    title: str
+    address: str
+    top: str
+    sources: tuple[str, ...]
+    data: tuple[str, ...]
+    ours: tuple[Path, ...]
+    defines: Mapping[str, str]
+    clock_mhz: float
+    draws: str
+
+
+_RAYBOX = (
+    "config/rbz_options", "rtl/fixed_point_params", "rtl/helpers", "rtl/debug_overlay", "rtl/map_overlay",
+    "rtl/map_rom", "rtl/pov", "rtl/rbzero", "rtl/vga_sync", "rtl/vga_mux", "rtl/row_render", "rtl/lzc",
+    "rtl/reciprocal", "rtl/wall_tracer", "rtl/spi_registers",
+)  # fmt: skip
+OTHERS = {
+    "racing_the_beam": Other(
+        "Racing the Beam",
+        "https://github.com/tomverbeure/rt",
+        "PanoCore",
+        ("Pano.v",),
+        ("*.bin",),
+        (MULTIPLIER,),
+        {
+            "CLOCK": "toplevel_resetCtrl_clk25", "RESET": "toplevel_resetCtrl_reset_", "IN_RESET": "0",
+            "SHOWN": "io_vo_r",
+        },
+        25,
+        "a bouncing sphere that mirrors, its shadow, a chequered plane; a processor moves the camera",
+    ),
+    "raybox_zero": Other(
+        "raybox-zero",
+        "https://github.com/algofoogle/raybox-zero",
+        "rbzero",
+        tuple(f"src/{name}.v" for name in _RAYBOX),
+        (),
+        (),
+        {"CLOCK": "clk", "RESET": "reset", "IN_RESET": "1", "SHOWN": "rgb"},
+        25,
+        "textured walls of a map of 32 x 32, one height, one ray a column",
+    ),
+}  # fmt: skip
+
+OURS = ({"engine": "exact"}, {"engine": "beam"})
+"""The designs that are measured beside them."""
+
+
+def measure_other(other: Other, checkout: Path, directory: Path) -> dict[str, Any]:
+    """Cells, routed clock and time of a frame.
+
+    Args:
+        other: the design.
+        checkout: its repository's.
+        directory: gets what was read and written.
+
+    Raises:
+        UserError: the checkout lacks a file, or a tool refuses one.
+    """
+    sources = [*(checkout / name for name in other.sources), *other.ours]
+    for path in sources:
+        if not path.is_file():
+            raise UserError(f"{path}: is not there; give a checkout of {other.address}")
+    # As one text, as what one file defines is meant for the next.
+    directory.mkdir(exist_ok=True)
+    text = directory / "design.v"
+    text.write_text("\n".join(path.read_text() for path in sources))
+    for pattern in other.data:
+        for path in checkout.glob(pattern):
+            shutil.copy(path, directory)
+    run_yosys(
+        directory, "synthesis", [f"read_verilog -sv {text.name}", f"synth_ecp5 -top {other.top} -json netlist.json"]
+    )
+    cells = json.loads((directory / "netlist.json").read_text())["modules"][other.top]["cells"]
+    return {
+        "design": other.title,
+        "commit": _commit(checkout),
+        "draws": other.draws,
+        "pixels": 640 * 480,
+        "clock_mhz": other.clock_mhz,
+        **_area(FAMILIES["ecp5"].count(cells)),
+        "routed_mhz": place_and_route(directory, other.clock_mhz, seed=1)["routed_mhz"],
+        "frame_s": _frame_time(other.title, other.top, [text], other.defines, FRAME, directory),
+    }
+
+
+def measure_ours(options: Mapping[str, Any], scene: Path, directory: Path) -> dict[str, Any]:
+    """The same of a design for any scene; a frame's time is of the scene built in, as in the others."""
+    config = design_for(scene, options).configuration
+    area = measure(config, FAMILIES["ecp5"], directory / "area")
+    screen = config.screen_geometry
+    fixed = fix(scene, dict(options), "all").design.configuration
+    sources = [path for path in write_verilog(fixed, directory / "fixed") if path.suffix == ".v"]
+    defines = {"CLOCK": "clk", "RESET": "reset", "IN_RESET": "1", "SHOWN": "vga_r"}
+    cycles = screen.line_cycles * screen.vertical.total
+    return {
+        "design": f"RayCaster, {config.engine}",
+        "commit": _commit(HERE),
+        "draws": f"any scene of {config.rectangles} rectangles, which mirror",
+        "pixels": screen.columns * screen.rows,
+        "clock_mhz": screen.clock_hz / 1e6,
+        **_area(area),
+        "routed_mhz": route(config, directory / "route", seed=1)["routed_mhz"],
+        "frame_s": _frame_time(config.name, TOP, sources, defines, cycles, directory / "fixed"),
+    }
+
+
+def measure_software(scene: Scene, screen: Screen, directory: Path) -> list[dict[str, Any]]:
+    """The same picture by this processor, on one core: the golden model in numpy, and its arithmetic as a C++ loop.
+
+    Raises:
+        UserError: the loop draws something else, or cannot be compiled.
+    """
+    start = time.monotonic()
+    right = exact.render(scene, screen)
+    took = time.monotonic() - start
+    program = directory / "software"
+    compiled = subprocess.run(
+        ["g++", "-O3", "-march=native", "-o", program, SOFTWARE], capture_output=True, text=True, check=False
+    )
+    if compiled.returncode:
+        raise UserError(f"{SOFTWARE.name}: g++ refuses it: {compiled.stderr.strip()}")
+    words = " ".join(map(str, _as_numbers(scene, screen)))
+    done = subprocess.run([program], input=words.encode(), capture_output=True, check=True)
+    wrong = int(wrong_pixels(_pixels(done.stdout, right.shape), right).sum())
+    if wrong:
+        raise UserError(f"{SOFTWARE.name}: draws {wrong} pixels unlike the golden model")
+    common = {"commit": _commit(HERE), "draws": "the same scene", "pixels": screen.columns * screen.rows}
+    return [
+        {"design": "numpy, exact arithmetic", **common, "frame_s": took},
+        {"design": "C++ loop, exact arithmetic", **common, "frame_s": float(done.stderr)},
+    ]
+
+
+def _pixels(words: bytes, shape: tuple[int, ...]) -> np.ndarray:
+    return np.frombuffer(words, dtype=np.uint8).reshape(shape)
+
+
+def _as_numbers(scene: Scene, screen: Screen) -> list[int]:
+    """As `software.cpp` reads it."""
+    table = Rectangles.of_scene(scene)
+    words = [screen.columns, screen.rows, screen.view_distance, screen.centre_column, screen.horizon_row]
+    words += [scene.reflections, FRAMES, *scene.camera.position, *scene.background, int(table.visible.sum())]
+    for index in np.flatnonzero(table.visible):
+        words.append(table.axes[index])
+        for field in (table.low, table.high, table.colours, table.colours_2):
+            words += field[index].tolist()
+        words += [table.kinds[index], table.cells[index], table.mirrors[index]]
+    return [int(word) for word in words]
+
+
+def _area(area: Area) -> dict[str, int]:
+    return {"luts": area.tables, "registers": area.registers, "multipliers": area.multipliers, "blocks": area.memories}
+
+
+def _frame_time(
+    name: str, top: str, sources: Sequence[Path], defines: Mapping[str, str], cycles: int, directory: Path
+) -> float:
+    """Seconds a frame, of Verilator's model and nothing else.
+
+    Raises:
+        UserError: it draws nothing.
+    """
+    command = build_program(
+        name.replace(" ", "-"), top, sources, [CLOCKED], build=directory,
+        flags=("-O3", "-Wno-lint", "-Wno-style", "--prefix", "Vdut"),
+        compiler=("-O3", *(f"-D{key}={value}" for key, value in defines.items())),
+    )  # fmt: skip
+    # Where its memories' contents are.
+    done = subprocess.run(
+        [*command, str(cycles), str(FRAMES)], cwd=directory, capture_output=True, text=True, check=True
+    )
+    seconds, changes = done.stdout.split()
+    if int(changes) < 2:
+        raise UserError(f"{name}: shows nothing in simulation")
+    return float(seconds)
+
+
+def _commit(directory: Path) -> str:
+    done = subprocess.run(
+        ["git", "-C", directory, "rev-parse", "--short=7", "HEAD"], capture_output=True, text=True, check=False
+    )
+    return done.stdout.strip() or "unknown"
+
+
+def _show(rows: Sequence[Mapping[str, Any]], console: Console) -> None:
+    table = Table(title="The same work, done otherwise", title_justify="left", box=SIMPLE)
+    for heading in ("design", "pixels", "LUT4", "registers", "multipliers", "MHz, of", "seconds a frame"):
+        table.add_column(heading, justify="left" if heading == "design" else "right")
+    for row in rows:
+        counts = [f"{row[name]:,}" if name in row else "" for name in ("luts", "registers", "multipliers")]
+        clock = f"{row['routed_mhz']} of {row['clock_mhz']:g}" if "routed_mhz" in row else ""
+        table.add_row(row["design"], f"{row['pixels']:,}", *counts, clock, f"{row['frame_s']:.4f}")
+    console.print(table)
+
+
+def checkouts_of(given: Sequence[str]) -> dict[str, Path]:
+    """By name, each `NAME=CHECKOUT` of the command line.
+
+    Raises:
+        UserError: one is not of that form, or of nobody known here.
+    """
+    pairs = [word.partition("=")[::2] for word in given]
+    if strange := [name for name, path in pairs if name not in OTHERS or not path]:
+        known = ", ".join(f"{name}=CHECKOUT" for name in OTHERS)
+        raise UserError(f"beside: {strange[0]} is not known here; give some of {known}")
+    return {name: Path(path) for name, path in pairs}
+
+
+def measure_beside(scene: str, checkouts: Mapping[str, Path], output: Path, console: Console) -> list[dict[str, Any]]:
+    """All that can be measured here, and print it.
+
+    Args:
+        scene: a packaged one, that the software and our hardware draw.
+        checkouts: by name, others' repositories.
+        output: replaced when all is measured.
+        console: where progress and the table go.
+
+    Raises:
+        UserError: as `measure_other` and `measure_software`.
+    """
+    path = packaged_scenes()[scene]
+    tasks: list[tuple[str, Callable[[Path], list[dict[str, Any]]]]] = [
+        ("software", partial(measure_software, load_scene(path), SCREENS["vga", 240])),
+        *((OTHERS[name].title, partial(_one, measure_other, OTHERS[name], where)) for name, where in checkouts.items()),
+        *((options["engine"], partial(_one, measure_ours, options, path)) for options in OURS),
+    ]
+    rows = []
+    columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
+    with replaced(output) as work, Progress(*columns, console=console) as progress:
+        for name, measured in tasks:
+            task = progress.add_task(name, total=1)
+            directory = work / name.replace(" ", "-")
+            directory.mkdir()
+            rows += measured(directory)
+            progress.advance(task)
+    _show(rows, console)
+    return rows
+
+
+def _one(measured: Callable[..., dict[str, Any]], *arguments: Any) -> list[dict[str, Any]]:
+    return [measured(*arguments)]

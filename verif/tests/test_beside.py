@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: MIT
+"""What is measured beside ours: that the software draws the picture, and a small design of somebody else's."""
+
+from __future__ import annotations
+
+import pytest
+from rich.console import Console
+
+from raycaster.errors import UserError
+from raycaster.report import beside
+from raycaster.report.beside import Other, checkouts_of, measure_beside, measure_other, measure_software
+from raycaster.scene import load_scene, packaged_scenes
+from raycaster.screens import SCREENS
+
+TINY = SCREENS["tiny", 48]
+STRIPES = """
+module stripes (input clk, input reset, output reg [5:0] shown);
+    always @(posedge clk) shown <= reset ? 0 : shown * 3 + STEP;
+endmodule
+"""
+
+
+def test_the_software_draws_every_scene(tmp_path):
+    """Whose camera does not turn; it is compared with the golden model before its time counts."""
+    scenes = {name: scene for name, path in packaged_scenes().items() if not (scene := load_scene(path)).camera.turned}
+    assert len(scenes) > 10
+    for name, scene in scenes.items():
+        directory = tmp_path / name
+        directory.mkdir()
+        assert all(one["frame_s"] > 0 for one in measure_software(scene, TINY, directory))
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("n * best_e < best_n * e", "n * best_e <= best_n * e"),
+        ("(along == along_mirror && !met[a])", "false"),
+        ("floored(point[others[0]], e * hit.cell) & 1", "false"),
+        ("way <= (one.high[u] - eye[u]) * e", "way < (one.high[u] - eye[u]) * e"),
+    ],
+)
+def test_software_that_draws_something_else(right, wrong, tmp_path, monkeypatch):
+    """Where one of the scenes shows it."""
+    text = beside.SOFTWARE.read_text()
+    assert right in text
+    changed = tmp_path / "software.cpp"
+    changed.write_text(text.replace(right, wrong))
+    monkeypatch.setattr(beside, "SOFTWARE", changed)
+    with pytest.raises(UserError, match=r"^software.cpp: draws \d+ pixels unlike the golden model$"):
+        for path in packaged_scenes().values():
+            if not (scene := load_scene(path)).camera.turned:
+                measure_software(scene, TINY, tmp_path)
+
+
+def other(**changed) -> Other:
+    """Somebody's design of a few cells."""
+    defines = {"CLOCK": "clk", "RESET": "reset", "IN_RESET": "1", "SHOWN": "shown"}
+    return Other(**{
+        "title": "Stripes", "address": "https://example.org/stripes", "top": "stripes",
+        "sources": ("step.v", "stripes.v"), "data": (), "ours": (), "defines": defines, "clock_mhz": 25,
+        "draws": "stripes",
+    } | changed)  # fmt: skip
+
+
+@pytest.fixture
+def checkout(tmp_path, monkeypatch):
+    """Of that; placing and routing takes long, and is area's."""
+    monkeypatch.setattr(beside, "place_and_route", lambda directory, clock_mhz, seed: {"routed_mhz": 99.5})
+    directory = tmp_path / "stripes"
+    directory.mkdir()
+    (directory / "step.v").write_text("`define STEP 6'd5\n")
+    (directory / "stripes.v").write_text(STRIPES.replace("STEP", "`STEP"))
+    return directory
+
+
+def test_a_design_of_somebody_elses(checkout, tmp_path):
+    found = measure_other(other(), checkout, tmp_path / "out")
+    assert found["registers"] == 6
+    assert found["luts"] > 0
+    assert found["routed_mhz"] == 99.5
+    assert 0 < found["frame_s"] < 10
+    assert found["commit"] == "unknown"
+
+
+def test_a_design_that_shows_nothing(checkout, tmp_path):
+    text = checkout / "stripes.v"
+    text.write_text(text.read_text().replace("reset ? 0", "1 ? 0"))
+    with pytest.raises(UserError, match=r"^Stripes: shows nothing in simulation$"):
+        measure_other(other(), checkout, tmp_path / "out")
+
+
+def test_a_checkout_of_something_else(tmp_path):
+    checkouts = checkouts_of([f"racing_the_beam={tmp_path / 'nowhere'}"])
+    with pytest.raises(UserError, match=r"nowhere/Pano.v: is not there; give a checkout of https://github.com/tomv"):
+        measure_beside("boxes", checkouts, tmp_path / "out", Console(quiet=True))
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("given", ["racing_the_beam", "racing_the_beam=", "quake=../quake"])
+def test_what_is_not_known(given):
+    with pytest.raises(UserError, match=rf"^beside: {given.partition('=')[0]} is not known here; give some of racing"):
+        checkouts_of([given])
