@@ -23,7 +23,7 @@ reg       restart = 1'b0;
 reg [4:0] phase = WAITING;              // one bit is high, that of the cycle in the pixel
 reg       load = 1'b0;
 reg [9:0] shift;
-reg [1:0] leaving, pair;
+reg [1:0] leaving, on_the_way, pair;
 
 // From across the chip while there is time for it: from here on shift_clk sees nothing that is not near.
 always @(posedge clk) begin
@@ -60,7 +60,8 @@ always @(posedge shift_clk)
 // The way to the pin may be long too.
 always @(posedge shift_clk) begin
     leaving <= shift[1:0];
-    pair <= leaving;
+    on_the_way <= leaving;
+    pair <= on_the_way;
 end
 
 ddr_pin pin (.shift_clk(shift_clk), .bits(pair), .sent(sent));
