@@ -33,6 +33,7 @@ from raycaster.golden import exact
 from raycaster.golden.picture import wrong_pixels
 from raycaster.golden.world import Rectangles
 from raycaster.output import replaced
+from raycaster.registers import register_map
 from raycaster.scene import Scene, load_scene, packaged_scenes
 from raycaster.screens import SCREENS, Screen
 from raycaster.sim.simulator import build_program
@@ -156,7 +157,13 @@ def measure_ours(options: Mapping[str, Any], scene: Path, directory: Path) -> di
     screen = config.screen_geometry
     fixed = fix(scene, dict(options), "all").design.configuration
     sources = [path for path in write_verilog(fixed, directory / "fixed") if path.suffix == ".v"]
-    defines = {"CLOCK": "clk", "RESET": "reset", "IN_RESET": "1", "SHOWN": "vga_r"}
+    control = register_map(fixed.rectangles)["control"]
+    run = control.pack(run=1, commit=1, reflections=fixed.reflections)
+    begin = f"dut.avs_s0_address={control.address},dut.avs_s0_writedata={run},dut.avs_s0_byteenable=15"
+    defines = {
+        "CLOCK": "clk", "RESET": "reset", "IN_RESET": "1", "SHOWN": "vga_r", "BEGIN": f"{begin},dut.avs_s0_write=1",
+        "BEGUN": "dut.avs_s0_write=0",
+    }  # fmt: skip
     cycles = screen.line_cycles * screen.vertical.total
     return {
         "design": f"RayCaster, {config.engine}",

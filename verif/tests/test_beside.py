@@ -7,8 +7,16 @@ import pytest
 from rich.console import Console
 
 from raycaster.errors import UserError
+from raycaster.fpga.area import Area
 from raycaster.report import beside
-from raycaster.report.beside import Other, checkouts_of, measure_beside, measure_other, measure_software
+from raycaster.report.beside import (
+    Other,
+    checkouts_of,
+    measure_beside,
+    measure_other,
+    measure_ours,
+    measure_software,
+)
 from raycaster.scene import load_scene, packaged_scenes
 from raycaster.screens import SCREENS
 
@@ -80,6 +88,16 @@ def test_a_design_of_somebody_elses(checkout, tmp_path):
     assert found["routed_mhz"] == 99.5
     assert 0 < found["frame_s"] < 10
     assert found["commit"] == "unknown"
+
+
+@pytest.mark.parametrize("engine", ["exact", "beam"])
+def test_a_design_of_ours(engine, tmp_path, monkeypatch):
+    """It is started, and shows something; counting and routing take long, and are area's."""
+    monkeypatch.setattr(beside, "measure", lambda config, family, directory: Area(100, 50, 100, 2, 1))
+    monkeypatch.setattr(beside, "route", lambda config, directory, seed: {"routed_mhz": 88.0})
+    found = measure_ours({"engine": engine, "screen": "tiny"}, packaged_scenes()["boxes"], tmp_path)
+    assert 0 < found["frame_s"] < 10
+    assert (found["luts"], found["routed_mhz"]) == (100, 88.0)
 
 
 def test_a_design_that_shows_nothing(checkout, tmp_path):
