@@ -395,6 +395,19 @@ def error_and_time() -> str:
     return _with_source(table(headings, rows), "report")
 
 
+def beside() -> str:
+    """Others' designs, ours, and software, in one run."""
+    rows = []
+    for one in outcome("beside")["figures"]["designs"]:
+        counts = [f"{one[key]:,}" if key in one else "" for key in ("luts", "registers", "multipliers", "blocks")]
+        clock = f"{one['routed_mhz']} of {one['clock_mhz']:g}" if "routed_mhz" in one else ""
+        frame = f"{one['frame_s']:.3f} s"
+        rows.append([one["design"], one["draws"], f"{one['pixels']:,}", *counts, clock, frame, one["commit"]])
+    counted = ["LUT4", "registers", "multipliers", "blocks of RAM"]
+    headings = ["design", "draws", "pixels", *counted, "routed, MHz of those it needs", "a frame", "commit"]
+    return _with_source(table(headings, rows), "beside")
+
+
 def _pixels(*names: str) -> str:
     figures = [outcome(name)["figures"] for name in names]
     scenes, pixels, wrong = (sum(one[key] for one in figures) for key in ("scenes", "pixels", "wrong_vs_golden"))
@@ -498,7 +511,7 @@ def tables() -> dict[str, str]:
     """All of them, by the names that pages use."""
     made = (
         engines, work, scenes, families, features, buses, page_speed, routed, boards, icebreaker, tinytapeout,
-        routed_again, modules_routed, game_board, one_scene, error_and_time, checks, not_mutated, scaling_rectangles,
-        scaling_reflections, scaling_units, scaling_resolution, scaling_growth,
+        routed_again, modules_routed, game_board, one_scene, error_and_time, beside, checks, not_mutated,
+        scaling_rectangles, scaling_reflections, scaling_units, scaling_resolution, scaling_growth,
     )  # fmt: skip
     return {each.__name__: each() for each in made}
