@@ -407,10 +407,10 @@ def route(config: Configuration, directory: Path, seed: int) -> dict[str, Any]:
         UserError: a program is missing, or refuses something.
     """
     _synthesise(config, FAMILIES["ecp5"], directory, PINS_TOP)
-    return place_and_route(directory, config.screen_geometry.clock_hz / 1e6, seed)
+    return route_netlist(directory, config.screen_geometry.clock_hz / 1e6, seed)
 
 
-def place_and_route(directory: Path, clock_mhz: float, seed: int) -> dict[str, Any]:
+def route_netlist(directory: Path, clock_mhz: float, seed: int) -> dict[str, Any]:
     """The same of the netlist in `netlist.json`, whatever design it is of; it has one clock, which needs clock_mhz.
 
     Raises:

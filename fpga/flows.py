@@ -198,7 +198,6 @@ design within an hour."""
 ECP5_AGAIN = ("--tmg-ripup",)
 """More of them, with which it routes what is late again and again, and may find no end."""
 
-
 LONGEST = 5400
 """Seconds after which nextpnr is stopped, with an error."""
 LEAST_AGAIN, TIMES_AGAIN = 120, 3

@@ -54,7 +54,7 @@ def keep(
     outcome = {
         "command": arguments.command_line,
         "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
-        "commit": _commit(),
+        "commit": commit_of(Path(__file__).parent),
         "tools": _versions(),
         "scope": {**scope, "left_out": left_out},
         "figures": figures,
@@ -65,9 +65,9 @@ def keep(
     partial.replace(arguments.keep)
 
 
-def _commit() -> str:
-    """Of the sources that run; with a plus where they are not those of the commit, empty outside of a clone."""
-    words = ["git", "-C", str(Path(__file__).parent), "describe", "--always", "--exclude=*", "--dirty=+"]
+def commit_of(directory: Path) -> str:
+    """What is checked out; with a plus where the files are not those of the commit, empty outside of a clone."""
+    words = ["git", "-C", str(directory), "describe", "--always", "--exclude=*", "--dirty=+"]
     try:
         return subprocess.run(words, capture_output=True, text=True, check=False).stdout.strip()
     except FileNotFoundError:

@@ -34,7 +34,7 @@ int main(int, char** arguments) {
     dut.RESET = IN_RESET;
     clocks(32, &changes);
     dut.RESET = !IN_RESET;
-    // Writing it again does no harm, and the first one may have to wait.
+    // A bus may make the write wait, and more of the same do no harm.
     BEGIN;
     clocks(32, &changes);
     BEGUN;

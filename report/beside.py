@@ -28,10 +28,11 @@ from raycaster.convert.write import write_verilog
 from raycaster.design import design_for
 from raycaster.errors import UserError
 from raycaster.fit.fixing import fix
-from raycaster.fpga.area import FAMILIES, Area, measure, place_and_route, route
+from raycaster.fpga.area import FAMILIES, Area, measure, route, route_netlist
 from raycaster.golden import exact
-from raycaster.golden.picture import wrong_pixels
+from raycaster.golden.picture import count_wrong
 from raycaster.golden.world import Rectangles
+from raycaster.outcomes import commit_of
 from raycaster.output import replaced
 from raycaster.registers import register_map
 from raycaster.scene import Scene, load_scene, packaged_scenes
@@ -140,12 +141,12 @@ def measure_other(other: Other, checkout: Path, directory: Path) -> dict[str, An
     cells = json.loads((directory / "netlist.json").read_text())["modules"][other.top]["cells"]
     return {
         "design": other.title,
-        "commit": _commit(checkout),
+        "commit": commit_of(checkout),
         "draws": other.draws,
         "pixels": 640 * 480,
         "clock_mhz": other.clock_mhz,
         **_area(FAMILIES["ecp5"].count(cells)),
-        "routed_mhz": place_and_route(directory, other.clock_mhz, seed=1)["routed_mhz"],
+        "routed_mhz": route_netlist(directory, other.clock_mhz, seed=1)["routed_mhz"],
         "frame_s": _frame_time(other.title, other.top, [text], other.defines, FRAME, directory),
     }
 
@@ -167,7 +168,7 @@ def measure_ours(options: Mapping[str, Any], scene: Path, directory: Path) -> di
     cycles = screen.line_cycles * screen.vertical.total
     return {
         "design": f"RayCaster, {config.engine}",
-        "commit": _commit(HERE),
+        "commit": commit_of(HERE),
         "draws": f"any scene of {config.rectangles} rectangles, which mirror",
         "pixels": screen.columns * screen.rows,
         "clock_mhz": screen.clock_hz / 1e6,
@@ -194,18 +195,14 @@ def measure_software(scene: Scene, screen: Screen, directory: Path) -> list[dict
         raise UserError(f"{SOFTWARE.name}: g++ refuses it: {compiled.stderr.strip()}")
     words = " ".join(map(str, _as_numbers(scene, screen)))
     done = subprocess.run([program], input=words.encode(), capture_output=True, check=True)
-    wrong = int(wrong_pixels(_pixels(done.stdout, right.shape), right).sum())
+    wrong = count_wrong(np.frombuffer(done.stdout, dtype=np.uint8).reshape(right.shape), right)
     if wrong:
         raise UserError(f"{SOFTWARE.name}: draws {wrong} pixels unlike the golden model")
-    common = {"commit": _commit(HERE), "draws": "the same scene", "pixels": screen.columns * screen.rows}
+    common = {"commit": commit_of(HERE), "draws": "the same scene", "pixels": screen.columns * screen.rows}
     return [
         {"design": "numpy, exact arithmetic", **common, "frame_s": took},
         {"design": "C++ loop, exact arithmetic", **common, "frame_s": float(done.stderr)},
     ]
-
-
-def _pixels(words: bytes, shape: tuple[int, ...]) -> np.ndarray:
-    return np.frombuffer(words, dtype=np.uint8).reshape(shape)
 
 
 def _as_numbers(scene: Scene, screen: Screen) -> list[int]:
@@ -246,13 +243,6 @@ def _frame_time(
     if int(changes) < 2:
         raise UserError(f"{name}: shows nothing in simulation")
     return float(seconds)
-
-
-def _commit(directory: Path) -> str:
-    done = subprocess.run(
-        ["git", "-C", directory, "rev-parse", "--short=7", "HEAD"], capture_output=True, text=True, check=False
-    )
-    return done.stdout.strip() or "unknown"
 
 
 def _show(rows: Sequence[Mapping[str, Any]], console: Console) -> None:

@@ -74,8 +74,7 @@ module bench;
     wire signed [19:0] added;
     products dut (
         .clk(clk), .enable(enable), .reset(reset), .a(a), .b(b), .plain(plain), .narrow(narrow), .enabled(enabled),
-        .cleared(cleared), .added(added), .twice(twice), .now(now),
-        .later(later)
+        .cleared(cleared), .added(added), .twice(twice), .now(now), .later(later)
     );
     integer at;
     reg [20:0] stimulus [0:COUNT-1];
@@ -147,7 +146,7 @@ def expected(stimulus: Sequence[Operands]) -> list[list[int]]:
 
 
 def test_products_in_the_multipliers_registers(tmp_path):
-    """Those that nothing but a plain register reads move; no other does, and nothing that is seen changes."""
+    """Those that nothing but a plain register reads, plain and narrow, move; and nothing that is seen changes."""
     made = netlist(tmp_path)
     random = np.random.default_rng(seed())
     ranges = (0, 2), (0, 2), (-512, 512), (-256, 256)
@@ -156,7 +155,6 @@ def test_products_in_the_multipliers_registers(tmp_path):
     before = Counter(cell["type"] for cell in cells_of(made).values())
     assert register_products(made) == 2
     after = Counter(cell["type"] for cell in cells_of(made).values())
-    # Of plain and narrow.
     assert before - after == Counter(TRELLIS_FF=19 + 12)
     assert simulated(made, stimulus) == expected(stimulus), repeat()
 
