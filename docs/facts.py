@@ -13,10 +13,11 @@ from raycaster.configuration import GROUP_OVERHEAD, OPTION_NAMES, Configuration,
 from raycaster.docs.timing import CONFIGURATION, DIAGRAMS, kept, measured
 from raycaster.engines import ENGINES
 from raycaster.registers import compile_registers
-from raycaster.rtl.beam import fold_tester, hit_cells, nearest_of_two, ray_fold
+from raycaster.rtl.beam import fold_tester, hit_cells, ray_fold
 from raycaster.rtl.beam.beam_lane import beam_latency, pass_latency
 from raycaster.rtl.beam.beam_pass import rounds
 from raycaster.rtl.beam.line_starter import start_cycles
+from raycaster.rtl.beam.nearest_of_two import contest_latency
 from raycaster.rtl.common.widths import exact_slope_bits
 from raycaster.rtl.engine import rect_setup
 from raycaster.rtl.engine.colour_blend import blend_latency
@@ -94,13 +95,14 @@ def beam_screens() -> str:
 def beam_latencies() -> str:
     """What the latency is made of."""
     config = configure(engine="beam")
-    turned = replace(config, turn=True)
+    turned, two_lanes = replace(config, turn=True), configure(engine="beam", pixels=2)
     rows = [
         ["`ray_tester`, `fold_tester`", "whether the ray hits, all rectangles at once", fold_tester.LATENCY],
-        ["`nearest_of_two`", f"a round; {config.rectangles} rectangles take {rounds(config)}", nearest_of_two.LATENCY],
+        ["`nearest_of_two`", f"a round; {config.rectangles} rectangles take {rounds(config)}", contest_latency(config)],
         ["`ray_fold`", "how the ray folds at its mirror", ray_fold.LATENCY],
         ["", "all of it, from a ray to its reflection", pass_latency(config)],
         ["", "the same where the camera turns, as each `fold_tester` registers its fold", pass_latency(turned)],
+        ["", "the same with two pixels a clock, as each `nearest_of_two` takes a cycle more", pass_latency(two_lanes)],
         ["`colour_blend`", "the pixel's colour", blend_latency(config)],
         ["`hit_cells`", "with patterns, in which of its cells the nearest rectangle is hit", hit_cells.LATENCY],
     ]

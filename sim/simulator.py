@@ -68,6 +68,14 @@ FST_HEADERS = ("lz4.h", "zlib.h")
 """What Verilator's writer of FST includes, which a machine need not have; its writer of VCD needs nothing."""
 
 
+_BENCH_ENVIRONMENT = {
+    # Threads of numpy's would spin beside the simulation, and never have work.
+    "OPENBLAS_NUM_THREADS": "1",
+    # cocotb has pytest rewrite the assertions of all that is imported, which takes seconds the first time.
+    "COCOTB_REWRITE_ASSERTION_FILES": "*bench*.py",
+}
+
+
 class SimulationError(Exception):
     """A simulation that failed; the text is one line that says where its log is."""
 
@@ -557,8 +565,7 @@ def run_bench(
             log_file=log,
             # Icarus must be told what kind of waveform its bench writes, and Verilator would begin one of its own.
             waves=model.waves or (model.bench.window and model.simulator == "icarus"),
-            # Threads of numpy's would spin beside the simulation, and never have work.
-            extra_env=job.environment() | {"OPENBLAS_NUM_THREADS": "1"},
+            extra_env=job.environment() | _BENCH_ENVIRONMENT,
             **{"plusargs": plusargs} | (dump_options[model.simulator] if waves else {}),
         )
     try:

@@ -42,7 +42,7 @@ from raycaster.rtl.beam import beam_lane as beam
 from raycaster.rtl.beam import beam_pass
 from raycaster.rtl.beam import fold_tester as tester
 from raycaster.rtl.beam import look_up as looking
-from raycaster.rtl.beam import nearest_of_two as contest
+from raycaster.rtl.beam.nearest_of_two import contest_latency
 from raycaster.rtl.common.records import (
     Facet,
     Look,
@@ -252,7 +252,7 @@ class BeamProbes(Description):
             events.append(Event("ray", entered, Place(bounce)))
             events += [Event("test", entered, Place(bounce, i)) for i in range(count)]
             for turn in range(beam_pass.rounds(self.config)):
-                cycle = entered + tester.LATENCY + (turn + 1) * contest.LATENCY
+                cycle = entered + tester.LATENCY + (turn + 1) * contest_latency(self.config)
                 events += [Event(f"round {turn}", cycle, Place(bounce, i)) for i in range(0, count, 2 << turn)]
             events.append(Event("winner", entered + beam_pass.winner_latency(self.config), Place(bounce)))
             events.append(Event("kept", end, Place(bounce)))

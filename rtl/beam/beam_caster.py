@@ -98,12 +98,12 @@ def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture,
         )  # fmt: skip
         enters, loads, lane_starts = [None for _ in lanes], [load], [new_start]
         if config.pixels > 1:
-            late_load, late_start = unsigned(config.rectangles), walk_of(config)
-            second_start = lane_start(
-                clk, load=load, start=new_start, growth=new_growth, late_load=late_load, late_start=late_start
-            )
-            loads.append(late_load)
-            lane_starts.append(late_start)
+            late_load, first_start, second_start = unsigned(config.rectangles), walk_of(config), walk_of(config)
+            late_starts = lane_start(
+                clk, load=load, start=new_start, growth=new_growth, late_load=late_load, first_start=first_start,
+                second_start=second_start,
+            )  # fmt: skip
+            loads, lane_starts = [late_load, late_load], [first_start, second_start]
 
     facet_registers = [
         row_register(clk, load(i + 1, i), new_facet.word, word=word, **fixing(new_facet, known_facet(i, config)))

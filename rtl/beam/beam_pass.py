@@ -8,9 +8,9 @@ from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.beam import fold_tester as tester
-from raycaster.rtl.beam import nearest_of_two as contest
 from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.nearest_of import nearest_of
+from raycaster.rtl.beam.nearest_of_two import contest_latency
 from raycaster.rtl.beam.ray_tester import ray_tester
 from raycaster.rtl.beam.rect_walker import rect_walker
 from raycaster.rtl.beam.slope_walker import ray_slope, slope_walker
@@ -29,7 +29,7 @@ def rounds(config: Configuration) -> int:
 
 def winner_latency(config: Configuration) -> int:
     """Cycles from a pass's ray to the rectangle that it sees."""
-    return tester.LATENCY + rounds(config) * contest.LATENCY
+    return tester.LATENCY + rounds(config) * contest_latency(config)
 
 
 @block
@@ -95,7 +95,7 @@ def beam_pass(
     ]  # fmt: skip
     all_hits = side_by_side([hit.word for hit in hits])
     best = candidate_of(config) if nearest is None else nearest
-    contests = nearest_of(clk, all_hits, best, rounds(config))
+    contests = nearest_of(clk, all_hits, best, rounds(config), contest_latency(config))
 
     @always_comb
     def announce():

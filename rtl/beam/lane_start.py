@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the second lane's columns start from: those of the first, a column further."""
+"""What the columns of two lanes start from: the second's a column further than the first's."""
 
 from myhdl import always, always_comb, block, concat, instances
 
@@ -7,14 +7,18 @@ from raycaster.rtl.common.widths import signed
 
 
 @block
-def lane_start(clk, load, start, growth, late_load, late_start):
-    """late_start is start and a column's growth, and late_load is load, a cycle later."""
+def lane_start(clk, load, start, growth, late_load, first_start, second_start):
+    """first_start is start, second_start is start and a column's growth, and late_load is load, a cycle later.
+
+    The first lane could do without, but its start goes all over the chip, from the multipliers' own registers.
+    """
     product_bits = len(start.way_p)
     way_p, low_p, high_p, low_q, high_q = (signed(product_bits) for _ in range(5))
 
     @always(clk.posedge)
     def advance():
         late_load.next = load
+        first_start.word.next = start.word
         way_p.next = start.way_p + growth.way_p
         low_p.next = start.low_p + growth.low_p
         high_p.next = start.high_p + growth.high_p
@@ -23,6 +27,6 @@ def lane_start(clk, load, start, growth, late_load, late_start):
 
     @always_comb
     def join():
-        late_start.word.next = concat(way_p[product_bits:], low_p, high_p, low_q, high_q)
+        second_start.word.next = concat(way_p[product_bits:], low_p, high_p, low_q, high_q)
 
     return instances()

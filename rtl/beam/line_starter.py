@@ -14,7 +14,7 @@ AIM_LATENCY = 5
 def start_cycles(config: Configuration) -> int:
     """Cycles from start_line until the first column may come."""
     if not config.turn:
-        # The second lane starts a cycle later.
+        # Two lanes' starts are registered by themselves.
         return setup.LATENCY + config.rectangles + config.pixels - 1
     # A sweep reads its slope from the third cycle on, and the next one starts with its last load.
     return AIM_LATENCY - 3 + (config.pixels + 1) * (setup.LATENCY + config.rectangles - 1) + 1

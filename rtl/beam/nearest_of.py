@@ -3,15 +3,14 @@
 
 from myhdl import block, instances
 
-from raycaster.rtl.beam import nearest_of_two as contest
 from raycaster.rtl.beam.nearest_of_two import nearest_of_two
 from raycaster.rtl.beam.winner_delay import winner_delay
 from raycaster.rtl.common.widths import side_by_side
 
 
 @block
-def nearest_of(clk, candidates, nearest, rounds: int):
-    """The nearest of candidates, or the first of the nearest, rounds * `contest.LATENCY` cycles later.
+def nearest_of(clk, candidates, nearest, rounds: int, latency: int):
+    """The nearest of candidates, or the first of the nearest, rounds * latency cycles later.
 
     candidates: at most 2^rounds, side by side, the first in the lowest bits. Neighbours meet in the first round, and
     their winners in the others; the last of an odd number is unopposed, and so is a single one.
@@ -19,13 +18,13 @@ def nearest_of(clk, candidates, nearest, rounds: int):
     ones = [nearest.twin().cut(candidates, i) for i in range(len(candidates) // len(nearest.word))]
     winners = [nearest] if rounds == 1 else [nearest.twin() for _ in ones[::2]]
     contests = [
-        nearest_of_two(clk, *pair, winner)
+        nearest_of_two(clk, *pair, winner, latency)
         if len(pair) == 2
-        else winner_delay(clk, pair[0].word, winner.word, contest.LATENCY)
+        else winner_delay(clk, pair[0].word, winner.word, latency)
         for pair, winner in zip([ones[i : i + 2] for i in range(0, len(ones), 2)], winners, strict=True)
     ]
     if rounds > 1:
         left = side_by_side([winner.word for winner in winners])
-        other_rounds = nearest_of(clk, left, nearest, rounds - 1)
+        other_rounds = nearest_of(clk, left, nearest, rounds - 1, latency)
 
     return instances()

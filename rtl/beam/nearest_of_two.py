@@ -3,20 +3,27 @@
 
 from myhdl import always, always_comb, block, concat, instances
 
+from raycaster.configuration import Configuration
 from raycaster.rtl.common.widths import bit, unsigned
-
-LATENCY = 2
 
 MULTIPLIER_BITS = 18
 """Of a factor that one hard multiplier takes; a denominator has at most two bits more."""
 
 
+def contest_latency(config: Configuration) -> int:
+    """Cycles of a contest.
+
+    Two lanes fill a chip, and its multipliers are in columns: what they put out has a cycle for its way.
+    """
+    return 2 if config.pixels == 1 else 3
+
+
 @block
-def nearest_of_two(clk, first, second, nearest):
-    """Two candidates a clock; the nearer of them follows LATENCY cycles later, the first where both are at one t.
+def nearest_of_two(clk, first, second, nearest, latency: int):
+    """Two candidates a clock; the nearer of them follows latency cycles later, the first where both are at one t.
 
     t = numerator / denominator is nearer than another where numerator * other denominator < other numerator *
-    denominator.
+    denominator. latency: 2, or 3, where products are registered twice.
     """
     numerator_bits, denominator_bits = len(first.numerator), len(first.denominator)
     product_bits = numerator_bits + denominator_bits
@@ -82,15 +89,28 @@ def nearest_of_two(clk, first, second, nearest):
             first_product.next = first.numerator * second.denominator
             second_product.next = second.numerator * first.denominator
 
+    if latency == 2:
+        late_first, late_second, first_way, second_way = first_1, second_1, first_product, second_product
+    else:
+        late_first, late_second = first.twin(), first.twin()
+        first_way, second_way = unsigned(product_bits), unsigned(product_bits)
+
+        @always(clk.posedge)
+        def bring():
+            late_first.word.next = first_1.word
+            late_second.word.next = second_1.word
+            first_way.next = first_product
+            second_way.next = second_product
+
     @always_comb
     def compare():
-        take_second.next = second_1.valid and ((not first_1.valid) or (second_product < first_product))
+        take_second.next = late_second.valid and ((not late_first.valid) or (second_way < first_way))
 
     # Where the first is taken and is not valid, neither is.
     @always(clk.posedge)
     def choose():
-        nearest.word.next = first_1.word
+        nearest.word.next = late_first.word
         if take_second:
-            nearest.word.next = second_1.word
+            nearest.word.next = late_second.word
 
     return instances()

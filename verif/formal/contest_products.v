@@ -6,7 +6,7 @@
 // cycle.
 
 module contest_products #(
-    parameter NUMERATOR_BITS = 10, parameter DENOMINATOR_BITS = 9, parameter REST_BITS = 4
+    parameter LATENCY = 2, parameter NUMERATOR_BITS = 10, parameter DENOMINATOR_BITS = 9, parameter REST_BITS = 4
 ) (
     input clk, input first_valid, input [NUMERATOR_BITS-1:0] first_n, input [DENOMINATOR_BITS-1:0] first_e,
     input first_corner, input [REST_BITS-1:0] first_rest, input second_valid, input [NUMERATOR_BITS-1:0] second_n,
@@ -40,14 +40,13 @@ generate
     end
 endgenerate
 
-reg [1:0] age = 2'b00;
-reg [WORD_BITS-1:0] expected_1, expected_2;
+reg [LATENCY-1:0] age = 0;
+reg [LATENCY*WORD_BITS-1:0] expected;
 always @(posedge clk) begin
     age <= {age, 1'b1};
-    expected_1 <= second_valid && (!first_valid || second_way < first_way) ? second : first;
-    expected_2 <= expected_1;
+    expected <= {expected, second_valid && (!first_valid || second_way < first_way) ? second : first};
 end
-always @* if (age[1]) assert (nearest == expected_2);
+always @* if (age[LATENCY-1]) assert (nearest == expected[LATENCY*WORD_BITS-1 -: WORD_BITS]);
 
-always @* cover (age[1] && nearest[WORD_BITS-1] && nearest[REST_BITS-1:0] == 1);
+always @* cover (age[LATENCY-1] && nearest[WORD_BITS-1] && nearest[REST_BITS-1:0] == 1);
 endmodule

@@ -10,6 +10,7 @@ from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.beam.beam_lane import beam_latency
 from raycaster.rtl.beam.line_starter import AIM_LATENCY
+from raycaster.rtl.beam.nearest_of_two import contest_latency
 from raycaster.rtl.bus.avalon_interface import engine_word, size_word
 from raycaster.rtl.common.records import camera_of, candidate_of, look_fields, rect_of, surface_of
 from raycaster.rtl.common.widths import (
@@ -476,7 +477,7 @@ def _walked(config: Configuration, lane: int, small: bool) -> Property:
         "where no camera turns, a rectangle's registers are its distances' products with the slope, at full width",
         config,
         f"{_label(config)} lane {lane}" if config.pixels > 1 else _label(config),
-        ("rect_walker", "slope_walker", *(("lane_start",) if lane else ())),
+        ("rect_walker", "slope_walker", *(("lane_start",) if config.pixels > 1 else ())),
         {
             "LANE": lane,
             "PIXELS": config.pixels,
@@ -572,13 +573,14 @@ def _contest(config: Configuration, small: bool) -> Property:
         _label(config),
         ("nearest_of_two",),
         {
+            "LATENCY": contest_latency(config),
             "NUMERATOR_BITS": numerator,
             "DENOMINATOR_BITS": denominator,
             "REST_BITS": len(candidate.word) - 2 - numerator - denominator,
         },
-        induction=2,
+        induction=contest_latency(config),
         any_product=True,
-        reach=4,
+        reach=contest_latency(config) + 2,
         small=small,
     )
 
@@ -769,7 +771,9 @@ PROPERTIES: list[Property] = [
     _depth(_one_unit(), small=True),
     _depth(_one_unit(materials=True, patterns=True, fraction_bits=8), small=False),
     _contest(BEAM, small=True),
+    _contest(BEAM_PAIRS, small=True),
     _contest(BEAM_TURN, small=False),
+    _contest(BEAM_TURN_PAIRS, small=False),
     _contest(_beam(turn=True, patterns=True, reflections=4), small=True),
     _shares(_one_unit(engine="exact"), small=True),
     _shares(_one_unit(engine="exact", materials=True), small=False),

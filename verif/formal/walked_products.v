@@ -35,7 +35,7 @@ always @(posedge clk) begin
     was_given <= given;
     started <= started || start_line;
 end
-wire load = LANE ? was_given : given;  // in the cycle after, the walker has its start
+wire load = PIXELS > 1 ? was_given : given;  // in the cycle after, the walker has its start
 
 // The columns of the ways, of the bounds and of the slope.
 wire way_valid, bounds_valid, slope_valid;
@@ -83,7 +83,7 @@ generate
         wire signed [WIDE-1:0] next = field < 2 ? wide(next_way_slope, which)
             : wide(next_bounds_slope, which);
         wire signed [WALK_BITS-1:0] product = distance * here, next_product = distance * next;
-        wire valid = (field < 2 ? way_valid : bounds_valid) && !(LANE && was_given);
+        wire valid = (field < 2 ? way_valid : bounds_valid) && !(PIXELS > 1 && was_given);
 
         // What a step adds: a distance or nothing, for each of a clock's columns.
         wire signed [WALK_BITS-1:0] distance_once = which == 1 ? distance : 0;
@@ -102,11 +102,11 @@ generate
         wire signed [WALK_BITS-1:0] value = walk[(FIELDS-1-field)*WALK_BITS +: WALK_BITS];
         always @* if (valid && field != 1) assert (value == product);
 
-        // The second lane starts a column on: there it must load the product with that column's slope.
+        // A second lane starts a column on: there it must load the product with that column's slope.
         wire signed [SLOPE_BITS-1:0] loaded_slope = narrow(first, which);
         wire signed [WALK_BITS-1:0] to_load = distance * loaded_slope;
         wire signed [WALK_BITS-1:0] loading = loads[(FIELDS-1-field)*WALK_BITS +: WALK_BITS];
-        always @* if (LANE && was_given && field != 1) assert (loading == to_load);
+        always @* if (PIXELS > 1 && was_given && field != 1) assert (loading == to_load);
     end
 
     // By product-in-range no product is further from 0 than this.
@@ -118,15 +118,17 @@ generate
     wire [5*WALK_BITS-1:0] lane_start = {start[FIELDS*WALK_BITS-1 -: WALK_BITS], start[REST-1:0]};
     wire [5*WALK_BITS-1:0] walker_start;
     assign loads = {walker_start[5*WALK_BITS-1 -: WALK_BITS], {WALK_BITS{1'b0}}, walker_start[REST-1:0]};
-    if (LANE) begin: second
+    if (PIXELS > 1) begin: lanes
         wire [RECTANGLES-1:0] late_load;
+        wire [5*WALK_BITS-1:0] first_start, second_start;
         lane_start dut (
             .clk(clk), .load({RECTANGLES{given}}), .late_load(late_load), .start_word(lane_start),
             .growth_word({
                 column_growth[FIELDS*DISTANCE_BITS-1 -: DISTANCE_BITS], column_growth[REST_DISTANCE-1:0]
             }),
-            .late_start_word(walker_start)
+            .first_start_word(first_start), .second_start_word(second_start)
         );
+        assign walker_start = LANE ? second_start : first_start;
         reg running = 1'b0;
         always @(posedge clk) running <= 1'b1;
         always @* if (running) assert (late_load == {RECTANGLES{was_given}});

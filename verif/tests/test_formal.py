@@ -50,9 +50,11 @@ CELL = chosen("cell-products", "exact-vga240-u1-r12-m1-c8-patterns")
 ROW = chosen("row-setup", "beam-vga240-s2-u1-r12-m1-c8")
 LINE = chosen("line-start", "beam-vga240-s2-u1-r2-m1-c8-turn")
 WALK = chosen("walked-products", "beam-vga240-s2-u1-r2-m1-c8")
+FIRST_LANE = chosen("walked-products", "beam-vga180-s6-u2-r2-m1-c8 lane 0")
 SECOND_LANE = chosen("walked-products", "beam-vga180-s6-u2-r2-m1-c8 lane 1")
 TURNED_WALK = chosen("turned-walks", "beam-vga240-s2-u1-r2-m1-c8-turn")
 CONTEST = chosen("contest-products", "beam-vga240-s2-u1-r2-m4-c8-turn-patterns")
+LATE_CONTEST = chosen("contest-products", "beam-vga180-s6-u2-r2-m1-c8")
 HALF = chosen("blend-exact", "beam-vga240-s2-u1-r2-m2-c8")
 MIXED = chosen("blend-exact", "beam-vga240-s2-u1-r2-m1-c8-materials")
 SHARES = chosen("shares-exact", "exact-vga240-u1-r12-m2-c8-materials")
@@ -70,7 +72,7 @@ FAULTS = {
     "colour-in-blanking": (TIMING, "video_generator", "if ((x >= 0) && (y >= 0)) begin", "if (x >= 0) begin"),
     "colour-between-pixels": (TIMING, "video_generator", "vga_r <= pixel_red;\n",
                               "vga_r <= pixel_red;\n end if (x >= 0) begin\n"),
-    "a-pair-announced-late": (PAIRS, "video_generator", "(x >= -18)", "(x >= -17)"),
+    "a-pair-announced-late": (PAIRS, "video_generator", "(x >= -20)", "(x >= -19)"),
     "start-screen-late": (TIMING, "video_generator", "(y == -2)", "(y == -1)"),
     "start-row-each-line": (TIMING, "video_generator", " && (line_repeat == 0)", ""),
     "wait-in-traffic": (AGENT, "avalon_interface", "wait_request <= 1'b0;", "wait_request <= avs_s0_write;"),
@@ -233,6 +235,8 @@ FAULTS = {
     "slope-runs-back": (WALK, "slope_walker", "slope_y <= slope_y + 1;", "slope_y <= slope_y - 1;"),
     "second-lane-at-the-first": (SECOND_LANE, "lane_start", "low_q <= start_low_q + growth_low_q;",
                                  "low_q <= start_low_q;"),
+    "first-lane-never-starts": (FIRST_LANE, "lane_start", "first_start_word <= start_word;",
+                                "first_start_word <= first_start_word;"),
     "turned-walk-a-bit-short": (TURNED_WALK, "rect_walker", "reg signed [28:0] low_q;", "reg signed [27:0] low_q;"),
     "turned-walk-back": (TURNED_WALK, "rect_walker", "way_q + growth_way_q;", "way_q - growth_way_q;"),
     "turned-walk-late": (TURNED_WALK, "slope_walker", "slope_z <= 0;", "slope_z <= slope_z;"),
@@ -241,6 +245,11 @@ FAULTS = {
     "high-bits-crossed": (CONTEST, "nearest_of_two", "if (second_high[0]) begin", "if (first_high[1]) begin"),
     "high-part-a-bit-short": (CONTEST, "nearest_of_two", "reg [12:0] second_more;", "reg [10:0] second_more;"),
     "a-miss-wins": (CONTEST, "nearest_of_two", "take_second = second_1_valid && ", "take_second = "),
+    "late-product-of-the-other": (LATE_CONTEST, "nearest_of_two", "first_way <= first_product;",
+                                  "first_way <= second_product;"),
+    "late-product-a-bit-short": (LATE_CONTEST, "nearest_of_two", "reg [19:0] second_way;", "reg [18:0] second_way;"),
+    "second-product-early": (LATE_CONTEST, "nearest_of_two", "(second_way < first_way)",
+                             "(second_product < first_way)"),
     "mean-two-bits-short": (HALF, "colour_mean_1", "reg [9:0] other;", "reg [7:0] other;"),
     "own-counts-once": (HALF, "colour_mean", "if (reflections == 1) begin", "if (reflections == 2) begin"),
     "background-too-late": (HALF, "colour_seen_1", "here = reached && seen_found;", "here = seen_found;"),
@@ -260,7 +269,8 @@ FAULTS = {
     "one-too-few": (FOLD, "ray_fold", "sum_xz_1 = x_by_z - not_z_by_x", "sum_xz_1 = x_by_z + z_by_x"),
     "bounds-swapped": (FOLD, "fold_tester", "(under_low_q == back_2) && (over_high_q == back_2)",
                        "!under_low_q && !over_high_q"),
-    "bound-missed": (FOLD, "ray_tester", "low_edge_p = twice_low_p | back_1", "low_edge_p = twice_low_p"),
+    "bound-missed": (FOLD, "ray_tester", "low_edge_p = twice_low_p | $signed({1'b0, back_1})",
+                     "low_edge_p = twice_low_p"),
     "bounds-unsorted": (TABLE, "rect_sorter", "if (written_y_0 > written_y_1) begin", "if (1'b0) begin"),
     "not-held": (TABLE, "rect_rom", "if (rects_fetch) begin", "if (1'b1) begin"),
     "overflow-missed": (DIVIDER, "divider", "overflow <= too_large;", "overflow <= too_large && (quotient != 0);"),

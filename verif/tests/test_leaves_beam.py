@@ -25,7 +25,6 @@ from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.beam import fold_tester as tester
 from raycaster.rtl.beam import hit_cells as hit_cells_module
-from raycaster.rtl.beam import nearest_of_two as contest
 from raycaster.rtl.beam import ray_fold as folder
 from raycaster.rtl.beam.beam_caster import beam_caster
 from raycaster.rtl.beam.beam_lane import beam_lane, beam_latency
@@ -38,7 +37,7 @@ from raycaster.rtl.beam.line_starter import AIM_LATENCY, line_starter, start_cyc
 from raycaster.rtl.beam.look_up import look_up
 from raycaster.rtl.beam.mirror_look_up import mirror_look_up
 from raycaster.rtl.beam.nearest_of import nearest_of
-from raycaster.rtl.beam.nearest_of_two import nearest_of_two
+from raycaster.rtl.beam.nearest_of_two import contest_latency, nearest_of_two
 from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.beam.ray_tester import ray_tester
 from raycaster.rtl.beam.rect_walker import rect_walker
@@ -484,7 +483,7 @@ def test_rect_walker(config, tmp_path):
 
 @pytest.mark.parametrize("config", [beam_config(screen="tiny", pixels=2), beam_config(rows=180, scale=6, pixels=2)])
 def test_lane_start(config, tmp_path):
-    """A rectangle's products of a row's second column, of those of the first and what a column adds."""
+    """A rectangle's products of a row's first two columns, of those of the first and what a column adds."""
     leaf = Leaf(
         lane_start,
         lambda: {
@@ -493,7 +492,8 @@ def test_lane_start(config, tmp_path):
             "start": walk_of(config),
             "growth": growth_of(config),
             "late_load": unsigned(config.rectangles),
-            "late_start": walk_of(config),
+            "first_start": walk_of(config),
+            "second_start": walk_of(config),
         },
         tmp_path,
     )
@@ -508,7 +508,9 @@ def test_lane_start(config, tmp_path):
         inputs = {f"start_{name}": word(now[name], width) for name in WALK}
         inputs |= {f"growth_{name}": word(then[name] - now[name], DISTANCE_BITS) for name in WALK}
         stimulus.append({**inputs, "load": load})
-        expected.append({f"late_start_{name}": word(then[name], width) for name in WALK} | {"late_load": load})
+        starts = {"first_start": now, "second_start": then}
+        wanted = {f"{lane}_{name}": word(ways[name], width) for lane, ways in starts.items() for name in WALK}
+        expected.append({**wanted, "late_load": load})
     outputs = leaf.run_both([*stimulus, {}], settled=1)
     for output, wanted in zip(outputs[1:], expected, strict=True):
         assert {name: output[name] for name in wanted} == wanted, repeat()
@@ -939,9 +941,10 @@ def fraction_of(candidate) -> Fraction:
 
 @by_screen
 def test_nearest_of_two(config, tmp_path):
+    latency, ports = contest_latency(config), ("first", "second", "nearest")
     leaf = Leaf(
         nearest_of_two,
-        lambda: {"clk": bit(), **{name: candidate_of(config) for name in ("first", "second", "nearest")}},
+        lambda: {"clk": bit(), **{name: candidate_of(config) for name in ports}, "latency": latency},
         tmp_path,
     )
     random = np.random.default_rng(seed())
@@ -950,9 +953,9 @@ def test_nearest_of_two(config, tmp_path):
     stimulus = [
         candidate_ports(config, "first", first) | candidate_ports(config, "second", second) for first, second in pairs
     ]
-    outputs = leaf.run_both([*stimulus, *[{}] * contest.LATENCY], settled=contest.LATENCY)
+    outputs = leaf.run_both([*stimulus, *[{}] * latency], settled=latency)
     ties = 0
-    for (first, second), output in zip(pairs, outputs[contest.LATENCY :], strict=True):
+    for (first, second), output in zip(pairs, outputs[latency:], strict=True):
         valid = [candidate for candidate in (first, second) if candidate[0]]
         assert output["nearest_valid"] == bool(valid)
         if valid:
@@ -962,8 +965,8 @@ def test_nearest_of_two(config, tmp_path):
     assert ties > 20
 
 
-@pytest.mark.parametrize("count", [1, 2, 3, 5, 8, 12])
-def test_nearest_of(count, tmp_path):
+@pytest.mark.parametrize(("count", "contest"), [(1, 2), (2, 2), (3, 2), (5, 2), (8, 2), (12, 2), (1, 3), (7, 3)])
+def test_nearest_of(count, contest, tmp_path):
     """The first of the nearest, whatever the number; a single one takes a round too."""
     config = beam_config(rectangles=count)
     rounds = max(1, (count - 1).bit_length())
@@ -972,7 +975,7 @@ def test_nearest_of(count, tmp_path):
         nearest_of,
         lambda: {
             "clk": bit(), "candidates": unsigned(count * len(record.word)), "nearest": candidate_of(config),
-            "rounds": rounds,
+            "rounds": rounds, "latency": contest,
         },
         tmp_path,
     )  # fmt: skip
@@ -992,7 +995,7 @@ def test_nearest_of(count, tmp_path):
                            for i, one in enumerate(field))}
         for field in fields
     ]  # fmt: skip
-    latency = rounds * contest.LATENCY
+    latency = rounds * contest
     outputs = leaf.run_both([*stimulus, *[{}] * latency], settled=latency)
     for field, output in zip(fields, outputs[latency:], strict=True):
         valid = [one for one in field if one[0]]
