@@ -102,7 +102,7 @@ def beam_latencies() -> str:
         ["`ray_fold`", "how the ray folds at its mirror", ray_fold.LATENCY],
         ["", "all of it, from a ray to its reflection", pass_latency(config)],
         ["", "the same where the camera turns, as each `fold_tester` registers its fold", pass_latency(turned)],
-        ["", "the same with two pixels a clock, as each `nearest_of_two` takes a cycle more", pass_latency(two_lanes)],
+        ["", "with two pixels a clock, as each `nearest_of_two` takes a cycle more too", pass_latency(two_lanes)],
         ["`colour_blend`", "the pixel's colour", blend_latency(config)],
         ["`hit_cells`", "with patterns, in which of its cells the nearest rectangle is hit", hit_cells.LATENCY],
     ]

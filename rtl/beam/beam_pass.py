@@ -75,7 +75,7 @@ def beam_pass(
             size_1.dy.next = size.dy
             size_1.dz.next = size.dz
 
-    if tester.slope_at(config) == 1:
+    if tester.is_staged(config):
         tested_size = size_1
     else:
         tested_size = Slope(slope_bits)
@@ -90,7 +90,7 @@ def beam_pass(
     tests = ray_tester if fold is None else partial(fold_tester, fold=fold)
     testers = [
         tests(clk, step_way=step, step_bounds=step_bounds, step_slope=step_slope, facet=facet, walk=walk, signs=signs,
-            slope=tested_size, index=tied(i, index_bits(config)), hit=hit)
+            slope=tested_size, index=tied(i, index_bits(config)), hit=hit, staged=tester.is_staged(config))
         for i, facet, walk, hit in zip(tested, seen, walks, hits, strict=True)
     ]  # fmt: skip
     all_hits = side_by_side([hit.word for hit in hits])

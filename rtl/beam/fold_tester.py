@@ -10,19 +10,26 @@ LATENCY = 3
 """Cycles from the way to the hit; the bounds are read one cycle in, the slope's magnitudes `slope_at`."""
 
 
+def is_staged(config: Configuration) -> bool:
+    """What a tester chooses of the fold and of the slope is registered.
+
+    Where the camera turns all is wider, and where there are two lanes they spread over a chip.
+    """
+    return bool(config.turn) or config.pixels > 1
+
+
 def fold_lead(config: Configuration) -> int:
-    """Cycles from the fold to the way: where the camera turns, all is wider, and what a tester takes of the fold is
-    registered."""
-    return 1 if config.turn else 0
+    """Cycles from the fold to the way."""
+    return 1 if is_staged(config) else 0
 
 
 def slope_at(config: Configuration) -> int:
-    """Cycles from the way to the slope's magnitudes: where the camera turns, the chosen one is registered."""
-    return 1 if config.turn else 2
+    """Cycles from the way to the slope's magnitudes."""
+    return 1 if is_staged(config) else 2
 
 
 @block
-def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope, fold, index, hit):
+def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope, fold, index, hit, staged: bool):
     """A ray a clock, as ray_fold folds it; hit, of the rectangle index, follows LATENCY cycles later.
 
     Along p the folded ray meets the plane at W = +-n D[p] + fold.p, over D[a]: between the two bounds it hits, which
@@ -33,9 +40,9 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
     In the ray's cycle, in which step_way is high, are read walk's ways, and signs, which are those of D; fold_lead
     cycles earlier the fold; in the next cycle, that of step_bounds, the bounds; and slope_at cycles later slope, the
     magnitudes of D. step_slope is high in the third cycle. Otherwise a stage keeps what it has. Widths are the ports'.
+    staged: `is_staged`.
     """
-    turns = "way_q" in walk.layout
-    along_q = walk.way_q if turns else facet.way_q
+    along_q = walk.way_q if "way_q" in walk.layout else facet.way_q
     numerator_bits, slope_bits = len(hit.numerator), len(slope.dy)
     sum_bits, product_bits, turn_bits = len(fold.p_x), len(walk.way_p), len(fold.turn_x)
 
@@ -117,7 +124,7 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
             mirror_on_p.next = fold.axis == 1
             mirror_on_q.next = fold.axis == 0
 
-    chooser = always(clk.posedge)(choose_fold) if turns else always_comb(choose_fold)
+    chooser = always(clk.posedge)(choose_fold) if staged else always_comb(choose_fold)
 
     # On the same axis, the plane must lie on the side that the folded ray runs to.
     @always_comb
@@ -157,7 +164,7 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
             rising_1.next = mirror_back == back
             met_1.next = met
 
-    if turns:
+    if staged:
 
         @always_comb
         def choose_clipped():
@@ -252,7 +259,7 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
         else:
             e.next = slope.dz
 
-    if turns:
+    if staged:
 
         @always(clk.posedge)
         def hold_slope():

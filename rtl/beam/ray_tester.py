@@ -7,7 +7,7 @@ from raycaster.rtl.common.widths import bit, signed, unsigned
 
 
 @block
-def ray_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope, index, hit):
+def ray_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope, index, hit, staged: bool):
     """A ray a clock; hit, of the rectangle index, follows `fold_tester`'s LATENCY cycles later, never at a mirror.
 
     Along p the ray meets the plane at W = n D[p], over D[a]: between the two bounds it hits. Where D[a] is negative
@@ -15,10 +15,9 @@ def ray_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope
 
     In the ray's cycle, in which step_way is high, are read signs, which are those of D; in the next one, that of
     step_bounds, walk; and `slope_at` cycles later slope, the magnitudes of D. step_slope is high in the third cycle.
-    Widths are the ports'.
+    Widths are the ports'. staged: `is_staged`.
     """
-    turns = "way_q" in walk.layout
-    along_q = walk.way_q if turns else facet.way_q
+    along_q = walk.way_q if "way_q" in walk.layout else facet.way_q
     distance_bits, numerator_bits, slope_bits = len(facet.distance), len(hit.numerator), len(slope.dy)
     edge_bits = len(walk.way_p) + 1
 
@@ -92,7 +91,7 @@ def ray_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope
         else:
             e.next = slope.dz
 
-    if turns:
+    if staged:
 
         @always(clk.posedge)
         def hold_slope():

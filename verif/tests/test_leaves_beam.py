@@ -785,6 +785,7 @@ def check_tester(block, ports, config: Configuration, tmp_path) -> None:
             **{name: port.twin() for name, port in ports.items()},
             "index": unsigned(index_bits(config)),
             "hit": candidate_of(config),
+            "staged": tester.is_staged(config),
         },
         tmp_path,
     )
