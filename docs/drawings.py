@@ -8,6 +8,9 @@ import tempfile
 from pathlib import Path
 
 from raycaster.docs import blocks, timing
+from raycaster.docs.tables import outcome
+from raycaster.report import plots
+from raycaster.report.designs import error_and_time, of_kept
 
 DIAGRAMS = Path(__file__).parent / "diagrams"
 
@@ -20,6 +23,9 @@ def drawn() -> dict[str, str]:
             path = Path(scratch) / f"{diagram.name}.svg"
             timing.render(timing.kept(diagram.name), path)
             found[diagram.name] = path.read_text()
+        path = Path(scratch) / "error_and_time.svg"
+        plots.save(error_and_time(of_kept(outcome("report")["figures"]["designs"])), path)
+        found[path.stem] = path.read_text()
     return found
 
 

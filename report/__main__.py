@@ -7,21 +7,19 @@ import datetime
 import importlib.metadata
 import os
 import platform
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
 
-from raycaster.configuration import OPTION_NAMES, Configuration
 from raycaster.errors import UserError
 from raycaster.jobs import add_job_options, executors
 from raycaster.options import CommandParser
 from raycaster.outcomes import add_keep_option, keep
-from raycaster.report.designs import Designs, design_sections, find_designs
+from raycaster.report.designs import design_sections, find_designs, to_keep
 from raycaster.report.errors import REFLECTIONS, ROUNDINGS, error_sections, find_pictures, mean_errors
 from raycaster.report.extent import Extent, extent
-from raycaster.report.hardware import describe
 from raycaster.report.omissions import omission_sections
 from raycaster.report.page import Page, Section, write_html, write_markdown
 from raycaster.report.points import View
@@ -73,7 +71,7 @@ def write_report(directory: Path, what: Extent, sweep: Sweep, command_line: str)
         [*first, *errors, *stability, *omissions, _method(what, command_line)],
     )
     write_markdown(page, directory)
-    figures = {"designs": _kept(designs), "alarms": len(page.alarms), **of_cases}
+    figures = {"designs": to_keep(designs), "alarms": len(page.alarms), **of_cases}
     return write_html(page, directory), figures
 
 
@@ -97,31 +95,6 @@ def _method(what: Extent, command_line: str) -> Section:
             "converted Verilog. SSIM and PSNR are scikit-image's.",
         ],
     )
-
-
-def _kept(designs: Designs) -> list[Mapping[str, Any]]:
-    """Of every design what the manual's table and plot need; its options are of the configuration."""
-    best = designs.best
-    return [
-        {
-            "design": describe(one.config),
-            "options": _options(one.config),
-            "luts": one.cells,
-            "frame_cycles": one.frame_cycles,
-            "frame_ms": one.frame_ms,
-            "wrong_share": one.error,
-            "found": one.is_found,
-            "best": one in best,
-        }
-        for one in designs.every
-    ]
-
-
-def _options(config: Configuration) -> dict[str, Any]:
-    """Those that make it and are not the defaults."""
-    defaults = Configuration.__pydantic_fields__
-    values = {name: getattr(config, name) for name in OPTION_NAMES}
-    return {name: value for name, value in values.items() if value != defaults[name].default}
 
 
 def command_parser() -> CommandParser:

@@ -6,8 +6,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
-from raycaster.configuration import configure
+from matplotlib.figure import Figure
+
+from raycaster.configuration import OPTION_NAMES, Configuration, configure
 from raycaster.golden.seed_engine import Rounding
 from raycaster.report import hardware, plots
 from raycaster.report.extent import Extent
@@ -43,6 +46,52 @@ class Designs:
     def best(self) -> list[Candidate]:
         """All of these, each once."""
         return list(dict.fromkeys([*self.without_error, *self.by_time, *self.by_cells]))
+
+
+def to_keep(found: Designs) -> list[dict[str, Any]]:
+    """Of every design what the manual's table and plot need; its options are of the configuration."""
+    defaults = Configuration.__pydantic_fields__
+    best = found.best
+    rows = []
+    for one in found.every:
+        values = {name: getattr(one.config, name) for name in OPTION_NAMES}
+        rows.append(
+            {
+                "design": describe(one.config),
+                "options": {name: value for name, value in values.items() if value != defaults[name].default},
+                "luts": one.cells,
+                "frame_cycles": one.frame_cycles,
+                "frame_ms": one.frame_ms,
+                "wrong_share": one.error,
+                "found": one.is_found,
+                "best": one in best,
+            }
+        )
+    return rows
+
+
+def of_kept(rows: Sequence[Mapping[str, Any]]) -> Designs:
+    """The designs of which `to_keep` wrote down these rows."""
+    every, best = [], []
+    for row in rows:
+        config = configure(**row["options"])
+        if row["found"]:
+            timing = {"frame_cycles": row["frame_cycles"]}
+            one = Candidate(config, row["wrong_share"], counted={"cells": row["luts"]}, timing=timing)
+        else:
+            one = Candidate(config, row["wrong_share"], foretold=row["luts"])
+        every.append(one)
+        best += [one] if row["best"] else []
+    seeds = [one for one in best if one.config.engine == "seed"]
+    by_time, by_cells = (hardware.frontier(seeds, measure, error) for measure in (time, cells))
+    return Designs(every, by_time, by_cells, [one for one in best if one.config.engine != "seed"], [])
+
+
+def error_and_time(found: Designs) -> Figure:
+    """The report's first plot, and the README's."""
+    ends = [min(found.without_error, key=measure) for measure in (cells, time)]
+    labelled = dict.fromkeys([*found.by_time, *ends])
+    return plots.designs(found.every, "pixel_ns", "error", [found.by_time], list(labelled))
 
 
 def find_designs(what: Extent, errors: Errors, sweep: Sweep) -> Designs:
@@ -139,16 +188,15 @@ def design_sections(
     rounded = [one for one in every if one.config.engine == "seed"]
     exact = [one for one in every if one.config.engine != "seed"]
     fewest, fastest = (min(found.without_error, key=measure) for measure in (cells, time))
-    ends = [fewest, fastest]
+    by_cells = list(dict.fromkeys([*found.by_cells, fewest, fastest]))
     figures = (
-        ("work_precision", "pixel_ns", "error", [found.by_time], [*found.by_time, *ends],
+        ("work_precision", error_and_time(found),
          "Error against the time in which a pixel is computed, at the clock that the design needs."),
-        ("cells_precision", "cells", "error", [found.by_cells], [*found.by_cells, *ends], "Error against cells."),
-        ("cells_time", "pixel_ns", "cells", [found.without_error], exact, "Cells against time."),
+        ("cells_precision", plots.designs(every, "cells", "error", [found.by_cells], by_cells), "Error against cells."),
+        ("cells_time", plots.designs(every, "pixel_ns", "cells", [found.without_error], exact), "Cells against time."),
     )  # fmt: skip
     drawn = []
-    for name, across, up, frontiers, labelled, caption in figures:
-        figure = plots.designs(every, across, up, frontiers, list(dict.fromkeys(labelled)))
+    for name, figure, caption in figures:
         plots.save(figure, directory / f"{name}.svg")
         drawn.append(Plot(name, caption, "designs"))
     rows = [_row(one, spreads) for one in dict.fromkeys([*exact, *best, *rounded]) if one.is_found]

@@ -431,14 +431,14 @@ def waterfall(title: str, steps: Sequence[tuple[str, int]]) -> Figure:
 
 
 def culling(by: Mapping[str, Mapping[str, float]]) -> Figure:
-    """By engine and scene, the share of a frame's cycles that is left with culling: a bar each."""
+    """By engine and scene, the share of a frame's cycles that is left with culling: a bar each that is there."""
     scenes = sorted({name for of_engine in by.values() for name in of_engine}, reverse=True)
     figure, [[axes]] = new_figure(1.0 + 0.34 * len(scenes))
     height = 0.8 / len(by)
     with mpl.rc_context(STYLE):
         for place, (engine, of_engine) in enumerate(by.items()):
-            offsets = np.arange(len(scenes)) + 0.4 - (place + 0.5) * height
-            bars = axes.barh(offsets, [100 * of_engine[name] for name in scenes], height, label=engine,
+            offsets = [scenes.index(name) + 0.4 - (place + 0.5) * height for name in of_engine]
+            bars = axes.barh(offsets, [100 * share for share in of_engine.values()], height, label=engine,
                              color=ENGINES[engine][0])  # fmt: skip
             axes.bar_label(bars, fmt="%.0f", padding=3, fontsize=LABEL_POINTS)
         axes.axvline(100, color="black", linewidth=1)

@@ -401,8 +401,9 @@ def test_pages(tmp_path: Path):
     assert written | {"library.html"} <= {path.name for path in output.iterdir()}
     assert "raycaster.golden.exact.trace" in text, "the library's reference"
     assert "The RayCaster authors" in text
-    drawings = {f"{drawing.name}.svg" for drawing in (*blocks.DRAWINGS, *timing.DIAGRAMS)}
-    assert {path.name for path in output.glob("_images/*.svg")} == drawings | {"scaling.svg"}, "each is on a page"
+    there = {f"{drawing.name}.svg" for drawing in (*blocks.DRAWINGS, *timing.DIAGRAMS)}
+    there |= {"scaling.svg", "error_and_time.svg"}
+    assert {path.name for path in output.glob("_images/*.svg")} == there, "each is on a page"
     assert (output / "register_map" / "index.html").is_file()
 
 

@@ -2,6 +2,8 @@
 """The blocks that say which rectangles a group's rays may hit: MyHDL's simulator, the converted Verilog, the rule in
 Python's integers, and golden, whose hits are all among them."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 from fates import margin_of, may_hit_mask
@@ -70,17 +72,25 @@ def scenes(random: np.random.Generator, config: Configuration):
 
 
 def with_edges_on_rays(
-    random: np.random.Generator, config: Configuration, table: Rectangles, camera, row: int, offset: int
+    random: np.random.Generator, config: Configuration, table: Rectangles, camera, places: Sequence[tuple[int, int]]
 ) -> Rectangles:
-    """Many of the rectangles get an edge where a ray at an end of the group meets their plane, or next to it."""
-    first = [int(d) for d in primary_slopes(config.screen_geometry)[row, offset * config.units]]
+    """Many of the rectangles get an edge where a ray at an end of one of the groups meets their plane, or next to it.
+
+    places: of groups, each a row and a number in it.
+    """
+    slopes = primary_slopes(config.screen_geometry)
     corners = table.corners.copy()
     for index in range(len(table)):
         axis = int(table.axes[index])
+        row, offset = places[int(random.integers(len(places)))]
+        first = [int(d) for d in slopes[row, offset * config.units]]
         end = [first[0], first[1] + int(random.choice([0, config.units - 1, config.units])), first[2]]
         if random.random() < 0.6 and end[axis]:
-            u = int(random.choice(OTHER_AXES[axis]))
+            u, v = (int(other) for other in random.permutation(OTHER_AXES[axis]))
             met = camera[u] + end[u] * (corners[index, 0, axis] - camera[axis]) // end[axis]
+            if random.random() < 0.7:
+                # So that this edge alone decides.
+                corners[index, :, v] = 0, WORLD_SIZE - 1
             corners[index, random.integers(2), u] = np.clip(met + random.integers(-2, 3), 0, WORLD_SIZE - 1)
     return Rectangles(corners, table.colours, table.enabled)
 
@@ -215,7 +225,7 @@ def test_group_tester(config, tmp_path):
         row = int(random.choice([0, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))
         offset = int(random.integers(config.groups))
         slope = [int(d) for d in slopes[row, offset * config.units]]
-        table = with_edges_on_rays(random, config, drawn, camera, row, offset)
+        table = with_edges_on_rays(random, config, drawn, camera, [(row, offset)])
         mask = may_hit_mask(config, table, camera, row, offset)
         held = {"column_slope": slope[1] % (1 << slope_bits), "row_slope": slope[2] % (1 << slope_bits)}
         for index in range(len(table)):
@@ -333,7 +343,9 @@ def test_group_culler(config, tmp_path):
 
     for (camera, drawn), _ in zip(scenes(random, config), range(max(6, 240 // count)), strict=False):
         start = int(random.integers(1, rows)), int(random.integers(groups))
-        table = with_edges_on_rays(random, config, drawn, camera, *start)
+        first = start[0] * groups + start[1]
+        run = [divmod(number, groups) for number in range(first, min(first + 8, rows * groups))]
+        table = with_edges_on_rays(random, config, drawn, camera, run)
         scene = {f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)}
         quiet = {**scene, "reset_ray_caster": 0, "start_group": 0, "done": 0, "rects_fetch": 0}
         place, predicted, known = (0, 0), None, False

@@ -41,6 +41,7 @@ from raycaster.jobs import executors
 from raycaster.options import add_configuration_options, as_options, given_options
 from raycaster.report import __main__ as report
 from raycaster.report import hardware, plots, stability
+from raycaster.report.designs import error_and_time, of_kept
 from raycaster.report.extent import Extent
 from raycaster.report.page import Page, Plot, Section, Table, write_html, write_markdown
 from raycaster.report.points import (
@@ -600,6 +601,19 @@ def test_a_bound_that_is_exceeded_is_a_red_line(tmp_path, monkeypatch):
     assert not any("nearest" in alarm for alarm in alarms)
 
 
+def test_culling_of_scenes_that_one_engine_cannot_draw():
+    """Each bar is at its scene, and an engine that does not turn its camera has fewer."""
+    figure = plots.culling({"seed": {"boxes": 0.5}, "exact": {"boxes": 0.25, "pool": 0.75, "alcove": 1}})
+    [axes] = figure.axes
+    seed, exact = (
+        [(round(bar.get_y() + bar.get_height() / 2), bar.get_width()) for bar in bars] for bars in axes.containers
+    )
+    names = [label.get_text() for label in axes.get_yticklabels()]
+    assert names == ["pool", "boxes", "alcove"]
+    assert [(names[y], width) for y, width in seed] == [("boxes", 50)]
+    assert {(names[y], width) for y, width in exact} == {("boxes", 25), ("pool", 75), ("alcove", 100)}
+
+
 def small_extent(cases, probed_cases, probed, **others) -> Extent:
     """As little as there is of everything."""
     return Extent(
@@ -641,7 +655,9 @@ def test_a_small_report(tmp_path, monkeypatch):
     assert {name: figures[name] for name in ("alarms", "stiff_cases", "unlike_golden", "over_bound")} == {
         "alarms": 0, "stiff_cases": 1, "unlike_golden": 0, "over_bound": 0,
     }  # fmt: skip
-    assert all(configure(**one["options"]) for one in figures["designs"])
+    # What is kept of the designs draws the same plot.
+    plots.save(error_and_time(of_kept(json.loads(json.dumps(figures["designs"])))), tmp_path / "again.svg")
+    assert (tmp_path / "again.svg").read_text() == (output / "work_precision.svg").read_text()
     assert html.count("<figure") == html.count("<svg ") == 15
     for name in (
         "index.html",
