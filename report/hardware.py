@@ -87,8 +87,13 @@ Measure = Callable[[Candidate], float]
 
 
 def foretold_cycles(config: Configuration) -> int:
-    """Cycles of a frame in the worst case: rows of so many groups, each with all its rectangles."""
-    return config.group_cycles * config.groups * config.screen_geometry.rows
+    """Cycles of a frame in the worst case: rows of so many groups, each with all its rectangles.
+
+    An engine without a line buffer computes a pixel as often as the monitor shows it.
+    """
+    screen = config.screen_geometry
+    times = 1 if config.facts.line_buffered else screen.doubling**2
+    return config.group_cycles * config.groups * screen.rows * times
 
 
 def pixels(config: Configuration) -> int:

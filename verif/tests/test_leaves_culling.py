@@ -317,6 +317,13 @@ def test_group_tester_at_its_limits(config, tmp_path):
 # group_culler ---------------------------------------------------------------------------------------------------------
 
 
+def seen_rect(table: Rectangles, index: int) -> dict[str, int]:
+    """What the table shows of a rectangle to who listens."""
+    shown = sorted_rect(table, index, "rects_rect")
+    del shown["rects_rect_colour"]
+    return shown
+
+
 @designs
 def test_group_culler(config, tmp_path):
     """A frame's first group, then others in their order and out of it, with time enough to look ahead or too little."""
@@ -359,14 +366,16 @@ def test_group_culler(config, tmp_path):
             begun = len(stimulus)
             stimulus += [here, {**here, "start_group": 1}]
             for index in range(count) if number == 0 else ():
-                shown = sorted_rect(table, index, "rects_rect")
-                del shown["rects_rect_colour"]
                 stimulus.append({**here, "rects_fetch": 1, "rects_index": index})
-                stimulus += [here] * (latency - 1) + [{**here, **shown}]
+                stimulus += [here] * (latency - 1) + [{**here, **seen_rect(table, index)}]
             time = count + LATENCY + int(random.integers(3))
             if random.random() < 0.2:
                 time = int(random.integers(3, count + LATENCY))
-            stimulus += [here] * (time - 1)
+            # What is on the table's port and was not fetched is nobody's.
+            stimulus += [
+                {**here, **seen_rect(table, int(random.integers(count))), "rects_index": int(random.integers(count))}
+                for _ in range(time - 1)
+            ]
             # A frame of which not even that is done has taught nothing.
             abandoned = random.random() < 0.2
             stimulus.append({**here, "reset_ray_caster": 1, "done": int(not abandoned)})

@@ -601,6 +601,14 @@ def test_a_bound_that_is_exceeded_is_a_red_line(tmp_path, monkeypatch):
     assert not any("nearest" in alarm for alarm in alarms)
 
 
+@pytest.mark.parametrize("options", hardware.BEAMS)
+def test_cycles_of_the_beam_engine(options):
+    """It computes what the monitor shows, as often as the monitor shows it."""
+    config = configure(engine="beam", **options)
+    across, down = {240: (640, 480), 180: (1280, 720)}[config.rows] if config.scale < 6 else (1920, 1080)
+    assert hardware.foretold_cycles(config) == across * down // config.pixels
+
+
 def test_culling_of_scenes_that_one_engine_cannot_draw():
     """Each bar is at its scene, and an engine that does not turn its camera has fewer."""
     figure = plots.culling({"seed": {"boxes": 0.5}, "exact": {"boxes": 0.25, "pool": 0.75, "alcove": 1}})
