@@ -255,7 +255,7 @@ def scaling_growth() -> str:
     return table(["engine", "over", "count", "it is", "off by at most"], lines)
 
 
-ROUTED = ("seed", "exact", "beam-320x240", "beam-640x480", "beam-1280x720")
+ROUTED = ("seed", "exact", "beam-320x240", "beam-640x480", "beam-1280x720", "beam-1920x1080")
 CELLS = ("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD")
 
 
