@@ -277,7 +277,7 @@ def _convert_fold(widths: FoldWidths, directory: Path) -> None:
             tester(
                 bit(), step_way=bit(), step_bounds=bit(), step_slope=bit(), facet=Facet(product, distance),
                 walk=Walk(product), signs=Signs(), slope=Slope(widths.slope), index=bit(),
-                hit=Candidate(widths.numerator, widths.slope, 1),
+                hit=Candidate(widths.numerator, widths.slope, 1), staged=False,
             )
             for tester in (ray_tester, partial(fold_tester, fold=fold))
         ]  # fmt: skip
