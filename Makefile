@@ -14,7 +14,7 @@ ARGUMENTS = $(filter-out PYTHON3=% PYTHON=% VENV=%,$(MAKEOVERRIDES))
 play game: EXTRAS := play
 web: EXTRAS := $(if $(filter-out 0,$(MEASURE)),play$(comma)test,play)
 fit area tinytapeout: EXTRAS := fpga
-results: EXTRAS := fpga,docs$(if $(filter-out 0,$(SCALING)),$(comma)report)
+results: EXTRAS := fpga,docs
 bitstream: EXTRAS := fpga,play
 report: EXTRAS := fpga,report
 docs: EXTRAS := docs,play
