@@ -95,14 +95,18 @@ def beam_screens() -> str:
 def beam_latencies() -> str:
     """What the latency is made of."""
     config = configure(engine="beam")
-    turned, two_lanes = replace(config, turn=True), configure(engine="beam", pixels=2)
+    turned, two_lanes = replace(config, turn=True), configure(engine="beam", rows=180, scale=6, pixels=2)
     rows = [
         ["`ray_tester`, `fold_tester`", "whether the ray hits, all rectangles at once", fold_tester.LATENCY],
         ["`nearest_of_two`", f"a round; {config.rectangles} rectangles take {rounds(config)}", contest_latency(config)],
         ["`ray_fold`", "how the ray folds at its mirror", ray_fold.LATENCY],
         ["", "all of it, from a ray to its reflection", pass_latency(config)],
         ["", "the same where the camera turns, as each `fold_tester` registers its fold", pass_latency(turned)],
-        ["", "with two pixels a clock, as each `nearest_of_two` takes a cycle more too", pass_latency(two_lanes)],
+        [
+            "",
+            "at 1920x1080 with two pixels a clock, as each `nearest_of_two` takes a cycle more too",
+            pass_latency(two_lanes),
+        ],
         ["`colour_blend`", "the pixel's colour", blend_latency(config)],
         ["`hit_cells`", "with patterns, in which of its cells the nearest rectangle is hit", hit_cells.LATENCY],
     ]

@@ -34,6 +34,9 @@ UNIT_CELLS = {1: 559, 2: 607, 3: 647}
 GROUP_OVERHEAD = 4
 """Cycles a group pays once: the write to the line buffer with the reset of two cycles, idling, ray generation."""
 
+SLOW_HZ = 50_000_000
+"""A clock that designs meet on the chips of the boards without registers on long wires."""
+
 
 class ConfigurationError(UserError):
     """A configuration that cannot be built, with one line that says what, where and what to do."""
@@ -268,6 +271,11 @@ class Configuration:
         """The screen of this name, these rows and this scale, and with so many pixels a clock."""
         screen = self.facts.screens[self.screen, self.rows].scaled(self.scale)
         return screen if self.pixels == 1 else screen.paired()
+
+    @property
+    def has_long_wires(self) -> bool:
+        """Two lanes spread over a chip, and above `SLOW_HZ` a wire across it leaves no time for logic on its way."""
+        return self.pixels > 1 and self.screen_geometry.clock_hz > SLOW_HZ
 
     @property
     def groups(self) -> int:

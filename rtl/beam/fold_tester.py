@@ -11,11 +11,9 @@ LATENCY = 3
 
 
 def is_staged(config: Configuration) -> bool:
-    """What a tester chooses of the fold and of the slope is registered.
-
-    Where the camera turns all is wider, and where there are two lanes they spread over a chip.
-    """
-    return bool(config.turn) or config.pixels > 1
+    """What a tester chooses of the fold and of the slope is registered: where the camera turns, as all is wider, and
+    where wires are long."""
+    return bool(config.turn) or config.has_long_wires
 
 
 def fold_lead(config: Configuration) -> int:

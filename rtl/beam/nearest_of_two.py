@@ -11,11 +11,8 @@ MULTIPLIER_BITS = 18
 
 
 def contest_latency(config: Configuration) -> int:
-    """Cycles of a contest.
-
-    Two lanes fill a chip, and its multipliers are in columns: what they put out has a cycle for its way.
-    """
-    return 2 if config.pixels == 1 else 3
+    """Cycles of a contest; where wires are long, what the multipliers put out has one for its way."""
+    return 3 if config.has_long_wires else 2
 
 
 @block
