@@ -18,6 +18,9 @@ from raycaster.sim.job import Job
 from raycaster.sim.monitor import CLOCK_NS, Monitor
 from raycaster.sim.register_model import LiveScene
 
+PROGRESS_LINES = 16
+"""Lines after which progress is told: a file takes longer to open than a line to simulate."""
+
 RESET_CLOCKS = 4
 RESET_TOLERANCE = 8
 """Clocks from the end of reset that registers on the way to the video output may add."""
@@ -114,6 +117,6 @@ class Harness(Viewer):
         return frame
 
     def write_progress(self, visible_lines: int) -> None:
-        """Tell the parent, if it asked, how many lines of the picture have come."""
-        if self.job.progress:
+        """Tell the parent now and then, if it asked, how many lines of the picture have come."""
+        if self.job.progress and visible_lines % PROGRESS_LINES == 0:
             Path(self.job.progress).write_text(str(visible_lines))
