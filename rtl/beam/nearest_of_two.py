@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 """The nearer of two hits."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, concat, instances, intbv
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.widths import bit, unsigned
 
 MULTIPLIER_BITS = 18
-"""Of a factor that one hard multiplier takes; a denominator has at most two bits more."""
+"""Of a factor that one hard multiplier takes; a denominator has some more, which are added up."""
 
 
 def contest_latency(config: Configuration) -> int:
@@ -35,11 +35,12 @@ def nearest_of_two(clk, first, second, nearest, latency: int):
 
     if denominator_bits > MULTIPLIER_BITS:
         # What the bits above a multiplier's add is registered by itself, and joins the product in the second cycle.
-        more_bits = product_bits - MULTIPLIER_BITS
-        first_high, second_high = unsigned(2), unsigned(2)
-        first_once, second_once = unsigned(numerator_bits), unsigned(numerator_bits)
-        first_twice, second_twice = unsigned(numerator_bits + 1), unsigned(numerator_bits + 1)
-        first_more, second_more, first_top, second_top = (unsigned(more_bits) for _ in range(4))
+        high_bits = denominator_bits - MULTIPLIER_BITS
+        more_bits = numerator_bits + high_bits
+        first_high, second_high = unsigned(high_bits), unsigned(high_bits)
+        first_above, second_above, first_more, second_more, first_top, second_top = (
+            unsigned(more_bits) for _ in range(6)
+        )
         first_low, second_low = (unsigned(numerator_bits + MULTIPLIER_BITS) for _ in range(2))
 
         @always_comb
@@ -47,27 +48,31 @@ def nearest_of_two(clk, first, second, nearest, latency: int):
             first_high.next = first.denominator[:MULTIPLIER_BITS]
             second_high.next = second.denominator[:MULTIPLIER_BITS]
 
+        # A sum of what the bits weigh, as a product would take a multiplier.
         @always_comb
-        def mask():
-            first_once.next = 0
-            first_twice.next = 0
-            second_once.next = 0
-            second_twice.next = 0
-            if second_high[0]:
-                first_once.next = first.numerator
-            if second_high[1]:
-                first_twice.next = concat(first.numerator, False)
-            if first_high[0]:
-                second_once.next = second.numerator
-            if first_high[1]:
-                second_twice.next = concat(second.numerator, False)
+        def weigh_high_bits():
+            first_weight = intbv(0)[more_bits:]
+            second_weight = intbv(0)[more_bits:]
+            first_sum = intbv(0)[more_bits:]
+            second_sum = intbv(0)[more_bits:]
+            for place in range(high_bits):
+                first_weight[:] = 0
+                second_weight[:] = 0
+                if second_high[place]:
+                    first_weight[:] = first.numerator << place
+                if first_high[place]:
+                    second_weight[:] = second.numerator << place
+                first_sum[:] = first_sum + first_weight
+                second_sum[:] = second_sum + second_weight
+            first_above.next = first_sum
+            second_above.next = second_sum
 
         @always(clk.posedge)
         def multiply():
             first_low.next = first.numerator * second.denominator[MULTIPLIER_BITS:]
             second_low.next = second.numerator * first.denominator[MULTIPLIER_BITS:]
-            first_more.next = first_once + first_twice
-            second_more.next = second_once + second_twice
+            first_more.next = first_above
+            second_more.next = second_above
 
         @always_comb
         def add():

@@ -11,12 +11,14 @@ module fixed_rects #(
     parameter INDEX_BITS = 2, parameter ADDRESS_BITS = 5, parameter RECT_BITS = 71, parameter LATENCY = 1,
     parameter [31:0] CORNER_0_0 = 0, parameter [31:0] CORNER_1_0 = 0, parameter [31:0] SURFACE_0 = 0,
     parameter [31:0] CORNER_0_1 = 0, parameter [31:0] CORNER_1_1 = 0, parameter [31:0] SURFACE_1 = 0,
-    parameter [31:0] CORNER_0_2 = 0, parameter [31:0] CORNER_1_2 = 0, parameter [31:0] SURFACE_2 = 0
+    parameter [31:0] CORNER_0_2 = 0, parameter [31:0] CORNER_1_2 = 0, parameter [31:0] SURFACE_2 = 0,
+    parameter [31:0] CORNER_BITS = 0, parameter [31:0] SURFACE_BITS = 0
 ) (
     input clk, input reset, input [INDEX_BITS-1:0] index, input fetch,
     input write, input [1:0] slot, input [1:0] word, input commit, input go_live
 );
 localparam TABLE = 16;
+localparam [95:0] KEPT = {CORNER_BITS, CORNER_BITS, SURFACE_BITS};  // the bits that hold anything
 localparam [95:0] SCENE_0 = {CORNER_0_0, CORNER_1_0, SURFACE_0}, SCENE_1 = {CORNER_0_1, CORNER_1_1, SURFACE_1},
     SCENE_2 = {CORNER_0_2, CORNER_1_2, SURFACE_2};
 wire [95:0] words = slot == 0 ? SCENE_0 : slot == 1 ? SCENE_1 : SCENE_2;
@@ -79,19 +81,19 @@ always @* if (running) assert ((usable & live) == live);
 (* hierconn *) wire \memory.storing , \memory.rect_slot_0_i.shadow_usable , \memory.rect_slot_1_i.shadow_usable ,
     \memory.rect_slot_2_i.shadow_usable , \memory.rect_slot_0_i.pending_usable ,
     \memory.rect_slot_1_i.pending_usable , \memory.rect_slot_2_i.pending_usable ;
-fixed_rects_slot #(RECT_BITS, SCENE_0) slot_0 (
+fixed_rects_slot #(RECT_BITS, SCENE_0, KEPT) slot_0 (
     running, wrote, \memory.storing && \memory.latest_index == 0, \memory.latest_word , written_0, shadow[0],
     pending[0], live[0], \memory.written [0], \memory.shadow_words[0] , \memory.places[0] ,
     \memory.places[4] , \memory.places[8] , \memory.rect_slot_0_i.shadow , \memory.rect_slot_0_i.pending ,
     \memory.rect_slot_0_i.live , \memory.rect_slot_0_i.shadow_usable , \memory.rect_slot_0_i.pending_usable
 );
-fixed_rects_slot #(RECT_BITS, SCENE_1) slot_1 (
+fixed_rects_slot #(RECT_BITS, SCENE_1, KEPT) slot_1 (
     running, wrote, \memory.storing && \memory.latest_index == 1, \memory.latest_word , written_1, shadow[1],
     pending[1], live[1], \memory.written [1], \memory.shadow_words[1] , \memory.places[1] ,
     \memory.places[5] , \memory.places[9] , \memory.rect_slot_1_i.shadow , \memory.rect_slot_1_i.pending ,
     \memory.rect_slot_1_i.live , \memory.rect_slot_1_i.shadow_usable , \memory.rect_slot_1_i.pending_usable
 );
-fixed_rects_slot #(RECT_BITS, SCENE_2) slot_2 (
+fixed_rects_slot #(RECT_BITS, SCENE_2, KEPT) slot_2 (
     running, wrote, \memory.storing && \memory.latest_index == 2, \memory.latest_word , written_2, shadow[2],
     pending[2], live[2], \memory.written [2], \memory.shadow_words[2] , \memory.places[2] ,
     \memory.places[6] , \memory.places[10] , \memory.rect_slot_2_i.shadow , \memory.rect_slot_2_i.pending ,
@@ -106,7 +108,7 @@ always @* cover (known && fetch && index == 0 && before == 2);
 endmodule
 
 // Of one slot: what is written of it, and each copy that is the scene's, sorted by another sorter here.
-module fixed_rects_slot #(parameter RECT_BITS = 71, parameter [95:0] SCENE = 0) (
+module fixed_rects_slot #(parameter RECT_BITS = 71, parameter [95:0] SCENE = 0, parameter [95:0] KEPT = 0) (
     input running, input wrote, input storing, input [95:0] latest, input [2:0] words, input shadow, input pending,
     input live, input written, input [95:0] kept,
     input [RECT_BITS-1:0] place_0, input [RECT_BITS-1:0] place_1, input [RECT_BITS-1:0] place_2,
@@ -119,7 +121,7 @@ wire [2:0] right = {place_2 == sorted, place_1 == sorted, place_0 == sorted};
 always @* if (running) begin
     assert (at_shadow < 3 && at_pending < 3 && at_live < 3);
     assert (written == (words != 0));
-    if (written) assert (kept == (SCENE & mask));
+    if (written) assert (kept == (SCENE & KEPT & mask));
     if (storing) assert (wrote && latest == kept);
     else if (shadow) assert (right[at_shadow] && shadow_usable);
     if (pending) assert (right[at_pending] && pending_usable);

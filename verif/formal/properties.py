@@ -17,6 +17,7 @@ from raycaster.rtl.common.widths import (
     BASIS_BITS,
     COORDINATE_BITS,
     DISTANCE_BITS,
+    REFLECTION_BITS,
     WIDE_BITS,
     bits_for,
     exact_slope_bits,
@@ -35,6 +36,7 @@ from raycaster.rtl.common.widths import (
 )
 from raycaster.rtl.engine.colour_blend import blend_latency, mixes
 from raycaster.rtl.engine.rect_setup import LATENCY as SETUP_LATENCY
+from raycaster.rtl.scene.written_rect import CORNER, surface_mask
 from raycaster.scene import Camera, Rectangle, Scene
 from raycaster.screens import Screen, Span
 from raycaster.verif.formal.prover import BridgeWidths, FixedTable, FoldWidths, HostWidths, Property, TesterWidths
@@ -158,6 +160,7 @@ def _order(config: Configuration, small: bool) -> Property:
             "STEPS": config.slot_cycles,
             "SLOT_BITS": bits_for(config.slot_cycles),
             "REFLECTIONS": config.reflections,
+            "REFLECTION_BITS": REFLECTION_BITS,
             "RESULT_LATENCY": config.pass_latency,
             "RUN_BOUND": bound,
             "CULLING": int(config.culling),
@@ -605,13 +608,13 @@ def _shares(config: Configuration, small: bool) -> Property:
 
 
 def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: int, small: bool) -> Property:
-    widths = FoldWidths(coordinate_bits, slope_bits, mirrors)
-    turned = "" if view_distance else ", turned"
+    turned = not view_distance
+    widths = FoldWidths(coordinate_bits, slope_bits, mirrors, staged=turned)
     return Property(
         "fold-exact",
         "a ray hits a rectangle where that from the mirrored eye, by a division, is within it and beyond the mirror",
         widths,
-        f"{coordinate_bits} and {slope_bits} bits, {mirrors} mirrors{turned}",
+        f"{coordinate_bits} and {slope_bits} bits, {mirrors} mirrors{', turned' if turned else ''}",
         ("ray_fold", "ray_tester", "fold_tester"),
         {
             "COORDINATE_BITS": widths.coordinate,
@@ -666,6 +669,8 @@ def _fixed(engine: str, alike: bool, small: bool) -> Property:
             "ADDRESS_BITS": address_bits(general.table),
             "RECT_BITS": len(rect_of(fixed).word),
             "LATENCY": fixed.facts.rect_latency,
+            "CORNER_BITS": CORNER.implemented,
+            "SURFACE_BITS": surface_mask(general),
             **parameters,
         },
         induction=3,

@@ -59,7 +59,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 0
     attempt = partial(_prove, output=arguments.output, depth=arguments.depth, timeout=arguments.timeout)
     with executors(arguments.scheduler, arguments.jobs) as make_executor:
-        results = run_jobs("proofs", attempt, proofs, make_executor, console)
+        # The longest are at the end of the list, and come first: else one of them would run alone at last.
+        results = run_jobs("proofs", attempt, proofs[::-1], make_executor, console)[::-1]
     console.print(_table(results))
     figures = {"proved": sum(one.proved for one in results), "proofs": len(results)}
     keep(arguments, figures, {"small": arguments.small}, left_out="all that no property names")

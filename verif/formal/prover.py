@@ -62,6 +62,8 @@ class FoldWidths:
     coordinate: int
     slope: int
     mirrors: int
+    staged: bool
+    """As `raycaster.rtl.beam.fold_tester.is_staged`."""
 
     @property
     def walk(self) -> int:
@@ -277,7 +279,7 @@ def _convert_fold(widths: FoldWidths, directory: Path) -> None:
             tester(
                 bit(), step_way=bit(), step_bounds=bit(), step_slope=bit(), facet=Facet(product, distance),
                 walk=Walk(product), signs=Signs(), slope=Slope(widths.slope), index=bit(),
-                hit=Candidate(widths.numerator, widths.slope, 1), staged=False,
+                hit=Candidate(widths.numerator, widths.slope, 1), staged=widths.staged,
             )
             for tester in (ray_tester, partial(fold_tester, fold=fold))
         ]  # fmt: skip

@@ -15,9 +15,10 @@
 
 module ray_order #(
     parameter RECTANGLES = 2, parameter INDEX_BITS = 1, parameter STEPS = 9, parameter SLOT_BITS = 4,
-    parameter REFLECTIONS = 1, parameter RESULT_LATENCY = 6, parameter RUN_BOUND = 50, parameter CULLING = 1
+    parameter REFLECTIONS = 1, parameter REFLECTION_BITS = 3, parameter RESULT_LATENCY = 6, parameter RUN_BOUND = 50,
+    parameter CULLING = 1
 ) (
-    input clk, input reset, input enable, input [RECTANGLES-1:0] usable, input [1:0] reflections,
+    input clk, input reset, input enable, input [RECTANGLES-1:0] usable, input [REFLECTION_BITS-1:0] reflections,
     input [RECTANGLES-1:0] may_hit, input any_towards, input any_alive
 );
 localparam DIVIDES = STEPS > 1;
@@ -86,7 +87,7 @@ reg known = 0;
 reg started;
 reg [TIME_BITS-1:0] cycles;
 reg [RECTANGLES-1:0] last_usable, last_may_hit;
-reg [1:0] last_reflections;
+reg [REFLECTION_BITS-1:0] last_reflections;
 reg last_any_towards;
 always @(posedge clk) begin
     known <= 1;
@@ -110,7 +111,7 @@ end
 // Visits are starts on the tagged plane; place counts cycles.
 reg [RECTANGLES-1:0] visited;
 reg tracing, lost;
-reg [1:0] rays;
+reg [REFLECTION_BITS-1:0] rays;
 reg [TIME_BITS-1:0] place;
 wire [RECTANGLES-1:0] tagged = {{RECTANGLES-1{1'b0}}, 1'b1} << tag;
 wire [RECTANGLES-1:0] wanted = rays == 0 ? usable & may_hit : usable;
@@ -209,7 +210,7 @@ function [5:0] count(input [RECTANGLES-1:0] mask);
     end
 endfunction
 wire [TIME_BITS-1:0] pass = usable == 0 ? 2 : count(usable) * STEPS + RESULT_LATENCY;
-wire [TIME_BITS-1:0] rays_cycles = rays[1] ? (rays[0] ? 3 * pass : 2 * pass) : rays[0] ? pass : 0;
+wire [TIME_BITS-1:0] rays_cycles = (rays[0] ? pass : 0) + (rays[1] ? 2 * pass : 0) + (rays[2] ? 4 * pass : 0);
 reg some_early, some_lost;
 wire spared = some_early || some_lost || (usable & ~may_hit) != 0;
 reg was_done;
@@ -226,7 +227,7 @@ end
 
 // Counters in range.
 (* hierconn *) wire [SLOT_BITS-1:0] \engine.dut.ray_sequencer_i.rect_sequencer_i.slot ;
-(* hierconn *) wire [1:0] \engine.dut.ray_sequencer_i.bounce ;
+(* hierconn *) wire [REFLECTION_BITS-1:0] \engine.dut.ray_sequencer_i.bounce ;
 always @* if (known && tracing) begin
     assert (\engine.dut.ray_sequencer_i.rect_sequencer_i.slot < STEPS);
     assert (\engine.dut.ray_sequencer_i.bounce <= reflections);

@@ -54,6 +54,7 @@ FIRST_LANE = chosen("walked-products", "beam-vga180-s6-u2-r2-m1-c8 lane 0")
 SECOND_LANE = chosen("walked-products", "beam-vga180-s6-u2-r2-m1-c8 lane 1")
 TURNED_WALK = chosen("turned-walks", "beam-vga240-s2-u1-r2-m1-c8-turn")
 CONTEST = chosen("contest-products", "beam-vga240-s2-u1-r2-m4-c8-turn-patterns")
+WIDE_CONTEST = chosen("contest-products", "beam-vga180-s6-u2-r2-m1-c8-turn")
 LATE_CONTEST = chosen("contest-products", "beam-vga180-s6-u2-r2-m1-c8")
 HALF = chosen("blend-exact", "beam-vga240-s2-u1-r2-m2-c8")
 MIXED = chosen("blend-exact", "beam-vga240-s2-u1-r2-m1-c8-materials")
@@ -72,7 +73,7 @@ FAULTS = {
     "colour-in-blanking": (TIMING, "video_generator", "if ((x >= 0) && (y >= 0)) begin", "if (x >= 0) begin"),
     "colour-between-pixels": (TIMING, "video_generator", "vga_r <= pixel_red;\n",
                               "vga_r <= pixel_red;\n end if (x >= 0) begin\n"),
-    "a-pair-announced-late": (PAIRS, "video_generator", "(x >= -20)", "(x >= -19)"),
+    "a-pair-announced-late": (PAIRS, "video_generator", "(x >= -21)", "(x >= -20)"),
     "start-screen-late": (TIMING, "video_generator", "(y == -2)", "(y == -1)"),
     "start-row-each-line": (TIMING, "video_generator", " && (line_repeat == 0)", ""),
     "wait-in-traffic": (AGENT, "avalon_interface", "wait_request <= 1'b0;", "wait_request <= avs_s0_write;"),
@@ -242,8 +243,10 @@ FAULTS = {
     "turned-walk-late": (TURNED_WALK, "slope_walker", "slope_z <= 0;", "slope_z <= slope_z;"),
     "the-second-of-equals": (CONTEST, "nearest_of_two", "(second_product < first_product)",
                              "(second_product <= first_product)"),
-    "high-bits-crossed": (CONTEST, "nearest_of_two", "if (second_high[0]) begin", "if (first_high[1]) begin"),
+    "high-bits-crossed": (CONTEST, "nearest_of_two", "if (second_high[place]) begin",
+                          "if (first_high[place]) begin"),
     "high-part-a-bit-short": (CONTEST, "nearest_of_two", "reg [12:0] second_more;", "reg [10:0] second_more;"),
+    "highest-bit-lost": (WIDE_CONTEST, "nearest_of_two", "place<3;", "place<2;"),
     "a-miss-wins": (CONTEST, "nearest_of_two", "take_second = second_1_valid && ", "take_second = "),
     "late-product-of-the-other": (LATE_CONTEST, "nearest_of_two", "first_way <= first_product;",
                                   "first_way <= second_product;"),
@@ -281,7 +284,7 @@ FAULTS = {
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
      FINDER, DEPTH, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, TURNED_WALK, CONTEST,
-     HALF, MIXED, SHARES, HALVES, FOLD, TABLE],
+     WIDE_CONTEST, HALF, MIXED, SHARES, HALVES, FOLD, TABLE],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):

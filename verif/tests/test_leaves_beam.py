@@ -135,6 +135,7 @@ by_screen = pytest.mark.parametrize(
         beam_config(reflections=2, rows=240, turn=True, materials=True, patterns=True),
         beam_config(reflections=2, screen="tiny", turn=True),
         beam_config(reflections=1, rows=180, scale=6, pixels=2),
+        beam_config(reflections=1, rows=180, scale=6, pixels=2, turn=True),
         beam_config(reflections=1, screen="tiny", pixels=2, turn=True),
     ],
     ids=config_id,
