@@ -323,6 +323,8 @@ def _make_model(proof: Property, directory: Path) -> None:
     values = " ".join(f"-chparam {name} {value}" for name, value in proof.parameters.items())
     cut = [f"blackbox {' '.join(proof.cut)}"] if proof.cut else []
     script = [
+        # Of a name that a wrapper peeks at in fewer bits than it has, it would say something else than it reads.
+        'logger -werror "Widening signal"',
         f"read_verilog {sources}",
         f"read_verilog -formal {wrapper}.v",
         *cut,

@@ -5,10 +5,12 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from raycaster.errors import UserError
 from raycaster.verif.formal.properties import PROPERTIES
 from raycaster.verif.formal.prover import Property, missing_tools, prove
 
@@ -307,6 +309,13 @@ def test_fault_is_found(fault, output):
     result = prove(proof, output / "proof", timeout=100, change=plant)
     assert result.outcome in {"base failed", "step failed", "reach failed"}
     assert result.trace or result.outcome == "reach failed"
+
+
+def test_a_name_peeked_at_in_too_few_bits_is_refused(output):
+    """What a wrapper then says would be of part of the signal."""
+    narrow = replace(ORDER, parameters={**ORDER.parameters, "REFLECTION_BITS": 2})
+    with pytest.raises(UserError, match=r"Widening signal ray_order\.engine\.dut\.ray_sequencer_i\.bounce"):
+        prove(narrow, output / "proof")
 
 
 def test_every_property_has_a_fault():
