@@ -63,6 +63,9 @@ class Explanation(BaseModel):
     code: str | None = None
     """A regular expression, searched for in `Point.what`."""
 
+    engine: str | None = None
+    """A regular expression for the engine, where not every one that has the module has the hole."""
+
     reason: str
 
     @model_validator(mode="after")
@@ -109,7 +112,7 @@ class Judgement:
     explained: dict[Point, Explanation]
     unexplained: list[Point]
     stale: list[str]
-    """Explanations, or bits of them, of what was seen or does not exist."""
+    """Explanations, or bits of them, of what was seen or does not exist in the modules that they name."""
 
 
 def read_counts(path: Path, leave_out: Iterable[str] = ()) -> Counter[Point]:
@@ -142,20 +145,26 @@ def _source(path: str) -> list[str]:
     return Path(path).read_text().splitlines()
 
 
-def load_explanations(path: Path = HOLES) -> list[Explanation]:
-    """Read the explanations.
+def load_explanations(engine: str, path: Path = HOLES) -> list[Explanation]:
+    """Read the explanations of an engine's holes.
 
     Raises:
         UserError: the file is not as it should be.
     """
     try:
-        return [Explanation(**table) for table in tomllib.loads(path.read_text())["hole"]]
+        every = [Explanation(**table) for table in tomllib.loads(path.read_text())["hole"]]
+        return [one for one in every if one.engine is None or re.fullmatch(one.engine, engine)]
     except (ValidationError, tomllib.TOMLDecodeError, KeyError) as error:
         raise UserError(f"{path}: {error}") from None
 
 
 def judge(counts: Mapping[Point, int], explanations: Sequence[Explanation]) -> Judgement:
-    """Hold the points that were never seen against their explanations; the first that fits counts."""
+    """Hold the points that were never seen against their explanations; the first that fits counts.
+
+    Explanations of modules that the design does not have are left alone.
+    """
+    modules = {point.module for point in counts}
+    explanations = [one for one in explanations if any(re.fullmatch(one.module, module) for module in modules)]
     explained: dict[Point, Explanation] = {}
     unexplained = []
     used: dict[Explanation, set[int | None]] = {explanation: set() for explanation in explanations}

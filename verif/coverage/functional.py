@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Functional coverage: which kinds of intersection the seed engine's units found, counted in cocotb-coverage's bins.
+"""Functional coverage: which kinds of intersection an engine's units found, counted in cocotb-coverage's bins.
 
-A probe in each unit counts what is offered to its z buffer, while the benches run. What culling gives up early is not
-offered, and not counted.
+A probe in each unit counts what is offered to its z buffer, or nearest hit, while the benches run. What culling gives
+up early is not offered, and not counted.
 """
 
 from __future__ import annotations
@@ -14,67 +14,98 @@ from pathlib import Path
 import numpy as np
 from cocotb_coverage.coverage import CoverCross, CoverPoint, coverage_db, coverage_section
 
-PROBE = Path(__file__).with_name("intersection_probe.v")
-"""Verilog beside the design's, which writes what `read_bins` reads."""
+HERE = Path(__file__).parent
+PROBES = {engine: (HERE / "intersection_counter.v", HERE / f"{engine}_probe.v") for engine in ("seed", "exact")}
+"""By engine, Verilog beside the design's, which writes what `read_bins` reads."""
 
+PROBE_MODULES = "intersection_counter", "intersection_probe"
+
+_FOURTH = {"seed": "overflow", "exact": "before mirror"}
 POINTS = {
-    "axis": ("x", "y", "z"),
-    "slope": ("negative", "zero", "positive"),
-    # In this order of precedence: parallel to the plane, from a point on it, running away from it, a quotient on u or v
-    # that is too large, outside the bounds, exactly on one of them, inside.
-    "result": ("parallel", "on plane", "behind", "overflow", "miss", "edge", "hit"),
-    # What the z buffer makes of a hit.
-    "rank": ("none", "first", "nearer", "tie", "farther"),
-    "ray": ("primary", "first", "second"),
+    engine: {
+        "axis": ("x", "y", "z"),
+        "slope": ("negative", "zero", "positive"),
+        # In this order of precedence: parallel to the plane, from a point on it, running away from it; of the seed
+        # engine a quotient on u or v that is too large, of the exact engine between the mirrored eye and the mirror, or
+        # on an axis that was met there, else a hit; outside the bounds, exactly on one of them, inside.
+        "result": ("parallel", "on plane", "behind", fourth, "miss", "edge", "hit"),
+        # What is made of a hit.
+        "rank": ("none", "first", "nearer", "tie", "farther"),
+        "ray": ("primary", "first", "second"),
+    }
+    for engine, fourth in _FOURTH.items()
 }
-"""The points that are crossed, and the bins of each: of the rectangle's plane, of the ray along that axis, ..."""
+"""By engine, the points that are crossed, and the bins of each: of the rectangle's plane, of the ray along it, ..."""
 
+SHAPE = tuple(map(len, POINTS["seed"].values()))
 CROSS = "raycaster.intersection"
 HITS = ("edge", "hit")
 Bin = tuple[str, str, str, str, str]
 Pattern = tuple[str | None, str | None, str | None, str | None, str | None]
 """A bin, where None stands for every value."""
 
-IMPOSSIBLE: dict[str, tuple[Pattern, ...]] = {
+_EVERYWHERE: dict[str, tuple[Pattern, ...]] = {
     "without a slope along its axis a plane is never reached": tuple(
-        (None, "zero", result, None, None) for result in POINTS["result"] if result != "parallel"
+        (None, "zero", result, None, None) for result in POINTS["seed"]["result"] if result != "parallel"
     ),
     "with a slope along its axis a ray is not parallel to a plane": (
         (None, "negative", "parallel", None, None),
         (None, "positive", "parallel", None, None),
     ),
-    "the z buffer ranks hits": tuple((None, None, result, "none", None) for result in HITS),
-    "the z buffer ranks nothing but hits": tuple(
+    "hits are ranked": tuple((None, None, result, "none", None) for result in HITS),
+    "nothing but hits is ranked": tuple(
         (None, None, result, rank, None)
-        for result in POINTS["result"]
+        for result in POINTS["seed"]["result"]
         if result not in HITS
-        for rank in POINTS["rank"]
+        for rank in POINTS["seed"]["rank"]
         if rank != "none"
     ),
     "the slope along x is 100 in magnitude, never 0": (("x", "zero", None, None, None),),
     "primary rays run along positive x": (("x", "negative", None, None, "primary"),),
-    "a group's primary rays run one way from one point; a plane that none runs towards is given up": (
-        (None, None, "on plane", None, "primary"),
-        (None, None, "behind", None, "primary"),
-    ),
-    "a group's rays have the row's slope along z, so a plane that one is parallel to is given up": (
-        ("z", None, "parallel", None, None),
-    ),
 }
-"""Bins that no ray can hit, by the reason."""
+IMPOSSIBLE: dict[str, dict[str, tuple[Pattern, ...]]] = {
+    "seed": {
+        **_EVERYWHERE,
+        # Its control ends a rectangle that no ray of the group runs towards.
+        "a group's primary rays run one way from one point; a plane that none runs towards is given up": (
+            (None, None, "on plane", None, "primary"),
+            (None, None, "behind", None, "primary"),
+        ),
+        "a group's rays have the row's slope along z, so a plane that one is parallel to is given up": (
+            ("z", None, "parallel", None, None),
+        ),
+    },
+    "exact": {
+        **{
+            reason: tuple(
+                (axis, slope, _FOURTH["exact"] if result == _FOURTH["seed"] else result, rank, ray)
+                for axis, slope, result, rank, ray in patterns
+            )
+            for reason, patterns in _EVERYWHERE.items()
+        },
+        "primary rays have left no mirror": ((None, None, _FOURTH["exact"], None, "primary"),),
+    },
+}
+"""By engine, bins that no ray can hit, by the reason; with culling."""
 
 
 class FunctionalCoverage:
     """The bins, empty at first. cocotb-coverage keeps them in one place a process, so a new one replaces the last."""
 
-    def __init__(self):
+    def __init__(self, engine: str = "seed"):
+        """Declare the bins.
+
+        Args:
+            engine: one of `POINTS`.
+        """
+        self.points, self._impossible = POINTS[engine], IMPOSSIBLE[engine]
         coverage_db.clear()
-        names = list(POINTS)
-        points = [CoverPoint(f"raycaster.{name}", vname=name, bins=list(POINTS[name])) for name in names]
+        names = list(self.points)
+        points = [CoverPoint(f"raycaster.{name}", vname=name, bins=list(self.points[name])) for name in names]
         cross = CoverCross(
             CROSS,
             items=[f"raycaster.{name}" for name in names],
-            ign_bins=[pattern for patterns in IMPOSSIBLE.values() for pattern in patterns],
+            ign_bins=[pattern for patterns in self._impossible.values() for pattern in patterns],
         )
 
         @coverage_section(*points, cross)
@@ -94,13 +125,13 @@ class FunctionalCoverage:
         """
         for place in np.argwhere(counts):
             times = int(counts[tuple(place)])
-            bins = tuple(values[index] for values, index in zip(POINTS.values(), place, strict=True))
+            bins = tuple(values[index] for values, index in zip(self.points.values(), place, strict=True))
             if bins not in self.bins:
                 raise ValueError(f"{', '.join(bins)}: is said to be impossible, and came {times} times")
             # cocotb-coverage counts one at a time; the rest of them is added to what it counted.
             self._sample(*bins)
             self.bins[bins] += times - 1
-            for name, value in zip(POINTS, bins, strict=True):
+            for name, value in zip(self.points, bins, strict=True):
                 coverage_db[f"raycaster.{name}"].detailed_coverage[value] += times - 1
 
     @property
@@ -116,10 +147,10 @@ class FunctionalCoverage:
     @property
     def ignored(self) -> dict[str, int]:
         """How many bins of the cross are impossible, by the reason; one with several counts at the first."""
-        found = dict.fromkeys(IMPOSSIBLE, 0)
-        for place in np.ndindex(*(len(values) for values in POINTS.values())):
-            bins = [values[index] for values, index in zip(POINTS.values(), place, strict=True)]
-            for reason, patterns in IMPOSSIBLE.items():
+        found = dict.fromkeys(self._impossible, 0)
+        for place in np.ndindex(SHAPE):
+            bins = [values[index] for values, index in zip(self.points.values(), place, strict=True)]
+            for reason, patterns in self._impossible.items():
                 if any(all(want in (None, has) for want, has in zip(p, bins, strict=True)) for p in patterns):
                     found[reason] += 1
                     break
@@ -130,7 +161,7 @@ class FunctionalCoverage:
         coverage_db.export_to_xml(str(path.with_suffix(".xml")))
         cross = coverage_db[CROSS]
         result = {
-            "points": list(POINTS),
+            "points": list(self.points),
             "covered": cross.coverage,
             "bins": cross.size,
             "ignored": self.ignored,
@@ -146,11 +177,10 @@ def read_bins(directory: Path) -> np.ndarray:
         directory: in which it ran.
 
     Returns:
-        int64, with an axis for each of `POINTS`, in order.
+        int64, with an axis for each of the points, in order.
     """
-    shape = tuple(map(len, POINTS.values()))
-    counts = np.zeros(np.prod(shape), dtype=np.int64)
+    counts = np.zeros(np.prod(SHAPE), dtype=np.int64)
     for path in directory.glob("bins.*"):
         place, times = np.array(path.read_text().split(), dtype=np.int64).reshape(-1, 2).T
         np.add.at(counts, place, times)
-    return counts.reshape(shape)
+    return counts.reshape(SHAPE)

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -13,17 +15,26 @@ import pytest
 from conftest import BUILD, SMALL_SCENE
 from rich.console import Console
 
-from raycaster.configuration import COORDINATE_BITS, Configuration, configure
+from raycaster.configuration import Configuration, configure
 from raycaster.errors import UserError
-from raycaster.golden import seed_engine
+from raycaster.golden import exact, seed_engine
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.scene import Scene, dump_scene, load_scene
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import build_model, convert, run_bench
 from raycaster.verif.coverage.code import Explanation, Judgement, describe, judge, load_explanations, read_counts
-from raycaster.verif.coverage.functional import HITS, IMPOSSIBLE, POINTS, PROBE, FunctionalCoverage, read_bins
+from raycaster.verif.coverage.functional import (
+    HITS,
+    IMPOSSIBLE,
+    POINTS,
+    PROBES,
+    SHAPE,
+    FunctionalCoverage,
+    read_bins,
+)
 from raycaster.verif.coverage.measure import (
+    DESIGNS,
     EXTRA_SCENE,
     FLAGS,
     Run,
@@ -143,16 +154,13 @@ def test_runs_add_up(counts, tmp_path):
 def judge_code(judgement: Judgement) -> int:
     """The exit code of a command whose bins are all hit."""
     functional = FunctionalCoverage()
-    functional.add(np.array([reachable(functional, place) for place in np.ndindex(shape())]).reshape(shape()))
+    functional.add(np.array([reachable(functional, place) for place in np.ndindex(SHAPE)]).reshape(SHAPE))
     return verdict(judgement, functional, [])
 
 
-def shape() -> tuple[int, ...]:
-    return tuple(map(len, POINTS.values()))
-
-
 def reachable(functional: FunctionalCoverage, place: tuple[int, ...]) -> int:
-    return tuple(values[index] for values, index in zip(POINTS.values(), place, strict=True)) in functional.bins
+    bins = tuple(values[index] for values, index in zip(functional.points.values(), place, strict=True))
+    return bins in functional.bins
 
 
 @pytest.mark.parametrize(
@@ -163,12 +171,24 @@ def test_bad_explanations_are_refused(tmp_path, text):
     path = tmp_path / "holes.toml"
     path.write_text(text)
     with pytest.raises(UserError, match=r"holes\.toml"):
-        load_explanations(path)
+        load_explanations("seed", path)
 
 
 def test_the_explanations_can_be_read():
     """All of them have a reason."""
-    assert all(len(explanation.reason) > 5 for explanation in load_explanations())
+    every = {one for engine in DESIGNS for one in load_explanations(engine)}
+    assert all(len(explanation.reason) > 5 for explanation in every)
+
+
+def test_explanations_are_of_modules_that_are_there(output):
+    """Of a design without the module an explanation says nothing, so each must have one that it speaks of."""
+    for engine, design in DESIGNS.items():
+        modules = {path.stem for path in convert(design, output)}
+        mine = [one for one in load_explanations(engine) if one.engine is not None]
+        assert [one for one in mine if not any(re.fullmatch(one.module, module) for module in modules)] == []
+    modules = {path.stem for design in DESIGNS.values() for path in convert(design, output)}
+    every = {one for engine in DESIGNS for one in load_explanations(engine)}
+    assert [one for one in every if not any(re.fullmatch(one.module, module) for module in modules)] == []
 
 
 def test_verilator_counts(output):
@@ -201,41 +221,62 @@ def counted(scene: Scene, config: Configuration) -> np.ndarray:
     rectangles = Rectangles.of_scene(scene)
     slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
     position, background = scene.camera.position, scene.background
-    traced = seed_engine.trace(
-        rectangles, position, background, slopes, scene.reflections, fraction_bits=config.fraction_bits, keep=True
-    )
-    counts = np.zeros(np.prod(shape()), dtype=np.int64)
+    divides = config.facts.divides
+    options = {"fraction_bits": config.fraction_bits} if divides else {}
+    trace = seed_engine.trace if divides else exact.trace
+    traced = trace(rectangles, position, background, slopes, scene.reflections, keep=True, **options)
+    counts = np.zeros(np.prod(SHAPE), dtype=np.int64)
     for number, bounce in enumerate(traced.bounces):
         # Those that have hit nothing before go on missing, and nothing of them is seen.
         alive = bounce.alive
-        nearest = np.full(alive.sum(), 1 << (COORDINATE_BITS + config.fraction_bits), dtype=np.int64)
-        found = np.zeros(alive.sum(), dtype=bool)
+        depths = [Fraction(1 << 40)] * alive.sum()
+        nearest, found = np.array(depths, dtype=object), np.zeros(alive.sum(), dtype=bool)
         for index in np.flatnonzero(rectangles.visible):
             axis = rectangles.axes[index]
+            extent = list(OTHER_AXES[axis])
             numerator, slope = bounce.numerators[index][alive], bounce.denominators[index][alive]
             hit, depth, point = (values[index][alive] for values in (bounce.hits, bounce.depths, bounce.points))
-            bounds = np.stack([rectangles.low[index], rectangles.high[index]]) << config.fraction_bits
-            extent = list(OTHER_AXES[axis])
-            on_bound = (point[:, None, extent] == bounds[:, extent]).any(axis=(1, 2))
+            bounds = np.stack([rectangles.low[index], rectangles.high[index]])[:, extent]
+            if divides:
+                bounds = np.broadcast_to(bounds << config.fraction_bits, (len(slope), *bounds.shape))
+                behind, fourth = np.sign(numerator) != np.sign(slope), ~bounce.valid[index][alive].all(axis=1)
+            else:
+                # Points and depths are in fractions of the slope; n has its sign already.
+                bounds = bounds * slope[:, None, None]
+                within = ((bounds[:, 0] <= point[:, extent]) & (point[:, extent] <= bounds[:, 1])).all(axis=1)
+                behind, fourth = numerator < 0, within & ~hit
+                depth = np.array([Fraction(int(n), int(e) or 1) for n, e in zip(depth, slope, strict=True)])
+            on_bound = (point[:, None, extent] == bounds).any(axis=(1, 2))
+            signs = np.sign(bounce.slopes[alive, axis])
             result = np.select(
-                [slope == 0, numerator == 0, np.sign(numerator) != np.sign(slope)],
-                [0, 1, 2],
-                np.select([~bounce.valid[index][alive].all(axis=1), ~hit, on_bound], [3, 4, 5], 6),
+                [slope == 0, numerator == 0, behind], [0, 1, 2], np.select([fourth, ~hit, on_bound], [3, 4, 5], 6)
             )
             rank = np.select([~hit, ~found, depth < nearest, depth == nearest], [0, 1, 2, 3], 4)
-            places = np.ravel_multi_index((axis, np.sign(slope) + 1, result, rank, number), shape())
+            places = np.ravel_multi_index((axis, signs + 1, result, rank, number), SHAPE)
             counts += np.bincount(places, minlength=counts.size)
             nearest = np.where(hit, np.minimum(nearest, depth), nearest)
             found |= hit
-    return counts.reshape(shape())
+    return counts.reshape(SHAPE)
 
 
-@pytest.mark.parametrize("options", [{}, {"culling": False}, {"culling": False, "fraction_bits": 3}])
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"culling": False},
+        {"culling": False, "fraction_bits": 3},
+        {"engine": "exact", "culling": True},
+        {"engine": "exact", "culling": False},
+    ],
+)
 def test_the_hardware_counts_its_intersections(output, options):
     """Without culling as golden computes them; with it all hits, fewer of what does not hit, and nothing impossible."""
-    config = replace(SMALL, **options)
-    model = build_model(config, build=BUILD, verilog=[*convert(config, BUILD), PROBE])
-    hits, total = [POINTS["result"].index(name) for name in HITS], 0
+    config = replace(SMALL, **options) if "engine" not in options else configure(
+        screen="tiny", units=16, rectangles=6, reflections=2, allow_underrun=True, **options
+    )  # fmt: skip
+    model = build_model(config, build=BUILD, verilog=[*convert(config, BUILD), *PROBES[config.engine]])
+    results = POINTS[config.engine]["result"]
+    hits, total = [results.index(name) for name in HITS], 0
     for seed in range(4):
         scene = random_scene(seed, config.rectangles, config.reflections)
         directory = output / f"{config.name}-{seed}"
@@ -247,7 +288,7 @@ def test_the_hardware_counts_its_intersections(output, options):
         if config.culling:
             assert np.array_equal(found[:, :, hits], expected[:, :, hits]), f"seed {seed}"
             assert (found <= expected).all() and found.sum() < expected.sum(), f"seed {seed}"
-            FunctionalCoverage().add(found)
+            FunctionalCoverage(config.engine).add(found)
         else:
             assert np.array_equal(found, expected), f"seed {seed}"
         total += found[:, :, hits].sum()
@@ -257,9 +298,9 @@ def test_the_hardware_counts_its_intersections(output, options):
 def test_bins_that_were_not_hit_are_reported(tmp_path, capsys):
     """A primary ray only hits primary bins; every other possible one is a hole, and makes the command fail."""
     functional = FunctionalCoverage()
-    counts = np.zeros(shape(), np.int64)
+    counts = np.zeros(SHAPE, np.int64)
     bins = "z", "negative", "hit", "first", "primary"
-    counts[tuple(values.index(name) for values, name in zip(POINTS.values(), bins, strict=True))] = 7
+    counts[tuple(values.index(name) for values, name in zip(POINTS["seed"].values(), bins, strict=True))] = 7
     functional.add(counts)
     functional.add(counts)
     holes = set(functional.holes)
@@ -271,8 +312,8 @@ def test_bins_that_were_not_hit_are_reported(tmp_path, capsys):
     functional.export(tmp_path / "functional")
     written = json.loads((tmp_path / "functional.json").read_text())
     assert written["bins"] - written["covered"] == len(holes)
-    assert written["bins"] + sum(written["ignored"].values()) == np.prod(shape())
-    assert all(written["ignored"][reason] > 0 for reason in IMPOSSIBLE)
+    assert written["bins"] + sum(written["ignored"].values()) == np.prod(SHAPE)
+    assert all(written["ignored"][reason] > 0 for reason in IMPOSSIBLE["seed"])
     cross = ElementTree.parse(tmp_path / "functional.xml").find("raycaster/intersection")
     assert cross.get("coverage") == str(written["covered"]) == "1"
     points = ElementTree.parse(tmp_path / "functional.xml").find("raycaster/axis")
@@ -281,7 +322,7 @@ def test_bins_that_were_not_hit_are_reported(tmp_path, capsys):
 
 def test_what_is_declared_impossible_must_not_come():
     """It would mean that the list is wrong."""
-    counts = np.zeros(shape(), np.int64)
+    counts = np.zeros(SHAPE, np.int64)
     counts[0, 1, 0, 0, 0] = 3
     with pytest.raises(ValueError, match="x, zero, parallel, none, primary: is said to be impossible, and came 3"):
         FunctionalCoverage().add(counts)
@@ -291,5 +332,5 @@ def test_the_extra_scene_has_what_it_is_for():
     """Ties on an edge, in a second reflection along negative x."""
     scene = load_scene(EXTRA_SCENE)
     bins = "x", "negative", "edge", "tie", "second"
-    place = tuple(values.index(name) for values, name in zip(POINTS.values(), bins, strict=True))
+    place = tuple(values.index(name) for values, name in zip(POINTS["seed"].values(), bins, strict=True))
     assert counted(scene, configure(reflections=scene.reflections))[place] >= 10

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// Counts which kinds of intersection a ray unit finds, as the probe of its engine tells. A frame's counts are written as
+// a line "bin times bin times ..." each into the file bins.<unit> of the directory in which the simulation runs; bins
+// are numbered as functional.py has its points, the last the fastest.
+
+`timescale 1ns / 1ns
+
+module intersection_counter (
+    input wire clk,
+    input wire first_group,         // of a frame
+    input wire start_group,
+    input wire offer,               // of a rectangle, with what follows
+    input wire [1:0] axis,
+    input wire [1:0] slope,
+    input wire [2:0] result,
+    input wire [2:0] rank,
+    input wire add_colour,
+    input wire found,               // anything, as add_colour comes
+    input wire [15:0] unit
+);
+    localparam BINS = 3 * 3 * 7 * 5 * 3;
+
+    integer counts [0:BINS-1];
+    integer file = 0;
+    integer place;
+    integer ray = 0;
+    reg alive = 0;
+    reg any = 0;
+    reg [8*16-1:0] name;
+
+    task write_frame;
+        begin
+            if (any) begin
+                if (file == 0) begin
+                    $sformat(name, "bins.%0d", unit);
+                    file = $fopen(name, "w");
+                end
+                for (place = 0; place < BINS; place = place + 1)
+                    if (counts[place] != 0) $fwrite(file, "%0d %0d ", place, counts[place]);
+                $fwrite(file, "\n");
+            end
+            for (place = 0; place < BINS; place = place + 1) counts[place] = 0;
+            any = 0;
+        end
+    endtask
+
+    initial write_frame;
+    final write_frame;
+
+    // All decide within the edge, so nothing is lost between them.
+    always @(posedge clk) begin
+        if (start_group) begin
+            if (first_group) write_frame;
+            ray = 0;
+            alive = 1;
+        end
+        if (offer && alive) begin
+            place = (((axis * 3 + {30'd0, slope}) * 7 + {29'd0, result}) * 5 + {29'd0, rank}) * 3 + ray;
+            counts[place] = counts[place] + 1;
+            any = 1;
+        end
+        if (add_colour) begin
+            alive = alive && found;
+            ray = ray + 1;
+        end
+    end
+endmodule
