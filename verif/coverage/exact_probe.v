@@ -42,7 +42,7 @@ module intersection_probe #(
         compared <= multiplied;
     end
 
-    intersection_counter counter (
+    intersection_counter #(.DEPTH_BITS(PRODUCT_BITS)) counter (
         .clk(clk),
         .first_group(first_group),
         .start_group(start_group),
@@ -50,10 +50,9 @@ module intersection_probe #(
         .axis(compared[6:5]),
         .slope(compared[4:3]),
         .result(compared[2:0] > 4 && !hit ? 3'd3 : compared[2:0]),
-        .rank(
-            !hit ? 3'd0 : !found ? 3'd1
-            : offered_product < nearest_product ? 3'd2 : offered_product == nearest_product ? 3'd3 : 3'd4
-        ),
+        .hit(hit),
+        .depth(offered_product),
+        .nearest(nearest_product),
         .add_colour(add_colour),
         .found(found),
         .unit(unit)

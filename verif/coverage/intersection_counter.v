@@ -5,7 +5,9 @@
 
 `timescale 1ns / 1ns
 
-module intersection_counter (
+module intersection_counter #(
+    parameter DEPTH_BITS = 9
+) (
     input wire clk,
     input wire first_group,         // of a frame
     input wire start_group,
@@ -13,9 +15,11 @@ module intersection_counter (
     input wire [1:0] axis,
     input wire [1:0] slope,
     input wire [2:0] result,
-    input wire [2:0] rank,
+    input wire hit,
+    input wire [DEPTH_BITS-1:0] depth,      // of a hit, in any measure
+    input wire [DEPTH_BITS-1:0] nearest,    // so far, in the same
     input wire add_colour,
-    input wire found,               // anything, as add_colour comes
+    input wire found,               // anything so far
     input wire [15:0] unit
 );
     localparam BINS = 3 * 3 * 7 * 5 * 3;
@@ -27,6 +31,7 @@ module intersection_counter (
     reg alive = 0;
     reg any = 0;
     reg [8*16-1:0] name;
+    wire [2:0] rank = !hit ? 3'd0 : !found ? 3'd1 : depth < nearest ? 3'd2 : depth == nearest ? 3'd3 : 3'd4;
 
     task write_frame;
         begin

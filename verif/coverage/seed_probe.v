@@ -37,7 +37,7 @@ module intersection_probe #(
         if (store_quotient) stored <= loaded;
     end
 
-    intersection_counter counter (
+    intersection_counter #(.DEPTH_BITS(POSITION_BITS)) counter (
         .clk(clk),
         .first_group(first_group),
         .start_group(start_group),
@@ -45,7 +45,9 @@ module intersection_probe #(
         .axis(axis),
         .slope(stored[3:2]),
         .result(stored[1:0] != 3 ? {1'b0, stored[1:0]} : !valid ? 3'd3 : !hit ? 3'd4 : on_bound ? 3'd5 : 3'd6),
-        .rank(!hit ? 3'd0 : !found ? 3'd1 : depth < nearest ? 3'd2 : depth == nearest ? 3'd3 : 3'd4),
+        .hit(hit),
+        .depth(depth),
+        .nearest(nearest),
         .add_colour(add_colour),
         .found(found),
         .unit(unit)
