@@ -47,7 +47,11 @@ HERE = Path(__file__).parent
 MINIMUM_VERILATOR = (5, 36)
 """The oldest that cocotb accepts."""
 
+GATING_FLAG = "-DCLOCK_GATING"
+"""For Verilator, which leaves out what rests then. Icarus shows the design as it goes to an FPGA."""
+
 VERILATOR_FLAGS = (
+    GATING_FLAG,
     "--timing",
     # After cocotb's --public-flat-rw: the benches mark what Python touches, and all else may be optimised away.
     "--no-public-flat-rw",
@@ -390,8 +394,8 @@ def verilate(
         SimulationError: it could not be made.
     """
     _call(
-        tool, directory, "verilator", "--cc", "-Wno-fatal", "--prefix", f"V{top}", "--Mdir", ".", "--top-module", top,
-        *flags, *files,
+        tool, directory, "verilator", "--cc", "-Wno-fatal", GATING_FLAG, "--prefix", f"V{top}", "--Mdir", ".",
+        "--top-module", top, *flags, *files,
     )  # fmt: skip
     # As one text it compiles several times as fast as file by file, and the clock's two edges inline.
     parts = [*sorted(path.name for path in directory.glob("*.cpp")), *(path.resolve() for path in main)]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The ray tracer behind a bus, with a VGA output: the top of what is generated."""
 
-from myhdl import block, instances
+from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.registers import address_bits
@@ -9,6 +9,7 @@ from raycaster.rtl.bus.apb_bridge import apb_bridge
 from raycaster.rtl.bus.avalon_interface import avalon_interface
 from raycaster.rtl.bus.axi4lite_bridge import axi4lite_bridge
 from raycaster.rtl.bus.wishbone_bridge import wishbone_bridge
+from raycaster.rtl.common.clock_gate import clock_gate, rests_on
 from raycaster.rtl.common.interfaces import AvalonPort, Picture, Progress, Rects, SceneBus
 from raycaster.rtl.common.records import camera_of
 from raycaster.rtl.common.ties import tied, unconnected
@@ -62,6 +63,16 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
         clk, reset, avs_s0=avs_s0, irq=irq, bus=bus, camera_readback=camera_readback, rect_readback=rect_readback,
         bad_rectangle=bad_rectangle, picture=picture, progress=progress, config=config,
     )  # fmt: skip
+    # A write, a commit and StartScreen each take one step of the scene's memories, however late the next one comes.
+    if config.facts.line_buffered and not fixed:
+        scene_awake, scene_clk = bit(), bit()
+
+        @always_comb
+        def wake():
+            scene_awake.next = reset or bus.write or bus.commit or bus.go_live or progress.busy
+
+        gate = clock_gate(clk, awake=scene_awake, gated_clk=scene_clk)
+        rests_on(scene_clk, rectangles, position)
     renderer = block_named(config.facts.renderer)(
         clk, reset, picture=picture, camera=camera, rects=rects, progress=progress, vga=vga, config=config
     )

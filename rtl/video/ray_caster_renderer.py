@@ -4,6 +4,7 @@
 from myhdl import always, always_comb, always_seq, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.rtl.common.clock_gate import clock_gate, rests_on
 from raycaster.rtl.common.interfaces import Place, Scan
 from raycaster.rtl.common.records import Pixel
 from raycaster.rtl.common.widths import CYCLE_BITS, bit, bits_for, pixel_bits, unit_bits, unsigned
@@ -30,6 +31,7 @@ def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, confi
     place, scan, pixel = Place(config), Scan(), Pixel(config.colour_bits)
     line_buf_sel, enable, done, rendering, handed_over = (bit() for _ in range(5))
     restart, reset_delay, reset_ray_caster = bit(), bit(), bit()
+    caster_awake, caster_clk = bit(), bit()
     pixels = unsigned(units * width)
     read_offset, read_unit = unsigned(bits_for(groups)), unsigned(unit_bits(config))
     sections = [unsigned(width) for _ in range(units)]
@@ -43,6 +45,8 @@ def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, confi
         clk=clk, reset_ray_caster=reset_ray_caster, enable=enable, place=place, camera=camera, picture=picture,
         rects=rects, done=done, pixels=pixels, config=config,
     )  # fmt: skip
+    gate = clock_gate(clk, awake=caster_awake, gated_clk=caster_clk)
+    rests_on(caster_clk, caster)
     buffers = [
         line_buffer(
             clk=clk, write=done, line_buf_sel=line_buf_sel, write_offset=place.column_offset,
@@ -81,6 +85,11 @@ def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, confi
     @always_comb
     def join_resets():
         reset_ray_caster.next = restart or reset_delay
+
+    # Between rows the ray caster has nothing to do, and the next one begins with a reset of it.
+    @always_comb
+    def wake():
+        caster_awake.next = enable or reset_ray_caster
 
     # Rows are rendered from StartScreen to the last row's handover.
     @always_seq(clk.posedge, reset=reset)

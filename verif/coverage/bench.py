@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import cocotb
 from cocotb.handle import HierarchyObject
 
@@ -46,3 +48,23 @@ async def every_axis_in_every_entry(bench: HierarchyObject) -> None:
         await harness.bus.load_scene(scene)
         await harness.bus.commit(reflections=0)
         harness.expect_picture(await harness.monitor.frame(), harness.golden(scene, 0), f"along {'xyz'[axis]}")
+
+
+@cocotb.test()
+async def three_copies_of_every_entry(bench: HierarchyObject) -> None:
+    """Each frame another table is live, the next one is pending, and the one after it is being written."""
+    harness = Harness(bench)
+    await harness.reset()
+    rectangles = harness.configuration.rectangles
+    scenes = [
+        Scene(
+            camera=Camera(position=(20, 256, 200)),
+            rect=(Rectangle(corners=((300, 100, 100), (300, 400, 400)), colour=colour),) * rectangles,
+        )
+        for colour in ((250, 0, 0), (0, 250, 0), (0, 0, 250), (250, 250, 0), (0, 250, 250))
+    ]
+    await harness.bus.load_scene(scenes[0])
+    for number, (shown, following) in enumerate(pairwise(scenes)):
+        await harness.bus.commit(reflections=0)
+        await harness.bus.load_scene(following)
+        harness.expect_picture(await harness.monitor.frame(), harness.golden(shown, 0), f"table {number}")

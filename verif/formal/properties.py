@@ -197,7 +197,7 @@ def _counters(config: Configuration, small: bool) -> Property:
         "the renderer's counters stay in range, a group is written once and into its row",
         config,
         _label(config),
-        ("ray_caster_renderer", "ray_caster", "ray_control", "ray_sequencer", "rect_sequencer", *cut),
+        ("ray_caster_renderer", "clock_gate", "ray_caster", "ray_control", "ray_sequencer", "rect_sequencer", *cut),
         {
             "RECTANGLES": config.rectangles,
             "INDEX_BITS": index_bits(config),

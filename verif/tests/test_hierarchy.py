@@ -17,12 +17,14 @@ from conftest import ROOT
 from myhdl import ConcatSignal, Signal, always, always_comb, block, intbv
 from myhdl._simulator import _signals
 
+from raycaster import rtl
 from raycaster.configuration import configure
 from raycaster.convert import write
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import HierarchyError, Module, Port, convert_hierarchy
 from raycaster.convert.take_home import FILE_LIST
 from raycaster.convert.write import write_verilog
+from raycaster.rtl.common.clock_gate import clock_gate, rests_on
 from raycaster.rtl.common.given import given_verilog, load_words
 from raycaster.rtl.common.interfaces import Interface
 from raycaster.rtl.common.records import Record
@@ -876,6 +878,87 @@ endmodule
 
 
 @block
+def hold(clk, value, held):
+    @always(clk.posedge)
+    def take():
+        held.next = value
+
+    return take
+
+
+@block
+def two_clocks(clk, awake, value, steady, resting):
+    """A register that goes on, and one that rests."""
+    resting_clk = bit()
+    going_on = hold(clk, value, steady)
+    at_rest = hold(clk, value, resting)
+    gate = clock_gate(clk, awake, resting_clk)
+    rests_on(resting_clk, at_rest)
+
+    return going_on, at_rest, gate
+
+
+def two_clocks_arguments():
+    nibbles = {name: unsigned(4) for name in ("value", "steady", "resting")}
+    return {"clk": bit(), "awake": bit(), **nibbles}
+
+
+RESTING_BENCH = """`timescale 1ns / 1ns
+module bench;
+reg clk = 0, awake = 0;
+wire [3:0] steady, resting;
+reg [3:0] value;
+integer cycle;
+two_clocks dut (.clk(clk), .awake(awake), .value(value), .steady(steady), .resting(resting));
+realtime rose;
+always @(posedge dut.resting_clk) rose = $realtime;
+always @(negedge dut.resting_clk)
+    if ($realtime > 0 && $realtime - rose != 5)
+        $display("a pulse of %0d ns", $realtime - rose);
+// Awake for cycles 2, 3 and 5 of 8, each time from just after an edge, as a register has it.
+initial begin
+    for (cycle = 0; cycle < 8; cycle = cycle + 1) begin
+        #1 value = cycle;
+        awake = cycle == 2 || cycle == 3 || cycle == 5;
+        #4 clk = 0;
+        #5 clk = 1;
+    end
+    #1 $display("%0d %0d", steady, resting);
+end
+endmodule
+"""
+
+
+@pytest.mark.parametrize(
+    ("options", "follows", "said"),
+    [
+        pytest.param((), "!clk", ["7 7"], id="goes-on"),
+        pytest.param(("-DCLOCK_GATING",), "!clk", ["7 5"], id="rests"),
+        pytest.param(("-DCLOCK_GATING",), "1'b1", ["a pulse of 4 ns", "a pulse of 1 ns"], id="cut"),
+    ],
+)
+def test_a_clock_rests(tmp_path, options, follows, said):
+    modules = converted(two_clocks(**two_clocks_arguments()), tmp_path / "verilog")
+    gate = modules["clock_gate"].path
+    gate.write_text(gate.read_text().replace("if (!clk)", f"if ({follows})"))
+    (tmp_path / "bench.v").write_text(RESTING_BENCH)
+    files = [str(module.path) for module in modules.values()]
+    compiled = str(tmp_path / "bench")
+    subprocess.run(["iverilog", "-g2005", *options, "-o", compiled, str(tmp_path / "bench.v"), *files], check=True)
+    done = subprocess.run(["vvp", "-n", compiled], capture_output=True, text=True, check=True)
+    lines = done.stdout.splitlines()
+    assert set(said) <= set(lines), lines
+    assert len(said) > 1 or lines == said
+
+
+def test_a_clock_that_rests_goes_on_in_myhdl(tmp_path):
+    leaf = Leaf(two_clocks, two_clocks_arguments, tmp_path)
+    stimulus = [{"awake": value % 2, "value": value} for value in range(16)]
+    outputs = leaf.run_both(stimulus, settled=1)
+    assert [cycle["resting"] for cycle in outputs[1:]] == [cycle["steady"] for cycle in outputs[1:]] == [*range(15)]
+
+
+@block
 def adders(clk, value, first, second, one_adder, other_adder, steps):
     one = one_adder(clk, value, first, STEP=steps[0], WIDTH=4)
     two = other_adder(clk, value, second, STEP=steps[1], WIDTH=4)
@@ -1109,7 +1192,10 @@ def test_every_module_is_made_of_nothing_unknown(tmp_path):
 
 def test_the_header_says_what_and_never_when(tmp_path):
     config = configure(screen="tiny", units=2, rectangles=2, fraction_bits=1, allow_underrun=True)
-    for path in write_verilog(config, tmp_path / "verilog"):
+    files = write_verilog(config, tmp_path / "verilog")
+    [given] = [path for path in files if path.stem == "clock_gate"]
+    assert given.read_text() == Path(rtl.__path__[0], "common", "clock_gate.v").read_text()
+    for path in set(files) - {given}:
         lines = path.read_text().splitlines()
         assert lines[:2] == [f"// RayCaster: {path.stem}", f"// Configuration: {config.name}"]
         assert "// SPDX-License-Identifier: MIT" in lines

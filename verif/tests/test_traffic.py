@@ -14,11 +14,11 @@ from raycaster.sim.simulator import SimulationError, convert
 SMALL = configure(screen="tiny", units=8, rectangles=3)
 
 
-def broken(directory: Path, module: str, right: str, wrong: str) -> list[Path]:
-    """The design's files with one module changed."""
+def broken(directory: Path, module: str, right: str, wrong: str, before: str = "") -> list[Path]:
+    """The design's files with one module changed, and something before each."""
     files = []
     for source in convert(SMALL, BUILD):
-        text = source.read_text()
+        text = before + source.read_text()
         if source.stem == module:
             assert right in text, f"{module} has no {right!r}"
             text = text.replace(right, wrong)
@@ -57,6 +57,36 @@ def test_is_noticed(bench: Bench, tmp_path, module, right, wrong, complaint):
     """One fault at a time, each with the complaint that it must cause."""
     files = broken(tmp_path, module, right, wrong)
     with pytest.raises(SimulationError, match=rf"(seed \d+|the frame after reset): .*({complaint})"):
+        bench("verif.benches.traffic_bench", SMALL, "icarus", seeds=(1, 2), verilog=files)
+
+
+GATED = "`define CLOCK_GATING\n"
+
+
+def test_icarus_takes_clocks_that_rest(bench: Bench, tmp_path):
+    """As Verilator's models have them; see `clock_gate`."""
+    files = broken(tmp_path, "clock_gate", "", "", GATED)
+    bench("verif.benches.traffic_bench", SMALL, "icarus", seeds=(1, 2), verilog=files)
+
+
+@pytest.mark.parametrize(
+    ("module", "right", "wrong", "complaint"),
+    [
+        pytest.param("clock_gate", "open = awake;", "open = !awake;", "non-0/1", id="the-other-way"),
+        pytest.param(
+            "ray_caster_renderer", "enable || reset_ray_caster", "reset_ray_caster", "cycles reads", id="rendering"
+        ),
+        pytest.param("ray_caster_module", "|| bus_write ", "", "reads 0x", id="a-write"),
+        pytest.param("ray_caster_module", "|| bus_commit ", "", "pixels are wrong", id="a-commit"),
+        pytest.param("ray_caster_module", "|| bus_go_live ", "", "pixels are wrong", id="start-screen"),
+        pytest.param("ray_caster_module", "|| progress_busy", "", "pixels are wrong", id="a-fetch"),
+        pytest.param("ray_caster_module", "= reset ||", "=", "reads 0x", id="a-reset"),
+    ],
+)
+def test_a_clock_that_rests_too_long_is_noticed(bench: Bench, tmp_path, module, right, wrong, complaint):
+    """Each reason to wake, left out alone."""
+    files = broken(tmp_path, module, right, wrong, GATED)
+    with pytest.raises(SimulationError, match=complaint):
         bench("verif.benches.traffic_bench", SMALL, "icarus", seeds=(1, 2), verilog=files)
 
 
