@@ -99,6 +99,8 @@ BENCHES = (
 """Beyond a frame of every scene. The longest come first."""
 
 EXTRA_SCENE = Path(__file__).with_name("extra_scene.toml")
+EXTRA_ROOMS = tuple(sorted(Path(__file__).parent.glob("extra_rooms_*.toml")))
+"""For intersections that luck brings too seldom."""
 
 
 def run_all(
@@ -240,8 +242,7 @@ def main(argv: list[str] | None = None) -> int:
         raise UserError("--seeds and --jobs must be at least 1")
     design, probes = DESIGNS[arguments.engine], PROBES.get(arguments.engine, ())
     explanations = load_explanations(arguments.engine)
-    scenes = list(packaged_scenes(plain=True).values())
-    scenes.append(EXTRA_SCENE)
+    scenes = [*packaged_scenes(plain=True).values(), EXTRA_SCENE, *EXTRA_ROOMS]
     # Into a file or a pipe rich would print as if on 80 columns, which the tables do not fit.
     console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
     output = arguments.build / "coverage"
