@@ -437,13 +437,13 @@ def _mutants() -> str:
     )
 
 
-def _code() -> str:
-    found = outcome("coverage")["figures"]
+def _code(name: str) -> str:
+    found = outcome(name)["figures"]
     return ", ".join(f"{kind} {found[kind][0]:,} of {found[kind][1]:,}" for kind in ("lines", "conditions", "toggles"))
 
 
-def _bins() -> str:
-    found = outcome("coverage")["figures"]
+def _bins(name: str) -> str:
+    found = outcome(name)["figures"]
     (hit, there), rays, shown = found["bins"], found["intersections"], found["scenes"]
     return f"{hit} of {there} bins, {rays:,} intersections, {shown} scenes"
 
@@ -469,6 +469,7 @@ def _upsets(*names: str) -> str:
 def checks() -> str:
     """What the long commands found, each with its scope."""
     of_seed, before, of_exact, of_beam = "seed, culling", "seed, before culling", "exact, no culling", "beam"
+    exact_culled = "exact, culling"
     game = outcome("game")["figures"]
     report = outcome("report")["figures"]
     lines: Sequence[tuple[str, str, str, tuple[str, ...]]] = (
@@ -493,8 +494,10 @@ def checks() -> str:
         ("faults planted in modules", "the modules' leaf tests", _mutants(), ("mutate",)),
         ("bits flipped, resets, misuse of the bus while it draws, tiny, 3 rectangles", "each, seed with culling",
          _upsets("upsets-seed", "upsets-exact", "upsets-beam"), ("upsets-seed", "upsets-exact", "upsets-beam")),
-        ("code coverage", of_seed, _code(), ("coverage",)),
-        ("functional coverage", of_seed, _bins(), ("coverage",)),
+        ("code coverage", of_seed, _code("coverage"), ("coverage",)),
+        ("functional coverage", of_seed, _bins("coverage"), ("coverage",)),
+        ("code coverage", exact_culled, _code("coverage-exact"), ("coverage-exact",)),
+        ("functional coverage", exact_culled, _bins("coverage-exact"), ("coverage-exact",)),
     )  # fmt: skip
     rows = []
     for what, scope, figure, names in lines:
