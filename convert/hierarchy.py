@@ -363,6 +363,7 @@ def _number(signal: _Signal) -> str:
 def _replace_by_instance(child: _Block, module: Module, name: str, parent_ports: dict[str, _Signal]) -> None:
     """Make the parent's conversion print an instance where the child's processes would stand."""
     signals = block_ports(child)
+    # What `rests_on` says of it.
     if (clock := getattr(child, "verilog_clk", None)) is not None:
         signals["clk"] = clock
     passed_on = {id(signal) for signal in parent_ports.values()}

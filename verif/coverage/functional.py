@@ -44,28 +44,34 @@ Bin = tuple[str, str, str, str, str]
 Pattern = tuple[str | None, str | None, str | None, str | None, str | None]
 """A bin, where None stands for every value."""
 
-_EVERYWHERE: dict[str, tuple[Pattern, ...]] = {
-    "without a slope along its axis a plane is never reached": tuple(
-        (None, "zero", result, None, None) for result in POINTS["seed"]["result"] if result != "parallel"
-    ),
-    "with a slope along its axis a ray is not parallel to a plane": (
-        (None, "negative", "parallel", None, None),
-        (None, "positive", "parallel", None, None),
-    ),
-    "hits are ranked": tuple((None, None, result, "none", None) for result in HITS),
-    "nothing but hits is ranked": tuple(
-        (None, None, result, rank, None)
-        for result in POINTS["seed"]["result"]
-        if result not in HITS
-        for rank in POINTS["seed"]["rank"]
-        if rank != "none"
-    ),
-    "the slope along x is 100 in magnitude, never 0": (("x", "zero", None, None, None),),
-    "primary rays run along positive x": (("x", "negative", None, None, "primary"),),
-}
+
+def _impossible_in(engine: str) -> dict[str, tuple[Pattern, ...]]:
+    """Bins that no ray can hit, by the reason, in whichever engine; named as in this one."""
+    results, ranks = POINTS[engine]["result"], POINTS[engine]["rank"]
+    return {
+        "without a slope along its axis a plane is never reached": tuple(
+            (None, "zero", result, None, None) for result in results if result != "parallel"
+        ),
+        "with a slope along its axis a ray is not parallel to a plane": (
+            (None, "negative", "parallel", None, None),
+            (None, "positive", "parallel", None, None),
+        ),
+        "hits are ranked": tuple((None, None, result, "none", None) for result in HITS),
+        "nothing but hits is ranked": tuple(
+            (None, None, result, rank, None)
+            for result in results
+            if result not in HITS
+            for rank in ranks
+            if rank != "none"
+        ),
+        "the slope along x is 100 in magnitude, never 0": (("x", "zero", None, None, None),),
+        "primary rays run along positive x": (("x", "negative", None, None, "primary"),),
+    }
+
+
 IMPOSSIBLE: dict[str, dict[str, tuple[Pattern, ...]]] = {
     "seed": {
-        **_EVERYWHERE,
+        **_impossible_in("seed"),
         # Its control ends a rectangle that no ray of the group runs towards.
         "a group's primary rays run one way from one point; a plane that none runs towards is given up": (
             (None, None, "on plane", None, "primary"),
@@ -76,13 +82,7 @@ IMPOSSIBLE: dict[str, dict[str, tuple[Pattern, ...]]] = {
         ),
     },
     "exact": {
-        **{
-            reason: tuple(
-                (axis, slope, _FOURTH["exact"] if result == _FOURTH["seed"] else result, rank, ray)
-                for axis, slope, result, rank, ray in patterns
-            )
-            for reason, patterns in _EVERYWHERE.items()
-        },
+        **_impossible_in("exact"),
         "primary rays have left no mirror": ((None, None, _FOURTH["exact"], None, "primary"),),
     },
 }

@@ -271,11 +271,12 @@ def main(argv: list[str] | None = None) -> int:
         functional = FunctionalCoverage(arguments.engine)
         for directory in [*(output / "runs").iterdir(), *(output / "soak").glob("from*")]:
             functional.add(read_bins(directory))
-        figures["scenes"] = len(scenes) + len(soaked.results)
+        shown = len(scenes) + len(soaked.results)
+        figures["scenes"] = shown
         figures["bins"] = (len(functional.bins) - len(functional.holes), len(functional.bins))
         figures["intersections"] = sum(functional.bins.values())
         functional.export(output / "functional")
-        show_functional(functional, len(scenes) + len(soaked.results), console)
+        show_functional(functional, shown, console)
     keep(arguments, figures, scope_of(design), "the other engines")
     for failure in failures:
         console.print(failure, style="red", markup=False, soft_wrap=True)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import re
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import pytest
@@ -75,10 +75,11 @@ def bench(output: Path) -> Bench:
         scene: Path | str = "",
         *,
         verilog: list[Path] | None = None,
+        defines: Mapping[str, int] | None = None,
         seeds: tuple[int, ...] = (),
         plusargs: tuple[str, ...] = (),
     ) -> Path:
-        model = build_model(configuration, simulator, build=BUILD, verilog=verilog)
+        model = build_model(configuration, simulator, build=BUILD, verilog=verilog, defines=defines)
         job = Job(
             configuration, scene=str(scene), output=str(output), reflections=configuration.reflections, seeds=seeds
         )
