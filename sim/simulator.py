@@ -20,8 +20,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import cocotb
+from cocotb_tools import config as cocotb_config
 from cocotb_tools.check_results import get_results
-from cocotb_tools.runner import get_runner
+from cocotb_tools.runner import Runner, Verilator, get_runner
 from filelock import FileLock
 
 import raycaster
@@ -43,6 +44,9 @@ DIGITS = 12
 """Of the digest in the name of a model."""
 
 HERE = Path(__file__).parent
+
+_MAIN = HERE / "main.cpp"
+"""The main program of Verilator's models."""
 
 MINIMUM_VERILATOR = (5, 36)
 """The oldest that cocotb accepts."""
@@ -305,12 +309,13 @@ def build_model(
     if any(flag.startswith("--coverage") for flag in arguments):
         made_with.append([source.resolve() for source in sources])  # which the counts name
     name = "-".join((configuration.name, bench.top, simulator))
-    with made(models(build), name, sources, made_with) as (directory, fresh):
+    program = [_MAIN] if simulator == "verilator" else []
+    with made(models(build), name, [*sources, *program], made_with) as (directory, fresh):
         if fresh:
             log = directory.with_suffix(".log")
             with _building(tool, models(build), arguments):
                 try:
-                    get_runner(simulator).build(
+                    _runner(simulator).build(
                         sources=[source.resolve() for source in sources],
                         hdl_toplevel=bench.top,
                         parameters=parameters,
@@ -324,6 +329,18 @@ def build_model(
                 except (RuntimeError, SystemExit):
                     raise _build_failure(configuration.name, simulator, log) from None
     return Model(configuration, simulator, directory, waves, fresh, bench, wave_format)
+
+
+class _VerilatorWithMain(Verilator):
+    """cocotb's runner, with `_MAIN` for its own main program."""
+
+    def _build_command(self) -> list[list[str]]:
+        theirs = str(cocotb_config.share_dir / "lib" / "verilator" / "verilator.cpp")
+        return [[str(_MAIN) if part == theirs else part for part in command] for command in super()._build_command()]
+
+
+def _runner(simulator: str) -> Runner:
+    return _VerilatorWithMain() if simulator == "verilator" else get_runner(simulator)
 
 
 def build_program(
@@ -558,7 +575,7 @@ def run_bench(
         "icarus": {"plusargs": [f"+dumpfile_path={waves}", *plusargs]},
     }
     with contextlib.suppress(RuntimeError, SystemExit):  # what went wrong stands in the log and the results
-        get_runner(model.simulator).test(
+        _runner(model.simulator).test(
             test_module=test_module,
             hdl_toplevel=model.bench.top,
             hdl_toplevel_lang="verilog",
