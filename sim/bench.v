@@ -14,7 +14,7 @@ module bench #(
     parameter PIXELS = 1            // of a pixel clock, 1 or 2
 `ifdef VERILATOR
 ) (
-    input wire clk /*verilator public_flat_rw*/     // main.cpp drives it, which is faster
+    input wire clk /*verilator public_flat_rw*/     // sim/main.cpp drives it, which is faster
 );
 `else
 ) ();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The main program of Verilator's models, in place of cocotb's lib/verilator/verilator.cpp, whose regions it keeps.
 //
-// cocotb's asks in each time slot, ten times, whether a callback is due. It does not drive our clock, so in nearly all
-// slots it only waits for a value to change: those take one evaluation and one look. And a clock of the bench's own would
-// be a coroutine, which takes one more evaluation of what is awake at each edge.
+// cocotb's main asks in each time slot, ten times, whether a callback is due. As Python does not drive the clock, it
+// only waits for a value to change in nearly all slots: those take one evaluation and one look here. And the clock
+// is toggled here, as one in the bench would be a coroutine, which makes the model evaluate once more at each edge.
 
 #include <algorithm>
 #include <memory>

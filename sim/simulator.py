@@ -335,8 +335,11 @@ class _VerilatorWithMain(Verilator):
     """cocotb's runner, with `_MAIN` for its own main program."""
 
     def _build_command(self) -> list[list[str]]:
-        theirs = str(cocotb_config.share_dir / "lib" / "verilator" / "verilator.cpp")
-        return [[str(_MAIN) if part == theirs else part for part in command] for command in super()._build_command()]
+        translate, *others = super()._build_command()
+        # Where it is not there this fails: with cocotb's main nothing would drive the clock.
+        theirs = translate.index(str(cocotb_config.share_dir / "lib" / "verilator" / "verilator.cpp"))
+        translate[theirs] = str(_MAIN)
+        return [translate, *others]
 
 
 def _runner(simulator: str) -> Runner:

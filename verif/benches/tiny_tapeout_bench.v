@@ -8,7 +8,7 @@ module tiny_tapeout_bench #(
     parameter HS_ACTIVE = 0             // level of hsync in its pulse
 `ifdef VERILATOR
 ) (
-    input wire clk /*verilator public_flat_rw*/     // main.cpp drives it, which is faster
+    input wire clk /*verilator public_flat_rw*/     // sim/main.cpp drives it, which is faster
 );
 `else
 ) ();
