@@ -296,6 +296,11 @@ LEMMAS: tuple[Lemma, ...] = (
         integers=True,
     ),
     Lemma(
+        "digits-appended", "with digits of value m appended to n, b n + m, its product p with d is b p + m d",
+        "n d p b m", ("p == n*d",),
+        "(b*n + m)*d == b*p + m*d",
+    ),
+    Lemma(
         "quotient-truncated", "with w = e q + r, 0 <= r < e, the quotient q is less than 1 below w/e",
         "w e q r x", ("w == e*q + r", "0 <= r < e", "x*e == w"),
         "0 <= x - q < 1",

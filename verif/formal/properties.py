@@ -232,6 +232,7 @@ def _divider(config: Configuration, part: int, small: bool) -> Property:
             "PART": part,
         },
         induction=1,
+        any_product=part == 1,
         small=small,
     )
 

@@ -65,6 +65,7 @@ HALVES = chosen("shares-exact", "exact-vga240-u1-r12-m1-c8")
 FOLD = chosen("fold-exact", "2 and 1 bits, 1 mirrors")
 TABLE = chosen("fixed-rects", "seed, different")
 DIVIDER = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d3-c8 digits")
+QUOTIENT = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d1-c8 product")
 
 FAULTS = {
     "hsync-a-pixel-long": (TIMING, "video_generator", "(x <= -9)", "(x <= -8)"),
@@ -279,6 +280,9 @@ FAULTS = {
     "bounds-unsorted": (TABLE, "rect_sorter", "if (written_y_0 > written_y_1) begin", "if (1'b0) begin"),
     "not-held": (TABLE, "rect_rom", "if (rects_fetch) begin", "if (1'b1) begin"),
     "overflow-missed": (DIVIDER, "divider", "overflow <= too_large;", "overflow <= too_large && (quotient != 0);"),
+    "digits-shifted-twice": (QUOTIENT, "divider", "pending <= last_pending;", "pending <= last_pending << 1;"),
+    "too-few-digits": (QUOTIENT, "divider_step", "{digits[7:0], 1'b1}", "{1'b0, digits[6:0], 1'b1}"),
+    "product-kept": (QUOTIENT, "divider", "if (load_divider) begin", "if (load_divider && (pending == 0)) begin"),
 }  # fmt: skip
 
 
@@ -286,7 +290,7 @@ FAULTS = {
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
      FINDER, DEPTH, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, TURNED_WALK, CONTEST,
-     WIDE_CONTEST, HALF, MIXED, SHARES, HALVES, FOLD, TABLE],
+     WIDE_CONTEST, HALF, MIXED, SHARES, HALVES, FOLD, TABLE, QUOTIENT],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):

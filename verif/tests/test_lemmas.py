@@ -52,6 +52,7 @@ FAULTS = {
     "division-step": [("2*r + b >= e", "2*r + b > e"), ("s < e", "s < e - 1"), ("- d*e", "+ d*e"),
                       ("0 <= b <= 1", "0 <= b <= 2")],
     "cell-number": [("(i + 1)", "i + 1"), ("0 <= j < c", "0 <= j <= c"), ("0 <= r < e", "0 <= r <= e")],
+    "digits-appended": [("b*p + m*d", "p + m*d"), ("+ m*d", "+ m"), ("b*p + m*d", "b*p - m*d")],
     "quotient-truncated": [("x - q < 1", "x - q <= 0"), ("0 <= r < e", "0 <= r <= e"), ("w == e*q", "w == -e*q")],
     "quotient-nearest": [("2*(x - q) < 1", "2*(x - q) < 0"), ("-1 <=", "0 <="), ("0 <= r < 2*e", "0 <= r < 3*e")],
     "way-of-magnitudes": [("d*(A*n)", "A*n"), ("s*s == 1", None), ("t*(s*e) == s*n", "t*e == s*n")],
