@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Functional coverage: which kinds of intersection an engine's units found, counted in cocotb-coverage's bins.
+"""Functional coverage: which kinds of intersection an engine found, counted in cocotb-coverage's bins.
 
 A probe in each unit counts what is offered to its z buffer, or nearest hit, while the benches run. What culling gives
-up early is not offered, and not counted.
+up early is not offered, and not counted. The beam engine's probe counts what its testers report of rays that there are.
 """
 
 from __future__ import annotations
@@ -15,12 +15,16 @@ import numpy as np
 from cocotb_coverage.coverage import CoverCross, CoverPoint, coverage_db, coverage_section
 
 HERE = Path(__file__).parent
-PROBES = {engine: (HERE / "intersection_counter.v", HERE / f"{engine}_probe.v") for engine in ("seed", "exact")}
+PROBES = {
+    "seed": (HERE / "intersection_counter.v", HERE / "seed_probe.v"),
+    "exact": (HERE / "intersection_counter.v", HERE / "exact_probe.v"),
+    "beam": (HERE / "beam_probe.v",),
+}
 """By engine, Verilog beside the design's, which writes what `read_bins` reads."""
 
-PROBE_MODULES = "intersection_counter", "intersection_probe"
+PROBE_MODULES = "intersection_counter", "intersection_probe", "pass_probe", "tester_probe"
 
-_FOURTH = {"seed": "overflow", "exact": "before mirror"}
+_FOURTH = {"seed": "overflow", "exact": "before mirror", "beam": "before mirror"}
 POINTS = {
     engine: {
         "axis": ("x", "y", "z"),
@@ -81,9 +85,12 @@ IMPOSSIBLE: dict[str, dict[str, tuple[Pattern, ...]]] = {
             ("z", None, "parallel", None, None),
         ),
     },
-    "exact": {
-        **_impossible_in("exact"),
-        "primary rays have left no mirror": ((None, None, _FOURTH["exact"], None, "primary"),),
+    **{
+        engine: {
+            **_impossible_in(engine),
+            "primary rays have left no mirror": ((None, None, _FOURTH[engine], None, "primary"),),
+        }
+        for engine in ("exact", "beam")
     },
 }
 """By engine, bins that no ray can hit, by the reason; with culling."""

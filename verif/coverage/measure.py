@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What the regression exercises of an engine: `make coverage`.
 
-Code: lines, conditions and toggles of the converted Verilog, over the benches of the whole design. Function, of an
-engine with units: kinds of ray and rectangle intersections, over all scenes and random ones. Every hole must be closed
-or explained.
+Code: lines, conditions and toggles of the converted Verilog, over the benches of the whole design. Function: kinds of
+intersection of a ray and a rectangle, over all scenes and random ones. Every hole must be closed or explained.
 """
 
 from __future__ import annotations
@@ -58,6 +57,7 @@ DESIGNS = {
 SOAK_DESIGNS = {
     "seed": configure(reflections=2),
     "exact": configure(engine="exact", units=8, reflections=2, culling=True),
+    "beam": configure(engine="beam", reflections=2),
 }
 """Without counters of lines they show a random scene several times as fast."""
 
@@ -83,10 +83,14 @@ class Run:
     reflections: int | None = None
     """Instead of the scene's own."""
 
+    seeds: tuple[int, ...] = ()
+    """Of random scenes, where the bench shows those."""
+
     @property
     def name(self) -> str:
         """Of its directory."""
-        return f"{self.bench}-{self.scene.stem}" if self.scene else self.bench
+        what = self.scene.stem if self.scene else self.seeds[0] if self.seeds else None
+        return self.bench if what is None else f"{self.bench}-{what}"
 
 
 BENCHES = (
@@ -97,6 +101,11 @@ BENCHES = (
     Run("verif.coverage.bench"),
 )
 """Beyond a frame of every scene. The longest come first."""
+
+MORE_BENCHES = {
+    "beam": (Run("verif.soak.bench", seeds=tuple(range(12))), Run("verif.soak.bench", seeds=tuple(range(12, 24))))
+}
+"""By engine. A row starts from registers of each rectangle, which take all values only as one scene follows another."""
 
 EXTRA_SCENE = Path(__file__).with_name("extra_scene.toml")
 EXTRA_ROOMS = tuple(sorted(Path(__file__).parent.glob("extra_rooms_*.toml")))
@@ -125,7 +134,7 @@ def _run(run: Run, model: Model, output: Path) -> tuple[Counter[Point], str]:
     directory = (output / run.name).resolve()
     directory.mkdir(parents=True)
     scene = str(run.scene.resolve()) if run.scene else ""
-    job = Job(model.configuration, scene=scene, output=str(directory), reflections=run.reflections)
+    job = Job(model.configuration, scene=scene, output=str(directory), reflections=run.reflections, seeds=run.seeds)
     counts_file = directory / "coverage.dat"
     try:
         run_bench(model, f"raycaster.{run.bench}", job, directory, plusargs=[f"+verilator+coverage+file+{counts_file}"])
@@ -240,7 +249,7 @@ def main(argv: list[str] | None = None) -> int:
     arguments = command_parser().parse_args(argv)
     if arguments.seeds < 1 or arguments.jobs < 1:
         raise UserError("--seeds and --jobs must be at least 1")
-    design, probes = DESIGNS[arguments.engine], PROBES.get(arguments.engine, ())
+    design, probes = DESIGNS[arguments.engine], PROBES[arguments.engine]
     explanations = load_explanations(arguments.engine)
     scenes = [*packaged_scenes(plain=True).values(), EXTRA_SCENE, *EXTRA_ROOMS]
     # Into a file or a pipe rich would print as if on 80 columns, which the tables do not fit.
@@ -252,39 +261,34 @@ def main(argv: list[str] | None = None) -> int:
     with console.status(f"building {design.name}"):
         verilog = [*convert(design, arguments.build), *probes]
         counting = build_model(design, build=arguments.build, verilog=verilog, flags=FLAGS)
-    runs = [*BENCHES, *(Run("sim.frame_bench", scene) for scene in scenes)]
+    runs = [*BENCHES, *MORE_BENCHES.get(arguments.engine, ()), *(Run("sim.frame_bench", scene) for scene in scenes)]
     counts, failures = run_all(counting, runs, output / "runs", arguments.jobs, console)
     judgement = judge(counts, explanations)
 
-    figures: dict[str, object] = {"scenes": len(scenes)}
-    figures |= {name: _hits(counts, None, types) for name, types in KINDS.items()}
     export_code(counts, judgement, output / "code.json")
     show_code(counts, judgement, console)
-    functional = None
-    if probes:
-        design_for_soak = SOAK_DESIGNS[arguments.engine]
-        whole = Campaign(
-            SOAK, design_for_soak, range(arguments.seeds), output / "soak", arguments.build, probes=probes
-        )  # fmt: skip
-        soaked = run_campaign(whole, console, partial(ProcessPoolExecutor, arguments.jobs))
-        failures += soaked.failures
-        functional = FunctionalCoverage(arguments.engine)
-        for directory in [*(output / "runs").iterdir(), *(output / "soak").glob("from*")]:
-            functional.add(read_bins(directory))
-        shown = len(scenes) + len(soaked.results)
-        figures["scenes"] = shown
-        figures["bins"] = (len(functional.bins) - len(functional.holes), len(functional.bins))
-        figures["intersections"] = sum(functional.bins.values())
-        functional.export(output / "functional")
-        show_functional(functional, shown, console)
-    keep(arguments, figures, scope_of(design), "the other engines")
+    whole = Campaign(
+        SOAK, SOAK_DESIGNS[arguments.engine], range(arguments.seeds), output / "soak", arguments.build, probes=probes
+    )
+    soaked = run_campaign(whole, console, partial(ProcessPoolExecutor, arguments.jobs))
+    failures += soaked.failures
+    functional = FunctionalCoverage(arguments.engine)
+    for directory in [*(output / "runs").iterdir(), *(output / "soak").glob("from*")]:
+        functional.add(read_bins(directory))
+    shown = len(scenes) + len(soaked.results)
+    figures: dict[str, object] = {"scenes": shown}
+    figures |= {name: _hits(counts, None, types) for name, types in KINDS.items()}
+    figures["bins"] = (len(functional.bins) - len(functional.holes), len(functional.bins))
+    figures["intersections"] = sum(functional.bins.values())
+    functional.export(output / "functional")
+    show_functional(functional, shown, console)
+    keep(arguments, figures, scope_of(design), "the other engines, a camera that turns, materials and patterns")
     for failure in failures:
         console.print(failure, style="red", markup=False, soft_wrap=True)
     console.print(f"{time.perf_counter() - started:.0f} s; figures and holes are in {output}/", highlight=False)
     return verdict(judgement, functional, failures)
 
 
-def verdict(judgement: Judgement, functional: FunctionalCoverage | None, failures: Sequence[str]) -> int:
-    """The exit code; without functional coverage where an engine has none."""
-    holes = functional.holes if functional else []
-    return int(bool(judgement.unexplained or judgement.stale or holes or failures))
+def verdict(judgement: Judgement, functional: FunctionalCoverage, failures: Sequence[str]) -> int:
+    """The exit code."""
+    return int(bool(judgement.unexplained or judgement.stale or functional.holes or failures))
