@@ -53,6 +53,8 @@ async def underrun(bench: HierarchyObject) -> None:
         harness.expect_picture(await monitor.frame(), heavy_picture, "the heavy scene")
         assert (await bus.read("status"))["underrun"] == 0
         assert (await bus.read("cycles"))["row"] <= harness.screen.row_cycles
+        await bus.write("status", underrun=1)
+        assert (await bus.read("status"))["underrun"] == 0, "clearing what is not set"
         monitor.check_pins()
         return
     assert configuration.group_cycles > configuration.group_budget, "this design cannot underrun"

@@ -42,12 +42,32 @@ async def every_axis_in_every_entry(bench: HierarchyObject) -> None:
         corners = [[100, 100, 100], [400, 400, 400]]
         corners[1][axis] = corners[0][axis]
         scene = Scene(
-            camera=Camera(position=(20, 256, 200)),
+            # At distances whose lowest bits are those of 0, -101 and 80.
+            camera=Camera(position=(20, 256, 201)),
             rect=(Rectangle(corners=corners, colour=(200, 100, 50)),) * harness.configuration.rectangles,
         )
         await harness.bus.load_scene(scene)
         await harness.bus.commit(reflections=0)
         harness.expect_picture(await harness.monitor.frame(), harness.golden(scene, 0), f"along {'xyz'[axis]}")
+
+
+@cocotb.test()
+async def every_bit_of_every_distance(bench: HierarchyObject) -> None:
+    """From frame to frame each bit of the camera's distances from a plane, and from its bounds, goes up, and down."""
+    harness = Harness(bench)
+    await harness.reset()
+    # Of alternating bits, 0010101010 and its complement, or with but its sign kept, 1010101010.
+    up, down, far_down = 0b0010101010, ~0b0010101010, ~0b0101010101
+    near, below, above = (200, down, up, up), (400, far_down, down, far_down), (20, up, ~far_down, ~far_down)
+    for eye, low, high, plane in (near, below, near, above, near):
+        corners = [[eye + bound, eye + plane, eye + bound] for bound in (low, high)]
+        scene = Scene(
+            camera=Camera(position=(eye,) * 3),
+            rect=(Rectangle(corners=corners, colour=(200, 100, 50)),) * harness.configuration.rectangles,
+        )
+        await harness.bus.load_scene(scene)
+        await harness.bus.commit(reflections=0)
+        harness.expect_picture(await harness.monitor.frame(), harness.golden(scene, 0), f"from {eye}")
 
 
 @cocotb.test()

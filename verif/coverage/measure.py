@@ -83,14 +83,10 @@ class Run:
     reflections: int | None = None
     """Instead of the scene's own."""
 
-    seeds: tuple[int, ...] = ()
-    """Of random scenes, where the bench shows those."""
-
     @property
     def name(self) -> str:
         """Of its directory."""
-        what = self.scene.stem if self.scene else self.seeds[0] if self.seeds else None
-        return self.bench if what is None else f"{self.bench}-{what}"
+        return f"{self.bench}-{self.scene.stem}" if self.scene else self.bench
 
 
 BENCHES = (
@@ -101,11 +97,6 @@ BENCHES = (
     Run("verif.coverage.bench"),
 )
 """Beyond a frame of every scene. The longest come first."""
-
-MORE_BENCHES = {
-    "beam": (Run("verif.soak.bench", seeds=tuple(range(12))), Run("verif.soak.bench", seeds=tuple(range(12, 24))))
-}
-"""By engine. A row starts from registers of each rectangle, which take all values only as one scene follows another."""
 
 EXTRA_SCENE = Path(__file__).with_name("extra_scene.toml")
 EXTRA_ROOMS = tuple(sorted(Path(__file__).parent.glob("extra_rooms_*.toml")))
@@ -134,7 +125,7 @@ def _run(run: Run, model: Model, output: Path) -> tuple[Counter[Point], str]:
     directory = (output / run.name).resolve()
     directory.mkdir(parents=True)
     scene = str(run.scene.resolve()) if run.scene else ""
-    job = Job(model.configuration, scene=scene, output=str(directory), reflections=run.reflections, seeds=run.seeds)
+    job = Job(model.configuration, scene=scene, output=str(directory), reflections=run.reflections)
     counts_file = directory / "coverage.dat"
     try:
         run_bench(model, f"raycaster.{run.bench}", job, directory, plusargs=[f"+verilator+coverage+file+{counts_file}"])
@@ -261,7 +252,7 @@ def main(argv: list[str] | None = None) -> int:
     with console.status(f"building {design.name}"):
         verilog = [*convert(design, arguments.build), *probes]
         counting = build_model(design, build=arguments.build, verilog=verilog, flags=FLAGS)
-    runs = [*BENCHES, *MORE_BENCHES.get(arguments.engine, ()), *(Run("sim.frame_bench", scene) for scene in scenes)]
+    runs = [*BENCHES, *(Run("sim.frame_bench", scene) for scene in scenes)]
     counts, failures = run_all(counting, runs, output / "runs", arguments.jobs, console)
     judgement = judge(counts, explanations)
 

@@ -28,6 +28,7 @@ from raycaster.rtl.beam import hit_cells as hit_cells_module
 from raycaster.rtl.beam import ray_fold as folder
 from raycaster.rtl.beam.beam_caster import beam_caster
 from raycaster.rtl.beam.beam_lane import beam_lane, beam_latency
+from raycaster.rtl.beam.beam_pass import beam_pass, winner_latency
 from raycaster.rtl.beam.beam_renderer import blanking_left, check_blanking
 from raycaster.rtl.beam.cell_step import cell_step
 from raycaster.rtl.beam.fold_tester import fold_tester
@@ -1501,6 +1502,90 @@ def test_beam_caster(config, lines, tmp_path):
         assert pixels_of(config, channels) == pixels, (cycle, case)
 
 
+def row_signals(config: Configuration) -> dict[str, object]:
+    """Through which a lane, and each of its passes, get a row that was set up."""
+    return {
+        "start_line": bit(),
+        "load": unsigned(config.rectangles),
+        "start": walk_of(config),
+        "aim": Direction(exact_slope_bits(config) + 1),
+        "facets": unsigned(config.rectangles * len(facet_of(config).word)),
+        "growths": unsigned(config.rectangles * len(stride_of(config).word)),
+    }
+
+
+def row_ports(config: Configuration, table: Rectangles, camera, slopes) -> tuple[dict[str, int], list[dict[str, int]]]:
+    """What their ports hold in a row, and what else the cycles get in which it begins.
+
+    slopes: of the lane's first column, and of the next one to the right.
+    """
+    facet, growth = facet_of(config), stride_of(config)
+    begin: list[dict[str, int]] = [{"start_line": 1}]
+    facets = growths = 0
+    for index in range(config.rectangles):
+        now, then = (products(table, index, camera, slope) for slope in slopes)
+        seen = {"usable": 1, "axis": table.axes[index], "distance": now["distance"], "way_q": now["way_q"]}
+        seen["colour"] = int.from_bytes(bytes(table.colours[index]))
+        more = {name: config.pixels * (then[name] - now[name]) for name in WALK}
+        facets |= facet.pack(seen) << index * len(facet.word)
+        growths |= growth.pack(more) << index * len(growth.word)
+        begin.append({f"start_{name}": word(now[name], walk_bits(config)) for name in WALK} | {"load": 1 << index})
+    held = direction_ports("aim", config, slopes[0])
+    return held | {"facets": facets, "growths": growths, "start_line": 0, "load": 0}, begin
+
+
+@pytest.mark.parametrize("mirrors", [0, 1, 2])
+def test_beam_pass(mirrors, tmp_path):
+    """The rectangle that a ray meets after so many mirrors, in rows of which a set-up knows the products."""
+    config = beam_config(screen="tiny", rectangles=3, reflections=2, scale=1)
+    strobes = ("step", "step_way", "step_bounds", "step_slope")
+    leaf = Leaf(
+        beam_pass,
+        lambda: {
+            "clk": bit(),
+            **row_signals(config),
+            **{strobe: bit() for strobe in strobes},
+            "fold": fold_of(config) if mirrors else None,
+            "nearest": None,
+            "winner": winner_of(config),
+            "tested": range(config.rectangles),
+            "config": config,
+        },
+        tmp_path,
+    )
+    random = np.random.default_rng(seed())
+    slopes, quiet = primary_slopes(config.screen_geometry), dict.fromkeys(strobes, 0)
+    stimulus, expected = [quiet] * winner_latency(config), {}
+    for _ in range(200):
+        row = int(random.integers(len(slopes)))
+        camera, table, column = race(random, config, slopes[row])
+        line = slopes[row, : column + 1 + int(random.integers(4))]
+        traced = exact.trace(table, camera, (0, 0, 0), line, mirrors)
+        held, begin = row_ports(config, table, camera, slopes[row, :2])
+        stimulus += [quiet | held | cycle for cycle in begin]
+        # A column's strobes follow it; now and then a cycle is no column's.
+        starts = np.cumsum(random.choice([1, 2], len(line), p=[0.8, 0.2])).tolist()
+        cycles = [quiet | held for _ in range(starts[-1] + winner_latency(config) + 1)]
+        for number, start in enumerate(starts):
+            slope, winners = line[number], [int(winner[number]) for winner in traced.winners]
+            for strobe, later in zip(strobes, (0, int(not mirrors), 1, 2), strict=True):
+                cycles[start + later][strobe] = 1
+            if -1 in winners[:mirrors]:
+                continue
+            met = [(axis := int(table.axes[winner]), int(table.low[winner, axis])) for winner in winners[:mirrors]]
+            if mirrors:
+                fields = folded(config, camera, slope, met)
+                cycles[start] |= {f"fold_{name}": value for name, value in fields.items()}
+            at = len(stimulus) + start + winner_latency(config)
+            expected[at] = winners[mirrors], (camera, table.corners, slope, met, repeat())
+        stimulus += cycles
+    outputs = leaf.run_both([*stimulus, quiet], settled=min(expected))
+    for cycle, (winner, case) in expected.items():
+        assert outputs[cycle]["winner_valid"] == (winner >= 0), case
+        if winner >= 0:
+            assert outputs[cycle]["winner_index"] == winner, case
+
+
 @pytest.mark.parametrize(
     ("config", "first", "lines"),
     [
@@ -1514,19 +1599,13 @@ def test_beam_caster(config, lines, tmp_path):
 )
 def test_beam_lane(config, first, lines, tmp_path):
     """Rows of which a set-up knows the products: every column, or every other one from the first or the second on."""
-    facet, growth, width = facet_of(config), stride_of(config), walk_bits(config)
     leaf = Leaf(
         beam_lane,
         lambda: {
             "clk": bit(),
-            "start_line": bit(),
             "next_column": bit(),
             "enter": None,
-            "load": unsigned(config.rectangles),
-            "start": walk_of(config),
-            "aim": Direction(exact_slope_bits(config) + 1),
-            "facets": unsigned(config.rectangles * len(facet.word)),
-            "growths": unsigned(config.rectangles * len(growth.word)),
+            **row_signals(config),
             "camera": camera_of(config),
             "picture": Picture(),
             "pixel": Pixel(config.colour_bits),
@@ -1535,33 +1614,18 @@ def test_beam_lane(config, first, lines, tmp_path):
         tmp_path,
     )
     random = np.random.default_rng(seed())
-    slopes, step = primary_slopes(config.screen_geometry), config.pixels
+    slopes = primary_slopes(config.screen_geometry)
     stimulus, expected = [{"next_column": 0}] * beam_latency(config), {}
     for _ in range(lines):
         row = int(random.integers(len(slopes)))
         camera, table, column = race(random, config, slopes[row])
         background = random.integers(256, size=3)
         line = slopes[row, : column + 1 + int(random.integers(4))]
-        traced = exact.trace(table, camera, background, line[first::step], config.reflections)
-        sets = [
-            [products(table, index, camera, slope) for slope in slopes[row, first : first + 2]]
-            for index in range(config.rectangles)
-        ]
-        facets = growths = 0
-        for index, (now, then) in enumerate(sets):
-            seen = {"usable": 1, "axis": table.axes[index], "distance": now["distance"], "way_q": now["way_q"]}
-            seen["colour"] = int.from_bytes(bytes(table.colours[index]))
-            more = {name: step * (then[name] - now[name]) for name in WALK}
-            facets |= facet.pack(seen) << index * len(facet.word)
-            growths |= growth.pack(more) << index * len(growth.word)
-        held = direction_ports("aim", config, slopes[row, first])
-        held |= {"facets": facets, "growths": growths, "start_line": 0, "next_column": 0, "load": 0}
-        held |= {"picture_reflections": config.reflections}
+        traced = exact.trace(table, camera, background, line[first :: config.pixels], config.reflections)
+        held, begin = row_ports(config, table, camera, slopes[row, first : first + 2])
+        held |= {"next_column": 0, "picture_reflections": config.reflections}
         held["picture_background"] = int.from_bytes(bytes(background.astype(np.uint8)))
-        stimulus.append({**held, "start_line": 1})
-        for index, (now, _) in enumerate(sets):
-            start = {f"start_{name}": word(now[name], width) for name in WALK}
-            stimulus.append({**held, **start, "load": 1 << index})
+        stimulus += [held | cycle for cycle in begin]
         for colour in traced.colours:
             expected[len(stimulus) + beam_latency(config)] = pixel_word(config, colour), repeat()
             stimulus.append({**held, "next_column": 1})
