@@ -498,6 +498,8 @@ def checks() -> str:
         ("functional coverage", of_seed, _bins("coverage"), ("coverage",)),
         ("code coverage", exact_culled, _code("coverage-exact"), ("coverage-exact",)),
         ("functional coverage", exact_culled, _bins("coverage-exact"), ("coverage-exact",)),
+        ("code coverage", "beam", _code("coverage-beam"), ("coverage-beam",)),
+        ("functional coverage", "beam", _bins("coverage-beam"), ("coverage-beam",)),
     )  # fmt: skip
     rows = []
     for what, scope, figure, names in lines:

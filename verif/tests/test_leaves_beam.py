@@ -1546,7 +1546,7 @@ def test_beam_pass(mirrors, tmp_path):
             **row_signals(config),
             **{strobe: bit() for strobe in strobes},
             "fold": fold_of(config) if mirrors else None,
-            "nearest": None,
+            "nearest": candidate_of(config),
             "winner": winner_of(config),
             "tested": range(config.rectangles),
             "config": config,
@@ -1555,13 +1555,20 @@ def test_beam_pass(mirrors, tmp_path):
     )
     random = np.random.default_rng(seed())
     slopes, quiet = primary_slopes(config.screen_geometry), dict.fromkeys(strobes, 0)
+    steepest = steepest_slope(config)
+    spare = steepest - int(abs(slopes[..., 1]).max())
     stimulus, expected = [quiet] * winner_latency(config), {}
-    for _ in range(200):
-        row = int(random.integers(len(slopes)))
-        camera, table, column = race(random, config, slopes[row])
-        line = slopes[row, : column + 1 + int(random.integers(4))]
+    for _ in range(400):
+        # Of another screen's view, from any column on, for each bit of the slopes to count.
+        view = slopes[int(random.integers(len(slopes)))].copy()
+        view[:, 0] = random.integers(1, steepest + 1)
+        view[:, 1] += random.integers(-spare, spare + 1)
+        view[:, 2] = random.integers(-steepest, steepest + 1)
+        camera, table, column = race(random, config, view)
+        first = int(random.integers(column + 1))
+        line = view[first : column + 1 + int(random.integers(4))]
         traced = exact.trace(table, camera, (0, 0, 0), line, mirrors)
-        held, begin = row_ports(config, table, camera, slopes[row, :2])
+        held, begin = row_ports(config, table, camera, view[first : first + 2])
         stimulus += [quiet | held | cycle for cycle in begin]
         # A column's strobes follow it; now and then a cycle is no column's.
         starts = np.cumsum(random.choice([1, 2], len(line), p=[0.8, 0.2])).tolist()
@@ -1576,14 +1583,19 @@ def test_beam_pass(mirrors, tmp_path):
             if mirrors:
                 fields = folded(config, camera, slope, met)
                 cycles[start] |= {f"fold_{name}": value for name, value in fields.items()}
-            at = len(stimulus) + start + winner_latency(config)
-            expected[at] = winners[mirrors], (camera, table.corners, slope, met, repeat())
+            case = camera, table.corners, slope, met, repeat()
+            values = {"winner_valid": int(winners[mirrors] >= 0)}
+            if winners[mirrors] >= 0:
+                eye, turned = seen_from(camera, slope, met)
+                seen_by = table, winners[mirrors], eye, turned, met[-1] if met else None
+                _, n, e = verdict(*seen_by, met_last(camera, slope, met))
+                values |= {"winner_index": winners[mirrors], "winner_at_mirror": int(not verdict(*seen_by)[0])}
+                values |= {"nearest_numerator": n, "nearest_denominator": e}
+            expected[len(stimulus) + start + winner_latency(config)] = values, case
         stimulus += cycles
     outputs = leaf.run_both([*stimulus, quiet], settled=min(expected))
-    for cycle, (winner, case) in expected.items():
-        assert outputs[cycle]["winner_valid"] == (winner >= 0), case
-        if winner >= 0:
-            assert outputs[cycle]["winner_index"] == winner, case
+    for cycle, (values, case) in expected.items():
+        assert {name: outputs[cycle][name] for name in values} == values, case
 
 
 @pytest.mark.parametrize(
