@@ -309,8 +309,8 @@ def test_the_blocks_proofs_are_named_as_they_are():
     assert set(proofs.FULL) | set(proofs.REDUCED) <= {proof.name for proof in PROPERTIES}
     rows = [line.split(" | ") for line in proofs.proved_blocks().splitlines()]
     blocks = {row[1]: row for row in rows}
-    assert blocks["`rect_tester`"][2:4] == ["`tester-products` and lemmas", "`tester-exact` (1 to 3 bits)"]
-    assert blocks["`beam_pass`"][2:] == ["", "", "", "", "in frames |"]
+    assert blocks["`rect_tester`"][2:4] == ["`tester-products` and lemmas", "`tester-exact` (1 to 4 bits)"]
+    assert blocks["`processor_host`"][2:] == ["", "", "", "", "in frames |"]
     assert {path.stem for path in (ROOT / "rtl" / "exact").glob("[!_]*.py")} == {
         row[1].strip("`") for row in rows if row[0] == "| exact"
     }
