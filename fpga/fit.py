@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
@@ -16,12 +17,13 @@ from rich.console import Console
 from rich.table import Table
 
 from raycaster.configuration import Configuration
+from raycaster.convert.provenance import Provenance
 from raycaster.design import Design, packaged_for
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.choice import BUILD, keep_choice
 from raycaster.fit.fixing import SCOPES, Fixing, fix, general_design, show
-from raycaster.fpga.area import FAMILIES, Area, measure
+from raycaster.fpga.cells import DECIDES, FAMILIES, TOOLS, Area, measure
 from raycaster.golden import engines, exact
 from raycaster.golden.picture import count_wrong
 from raycaster.jobs import add_job_options, executors, run_jobs
@@ -32,7 +34,7 @@ from raycaster.options import (
     command_line,
     given_options,
 )
-from raycaster.outcomes import add_keep_option, keep
+from raycaster.outcomes import Outcome, Published, add_keep_option, keep, table
 from raycaster.scene import load_scene
 from raycaster.tools import find_program
 
@@ -236,6 +238,35 @@ def command_parser() -> CommandParser:
     return parser
 
 
+def provenance(arguments: argparse.Namespace) -> Provenance:
+    """Digest what decides the command's figures."""
+    options = given_options(arguments)
+    error = None if arguments.error is None else arguments.error / 100
+    found = [
+        candidate.configuration
+        for path in arguments.scene or packaged_for(options)
+        for candidate in candidates(path, options, tuple(SCOPES), error)
+    ]
+    return Provenance(found, DECIDES, TOOLS)
+
+
+def _one_scene(kept: Outcome) -> str:
+    """Cells of designs with a scene built in, and their share of the general design's."""
+    rows = []
+    for scene, designs in kept.figures.items():
+        luts = {(one["engine"], one["scope"]): one["luts"] for one in designs}
+        cells = []
+        for engine in ENGINES:
+            general = luts[engine, GENERAL]
+            cells += [general, *(f"{luts[engine, scope]:,} ({luts[engine, scope] / general:.0%})" for scope in SCOPES)]
+        rows.append([scene, *cells])
+    headings = (word for engine in ENGINES for word in (engine, *(f"{engine} `FIX={scope}`" for scope in SCOPES)))
+    return table(["scene", *headings], rows)
+
+
+PUBLISHED = (Published("one_scene", ["fit"], _one_scene),)
+
+
 def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
     arguments = command_parser().parse_args(argv)
@@ -256,7 +287,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             path.stem: search(path, options, arguments.fix, error, arguments.output, console, make_executor)
             for path in paths
         }
-    keep(arguments, figures, {"fix": arguments.fix, "family": FAMILY.name})
+    keep(arguments, figures, {"fix": arguments.fix, "family": FAMILY.name}, provenance, "placing and routing")
 
 
 def _check_rate(path: Path, options: Mapping[str, Any], wanted: int) -> None:

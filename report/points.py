@@ -23,7 +23,7 @@ from raycaster.design import design_for
 from raycaster.errors import UserError
 from raycaster.fit.fixing import fix, fixed_rectangle
 from raycaster.fixed import FixedScene
-from raycaster.fpga.area import FAMILIES, measure
+from raycaster.fpga.cells import FAMILIES, measure
 from raycaster.golden import exact, seed_engine
 from raycaster.golden.catalogue import catalogue
 from raycaster.golden.errors import conditions, depth_errors
@@ -64,7 +64,7 @@ GENERAL_REFLECTIONS = 2
 """Of the design that things are left out of."""
 
 ROOT = Path(__file__).parent.parent
-_OF_CELLS = "rtl", "raycaster", "convert", "fpga/area.py", "fpga/hard_multiplier.v"
+_OF_CELLS = "rtl", "raycaster", "convert", "fpga/cells.py", "fpga/hard_multiplier.v"
 _OF_SIMULATIONS = "rtl", "raycaster", "golden", "convert", "sim"
 
 

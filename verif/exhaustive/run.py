@@ -20,6 +20,7 @@ bits are the least: a division must take two cycles, and three bits a cycle are 
 
 from __future__ import annotations
 
+import argparse
 import re
 import shlex
 import subprocess
@@ -46,10 +47,12 @@ import raycaster.rtl.seed.intersection_helper
 from raycaster.configuration import COORDINATE_BITS, Configuration, configure
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import convert_hierarchy
+from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
 from raycaster.jobs import add_job_options, executors, run_jobs
 from raycaster.options import CommandParser
-from raycaster.outcomes import add_keep_option, keep
+from raycaster.outcomes import Check, add_keep_option, keep
+from raycaster.outcomes import Outcome as Kept
 from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
 from raycaster.rtl.seed.divider import divider
@@ -300,6 +303,27 @@ def command_parser() -> CommandParser:
     return parser
 
 
+def provenance(arguments: argparse.Namespace) -> Provenance:
+    """Digest what decides the command's figures; three designs stand for all of its arithmetic."""
+    designs = [configure(), configure(divider_bits=2, rounding="nearest"), configure(divider_bits=3, fraction_bits=8)]
+    return Provenance(designs, ["verif/exhaustive"])
+
+
+def _check_of(title: str, kind: str) -> Check:
+    def body(kept: Kept) -> str:
+        found = kept.figures[kind]
+        return f"{found['vectors']:,} operands, {found['wrong']} wrong"
+
+    return Check(title, "seed", ["exhaustive"], body)
+
+
+CHECKS = (
+    _check_of("divider: every dividend that can occur over every divisor", "divider"),
+    _check_of("intersection: random and corner operands, full width", "intersection"),
+    _check_of("intersection: every operand, reduced width", "reduced"),
+)
+
+
 def main(argv: list[str] | None = None) -> int:
     """The command.
 
@@ -339,6 +363,6 @@ def main(argv: list[str] | None = None) -> int:
     for bench, outcome in outcomes.items():
         kinds[bench.kind]["vectors"] += outcome.vectors
         kinds[bench.kind]["valid"] += outcome.valid
-    keep(arguments, kinds, {"engine": "seed", "seed": arguments.seed})
+    keep(arguments, kinds, {"engine": "seed", "seed": arguments.seed}, provenance)
     print(f"repeat with: {repeat.format(label=shlex.quote(arguments.only))}")
     return 0

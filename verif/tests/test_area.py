@@ -16,8 +16,9 @@ import pytest
 
 from raycaster.configuration import configure
 from raycaster.convert.write import write_verilog
-from raycaster.fpga import area, flows
-from raycaster.fpga.area import CHIPS, FAMILIES, Area, Chip, Model, measure, measure_modules
+from raycaster.fpga import area, cells, flows
+from raycaster.fpga.area import CHIPS, Chip, Model
+from raycaster.fpga.cells import FAMILIES, Area, measure, measure_modules
 from raycaster.rtl.common.widths import exact_slope_bits
 
 YOSYS = "0.70.0.0.post1259"
@@ -92,7 +93,7 @@ def test_one_more_register_shows(tmp_path, monkeypatch):
         path.write_text(path.read_text().replace(right, late))
         return files
 
-    monkeypatch.setattr("raycaster.fpga.area.write_verilog", write_with_register)
+    monkeypatch.setattr("raycaster.fpga.cells.write_verilog", write_with_register)
     broken = measure(SMALL, FAMILIES["cycloneive"], tmp_path / "area")
     assert broken.registers == AREAS["cycloneive"].registers + 1
 
@@ -154,7 +155,7 @@ def test_each_pin_has_a_register(tmp_path):
     files = write_verilog(config, tmp_path)
     [module] = [path.read_text() for path in files if path.name == "ray_caster_module.v"]
     top = tmp_path / "top.v"
-    top.write_text(area.registered_pins(module))
+    top.write_text(cells.registered_pins(module))
     text = top.read_text()
     widths = {"reset": "", "avs_s0_writedata": "[31:0]", "vga_g": "[9:0]", "vga_hs": "", "irq": ""}
     for name, width in widths.items():
@@ -270,3 +271,23 @@ def test_bad_options_get_one_line(tmp_path, options, complaint):
 def command(directory: Path, *options: str) -> subprocess.CompletedProcess[str]:
     call = (sys.executable, "-m", "raycaster.cli", "area", *options)
     return subprocess.run(call, cwd=directory, capture_output=True, text=True, check=False)
+
+
+def test_a_design_is_counted_once(tmp_path, monkeypatch):
+    """A count that is kept needs no Yosys; another design, family or module has a count of its own."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PATH", "")
+    asked = []
+
+    def netlist(directory, script):
+        asked.append(script[-3])
+        return {top: {"cells": {}} for top in ("ray_caster_module", "ray_unit")}
+
+    monkeypatch.setattr(cells, "_netlist", netlist)
+    tiny, ecp5 = configure(screen="tiny", units=1, rectangles=2, allow_underrun=True), FAMILIES["ecp5"]
+    for _ in range(2):
+        measure(tiny, ecp5, tmp_path / "one")
+        measure(tiny, ecp5, tmp_path / "unit", "ray_unit")
+        measure(tiny, FAMILIES["cyclonev"], tmp_path / "other")
+        measure(replace(tiny, rectangles=3), ecp5, tmp_path / "more")
+    assert len(asked) == 4

@@ -7,7 +7,7 @@ import pytest
 from rich.console import Console
 
 from raycaster.errors import UserError
-from raycaster.fpga.area import Area
+from raycaster.fpga.cells import Area
 from raycaster.report import beside
 from raycaster.report.beside import (
     Other,

@@ -12,6 +12,8 @@ import shutil
 import subprocess
 import sys
 import sysconfig
+from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache
 from itertools import zip_longest
 from pathlib import Path
@@ -22,12 +24,14 @@ from rich.console import Console
 
 from raycaster import outcomes
 from raycaster.configuration import configure
+from raycaster.convert import provenance
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.inside import find_block, look_inside
-from raycaster.docs import blocks, commands, drawings, facts, pages, proofs, results, scaling, tables, timing
+from raycaster.convert.take_home import TOP
+from raycaster.docs import blocks, commands, drawings, engine_figures, facts, pages, proofs, scaling, tables, timing
 from raycaster.docs.commands import commands_of, outside_make
 from raycaster.errors import UserError
-from raycaster.fpga.area import Area
+from raycaster.fpga.cells import Area
 from raycaster.golden.picture import shown
 from raycaster.options import CommandParser
 from raycaster.rtl.system.ports import module_ports
@@ -295,7 +299,7 @@ def test_nets(renderer):
 
 def test_table():
     """Columns of numbers stand to the right, with commas."""
-    assert facts.table(["a", "b"], [["x", 1234], ["y", 5]]) == "| a | b |\n| --- | ---: |\n| x | 1,234 |\n| y | 5 |"
+    assert outcomes.table(["a", "b"], [["x", 1234], ["y", 5]]) == "| a | b |\n| --- | ---: |\n| x | 1,234 |\n| y | 5 |"
 
 
 @pytest.fixture(scope="module")
@@ -355,9 +359,12 @@ def test_a_marker_that_nothing_is_made_for():
         pages.rendered("<!--nothing-->0<!--/-->", {"a": "1", "b": "2"}, "page")
 
 
-def test_figures_that_are_missing():
+def test_figures_that_are_missing(monkeypatch, tmp_path: Path):
     with pytest.raises(UserError, match=r"nothing\.json: cannot be read: .*; a command with --keep"):
-        tables.outcome("nothing")
+        outcomes.kept_outcome(tmp_path / "nothing.json")
+    monkeypatch.setattr(tables, "outcomes", dict)
+    with pytest.raises(UserError, match=r"engines: .*engines\.json is missing; a command with --keep writes it"):
+        tables.tables()
 
 
 def test_figures_are_kept(tmp_path: Path, monkeypatch):
@@ -365,16 +372,98 @@ def test_figures_are_kept(tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     parser = CommandParser("area", "Cells.", "")
     outcomes.add_keep_option(parser)
-    scope = outcomes.scope_of(configure(engine="exact", culling=True))
-    outcomes.keep(parser.parse_args([]), {"cells": 3}, scope)
+    config = configure(engine="exact", culling=True)
+    scope = outcomes.scope_of(config)
+
+    def decided(arguments):
+        return provenance.Provenance([config], ["golden/exact.py"], ["myhdl"])
+
+    parser.add_argument("--family")
+    outcomes.keep(parser.parse_args([]), {"cells": 3}, scope, decided)
     assert not list(tmp_path.iterdir())
-    outcomes.keep(parser.parse_args(["--keep", "results/one.json"]), {"cells": 3}, scope, left_out="clocks")
-    kept = json.loads((tmp_path / "results" / "one.json").read_text())
-    assert kept["command"] == "raycaster area --keep results/one.json"
-    assert kept["figures"] == {"cells": 3}
-    assert (kept["scope"]["engine"], kept["scope"]["culling"], kept["scope"]["left_out"]) == ("exact", True, "clocks")
-    assert kept["tools"]["myhdl"] == importlib.metadata.version("myhdl")
-    assert re.fullmatch(r"\d{4}-\d\d-\d\d", kept["date"])
+    words = ["--keep", "results/one.json", "--family", "ecp5"]
+    outcomes.keep(parser.parse_args(words), {"cells": 3}, scope, decided, left_out="clocks")
+    kept = outcomes.kept_outcome(tmp_path / "results" / "one.json")
+    assert kept.command == "raycaster area --family ecp5"
+    assert kept.figures == {"cells": 3}
+    assert (kept.scope["engine"], kept.scope["culling"], kept.scope["left_out"]) == ("exact", True, "clocks")
+    assert kept.provenance["tools"] == {"myhdl": importlib.metadata.version("myhdl")}
+    assert kept.provenance["designs"] == {config.name: provenance.verilog_digest(config)}
+    assert re.fullmatch(r"\d{4}-\d\d-\d\d", kept.date)
+
+
+def test_comments_make_no_figure_stale(tmp_path: Path, monkeypatch):
+    """Comments, docstrings and empty lines do not count; everything else does, in Python and in Verilog."""
+    monkeypatch.setattr(provenance, "ROOT", tmp_path)
+
+    def digests(python: str, verilog: str) -> tuple[str, str]:
+        code, module = tmp_path / "code.py", tmp_path / "module.v"
+        code.write_text(python)
+        module.write_text(verilog)
+        return provenance.code_digest(code), provenance.files_digest([module])
+
+    plain = digests('def f(a):\n    return a + "#1"\n', "assign a = b + c;\n")
+    dressed = '# A sum.\ndef f(a):\n    """Add."""\n\n    return a + "#1"  # one\n'
+    assert digests(dressed, "// A sum.\nassign a = b + c; // all of it\n\n") == plain
+    changed = digests('def f(a):\n    return a + "#2"\n', "assign a = b - c;\n")
+    assert not set(changed) & set(plain)
+
+
+def test_only_what_decides_a_figure_makes_it_stale(monkeypatch):
+    """One operator in a block of the exact engine: the digests of the other engines stay."""
+    designs = [configure(engine=name, screen="tiny", rectangles=3) for name in ("seed", "exact", "beam")]
+    before = [provenance.verilog_digest(design) for design in designs]
+    assert before == [provenance.verilog_digest(design) for design in designs]
+    text = provenance.uncommented
+
+    def edited(verilog: str) -> str:
+        return text(verilog.replace("module nearest_hit", "module nearest_hit_of_all"))
+
+    monkeypatch.setattr(provenance, "uncommented", edited)
+    after = [provenance.verilog_digest(design) for design in designs]
+    assert [then == now for then, now in zip(before, after, strict=True)] == [True, False, True]
+    then = {"designs": {"a": "1", "gone": "2"}, "sources": {"golden": "3"}, "tools": {}}
+    now = {"designs": {"a": "1", "new": "2"}, "sources": {"golden": "4"}, "tools": {"myhdl": "0"}}
+    assert tables._changed(then, then) == []
+    assert tables._changed(then, now) == ["gone", "new", "golden", "myhdl"]
+    assert tables._changed({}, now) == ["a", "new", "golden", "myhdl"]
+    assert tables._changed(then, "no such scene") == ["the command, which is refused: no such scene"]
+
+
+def test_one_design_has_one_count():
+    """Two tables that name one design have one number of LUT4 for it; stale figures are marked, and left out."""
+    found: dict[str, dict[str, int]] = {}
+    for kept in tables.outcomes().values():
+        for name, count in counts_of(kept):
+            if not kept.changed:
+                found.setdefault(name, {})[kept.name] = count
+    assert {name: counts for name, counts in found.items() if len(set(counts.values())) > 1} == {}
+
+
+def counts_of(kept: outcomes.Outcome) -> Iterator[tuple[str, int]]:
+    """LUT4 of an ECP5 that a kept file has of whole designs, by the configuration's name."""
+    figures = kept.figures
+    if kept.name == "area":
+        config = configure()
+        for units, area in figures["families"]["ecp5"]["units"].items():
+            yield replace(config, units=int(units), allow_underrun=True).name, area["tables"]
+    elif kept.name in ("engines", "features", "scaling", "report"):
+        for row in figures["designs"]:
+            if row.get("found", True) and row.get("module", TOP) == TOP and "refused" not in row:
+                options = row.get("options", {})
+                options |= {"engine": row["engine"]} if "engine" in row else {}
+                options |= {row["option"]: row["value"]} if "option" in row else {}
+                yield configure(**options).name, row["luts"] if "luts" in row else row["tables"]
+    elif kept.name == "fit":
+        for designs in figures.values():
+            yield from ((one["configuration"], one["luts"]) for one in designs)
+
+
+def test_a_count_that_differs_is_noticed(monkeypatch):
+    """What the test above compares is there, and it is not a comparison of nothing."""
+    name = configure(engine="exact").name
+    of_it = [kept.name for kept in tables.outcomes().values() if name in dict(counts_of(kept))]
+    assert {"engines", "features", "scaling", "report"} <= set(of_it)
 
 
 def test_the_diagrams_are_of_the_design_as_it_is():
@@ -430,17 +519,11 @@ def test_pages_with_a_fault(tmp_path: Path):
 
 
 def test_the_measured_designs_drew_what_they_had_to():
-    designs = tables.outcome("engines")["figures"]["designs"]
-    assert [design["options"] for design in designs] == list(map(dict, results.DESIGNS))
+    designs = tables.outcomes()["engines"].figures["designs"]
+    assert [design["options"] for design in designs] == list(map(dict, engine_figures.DESIGNS))
     for design in designs:
         assert design["wrong_vs_golden"] == 0
         assert (design["wrong_vs_exact"] > 0) == (design["options"]["engine"] == "seed")
-
-
-def test_a_straight_line():
-    start, slope, off = tables.line_through([1, 2, 4], [110, 120, 140])
-    assert (round(start, 9), round(slope, 9), round(off, 9)) == (100, 10, 0)
-    assert tables.line_through([1, 2, 3], [100, 100, 130])[2] == pytest.approx(0.1)
 
 
 def test_how_designs_grow(tmp_path: Path, monkeypatch):
@@ -451,21 +534,17 @@ def test_how_designs_grow(tmp_path: Path, monkeypatch):
         counted.append(config.name)
         return Area(100 * config.rectangles, 7, 0, 3, 0)
 
-    few = {value: {"rectangles": value} for value in (2, 12)}
-    series = [
-        scaling.Series("beam", "rectangles", few),
-        scaling.Series("beam", "reflections", {1: {"reflections": 1}, 4: {"reflections": 4, "fraction_bits": 1}}),
-    ]
+    series = [scaling.Series("beam", "rectangles", (2, 12)), scaling.Series("beam", "reflections", (1, 5))]
     monkeypatch.setattr(scaling, "SERIES", series)
     monkeypatch.setattr(scaling, "measure", count)
     monkeypatch.setattr(scaling, "frame_time", lambda config, build: 9.0)
     rows = scaling.measure_scaling(tmp_path, tmp_path, Console())
     assert sorted(counted) == ["beam-vga240-s2-u1-r12-m1-c8", "beam-vga240-s2-u1-r2-m1-c8"]
     assert [(row["option"], row["value"], row.get("tables")) for row in rows] == [
-        ("rectangles", 2, 200), ("rectangles", 12, 1200), ("reflections", 1, 1200), ("reflections", 4, None),
+        ("rectangles", 2, 200), ("rectangles", 12, 1200), ("reflections", 1, 1200), ("reflections", 5, None),
     ]  # fmt: skip
     assert rows[0]["frame_cycles"] == 640 * 480
-    assert rows[3]["refused"].startswith("fraction_bits: ")
+    assert rows[3]["refused"].startswith("reflections: ")
 
 
 @pytest.mark.parametrize("break_it", [False, True])
@@ -483,7 +562,6 @@ def test_a_frame_is_timed(tmp_path: Path, monkeypatch, break_it):
 
 def test_the_plot_of_the_growth():
     """It is of what the tables are of."""
-    kept = tables.outcome("scaling")
     plot = (pages.HERE / "scaling.svg").read_text()
-    assert f"measured {kept['date']}, commit {kept['commit']}" in plot
+    assert f"measured {tables.outcomes()['scaling'].date}" in plot
     assert set(drawings.words(plot)) > {"seed", "exact", "beam", "rectangles", "reflections", "LUT4"}

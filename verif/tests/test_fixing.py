@@ -25,7 +25,7 @@ from raycaster.fit.fixing import FIT, SCOPES, configuration_of, design_of, fix, 
 from raycaster.fit.unneeded import covered, seen, unreachable, without_mirrors
 from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
 from raycaster.fpga import fit as search
-from raycaster.fpga.area import FAMILIES, measure
+from raycaster.fpga.cells import FAMILIES, measure
 from raycaster.golden import engines
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.registers import address_bits, register_map

@@ -37,7 +37,7 @@ MAY_IMPORT = {
     "web": ("raycaster", "sw", "convert", "sim", "debug", "play"),
     "verif": ("raycaster", "golden", "rtl", "sw", "convert", "fit", "fpga", "sim"),
     "report": ("raycaster", "golden", "rtl", "convert", "fit", "fpga", "sim", "verif"),
-    "docs": ("raycaster", "golden", "rtl", "convert", "fpga", "sim", "debug", "play", "web", "verif", "report"),
+    "docs": ("raycaster", "cli", "golden", "rtl", "convert", "fpga", "sim", "debug", "play", "web", "verif", "report"),
 }
 """By folder, the folders that it may import of beside itself: no two of each other, however many between them."""
 

