@@ -29,6 +29,7 @@ import raycaster
 import raycaster.convert
 import raycaster.rtl
 from raycaster.configuration import Configuration
+from raycaster.digests import sources_digest, tools_digest
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, clocks_per_bit
 from raycaster.options import BUILD
@@ -44,6 +45,11 @@ DIGITS = 12
 """Of the digest in the name of a model."""
 
 HERE = Path(__file__).parent
+
+_CONVERTED_WITH = (
+    "raycaster", "myhdl", "systemrdl-compiler", "peakrdl-cheader", "peakrdl-html", "pythondata-cpu-picorv32"
+)  # fmt: skip
+"""Packages whose versions the converted files depend on."""
 
 _MAIN = HERE / "main.cpp"
 """The main program of Verilator's models."""
@@ -252,20 +258,18 @@ def convert(configuration: Configuration, build: Path = BUILD, *, system: bool =
         system: with a processor.
     """
     directory = build / "model" / configuration.name / ("system" if system else "verilog")
-    digest = hashlib.sha256(repr(configuration).encode())
-    for package in (raycaster, raycaster.rtl, raycaster.convert):
-        for source in sorted(Path(package.__path__[0]).rglob("*")):
-            if source.suffix in (".py", ".rdl"):
-                digest.update(source.read_bytes())
+    packages = (raycaster, raycaster.rtl, raycaster.convert)
+    sources = sources_digest(*(Path(package.__path__[0]) for package in packages))
+    digest = hashlib.sha256(repr((configuration, sources, tools_digest(*_CONVERTED_WITH))).encode()).hexdigest()
     with lock(directory):
         stamp = directory / "stamp.json"
-        if (files := stamped(stamp, digest.hexdigest())) is not None:
+        if (files := stamped(stamp, digest)) is not None:
             return [directory / name for name in files]
         from raycaster.convert import write as converter  # noqa: PLC0415 - MyHDL is only loaded where it has work
 
         write = converter.write_processor_system if system else converter.write_verilog
         files = [path.name for path in write(configuration, directory) if path.suffix == ".v"]
-        write_stamp(stamp, digest.hexdigest(), files)
+        write_stamp(stamp, digest, files)
         return [directory / name for name in files]
 
 
