@@ -22,7 +22,7 @@ from pathlib import Path
 import cocotb
 from cocotb_tools import config as cocotb_config
 from cocotb_tools.check_results import get_results
-from cocotb_tools.runner import Runner, Verilator, get_runner
+from cocotb_tools.runner import Verilator, get_runner
 from filelock import FileLock
 
 import raycaster
@@ -124,7 +124,7 @@ class Bench:
     @property
     def modules(self) -> list[str]:
         """What it is made of; the top is the last."""
-        return ["line_sink", *(["wave_window"] if self.window else []), self.top]
+        return ["bench_clock", "line_sink", *(["wave_window"] if self.window else []), self.top]
 
     @property
     def sources(self) -> list[Path]:
@@ -283,6 +283,7 @@ def build_model(
     flags: Sequence[str] = VERILATOR_FLAGS,
     defines: Mapping[str, int] | None = None,
     bench: Bench = MODULE_BENCH,
+    own_main: bool = True,
 ) -> Model:
     """Build a model of a design, or find it built.
 
@@ -295,6 +296,7 @@ def build_model(
         flags: for Verilator.
         defines: more macros than the bench's own.
         bench: what the design is simulated in.
+        own_main: whether Verilator's model has `_MAIN`, instead of cocotb's main program, which is slower.
 
     Raises:
         UserError: the simulator, or a library that it needs, is missing.
@@ -304,7 +306,8 @@ def build_model(
     design = verilog if verilog is not None else convert(configuration, build, system=bench.system)
     sources = [*design, *bench.sources]
     parameters = bench.parameters(configuration)
-    defines = {**(defines or {}), **bench.defines(configuration)}
+    program = [_MAIN] if simulator == "verilator" and own_main else []
+    defines = {**(defines or {}), **bench.defines(configuration), **({"MAIN_CLOCK": 1} if program else {})}
     # Verilator's main program must know of waveforms for a bench to write one, and Icarus would write all of it.
     built_for_waves = waves or (bench.window and simulator == "verilator")
     wave_format = tool.wave_format if built_for_waves or bench.window else "fst"
@@ -313,13 +316,12 @@ def build_model(
     if any(flag.startswith("--coverage") for flag in arguments):
         made_with.append([source.resolve() for source in sources])  # which the counts name
     name = "-".join((configuration.name, bench.top, simulator))
-    program = [_MAIN] if simulator == "verilator" else []
     with made(models(build), name, [*sources, *program], made_with) as (directory, fresh):
         if fresh:
             log = directory.with_suffix(".log")
             with _building(tool, models(build), arguments):
                 try:
-                    _runner(simulator).build(
+                    (_VerilatorWithMain() if program else get_runner(simulator)).build(
                         sources=[source.resolve() for source in sources],
                         hdl_toplevel=bench.top,
                         parameters=parameters,
@@ -344,10 +346,6 @@ class _VerilatorWithMain(Verilator):
         theirs = translate.index(str(cocotb_config.share_dir / "lib" / "verilator" / "verilator.cpp"))
         translate[theirs] = str(_MAIN)
         return [translate, *others]
-
-
-def _runner(simulator: str) -> Runner:
-    return _VerilatorWithMain() if simulator == "verilator" else get_runner(simulator)
 
 
 def build_program(
@@ -582,7 +580,7 @@ def run_bench(
         "icarus": {"plusargs": [f"+dumpfile_path={waves}", *plusargs]},
     }
     with contextlib.suppress(RuntimeError, SystemExit):  # what went wrong stands in the log and the results
-        _runner(model.simulator).test(
+        get_runner(model.simulator).test(
             test_module=test_module,
             hdl_toplevel=model.bench.top,
             hdl_toplevel_lang="verilog",
