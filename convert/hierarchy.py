@@ -12,6 +12,7 @@ why its version is pinned; the contract that they rely on is tested.
 from __future__ import annotations
 
 import inspect
+import re
 import shutil
 import warnings
 from collections.abc import Mapping
@@ -23,8 +24,8 @@ from myhdl import ConcatSignal, ToVerilogWarning
 from myhdl._block import _Block
 from myhdl._extractHierarchy import _MemInfo, _UserVerilogCode
 from myhdl._instance import _Instantiator
-from myhdl._ShadowSignal import _SliceSignal
-from myhdl._Signal import _Signal
+from myhdl._ShadowSignal import _ShadowSignal, _SliceSignal
+from myhdl._Signal import Constant, _Signal
 from myhdl.conversion._toVerilog import _ToVerilogConvertor, toVerilog
 
 from raycaster.convert.elaboration import elaboration
@@ -127,6 +128,7 @@ class _RecordingConvertor(_ToVerilogConvertor):
         )
         self._declare_fields(siglist, intf)
         _check_names(intf, {id(intf.argdict[name]): name for name in intf.argnames}, memlist)
+        _check_values(intf, siglist, memlist)
         self.constants = [s for s in siglist if isinstance(s, Tied) and s._used and s._name not in intf.argnames]
         siglist[:] = [s for s in siglist if not isinstance(s, Tied) or s._name in intf.argnames]
 
@@ -156,9 +158,10 @@ def convert_hierarchy(top: _Block, directory: Path, header: str) -> list[Module]
         The modules, each after those that it instantiates; `top` is the last.
 
     Raises:
-        HierarchyError: a block cannot be a module: a signal has no driver or no reader; two things in it would have one
-            name in Verilog; an instance connects to a signal that no variable holds; given Verilog drives what is no
-            argument of its block, or another block has its name.
+        HierarchyError: a block cannot be a module: a signal has no driver or no reader; a process indexes a list of
+            slices; a constant is below 0; two things in it would have one name in Verilog; an instance connects to a
+            signal that no variable holds; given Verilog drives what is no argument of its block, or another block has
+            its name.
     """
     with elaboration():
         return _Converter(directory, header).convert(top)
@@ -337,6 +340,29 @@ def _check_names(block: _Block, ports: Mapping[int, str], memories: list[_MemInf
         name = ports.get(id(signal), signal._name)
         if name is None or owners.setdefault(name, id(signal)) != id(signal):
             raise HierarchyError(f"{block.name}: two things would be called {name or variable} in Verilog; rename one")
+
+
+def _check_values(block: _Block, signals: list[_Signal], memories: list[_MemInfo]) -> None:
+    """Refuse what MyHDL would print as other values: slices that processes index, and constants below 0."""
+    for memory in memories:
+        if memory._used and any(isinstance(one, _ShadowSignal) for one in memory.mem):
+            raise HierarchyError(
+                f"{_place(block, memory.name)}: a process indexes {memory.name}, whose slices would have no value "
+                "in Verilog; index the signal that they are cut from"
+            )
+    for signal in signals:
+        if isinstance(signal, Constant) and signal._read and int(signal.val) < 0:
+            raise HierarchyError(
+                f"{_place(block, signal._name)}: {signal._name} is {int(signal.val)}, and a constant below 0 is no "
+                "Verilog; use tied()"
+            )
+
+
+def _place(block: _Block, name: str) -> str:
+    """File and line at which a block gives a name its value, or of the block where it does not."""
+    lines, first = inspect.getsourcelines(block.func)
+    given = (number for number, line in enumerate(lines) if re.match(rf"\s*(?:\w+, *)*{re.escape(name)}\b.*=", line))
+    return f"{inspect.getsourcefile(block.func)}:{first + next(given, 0)}"
 
 
 def _fields_read(block: _Block, children: list[_Block]) -> dict[int, Field]:

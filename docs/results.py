@@ -28,7 +28,7 @@ from raycaster.scene import packaged_scenes
 LOG_COLUMNS = 150
 
 
-def _measure_engines(arguments: argparse.Namespace, console: Console) -> None:
+def _measure_engines(arguments: argparse.Namespace, console: Console) -> int:
     designs = []
     for options in engine_figures.DESIGNS:
         name = configure(**options).name
@@ -36,18 +36,21 @@ def _measure_engines(arguments: argparse.Namespace, console: Console) -> None:
             designs.append(engine_figures.measured(options, arguments.output / name))
     figures = {"scenes": len(packaged_scenes(plain=True)), "designs": designs}
     keep(arguments, figures, {"rectangles": configure().rectangles}, provenance, "placing and routing")
+    return 0
 
 
-def _measure_scaling(arguments: argparse.Namespace, console: Console) -> None:
+def _measure_scaling(arguments: argparse.Namespace, console: Console) -> int:
     designs = scaling.measure_scaling(arguments.output / "scaling", arguments.output, console)
     keep(arguments, {"designs": designs}, {}, provenance, "placing and routing")
     scaling.draw_scaling(designs, kept_outcome(arguments.keep).date, HERE / "scaling.svg")
+    return 0
 
 
-def _measure_beside(arguments: argparse.Namespace, console: Console) -> None:
-    checkouts = beside.checkouts_of(arguments.beside)
-    rows = beside.measure_beside(beside.SCENE, checkouts, arguments.output / "beside", console)
+def _measure_beside(arguments: argparse.Namespace, console: Console) -> int:
+    checkouts, failures = beside.checkouts_of(arguments.beside), []
+    rows = beside.measure_beside(beside.SCENE, checkouts, arguments.output / "beside", console, failures)
     keep(arguments, {"designs": rows}, {"scene": beside.SCENE}, provenance)
+    return int(bool(failures))
 
 
 def _show_stale(console: Console) -> None:
@@ -83,19 +86,21 @@ def provenance(arguments: argparse.Namespace) -> Provenance:
     return engine_figures.provenance() if arguments.beside is None else beside.provenance()
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command; returns its exit code: 1 where something could not be measured."""
     arguments = command_parser().parse_args(argv)
     need_clone()
     console = Console()
     if arguments.stale:
         _show_stale(Console(width=None if console.is_terminal else LOG_COLUMNS))
-        return
+        return 0
+    code = 0
     if not arguments.render:
         measures = {"engines": _measure_engines, "scaling": _measure_scaling, "beside": _measure_beside}
         name = "scaling" if arguments.scaling else "engines" if arguments.beside is None else "beside"
         arguments.keep = arguments.keep or RESULTS / f"{name}.json"
-        measures[name](arguments, console)
+        code = measures[name](arguments, console)
         outcomes.cache_clear()
     for page in render_all(facts() | tables() | proofs()):
         print(f"written: {page}")
+    return code

@@ -22,7 +22,8 @@ from rich.console import Console
 
 from raycaster.cli.__main__ import loaded
 from raycaster.cli.commands import COMMANDS
-from raycaster.convert.provenance import ROOT, Provenance, code_digest, verilog_digest
+from raycaster.convert.provenance import ROOT, Provenance, verilog_digest
+from raycaster.digests import code_digest
 from raycaster.docs import engine_figures, scaling
 from raycaster.errors import UserError
 from raycaster.fpga import area, bitstream, fit, tiny_tapeout
@@ -169,7 +170,7 @@ def _current(commands: Sequence[str]) -> Mapping[str, Digests | str]:
 
 def _state() -> list[str]:
     packages = sorted(f"{one.name} {one.version}" for one in distributions())
-    return [*(code_digest(ROOT / place) for place in DECIDING), *packages]
+    return [*(code_digest(ROOT / place, ROOT) for place in DECIDING), *packages]
 
 
 def _described(command: str) -> Provenance | str:

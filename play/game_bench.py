@@ -15,6 +15,7 @@ from cocotb.handle import HierarchyObject
 from cocotb.triggers import ClockCycles
 from PIL import Image
 
+from raycaster.golden.picture import count_wrong
 from raycaster.sim.harness import RESET_CLOCKS, Viewer
 from raycaster.sim.register_model import SceneFollower
 
@@ -67,7 +68,7 @@ async def play(bench: HierarchyObject) -> None:
 
     # Time of this process, as others may work on the machine.
     started, golden_seconds = time.process_time(), 0.0
-    shown = 0
+    shown, pixels, wrong, complaints = 0, 0, 0, []
     for number in range(len(job.buttons)):
         frame = await viewer.monitor.frame()
         # The next frame's vertical sync has just begun, and its StartScreen is still to come.
@@ -76,7 +77,13 @@ async def play(bench: HierarchyObject) -> None:
         before = time.process_time()
         Image.fromarray(frame).save(output / f"frame_{number:04}.png")
         scene = tap.scenes.live
-        viewer.expect_picture(frame, viewer.golden_live(scene), f"frame {number}")
+        expected = viewer.golden_live(scene)
+        pixels += expected[..., 0].size
+        wrong += count_wrong(frame, expected)
+        try:
+            viewer.expect_picture(frame, expected, f"frame {number}")
+        except AssertionError as complaint:  # later frames count too
+            complaints.append(complaint)
         shown += scene is not None and scene.run
         golden_seconds += time.process_time() - before
         assert not int(bench.halted.value), f"frame {number}: the processor halted; sent was {tap.text.read_bytes()!r}"
@@ -88,6 +95,8 @@ async def play(bench: HierarchyObject) -> None:
         "configuration": viewer.configuration.name,
         "frames": frames,
         "shown": shown,
+        "pixels": pixels,
+        "wrong": wrong,
         "writes": tap.writes,
         "clocks": clocks,
         "seconds": round(seconds, 3),
@@ -95,6 +104,8 @@ async def play(bench: HierarchyObject) -> None:
         "clocks_a_second": round(clocks / (seconds - golden_seconds)),
     }
     (output / "result.json").write_text(json.dumps(result, indent=2) + "\n")
+    if complaints:
+        raise complaints[0]
     viewer.monitor.check_pins()
     assert not int(bench.underruns.value), "a row was not complete in time"
     assert not int(bench.uart_faults.value), "a start or stop bit on the serial port is wrong"

@@ -108,7 +108,8 @@ def main() -> int:
     rate = result["clocks_a_second"]
     speed = rate / configuration.screen_geometry.frame_cycles
     print(
-        f"{configuration.name}: {result['frames']} frames, {result['shown']} of them with a scene, 0 pixels are wrong; "
+        f"{configuration.name}: {result['frames']} frames, {result['shown']} of them with a scene, "
+        f"{result['wrong']:,} pixels are wrong; "
         f"{rate:,} clocks a second, {speed:.2f} frames; pictures in {arguments.output}/"
     )
     return 0

@@ -40,7 +40,7 @@ from raycaster.output import replaced
 from raycaster.registers import register_map
 from raycaster.scene import Scene, load_scene, packaged_scenes
 from raycaster.screens import SCREENS, Screen
-from raycaster.sim.simulator import build_program
+from raycaster.sim.simulator import SimulationError, build_program
 from raycaster.tools import run_yosys
 
 HERE = Path(__file__).parent
@@ -130,10 +130,7 @@ def measure_other(other: Other, checkout: Path, directory: Path) -> dict[str, An
     Raises:
         UserError: the checkout lacks a file, or a tool refuses one.
     """
-    sources = [*(checkout / name for name in other.sources), *other.ours]
-    for path in sources:
-        if not path.is_file():
-            raise UserError(f"{path}: is not there; give a checkout of {other.address}")
+    sources = _sources(other, checkout)
     # As one text, as what one file defines is meant for the next.
     directory.mkdir(exist_ok=True)
     text = directory / "design.v"
@@ -155,6 +152,19 @@ def measure_other(other: Other, checkout: Path, directory: Path) -> dict[str, An
         "routed_mhz": route_netlist(directory, other.clock_mhz, seed=1)["routed_mhz"],
         "frame_s": _frame_time(other.title, other.top, [text], other.defines, FRAME, directory),
     }
+
+
+def _sources(other: Other, checkout: Path) -> list[Path]:
+    """The design's Verilog.
+
+    Raises:
+        UserError: the checkout lacks a file.
+    """
+    sources = [*(checkout / name for name in other.sources), *other.ours]
+    for path in sources:
+        if not path.is_file():
+            raise UserError(f"{path}: is not there; give a checkout of {other.address}")
+    return sources
 
 
 def measure_ours(options: Mapping[str, Any], scene: Path, directory: Path) -> dict[str, Any]:
@@ -297,18 +307,27 @@ def checkouts_of(given: Sequence[str]) -> dict[str, Path]:
     return {name: Path(path) for name, path in pairs}
 
 
-def measure_beside(scene: str, checkouts: Mapping[str, Path], output: Path, console: Console) -> list[dict[str, Any]]:
-    """All that can be measured here, and print it.
+def measure_beside(
+    scene: str, checkouts: Mapping[str, Path], output: Path, console: Console, failures: list[str] | None = None
+) -> list[dict[str, Any]]:
+    """Measure everything that can be measured here, and print it; a design that fails does not lose the others.
 
     Args:
         scene: a packaged one, that the software and our hardware draw.
         checkouts: by name, others' repositories.
         output: replaced when all is measured.
-        console: where progress and the table go.
+        console: where progress, the table and the failures go.
+        failures: gets a line for each design that failed, with its name.
+
+    Returns:
+        A row for each one that did not fail.
 
     Raises:
-        UserError: as `measure_other` and `measure_software`.
+        UserError: a checkout lacks a file, or all failed.
     """
+    for name, checkout in checkouts.items():
+        _sources(OTHERS[name], checkout)
+    failures = [] if failures is None else failures
     path = packaged_scenes()[scene]
     tasks: list[tuple[str, Callable[[Path], list[dict[str, Any]]]]] = [
         ("software", partial(measure_software, load_scene(path), SCREENS["vga", 240])),
@@ -322,9 +341,16 @@ def measure_beside(scene: str, checkouts: Mapping[str, Path], output: Path, cons
             task = progress.add_task(name, total=1)
             directory = work / name.replace(" ", "-")
             directory.mkdir()
-            rows += measured(directory)
+            try:
+                rows += measured(directory)
+            except (UserError, SimulationError, subprocess.SubprocessError) as failure:
+                failures.append(f"{name}: {failure}")
             progress.advance(task)
+        if not rows:
+            raise UserError(f"nothing was measured; {failures[0]}")
     _show(rows, console)
+    for failure in failures:
+        console.print(f"not measured: {failure}", highlight=False, markup=False, soft_wrap=True)
     return rows
 
 

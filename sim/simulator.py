@@ -22,13 +22,14 @@ from pathlib import Path
 import cocotb
 from cocotb_tools import config as cocotb_config
 from cocotb_tools.check_results import get_results
-from cocotb_tools.runner import Runner, Verilator, get_runner
+from cocotb_tools.runner import Verilator, get_runner
 from filelock import FileLock
 
 import raycaster
 import raycaster.convert
 import raycaster.rtl
 from raycaster.configuration import Configuration
+from raycaster.digests import sources_digest, tools_digest
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, clocks_per_bit
 from raycaster.options import BUILD
@@ -44,6 +45,11 @@ DIGITS = 12
 """Of the digest in the name of a model."""
 
 HERE = Path(__file__).parent
+
+_CONVERTED_WITH = (
+    "raycaster", "myhdl", "systemrdl-compiler", "peakrdl-cheader", "peakrdl-html", "pythondata-cpu-picorv32"
+)  # fmt: skip
+"""Packages whose versions the converted files depend on."""
 
 _MAIN = HERE / "main.cpp"
 """The main program of Verilator's models."""
@@ -118,7 +124,7 @@ class Bench:
     @property
     def modules(self) -> list[str]:
         """What it is made of; the top is the last."""
-        return ["line_sink", *(["wave_window"] if self.window else []), self.top]
+        return ["bench_clock", "line_sink", *(["wave_window"] if self.window else []), self.top]
 
     @property
     def sources(self) -> list[Path]:
@@ -252,20 +258,18 @@ def convert(configuration: Configuration, build: Path = BUILD, *, system: bool =
         system: with a processor.
     """
     directory = build / "model" / configuration.name / ("system" if system else "verilog")
-    digest = hashlib.sha256(repr(configuration).encode())
-    for package in (raycaster, raycaster.rtl, raycaster.convert):
-        for source in sorted(Path(package.__path__[0]).rglob("*")):
-            if source.suffix in (".py", ".rdl"):
-                digest.update(source.read_bytes())
+    packages = (raycaster, raycaster.rtl, raycaster.convert)
+    sources = sources_digest(*(Path(package.__path__[0]) for package in packages))
+    digest = hashlib.sha256(repr((configuration, sources, tools_digest(*_CONVERTED_WITH))).encode()).hexdigest()
     with lock(directory):
         stamp = directory / "stamp.json"
-        if (files := stamped(stamp, digest.hexdigest())) is not None:
+        if (files := stamped(stamp, digest)) is not None:
             return [directory / name for name in files]
         from raycaster.convert import write as converter  # noqa: PLC0415 - MyHDL is only loaded where it has work
 
         write = converter.write_processor_system if system else converter.write_verilog
         files = [path.name for path in write(configuration, directory) if path.suffix == ".v"]
-        write_stamp(stamp, digest.hexdigest(), files)
+        write_stamp(stamp, digest, files)
         return [directory / name for name in files]
 
 
@@ -279,6 +283,7 @@ def build_model(
     flags: Sequence[str] = VERILATOR_FLAGS,
     defines: Mapping[str, int] | None = None,
     bench: Bench = MODULE_BENCH,
+    own_main: bool = True,
 ) -> Model:
     """Build a model of a design, or find it built.
 
@@ -291,6 +296,7 @@ def build_model(
         flags: for Verilator.
         defines: more macros than the bench's own.
         bench: what the design is simulated in.
+        own_main: whether Verilator's model has `_MAIN`, instead of cocotb's main program, which is slower.
 
     Raises:
         UserError: the simulator, or a library that it needs, is missing.
@@ -300,7 +306,8 @@ def build_model(
     design = verilog if verilog is not None else convert(configuration, build, system=bench.system)
     sources = [*design, *bench.sources]
     parameters = bench.parameters(configuration)
-    defines = {**(defines or {}), **bench.defines(configuration)}
+    program = [_MAIN] if simulator == "verilator" and own_main else []
+    defines = {**(defines or {}), **bench.defines(configuration), **({"MAIN_CLOCK": 1} if program else {})}
     # Verilator's main program must know of waveforms for a bench to write one, and Icarus would write all of it.
     built_for_waves = waves or (bench.window and simulator == "verilator")
     wave_format = tool.wave_format if built_for_waves or bench.window else "fst"
@@ -309,13 +316,12 @@ def build_model(
     if any(flag.startswith("--coverage") for flag in arguments):
         made_with.append([source.resolve() for source in sources])  # which the counts name
     name = "-".join((configuration.name, bench.top, simulator))
-    program = [_MAIN] if simulator == "verilator" else []
     with made(models(build), name, [*sources, *program], made_with) as (directory, fresh):
         if fresh:
             log = directory.with_suffix(".log")
             with _building(tool, models(build), arguments):
                 try:
-                    _runner(simulator).build(
+                    (_VerilatorWithMain() if program else get_runner(simulator)).build(
                         sources=[source.resolve() for source in sources],
                         hdl_toplevel=bench.top,
                         parameters=parameters,
@@ -340,10 +346,6 @@ class _VerilatorWithMain(Verilator):
         theirs = translate.index(str(cocotb_config.share_dir / "lib" / "verilator" / "verilator.cpp"))
         translate[theirs] = str(_MAIN)
         return [translate, *others]
-
-
-def _runner(simulator: str) -> Runner:
-    return _VerilatorWithMain() if simulator == "verilator" else get_runner(simulator)
 
 
 def build_program(
@@ -578,7 +580,7 @@ def run_bench(
         "icarus": {"plusargs": [f"+dumpfile_path={waves}", *plusargs]},
     }
     with contextlib.suppress(RuntimeError, SystemExit):  # what went wrong stands in the log and the results
-        _runner(model.simulator).test(
+        get_runner(model.simulator).test(
             test_module=test_module,
             hdl_toplevel=model.bench.top,
             hdl_toplevel_lang="verilog",

@@ -6,12 +6,13 @@ other loses where a result is compared, shifted, sliced or added to again; no to
 one operator at a time, into a signal whose width is declared. What stands for a number at conversion (literals,
 constants, loop variables, and whatever is computed of these alone) is free.
 
-Rules, for functions decorated with always, always_comb, always_seq or instance:
+Rules, for functions that always, always_comb, always_seq or instance decorates, or is called with:
   arithmetic  the result of an operator on signals is used in any way but assigned; (a + b) % (1 << n) may be assigned
   call        something is called that Verilog does not have
   slice       bits are taken of an expression that is no signal
   return      converts to disable, which synthesis refuses
   docstring   breaks the conversion on newer Pythons
+  process     what becomes a process is no function of the same file, so that this lint does not see it
 """
 
 from __future__ import annotations
@@ -57,8 +58,13 @@ def check(path: Path) -> list[Finding]:
         tree = ast.parse(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, SyntaxError) as error:
         raise UserError(f"{path}: {error}") from None
-    findings: set[Finding] = set()
-    _visit(tree.body, _module_constants(tree), path, findings)
+    functions = {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
+    findings = {
+        Finding(path, given.lineno, "process", "name a function of this file")
+        for given in _given_to_makers(tree)
+        if not (isinstance(given, ast.Name) and given.id in functions)
+    }
+    _visit(processes(tree), tree.body, _module_constants(tree), path, findings)
     return sorted(findings)
 
 
@@ -66,19 +72,38 @@ Known = dict[str, bool]
 """Names, and whether they are constant when the design is converted; the others are signals."""
 
 
-def _visit(body: Sequence[ast.stmt], known: Known, path: Path, findings: set[Finding]) -> None:
+def processes(tree: ast.Module) -> list[ast.FunctionDef]:
+    """The functions that become processes: those with a decorator of MyHDL, or given to one in a call."""
+    given = {node.id for node in _given_to_makers(tree) if isinstance(node, ast.Name)}
+    functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
+    return [one for one in functions if one.name in given or any(_name(d) in DECORATORS for d in one.decorator_list)]
+
+
+def _given_to_makers(tree: ast.Module) -> Iterator[ast.expr]:
+    """Arguments that become processes: always_comb(this), instance(this), always(...)(this), always_seq(...)(this)."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call):
+            maker = node.func.func if isinstance(node.func, ast.Call) else node.func
+            with_sensitivity = isinstance(node.func, ast.Call)
+            if _name(maker) in DECORATORS and with_sensitivity == (_name(maker) in ("always", "always_seq")):
+                yield from [*node.args, *(keyword.value for keyword in node.keywords)]
+
+
+def _visit(
+    made: Sequence[ast.FunctionDef], body: Sequence[ast.stmt], known: Known, path: Path, findings: set[Finding]
+) -> None:
     """Find the processes; names become known on the way down to them."""
     known = dict(known)
     for statement in body:
         if isinstance(statement, ast.FunctionDef):
-            if any(_name(decorator) in DECORATORS for decorator in statement.decorator_list):
+            if statement in made:
                 findings.update(_Process(known, path).check(statement))
             else:
-                _visit(statement.body, known | _parameters(statement), path, findings)
+                _visit(made, statement.body, known | _parameters(statement), path, findings)
         else:
             _learn(statement, known)
             for inner in ("body", "orelse", "finalbody"):
-                _visit(getattr(statement, inner, []), known, path, findings)
+                _visit(made, getattr(statement, inner, []), known, path, findings)
 
 
 def _module_constants(tree: ast.Module) -> Known:

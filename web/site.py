@@ -230,6 +230,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         argv: its arguments, those of the process by default.
     """
     arguments = command_parser().parse_args(argv)
+    if arguments.keep and not arguments.measure:
+        raise UserError("keep: there is nothing to keep without --measure")
     console = Console()
     output = arguments.output or arguments.build / "web"
     try:

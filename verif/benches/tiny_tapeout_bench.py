@@ -30,7 +30,10 @@ class PinsBench(simulator.Bench):
     @property
     def sources(self) -> list[Path]:
         """Its Verilog."""
-        return [simulator.HERE / "line_sink.v", Path(__file__).with_suffix(".v")]
+        return [
+            *(simulator.HERE / f"{name}.v" for name in ("bench_clock", "line_sink")),
+            Path(__file__).with_suffix(".v"),
+        ]
 
     def parameters(self, configuration: Configuration) -> dict[str, int]:
         """Of its Verilog, for a design."""

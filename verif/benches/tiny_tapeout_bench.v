@@ -6,16 +6,8 @@
 module tiny_tapeout_bench #(
     parameter H_TOTAL = 800,            // pixels a line, blanking included
     parameter HS_ACTIVE = 0             // level of hsync in its pulse
-`ifdef VERILATOR
-) (
-    input wire clk /*verilator public_flat_rw*/     // sim/main.cpp drives it, which is faster
-);
-`else
-) ();
-    reg clk;
-    initial clk = 1'b0;
-    always #10 clk = ~clk;
-`endif
+) (`CLOCK_PORT);
+    `OWN_CLOCK
 
     // What Python drives, and reads
     reg rst_n /*verilator public_flat_rw*/;

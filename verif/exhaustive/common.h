@@ -29,9 +29,10 @@ inline void clock(Vdut& dut) {
     dut.clk = 0;
 }
 
-[[noreturn]] inline void finish(uint64_t vectors, uint64_t valid) {
-    std::printf("done %llu %llu\n", static_cast<unsigned long long>(vectors), static_cast<unsigned long long>(valid));
-    std::exit(0);
+[[noreturn]] inline void finish(uint64_t vectors, uint64_t valid, uint64_t wrong) {
+    std::printf("done %llu %llu %llu\n", static_cast<unsigned long long>(vectors),
+                static_cast<unsigned long long>(valid), static_cast<unsigned long long>(wrong));
+    std::exit(wrong > 0);
 }
 
 inline uint64_t argument(char* text) { return std::strtoull(text, nullptr, 10); }

@@ -25,7 +25,7 @@ int main(int, char** argv) {
 
     Vdut dut;
     dut.clk = 0;
-    uint64_t valid = 0, index = start;
+    uint64_t valid = 0, wrong = 0, index = start;
     uint32_t dividend = 0, divisor = 0;
     for (uint64_t number = 0; number <= count; number++) {
         const uint32_t dividend_before = dividend, divisor_before = divisor;
@@ -43,15 +43,15 @@ int main(int, char** argv) {
             if (step == 1 && number > 0) {
                 const Quotient expected = divide(dividend_before, divisor_before);
                 if (dut.overflow != expected.overflow || (!expected.overflow && dut.quotient != expected.value)) {
-                    std::printf("mismatch %u / %u: hardware %u overflow %u, expected %llu overflow %u\n",
-                                dividend_before, divisor_before, unsigned(dut.quotient), unsigned(dut.overflow),
-                                static_cast<unsigned long long>(expected.value), unsigned(expected.overflow));
-                    return 1;
+                    if (wrong++ == 0)
+                        std::printf("mismatch %u / %u: hardware %u overflow %u, expected %llu overflow %u\n",
+                                    dividend_before, divisor_before, unsigned(dut.quotient), unsigned(dut.overflow),
+                                    static_cast<unsigned long long>(expected.value), unsigned(expected.overflow));
                 }
                 valid += !expected.overflow;
             }
             clock(dut);
         }
     }
-    finish(count, valid);
+    finish(count, valid, wrong);
 }

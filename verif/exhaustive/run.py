@@ -29,7 +29,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import partial
 from operator import attrgetter
 from pathlib import Path
@@ -111,12 +111,13 @@ class Bench:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a bench that found nothing did."""
+    """Results of a bench."""
 
     vectors: int
     valid: int
     """Of them, those whose quotient did not overflow and, for intersections, whose plane lay ahead."""
 
+    wrong: int
     seconds: float
 
 
@@ -233,7 +234,7 @@ def build_bench(bench: Bench, spoil: Callable[[str], str] = str) -> list[str]:
 
 
 def run(command: Sequence[str], bench: Bench, number: int) -> Outcome:
-    """Run a compiled bench to its end or first mismatch.
+    """Run a compiled bench to its end.
 
     Args:
         command: what `build_bench` made.
@@ -246,10 +247,12 @@ def run(command: Sequence[str], bench: Bench, number: int) -> Outcome:
     """
     begin = time.monotonic()
     done = subprocess.run([*command, str(bench.vectors), str(number)], stdout=subprocess.PIPE, text=True, check=False)
-    if match := re.search(r"^mismatch.*", done.stdout, re.M):
-        raise Mismatch(f"{bench.label}: {match[0]}")
-    if match := re.search(r"^done (\d+) (\d+)", done.stdout, re.M):
-        return Outcome(int(match[1]), int(match[2]), time.monotonic() - begin)
+    first = re.search(r"^mismatch.*", done.stdout, re.M)
+    counts = re.search(r"^done (\d+) (\d+) (\d+)", done.stdout, re.M)
+    if first:
+        raise Mismatch(f"{bench.label}: {first[0]}; {counts[3] if counts else 'more'} are wrong")
+    if counts and done.returncode == 0:
+        return Outcome(*map(int, counts.groups()), time.monotonic() - begin)
     raise BenchError(f"{bench.label}: ended without a result, code {done.returncode}")
 
 
@@ -264,19 +267,15 @@ def show(outcomes: Mapping[Bench, Outcome], number: int, console: Console) -> No
     for heading in ("vectors", "valid", "wrong", "seconds", "vectors/s"):
         table.add_column(heading, justify="right", no_wrap=True)
 
-    def add(label: str, vectors: int, valid: int, seconds: float) -> None:
+    def add(label: str, vectors: int, valid: int, wrong: int, seconds: float) -> None:
         rate = f"{vectors / max(seconds, 1e-9):,.0f}"
-        table.add_row(label, f"{vectors:,}", f"{valid:,}", "0", f"{seconds:.1f}", rate)
+        table.add_row(label, f"{vectors:,}", f"{valid:,}", f"{wrong:,}", f"{seconds:.1f}", rate)
 
     for kind in dict.fromkeys(bench.kind for bench in outcomes):
         of_kind = [(bench, outcome) for bench, outcome in outcomes.items() if bench.kind == kind]
         for bench, outcome in of_kind:
-            add(bench.label, outcome.vectors, outcome.valid, outcome.seconds)
-        results = [outcome for _, outcome in of_kind]
-        add(
-            f"[bold]{kind}", sum(r.vectors for r in results), sum(r.valid for r in results),
-            sum(r.seconds for r in results),
-        )  # fmt: skip
+            add(bench.label, *astuple(outcome))
+        add(f"[bold]{kind}", *map(sum, zip(*(astuple(outcome) for _, outcome in of_kind), strict=True)))
         table.add_section()
     console.print(table)
 
@@ -361,8 +360,8 @@ def main(argv: list[str] | None = None) -> int:
     show(outcomes, arguments.seed, console)
     kinds = {bench.kind: {"vectors": 0, "valid": 0, "wrong": 0} for bench in outcomes}
     for bench, outcome in outcomes.items():
-        kinds[bench.kind]["vectors"] += outcome.vectors
-        kinds[bench.kind]["valid"] += outcome.valid
+        for name in kinds[bench.kind]:
+            kinds[bench.kind][name] += getattr(outcome, name)
     keep(arguments, kinds, {"engine": "seed", "seed": arguments.seed}, provenance)
     print(f"repeat with: {repeat.format(label=shlex.quote(arguments.only))}")
     return 0

@@ -6,15 +6,17 @@ Verilator has the full scene memory; Icarus, some hundred times slower, a design
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import ROOT, SMALL_SCENE, Bench
+from conftest import BUILD, ROOT, SMALL_SCENE, Bench
 
 from raycaster.configuration import Configuration, configure
 from raycaster.engines import ENGINES
-from raycaster.sim.simulator import SimulationError
+from raycaster.sim.job import Job
+from raycaster.sim.simulator import SimulationError, build_model, run_bench
 from raycaster.verif.seeds import repeat, seed
 
 TRAFFIC_SEEDS = {"verilator": 2, "icarus": 1}
@@ -77,3 +79,21 @@ def test_underrun(bench: Bench, simulator: str, options: dict[str, Any]):
     """Fewer units than the scene would need; the beam engine, which takes all rectangles at once, is never late."""
     configuration = configure(**{"screen": "tiny", "allow_underrun": True} | options)
     bench("verif.benches.underrun_bench", configuration, simulator)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_the_main_program_is_as_cocotbs(tmp_path: Path, engine: str):
+    """In models with our main program everything happens as with cocotb's: the same events, times and picture."""
+    configuration = configure(engine=engine, screen="tiny", rectangles=3, **{"units": 8} if engine == "seed" else {})
+    events, pictures = [], []
+    for own_main in (True, False):
+        output = tmp_path / str(own_main)
+        job = Job(configuration, scene=str(SMALL_SCENE), output=str(output))
+        model = build_model(configuration, build=BUILD, own_main=own_main)
+        run_bench(model, "raycaster.verif.benches.events_bench", job, output)
+        events.append([tuple(event) for event in json.loads((output / "events.json").read_text())])
+        pictures.append((output / "frame.png").read_bytes())
+    ours, theirs = events
+    assert next((pair for pair in zip(ours, theirs, strict=False) if pair[0] != pair[1]), None) is None
+    assert len(ours) == len(theirs) > 10 * configuration.screen_geometry.vertical.total
+    assert pictures[0] == pictures[1]

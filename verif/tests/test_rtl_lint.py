@@ -12,7 +12,7 @@ import pytest
 
 import raycaster.rtl
 from raycaster.errors import UserError
-from raycaster.verif.rtl_lint import Finding, check, main
+from raycaster.verif.rtl_lint import Finding, check, main, processes
 
 RTL = Path(raycaster.rtl.__path__[0])
 
@@ -54,11 +54,8 @@ def test_one_block_alone_has_logic_on_the_clock():
     """A board replaces it by a register of its own; all else uses the clock's edge and nothing of it otherwise."""
     users = []
     for path in sorted(RTL.rglob("*.py")):
-        functions = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.FunctionDef)]
-        processes = [one for one in functions if any("always" in ast.unparse(line) for line in one.decorator_list)]
-        names = [
-            node for one in processes for line in one.body for node in ast.walk(line) if isinstance(node, ast.Name)
-        ]
+        made = processes(ast.parse(path.read_text()))
+        names = [node for one in made for line in one.body for node in ast.walk(line) if isinstance(node, ast.Name)]
         if any(name.id == "clk" for name in names):
             users.append(path.name)
     assert users == ["pixel_clock.py"]
@@ -113,6 +110,38 @@ def test_instances_are_processes_too(tmp_path):
     assert {finding.rule for finding in findings(tmp_path, "yield clk.posedge\nresult.next = abs(a)", "instance")} == {
         "call"
     }
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "always_comb(process)",
+        "always(clk.posedge)(process)",
+        "always_seq(clk.posedge, reset=None)(process)",
+        "instance(process)",
+        "myhdl.always_comb(process)",
+        "always(clk.posedge)(process) if gain else always_comb(process)",
+    ],
+)
+def test_a_process_that_a_call_makes_is_checked(tmp_path, call):
+    text = BLOCK.replace("@{decorator}", "#").replace("return (process,)", f"made = {call}\n    return made")
+    source = tmp_path / "planted.py"
+    source.write_text(text.format(body="        result.next = (a + b) >> 1"))
+    assert [finding.rule for finding in check(source)] == ["arithmetic"]
+
+
+@pytest.mark.parametrize("call", ["always_comb(helpers.process)", "always(clk.posedge)(imported)", "instance(make())"])
+def test_a_process_of_another_file_is_refused(tmp_path, call):
+    source = tmp_path / "planted.py"
+    source.write_text(BLOCK.format(body="        result.next = a", decorator="always_comb") + f"    other = {call}\n")
+    assert [finding.rule for finding in check(source)] == ["process"]
+
+
+def test_a_hazard_in_a_process_that_a_call_makes_is_caught(tmp_path):
+    source = tmp_path / "fold_tester.py"
+    text = (RTL / "beam" / source.name).read_text()
+    source.write_text(text.replace("turned.next = fold.back_x", "turned.next = (fold.back_x + fold.back_y) >> 1"))
+    assert [finding.rule for finding in check(source)] == ["arithmetic"]
 
 
 @pytest.mark.parametrize(

@@ -3,16 +3,20 @@
 
 from __future__ import annotations
 
+import importlib.metadata
 import os
 import shutil
 import subprocess
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from conftest import BUILD
 
+import raycaster.rtl
 from raycaster.configuration import configure
+from raycaster.digests import sources_digest
 from raycaster.sim import simulator
 from raycaster.sim.simulator import (
     MODELS_VARIABLE,
@@ -74,12 +78,50 @@ def test_models_build_without_python_on_the_path(tmp_path, monkeypatch):
     assert '#include "one.cpp"' in answer.stdout, answer.stderr
 
 
-def test_converts_once(tmp_path):
+@pytest.mark.parametrize("changes", ["common/clock_gate.v", "common/widths.py", "myhdl"])
+def test_converts_once(tmp_path, monkeypatch, changes):
     """The second time the files are found, unless what converts them has changed."""
+    folder = shutil.copytree(Path(raycaster.rtl.__path__[0]), tmp_path / "rtl")
+    assert changes == "myhdl" or (folder / changes).exists()
+    monkeypatch.setattr(raycaster.rtl, "__path__", [str(folder)])
     files = convert(TINY, tmp_path)
     before = [path.stat().st_mtime_ns for path in files]
     assert convert(TINY, tmp_path) == files
     assert [path.stat().st_mtime_ns for path in files] == before
+    if changes == "myhdl":
+        version = importlib.metadata.version
+        monkeypatch.setattr("importlib.metadata.version", lambda name: f"{version(name)}{'+' * (name == changes)}")
+    else:
+        with (folder / changes).open("a") as file:
+            file.write("\n")
+    assert [path.stat().st_mtime_ns for path in convert(TINY, tmp_path)] != before
+
+
+DECIDE = "one.py", "map.rdl", "gate.v", "main.cpp", "common.h", "waivers.vlt", "deep/new_kind.xyz"
+DECIDE_NOTHING = "tests/test_one.py", "page.md", "picture.png", "__pycache__/one.pyc", "build/one.v", ".hidden/one.v"
+
+
+def test_a_digest_changes_with_the_sources_that_decide(tmp_path):
+    folder = tmp_path / "sources"
+    digests = []
+    for name in (*DECIDE, *DECIDE_NOTHING):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text("before")
+    for name in DECIDE:
+        digests.append(sources_digest(folder))
+        (folder / name).write_text("after")
+    digests.append(sources_digest(folder))
+    (folder / "one.py").rename(folder / "two.py")
+    assert sources_digest(folder) not in digests
+    assert len({*digests}) == len(DECIDE) + 1
+    last = sources_digest(folder)
+    for name in DECIDE_NOTHING:
+        (folder / name).write_text("after")
+    assert sources_digest(folder) == last == sources_digest(shutil.copytree(folder, tmp_path / "copy" / "sources"))
+    page = folder / "page.md"
+    last = sources_digest(page)
+    page.write_text("a file that is named counts")
+    assert sources_digest(page) != last
 
 
 def test_builds_once(tmp_path, own_models):
@@ -100,14 +142,24 @@ def test_builds_once(tmp_path, own_models):
     assert build()
 
 
-def test_models_share_a_library(tmp_path):
+def test_models_share_a_library(tmp_path, own_models, monkeypatch):
     """What Verilator's models have in common is compiled once; another compiler flag needs no other library."""
+    libraries, runtime = [], simulator._runtime
+
+    def recorded(tool: Tool, parent: Path, features: Sequence[str]) -> tuple[Path, Path]:
+        # Other tests and commands use the same library, so that it is there most of the time.
+        libraries.append(runtime(tool, BUILD / "model", features))
+        return libraries[-1]
+
+    monkeypatch.setattr(simulator, "_runtime", recorded)
     for flags in (VERILATOR_FLAGS, (*VERILATOR_FLAGS, "-CFLAGS", "-O0")):
-        directory = build_model(TINY, build=BUILD, flags=flags).directory
+        directory = build_model(TINY, build=tmp_path, flags=flags).directory
         assert (directory / "bench").exists()
         assert list(directory.glob("verilated*.o")) == []
-    libraries = [path.parent for path in (BUILD / "model").glob("runtime-*/verilated_vpi.o")]
-    assert len([path for path in libraries if not list(path.glob("verilated_*_c.o"))]) == 1
+    assert len(libraries) == 2
+    [(library, _)] = {*libraries}
+    assert (library / "verilated_vpi.o").exists()
+    assert list(library.glob("verilated_*_c.o")) == []
 
 
 def test_another_shell_finds_the_model(tmp_path, own_models, monkeypatch):

@@ -14,6 +14,7 @@ import pytest
 from rich.console import Console
 
 from raycaster.configuration import configure
+from raycaster.errors import UserError
 from raycaster.golden import exact, seed_engine
 from raycaster.golden.world import Rectangles
 from raycaster.play.machine import Machine, build_machine
@@ -24,6 +25,7 @@ from raycaster.sw.play_script import DEMO, load
 from raycaster.web import speed
 from raycaster.web.browser import browser_page
 from raycaster.web.site import MODELS, write_site
+from raycaster.web.site import main as site_main
 
 SHOWN = "RayCaster.state.walk?.frames > 2 && RayCaster.state.walk.wrong !== null"
 TIMEOUT_MS = 60_000
@@ -274,3 +276,9 @@ def test_settings_are_json(site):
     text = (site / "settings.js").read_text()
     settings = json.loads(text.removeprefix("Object.assign(RayCaster, ").removesuffix(");\n"))
     assert set(settings["scenes"]) == set(packaged_scenes())
+
+
+def test_nothing_to_keep_is_refused(tmp_path):
+    with pytest.raises(UserError, match=r"^keep: there is nothing to keep without --measure$"):
+        site_main(["--keep", str(tmp_path / "web.json")])
+    assert not (tmp_path / "web.json").exists()

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+"""Digests of the sources and tools that decide a result, so that a kept result is known to be stale."""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import hashlib
+import importlib.metadata
+import re
+import tokenize
+from collections.abc import Iterable, Iterator
+from io import StringIO
+from pathlib import Path
+
+LEFT_OUT = "__pycache__", "build", "tests"
+"""Names of folders whose files decide no result."""
+
+DIGITS = 16
+"""Hexadecimal digits of a kept digest."""
+
+PAGES = ".md", ".png", ".svg", ".webp"
+"""Endings of files that are only read by people."""
+
+
+def sources_digest(*places: Path) -> str:
+    """Compute a digest of source files: their names, relative to their place, and their bytes.
+
+    Every kind of file counts, so a new one cannot be forgotten; only `LEFT_OUT`, `PAGES` and hidden files do not.
+
+    Args:
+        places: files, which always count, and folders, which are searched with the folders in them.
+
+    Raises:
+        FileNotFoundError: a place does not exist.
+    """
+    digest = hashlib.sha256()
+    for place in places:
+        for path in sorted(_files(place)) if place.is_dir() else [place]:
+            name = path.relative_to(place.parent).as_posix()
+            digest.update(f"{name} {hashlib.sha256(path.read_bytes()).hexdigest()}\n".encode())
+    return digest.hexdigest()
+
+
+def code_digest(place: Path, root: Path) -> str:
+    """Compute a digest of a file, or of the files in a folder, that comments do not change.
+
+    Comments, docstrings and empty lines of Python and Verilog files do not count.
+
+    Args:
+        place: a file or a folder.
+        root: the folder that file names are relative to.
+    """
+    digest = hashlib.sha256()
+    for path in sorted(_files(place)) if place.is_dir() else [place]:
+        strip = {".py": _code, ".v": uncommented}.get(path.suffix)
+        content = strip(path.read_text()).encode() if strip else path.read_bytes()
+        digest.update(f"{path.relative_to(root).as_posix()}\0".encode() + content + b"\0")
+    return digest.hexdigest()[:DIGITS]
+
+
+def uncommented(verilog: str) -> str:
+    """Verilog without comments and empty lines."""
+    return _filled(re.sub(r"//.*", "", line) for line in verilog.splitlines())
+
+
+def _code(text: str) -> str:
+    """Python without comments and docstrings: the text itself, as a syntax tree looks different in each Python."""
+    lines = text.splitlines()
+    for token in tokenize.generate_tokens(StringIO(text).readline):
+        if token.type == tokenize.COMMENT:
+            row, column = token.start
+            lines[row - 1] = lines[row - 1][:column]
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
+            for row in range(node.lineno, node.end_lineno + 1):
+                lines[row - 1] = ""
+    return _filled(lines)
+
+
+def _filled(lines: Iterable[str]) -> str:
+    """The lines that are not empty."""
+    return "\n".join(line for line in map(str.rstrip, lines) if line)
+
+
+def _files(folder: Path) -> Iterator[Path]:
+    for path in folder.rglob("*"):
+        names = path.relative_to(folder).parts
+        hidden = any(name.startswith(".") or name in LEFT_OUT for name in names)
+        if not hidden and path.suffix not in PAGES and path.is_file():
+            yield path
+
+
+def tool_versions(*packages: str) -> dict[str, str]:
+    """Find the versions of packages; one that is not installed is left out."""
+    versions = {}
+    for name in packages:
+        with contextlib.suppress(importlib.metadata.PackageNotFoundError):
+            versions[name] = importlib.metadata.version(name)
+    return versions
+
+
+def tools_digest(*packages: str) -> str:
+    """Compute a digest of the versions of packages."""
+    return hashlib.sha256(repr(sorted(tool_versions(*packages).items())).encode()).hexdigest()

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+// Who drives the clock of a bench: with MAIN_CLOCK sim/main.cpp, through a port, which is faster; else the bench itself.
+
+`ifdef MAIN_CLOCK
+`define CLOCK_PORT input wire clk /*verilator public_flat_rw*/
+`define OWN_CLOCK
+`else
+`define CLOCK_PORT
+// 50 MHz
+`define OWN_CLOCK reg clk /*verilator public_flat_rw*/; initial clk = 1'b0; always #10 clk = ~clk;
+`endif

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+"""cocotb: a frame, and the nanosecond of each thing that a bench can wait for, to compare main programs with."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import cocotb
+from cocotb.handle import HierarchyObject
+from cocotb.simtime import get_sim_time
+from cocotb.triggers import FallingEdge, NextTimeStep, ReadOnly, ReadWrite, RisingEdge, Timer
+from PIL import Image
+
+from raycaster.scene import load_scene
+from raycaster.sim.harness import Harness
+
+DELAYS_NS = 1, 4, 5, 7, 13, 20, 30, 40, 123
+"""Some end between the clock's edges, and some at one."""
+
+
+@cocotb.test()
+async def events(bench: HierarchyObject) -> None:
+    """Write the first frame and `events.json` into the job's output directory."""
+    harness = Harness(bench)
+    seen: list[tuple[str, int, int]] = []
+
+    def note(what: str, value: int) -> None:
+        seen.append((what, int(get_sim_time("ns")), value))
+
+    async def note_delays() -> None:
+        while True:
+            for delay in DELAYS_NS:
+                await Timer(delay, "ns")
+                note(f"{delay} ns", int(bench.clk.value))
+
+    async def note_phases() -> None:
+        while True:
+            for edge in (RisingEdge, FallingEdge):
+                await edge(bench.clk)
+                note(edge.__name__, int(bench.bus_clk.value))
+                for phase in (ReadWrite, ReadOnly, NextTimeStep):
+                    await phase()
+                    note(phase.__name__, int(bench.bus_clk.value))
+            await bench.sink.line_event.value_change
+            note("line event", int(bench.sink.line_samples.value))
+
+    cocotb.start_soon(note_delays())
+    cocotb.start_soon(note_phases())
+    scene = load_scene(harness.job.scene, harness.configuration.capacity)
+    await harness.reset()
+    note("reset", 0)
+    await harness.bus.load_scene(scene)
+    note("scene", 0)
+    await harness.bus.commit(reflections=scene.reflections)
+    note("commit", 0)
+    frame = await harness.monitor.frame()
+    note("frame", int(bench.busy_cycles.value))
+    seen += [("line", line.end_ns, line.samples) for line in harness.monitor.frame_lines]
+    for name, value in (await harness.bus.read("cycles")).items():
+        note(name, value)
+    harness.expect_picture(frame, harness.golden(scene, scene.reflections), "frame")
+    output = Path(harness.job.output)
+    Image.fromarray(frame).save(output / "frame.png")
+    (output / "events.json").write_text(json.dumps(seen))
