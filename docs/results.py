@@ -11,8 +11,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-
 from raycaster.configuration import configure
 from raycaster.docs.facts import facts
 from raycaster.docs.pages import HERE, need_clone, render_all
@@ -21,6 +19,7 @@ from raycaster.docs.tables import RESULTS, tables
 from raycaster.errors import UserError
 from raycaster.options import CommandParser
 from raycaster.outcomes import add_keep_option, keep
+from raycaster.output import Console, printable
 from raycaster.scene import packaged_scenes
 
 DESIGNS: tuple[Mapping[str, Any], ...] = (
@@ -122,4 +121,4 @@ def main(argv: Sequence[str] | None = None) -> None:
         figures = {"scenes": len(packaged_scenes(plain=True)), "designs": designs}
         keep(arguments, figures, {"rectangles": configure().rectangles}, left_out="placing and routing")
     for page in render_all(facts() | tables() | proofs()):
-        print(f"written: {page}")
+        print(printable(f"written: {page}"))

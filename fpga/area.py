@@ -19,7 +19,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
 from rich.table import Table
 
 from raycaster.configuration import Configuration, configure
@@ -33,6 +32,7 @@ from raycaster.fpga.multipliers import register_products
 from raycaster.jobs import run_jobs
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.outcomes import add_keep_option, keep, scope_of
+from raycaster.output import Console
 from raycaster.tools import find_program, prepare_wasm, run_yosys
 
 HARD_MULTIPLIER = Path(__file__).with_name("hard_multiplier.v")
@@ -233,7 +233,6 @@ def measure_modules(config: Configuration, family: Family, directory: Path) -> d
 
 def _synthesise(config: Configuration, family: Family, directory: Path, top: str, *options: str) -> Mapping[str, Any]:
     """The netlist's modules."""
-    shutil.rmtree(directory, ignore_errors=True)
     sources = [path.name for path in write_verilog(config, directory) if path.suffix == ".v"]
     shutil.copy(HARD_MULTIPLIER, directory)
     if top == PINS_TOP:

@@ -19,7 +19,6 @@ from functools import partial
 from pathlib import Path
 from subprocess import CompletedProcess
 
-from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
@@ -39,7 +38,7 @@ from raycaster.options import (
     given_options,
 )
 from raycaster.outcomes import add_keep_option, keep, scope_of
-from raycaster.output import replaced
+from raycaster.output import Console, replaced
 from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import find_scene
 from raycaster.sw.firmware import build_firmware

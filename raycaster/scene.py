@@ -65,6 +65,10 @@ LONGEST_SHOWN = 60
 """Characters of the longest value or line that a complaint shows: longer ones do not help to find themselves."""
 
 
+_NO_NAME = re.compile("[\\0-\\x1f\\x7f-\\x9f\\ud800-\\udfff]")
+"""Characters that a file may have in its name, and the simulators' results, which are XML, may not."""
+
+
 @dataclass(frozen=True, eq=False)
 class _Check:
     """A rule for a value as a file has it, stated once: pydantic applies it, and the model's JSON schema tells it.
@@ -274,6 +278,10 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
         SceneError: the file cannot be read, is not TOML, or is not a scene; one line says where and what was expected.
     """
     path = Path(path)
+    if not path.stem.strip(".") or _NO_NAME.search(path.stem):
+        raise SceneError(
+            f"{path}: expected a name that is not all dots and has no control characters, as outputs get it; rename it"
+        )
     text = ""
     try:
         # An editor may have written a byte order mark, which is not TOML to Python.

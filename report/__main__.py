@@ -11,12 +11,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-
 from raycaster.errors import UserError
 from raycaster.jobs import add_job_options, executors
 from raycaster.options import CommandParser
 from raycaster.outcomes import add_keep_option, keep
+from raycaster.output import Console
 from raycaster.report.designs import design_sections, find_designs, to_keep
 from raycaster.report.errors import REFLECTIONS, ROUNDINGS, error_sections, find_pictures, mean_errors
 from raycaster.report.extent import Extent, extent
@@ -117,8 +116,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             sweep = Sweep(Store(arguments.output / "points"), make_executor, console)
             page, figures = write_report(arguments.output, extent(arguments.quick), sweep, arguments.command_line)
     except SimulationError as error:
-        console.print(f"[red]{error}")
+        console.print(str(error), style="red")
         return 1
     keep(arguments, figures, {"quick": arguments.quick, "reflections": REFLECTIONS}, "placing and routing")
-    console.print(f"{page}, with report.md, plots and CSV beside it", highlight=False)
+    console.print(f"{page}, with report.md, plots and CSV beside it")
     return 0

@@ -36,8 +36,8 @@ from typing import Any
 from unittest import mock
 
 from rich.box import SIMPLE
-from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 import raycaster.configuration
 import raycaster.rtl.common.widths
@@ -50,6 +50,7 @@ from raycaster.errors import UserError
 from raycaster.jobs import add_job_options, executors, run_jobs
 from raycaster.options import CommandParser
 from raycaster.outcomes import add_keep_option, keep
+from raycaster.output import Console, printable
 from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
 from raycaster.rtl.seed.divider import divider
@@ -261,9 +262,9 @@ def show(outcomes: Mapping[Bench, Outcome], number: int, console: Console) -> No
     for heading in ("vectors", "valid", "wrong", "seconds", "vectors/s"):
         table.add_column(heading, justify="right", no_wrap=True)
 
-    def add(label: str, vectors: int, valid: int, seconds: float) -> None:
+    def add(label: str, vectors: int, valid: int, seconds: float, style: str = "") -> None:
         rate = f"{vectors / max(seconds, 1e-9):,.0f}"
-        table.add_row(label, f"{vectors:,}", f"{valid:,}", "0", f"{seconds:.1f}", rate)
+        table.add_row(Text(label, style), f"{vectors:,}", f"{valid:,}", "0", f"{seconds:.1f}", rate)
 
     for kind in dict.fromkeys(bench.kind for bench in outcomes):
         of_kind = [(bench, outcome) for bench, outcome in outcomes.items() if bench.kind == kind]
@@ -271,8 +272,8 @@ def show(outcomes: Mapping[Bench, Outcome], number: int, console: Console) -> No
             add(bench.label, outcome.vectors, outcome.valid, outcome.seconds)
         results = [outcome for _, outcome in of_kind]
         add(
-            f"[bold]{kind}", sum(r.vectors for r in results), sum(r.valid for r in results),
-            sum(r.seconds for r in results),
+            kind, sum(r.vectors for r in results), sum(r.valid for r in results),
+            sum(r.seconds for r in results), "bold",
         )  # fmt: skip
         table.add_section()
     console.print(table)
@@ -331,7 +332,7 @@ def main(argv: list[str] | None = None) -> int:
             found = run_jobs("benches", check, chosen, make_executor, console, label=attrgetter("label"))
         except Mismatch as mismatch:
             label = str(mismatch).partition(":")[0]
-            print(f"{mismatch}\nrepeat with: {repeat.format(label=label)}", file=sys.stderr)
+            print(printable(f"{mismatch}\nrepeat with: {repeat.format(label=label)}", lines=True), file=sys.stderr)
             return 1
     outcomes = dict(zip(chosen, found, strict=True))
     show(outcomes, arguments.seed, console)
@@ -340,5 +341,5 @@ def main(argv: list[str] | None = None) -> int:
         kinds[bench.kind]["vectors"] += outcome.vectors
         kinds[bench.kind]["valid"] += outcome.valid
     keep(arguments, kinds, {"engine": "seed", "seed": arguments.seed})
-    print(f"repeat with: {repeat.format(label=shlex.quote(arguments.only))}")
+    print(printable(f"repeat with: {repeat.format(label=shlex.quote(arguments.only))}"))
     return 0

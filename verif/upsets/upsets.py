@@ -8,7 +8,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from rich.console import Console
 from rich.table import Table
 
 from raycaster.configuration import Configuration, configure, need_avalon
@@ -22,6 +21,7 @@ from raycaster.options import (
     given_options,
 )
 from raycaster.outcomes import add_keep_option, keep, scope_of
+from raycaster.output import Console
 from raycaster.sim.simulator import VERILATOR_FLAGS, convert
 from raycaster.verif.campaign import Campaign, run_campaign
 from raycaster.verif.upsets.bench import KINDS
