@@ -6,6 +6,7 @@ from __future__ import annotations
 import importlib
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from types import ModuleType
 
 from raycaster.cli.commands import COMMANDS, Command, overview, verify_overview
@@ -46,8 +47,9 @@ def run() -> None:
     """The program."""
     # Loading the options takes a second, which the overview does not wait for.
     if len(sys.argv) == 1:
-        print(overview())
-        return
+        with suppress(OSError):  # then `run_command` says so
+            print(overview(), flush=True)
+            return
     run_command = importlib.import_module("raycaster.options").run_command
     run_command(main)
 

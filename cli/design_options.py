@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 from pydantic.fields import FieldInfo
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.table import Table
 
 from raycaster.configuration import OPTION_NAMES, Configuration
 from raycaster.options import CommandParser, shown_default
+from raycaster.output import Console
 
 
 def command_parser() -> CommandParser:
@@ -26,4 +26,4 @@ def main(argv: Sequence[str] | None = None) -> None:
     table = Table("option", "what it is", "default", box=SIMPLE_HEAD, pad_edge=False)
     for name in OPTION_NAMES:
         table.add_row("--" + name.replace("_", "-"), fields[name].description, shown_default(fields[name]))
-    Console(highlight=False).print(table)
+    Console().print(table)

@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.table import Table
 
 from raycaster.options import CommandParser
+from raycaster.output import Console
 from raycaster.scene import load_scene, packaged_scenes
 
 
@@ -27,4 +27,4 @@ def main(argv: Sequence[str] | None = None) -> None:
     for name, path in packaged_scenes().items():
         scene = load_scene(path)
         table.add_row(name, scene.title, str(scene.rows), str(scene.reflections), str(len(scene.rect)))
-    Console(highlight=False).print(table)
+    Console().print(table)

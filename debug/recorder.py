@@ -4,16 +4,13 @@
 from __future__ import annotations
 
 import argparse
-import shutil
-import tempfile
 from pathlib import Path
-
-from rich.console import Console
 
 from raycaster.configuration import Configuration
 from raycaster.design import Design
 from raycaster.errors import UserError
 from raycaster.options import add_build_option, add_configuration_options, add_scene_argument
+from raycaster.output import Console, check_replaceable, put, replaced
 from raycaster.scene import find_scene
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import (
@@ -94,23 +91,19 @@ def record(model: Model, design: Design, rows: tuple[int, int], target: Path) ->
         SimulationError: the simulation failed.
     """
     check_rows(design.configuration, rows)
-    target.parent.mkdir(parents=True, exist_ok=True)
-    partial = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=target.parent)).resolve()
     begin, end = window_clocks(design.configuration, *rows)
-    plusargs = (f"+window_file={partial / model.wave_file}", f"+window_from={begin}", f"+window_to={end}")
     job = Job(design.configuration, scene=str(design.path.resolve()), reflections=design.reflections)
-    try:
-        run_bench(model, "raycaster.debug.wave_bench", job, partial, plusargs=plusargs)
-        if not (partial / model.wave_file).exists():
-            raise SimulationError(f"{model.simulator} wrote no waveform; its log is {partial / 'sim.log'}")
-    except SimulationError as error:
-        failed = target.with_name(f"{target.name}-failed")
-        shutil.rmtree(failed, ignore_errors=True)
-        partial.rename(failed)
-        raise SimulationError(str(error).replace(str(partial), str(failed))) from None
-    partial.chmod(0o755)
-    shutil.rmtree(target, ignore_errors=True)
-    partial.rename(target)
+    with replaced(target) as filled:
+        partial = filled.resolve()
+        plusargs = (f"+window_file={partial / model.wave_file}", f"+window_from={begin}", f"+window_to={end}")
+        try:
+            run_bench(model, "raycaster.debug.wave_bench", job, partial, plusargs=plusargs)
+            if not (partial / model.wave_file).exists():
+                raise SimulationError(f"{model.simulator} wrote no waveform; its log is {partial / 'sim.log'}")
+        except SimulationError as error:
+            failed = target.with_name(f"{target.name}-failed")
+            put(filled, failed)
+            raise SimulationError(str(error).replace(str(partial), str(failed))) from None
     return target / model.wave_file
 
 
@@ -134,6 +127,7 @@ def build_and_record(
         UserError: there are no such rows, or the simulator is missing.
         SimulationError: it could not build the model, or the simulation failed.
     """
+    check_replaceable(target)
     find_tool(simulator)
     with console.status(f"building {design.configuration.name} with {simulator}"):
         model = build_model(design.configuration, simulator, build=build, bench=WINDOW_BENCH)

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
@@ -20,6 +19,7 @@ from raycaster.debug.waves import Waves
 from raycaster.design import design_for
 from raycaster.errors import UserError
 from raycaster.options import CommandParser, given_options
+from raycaster.output import Console, printable
 from raycaster.sim.simulator import SimulationError
 
 LOG_COLUMNS = 140
@@ -32,26 +32,26 @@ def show(ray: Ray, readings: Sequence[Reading], console: Console) -> None:
     """Print the life of a pixel: a table of each ray's rectangles, and one of all else."""
     first = first_difference(readings)
     colour = f"#{ray.pixel:0{(3 * ray.config.colour_bits + 3) // 4}x}"
-    console.print(f"{ray.design.path}, column {ray.column}, row {ray.row}: golden has {colour}", highlight=False)
+    console.print(f"{ray.design.path}, column {ray.column}, row {ray.row}: golden has {colour}")
     for bounce in range(ray.reflections + 1):
         name = "the ray from the camera" if bounce == 0 else f"reflection {bounce}"
         lost = "" if ray.alive(bounce) else ": there is none, as the ray before it hit nothing"
-        console.print(f"\n[bold]{name}[/]{lost}", highlight=False)
+        console.print(Text.assemble("\n", (name, "bold"), lost))
         mine = [reading for reading in readings if reading.place.bounce == bounce and not _of_pixel(reading)]
         # What has no column of its own is told where it is wrong.
         console.print(_others(ray, [reading for reading in mine if _is_line(reading)], first))
         if ray.alive(bounce):
             rectangles = [reading for reading in mine if not _is_line(reading)]
             console.print(_rectangles(ray, bounce, rectangles, first))
-    console.print("\n[bold]the pixel[/]")
+    console.print("\nthe pixel", style="bold")
     console.print(_others(ray, [reading for reading in readings if _of_pixel(reading)], first))
     console.print(
         "*: what the ray sees. left out: what culling found it cannot see. exact: without rounding.", style="dim"
     )
     if first is None:
-        console.print("The hardware does what golden does.", highlight=False)
+        console.print("The hardware does what golden does.")
         return
-    console.print(difference_line(ray, first), style=WRONG, markup=False, highlight=False, soft_wrap=True)
+    console.print(difference_line(ray, first), style=WRONG, soft_wrap=True)
 
 
 def difference_line(ray: Ray, reading: Reading) -> str:
@@ -146,7 +146,7 @@ def _rectangles(ray: Ray, bounce: int, readings: Sequence[Reading], first: Readi
 
 def _label(ray: Ray, rectangle: int) -> str:
     """A rectangle's number and name."""
-    name = ray.scene.rect[rectangle].name
+    name = printable(ray.scene.rect[rectangle].name)
     return f"{rectangle} {name}" if name else str(rectangle)
 
 
@@ -216,9 +216,9 @@ def main(argv: Sequence[str] | None = None) -> int:
             design, arguments.simulator, (row, row), target, build=arguments.build, console=console
         )
     except SimulationError as error:
-        console.print(str(error), style="red", markup=False, soft_wrap=True)
+        console.print(str(error), style="red", soft_wrap=True)
         return 1
     readings = read(Waves(waves), description_of(design.configuration, ray.unit), ray)
     show(ray, readings, console)
-    console.print(f"The waveform of its row is {waves}", highlight=False, soft_wrap=True)
+    console.print(f"The waveform of its row is {waves}", soft_wrap=True)
     return int(first_difference(readings) is not None)

@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 import os
+import shlex
 import shutil
 import subprocess
 from collections.abc import Sequence
 from pathlib import Path
-
-from rich.console import Console
 
 from raycaster.convert.write import design_states
 from raycaster.debug.probes.engines import description_of
@@ -20,6 +19,7 @@ from raycaster.debug.waves import Waves
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
 from raycaster.options import CommandParser, given_options
+from raycaster.output import Console
 from raycaster.sim.simulator import SimulationError
 
 MEGABYTE = 1_000_000
@@ -98,18 +98,18 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         waves = build_and_record(design, arguments.simulator, rows, target, build=arguments.build, console=console)
     except SimulationError as error:
-        console.print(str(error), style="red", markup=False)
+        console.print(str(error), style="red")
         return 1
     files = write_view(waves, design, ray)
     size = waves.stat().st_size / MEGABYTE
-    console.print(f"{waves}: rows {rows[0]} to {rows[1]}, {size:.1f} MB", highlight=False)
+    console.print(f"{waves}: rows {rows[0]} to {rows[1]}, {size:.1f} MB")
     command = None if arguments.no_viewer else viewer(waves, files)
     if command:
         with (waves.parent / "viewer.log").open("w") as log:
             subprocess.Popen(command, cwd=waves.parent, stdout=log, stderr=log, start_new_session=True)
-        console.print(f"opened in {command[0]}", highlight=False)
+        console.print(f"opened in {command[0]}")
         return 0
     _, surfer = commands(waves, files)
-    console.print(f"to open it: gtkwave {waves.parent / files[0].name}", highlight=False)
-    console.print(f"        or: cd {waves.parent} && {' '.join(surfer)}", highlight=False)
+    console.print(f"to open it: gtkwave {shlex.quote(str(waves.parent / files[0].name))}")
+    console.print(f"        or: cd {shlex.quote(str(waves.parent))} && {shlex.join(surfer)}")
     return 0

@@ -17,7 +17,7 @@ from raycaster.docs import timing
 from raycaster.docs.drawings import draw_all
 from raycaster.errors import UserError
 from raycaster.options import CommandParser
-from raycaster.output import replaced
+from raycaster.output import printable, replaced
 from raycaster.register_views import write_page
 from raycaster.sim.simulator import BUILD, SimulationError
 from raycaster.web.site import main as build_page
@@ -126,9 +126,9 @@ def main(argv: Sequence[str] | None = None) -> None:
         BUILD.mkdir(exist_ok=True)
         draw_timing(BUILD)
     for path in draw_all():
-        print(f"drawn anew: {path}")
+        print(printable(f"drawn anew: {path}"))
     web = None
     if not arguments.no_web:
         web = BUILD / "web"
         build_page(["--output", str(web)])
-    print(f"documentation: {write_site(arguments.output, web)}")
+    print(printable(f"documentation: {write_site(arguments.output, web)}"))

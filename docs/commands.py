@@ -10,12 +10,12 @@ import time
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from rich.console import Console
 from rich.table import Table
 
 from raycaster.docs.pages import PAGES, ROOT, need_clone
 from raycaster.errors import UserError
 from raycaster.options import FROM_MAKE, CommandParser
+from raycaster.output import Console
 from raycaster.tools import find_program
 
 LEFT_OUT = {

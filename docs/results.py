@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.table import Table
 
 from raycaster.configuration import configure
@@ -22,6 +21,7 @@ from raycaster.docs.proofs import proofs
 from raycaster.docs.tables import listed, outcomes, tables
 from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, Provenance, add_keep_option, keep, kept_outcome
+from raycaster.output import Console, printable
 from raycaster.report import beside
 from raycaster.scene import packaged_scenes
 
@@ -102,5 +102,5 @@ def main(argv: Sequence[str] | None = None) -> int:
         code = measures[name](arguments, console)
         outcomes.cache_clear()
     for page in render_all(facts() | tables() | proofs()):
-        print(f"written: {page}")
+        print(printable(f"written: {page}"))
     return code

@@ -14,7 +14,6 @@ from typing import Any
 
 import matplotlib as mpl
 from matplotlib.figure import Figure
-from rich.console import Console
 from rich.progress import track
 
 from raycaster.configuration import MOST_RECTANGLES, MOST_REFLECTIONS, Configuration, ConfigurationError, configure
@@ -25,6 +24,7 @@ from raycaster.golden import engines
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.jobs import run_jobs
 from raycaster.outcomes import Outcome, Published, table
+from raycaster.output import Console
 from raycaster.play.machine import Machine, build_machine
 from raycaster.play.walk import Walker
 from raycaster.scene import Scene, load_scene, packaged_scenes

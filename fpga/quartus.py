@@ -15,8 +15,6 @@ import subprocess
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from rich.console import Console
-
 from raycaster.configuration import Configuration
 from raycaster.convert.take_home import clock_period
 from raycaster.convert.write import write_system
@@ -24,7 +22,7 @@ from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.board import TOP, QuartusBoard, board_names, check_project, find_board, top_ports
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
-from raycaster.output import replaced
+from raycaster.output import Console, printable, replaced
 from raycaster.scene import Scene, find_scene
 from raycaster.tools import find_program, run_program
 
@@ -91,7 +89,7 @@ def compile_project(board: QuartusBoard, directory: Path) -> Path:
             f"quartus_sh is not on the path, and the {board.title} needs {board.quartus}; "
             f"the project is {directory / TOP}.qpf"
         )
-    print(f"{quartus} compiles {directory / TOP}.qpf; that takes a while", flush=True)
+    print(printable(f"{quartus} compiles {directory / TOP}.qpf; that takes a while"), flush=True)
     try:
         done = run_program([quartus, "--flow", "compile", TOP], directory, TIMEOUT)
     except subprocess.TimeoutExpired:
@@ -207,4 +205,4 @@ def main(argv: Sequence[str] | None = None) -> None:
     design = design_of(arguments.scene, given_options(arguments), arguments.fix, Console(), **board.configuration)
     directory = arguments.output / arguments.board
     write_project(board, design.configuration, design.shown, directory)
-    print(compile_project(board, directory))
+    print(printable(compile_project(board, directory)))

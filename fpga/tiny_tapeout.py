@@ -14,7 +14,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from rich.console import Console
 from rich.table import Table
 
 from raycaster.configuration import Configuration
@@ -25,7 +24,7 @@ from raycaster.errors import UserError
 from raycaster.fit.fixing import design_of
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.outcomes import Outcome, Published, add_keep_option, keep, scope_of, table
-from raycaster.output import replaced
+from raycaster.output import Console, emptied, replaced
 from raycaster.scene import find_scene
 from raycaster.tools import run_yosys
 
@@ -124,8 +123,7 @@ def count_gates(config: Configuration, files: Sequence[Path], directory: Path) -
     Raises:
         UserError: Yosys is missing, or refuses something.
     """
-    shutil.rmtree(directory, ignore_errors=True)
-    directory.mkdir(parents=True)
+    emptied(directory)
     for path in files:
         shutil.copy(path, directory)
     script = [

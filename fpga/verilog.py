@@ -6,12 +6,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from rich.console import Console
-
 from raycaster.convert.take_home import FILE_LIST
 from raycaster.convert.write import write_verilog
 from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
+from raycaster.output import Console, printable
 
 
 def command_parser() -> CommandParser:
@@ -29,4 +28,5 @@ def main(argv: Sequence[str] | None = None) -> None:
     arguments = command_parser().parse_args(argv)
     config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, Console())
     files = write_verilog(config, arguments.output)
-    print(f"{len(files)} modules of {config.name} in {arguments.output}/, listed in {arguments.output / FILE_LIST}")
+    where = f"{arguments.output}/, listed in {arguments.output / FILE_LIST}"
+    print(printable(f"{len(files)} modules of {config.name} in {where}"))

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import shutil
 import sys
 import time
 from collections.abc import Sequence
@@ -14,7 +13,6 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from PIL import Image
-from rich.console import Console
 from rich.progress import Progress, track
 from rich.table import Table
 
@@ -32,6 +30,7 @@ from raycaster.options import (
     given_options,
 )
 from raycaster.outcomes import Check, add_keep_option, keep, scope_of
+from raycaster.output import Console, emptied, printable
 from raycaster.play.machine import Machine, build_machine
 from raycaster.play.system import FASTEST, play
 from raycaster.play.walk import Walker
@@ -82,8 +81,7 @@ def look_around(design: Design, frames: int, build: Path, output: Path, console:
     walker = Walker(scene, config)
     yaws = [LOOK * math.sin(2 * math.pi * number / frames) for number in range(frames + 1)]
     command = build_machine(config, build, processor=False)
-    shutil.rmtree(output, ignore_errors=True)
-    output.mkdir(parents=True)
+    emptied(output)
     with Machine(command, config) as machine:
         machine.frame(writes=walker.load())
         for number in track(range(frames), "frames", console=console, transient=True):
@@ -160,7 +158,6 @@ def _film_scene(arguments: argparse.Namespace) -> int:
     console.print(
         f"{design.configuration.name}: {arguments.frames} frames, {wrong:,} pixels unlike exact arithmetic; "
         f"{output / ANIMATION}, with each frame beside it",
-        highlight=False,
         soft_wrap=True,
     )
     return int(wrong > 0)
@@ -183,13 +180,13 @@ def _film_game(arguments: argparse.Namespace) -> int:
                 time.sleep(POLL_SECONDS)
         result = future.result()
     except SimulationError as error:
-        print(error, file=sys.stderr)
+        print(printable(error), file=sys.stderr)
         return 1
     frames = sorted(output.glob("frame_*.png"))
     write_animation(frames, output / ANIMATION)
     step = max(1, len(frames) // SHEET_FRAMES)
     write_contact_sheet(frames[step - 1 :: step][:SHEET_FRAMES], output / SHEET, SHEET_COLUMNS)
-    console.print((output / "uart.txt").read_text(errors="replace"), highlight=False, markup=False, end="")
+    console.print((output / "uart.txt").read_text(errors="replace"), end="")
     rate = result["clocks_a_second"]
     table = Table("design", "frames", "with a scene", "wrong pixels", "clocks/s", "frames/s")
     for column in table.columns[1:]:
@@ -200,5 +197,5 @@ def _film_game(arguments: argparse.Namespace) -> int:
     console.print(table)
     figures = {key: result[key] for key in ("frames", "pixels", "wrong")} | {"frames_a_second": round(speed, 2)}
     keep(arguments, figures, scope_of(configuration), provenance)
-    console.print(f"{output / ANIMATION}, with each frame beside it, and {SHEET}", highlight=False)
+    console.print(f"{output / ANIMATION}, with each frame beside it, and {SHEET}")
     return 0

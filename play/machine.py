@@ -86,8 +86,11 @@ class Machine:
             SimulationError: the simulation ended.
         """
         words = [buttons, len(writes), *(word for write in writes for word in write)]
-        self._process.stdin.write(struct.pack(f"<{len(words)}I", *words))
-        self._process.stdin.flush()
+        try:
+            self._process.stdin.write(struct.pack(f"<{len(words)}I", *words))
+            self._process.stdin.flush()
+        except BrokenPipeError:
+            raise SimulationError("the simulated system ended") from None
         clocks, busy, count, events, characters = struct.unpack("<5I", self._read(20))
         pixels = np.frombuffer(self._read(4 * count), dtype=np.uint8).reshape(-1, 4)[:, :3] << self._lost_bits
         width, height = self._screen.horizontal.visible, self._screen.vertical.visible

@@ -15,6 +15,7 @@ from raycaster.configuration import configure
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, MEMORY_WORDS, PROGRAM_FILE, held_bits
 from raycaster.options import add_configuration_options, given_options, run_command
+from raycaster.output import Console, emptied, printable
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import (
     BUILD,
@@ -47,8 +48,7 @@ def play(model: Model, program: Path, buttons: Sequence[int], output: Path) -> d
         SimulationError: a pixel is wrong, a row was late, the processor halted, or the video departs from the standard.
     """
     check_program(program)
-    shutil.rmtree(output, ignore_errors=True)
-    output.mkdir(parents=True)
+    emptied(output)
     shutil.copyfile(program, output / PROGRAM_FILE)
     job = Job(model.configuration, output=str(output.resolve()), buttons=tuple(buttons))
     run_bench(model, "raycaster.play.game_bench", job, output)
@@ -102,15 +102,16 @@ def main() -> int:
         model = build_model(configuration, arguments.simulator, build=BUILD, bench=SYSTEM_BENCH)
         result = play(model, arguments.program, buttons, arguments.output)
     except SimulationError as error:
-        print(error, file=sys.stderr)
+        print(printable(error), file=sys.stderr)
         return 1
-    print((arguments.output / "uart.txt").read_text(errors="replace"), end="")
+    print(printable((arguments.output / "uart.txt").read_text(errors="replace"), lines=True), end="")
     rate = result["clocks_a_second"]
     speed = rate / configuration.screen_geometry.frame_cycles
-    print(
+    Console().print(
         f"{configuration.name}: {result['frames']} frames, {result['shown']} of them with a scene, "
         f"{result['wrong']:,} pixels are wrong; "
-        f"{rate:,} clocks a second, {speed:.2f} frames; pictures in {arguments.output}/"
+        f"{rate:,} clocks a second, {speed:.2f} frames; pictures in {arguments.output}/",
+        soft_wrap=True,
     )
     return 0
 

@@ -12,7 +12,6 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from rich.console import Console
 
 from raycaster.configuration import Configuration, configure
 from raycaster.design import design_for
@@ -29,6 +28,7 @@ from raycaster.options import (
     command_line,
     given_options,
 )
+from raycaster.output import Console
 from raycaster.play.machine import Frame, Machine, build_machine
 from raycaster.play.system import FASTEST
 from raycaster.play.walk import TURNS, WALKS, Walker
@@ -243,14 +243,14 @@ def main(argv: Sequence[str] | None = None) -> None:
         keys, names = GAME_KEYS, BUTTON_NAMES
 
     judge = Judge(config)
-    say = partial(console.print, end="", highlight=False, markup=False)
+    say = partial(console.print, end="")
     # A window that cannot be opened is known before anything is built.
     window = Window(config, "RayCaster", keys, names)
     try:
         for button, held in keys.items():
-            console.print(f"{button}: {' or '.join(held)}", highlight=False)
+            console.print(f"{button}: {' or '.join(held)}")
         if walker and config.turn:
-            console.print("turn and look: drag with the mouse too", highlight=False)
+            console.print("turn and look: drag with the mouse too")
         with console.status(f"building {config.name}"):
             command = build_machine(config, arguments.build, processor=walker is None)
         with Machine(command, config, program) as machine:
@@ -268,6 +268,5 @@ def main(argv: Sequence[str] | None = None) -> None:
     console.print(
         f"{count} frames, {rate:.1f} a second; in {judge.pictures} of them, held against exact arithmetic, "
         f"{judge.all_wrong:,} pixels are wrong",
-        highlight=False,
         soft_wrap=True,
     )

@@ -9,10 +9,10 @@ from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as
 from contextlib import contextmanager
 from typing import TypeVar
 
-from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from raycaster.errors import UserError, not_installed
+from raycaster.output import Console
 
 ATTEMPTS = 3
 """Times that a job is tried whose worker died."""

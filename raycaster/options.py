@@ -4,10 +4,13 @@
 from __future__ import annotations
 
 import argparse
+import errno
+import io
 import os
 import re
 import shlex
 import shutil
+import signal
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -17,7 +20,9 @@ from pydantic.fields import FieldInfo
 
 from raycaster.configuration import OPTION_NAMES, Configuration
 from raycaster.errors import UserError
+from raycaster.output import printable
 from raycaster.scene import find_scene
+from raycaster.tools import ToolError
 
 BUILD = Path("build")
 """Where everything that is made goes, unless told otherwise."""
@@ -30,6 +35,21 @@ USUAL = ("engine", "rows", "reflections", "screen")
 
 FROM_MAKE = "RAYCASTER_FROM_MAKE"
 """The environment variable by which the Makefile says that the user typed `make`."""
+
+
+_ELSEWHERE = "choose another place for the output"
+ADVICE = {
+    errno.EACCES: f"give yourself access to it, or {_ELSEWHERE}",
+    errno.EPERM: f"give yourself access to it, or {_ELSEWHERE}",
+    errno.EROFS: _ELSEWHERE,
+    errno.EEXIST: f"move away what is there, or {_ELSEWHERE}",
+    errno.ENOTDIR: f"move away the file that is where a directory must be, or {_ELSEWHERE}",
+    errno.EISDIR: "move away the directory that is where a file must be",
+    errno.ENAMETOOLONG: "give it a shorter name",
+    errno.ENOSPC: f"free some space, or {_ELSEWHERE}",
+    errno.EDQUOT: f"free some space, or {_ELSEWHERE}",
+}
+"""What to do about an error of the system, by its number."""
 
 
 class CommandParser(argparse.ArgumentParser):
@@ -203,11 +223,48 @@ def as_options(config: Configuration) -> list[str]:
 def run_command(main: Callable[[], int | None]) -> NoReturn:
     """Run a command's body; what the user can mend becomes one line on standard error and exit code 2."""
     try:
-        code = main() or 0
+        code = _flushed(main)
     except UserError as error:
-        print(f"error: {error}", file=sys.stderr)
+        print(f"error: {printable(error, lines=isinstance(error, ToolError))}", file=sys.stderr)
+        code = 2
+    except BrokenPipeError:  # nobody reads any more, as after `| head`
+        code = 128 + signal.SIGPIPE
+    except OSError as error:
+        print(f"error: {printable(_complaint(error))}", file=sys.stderr)
         code = 2
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         code = 130
+    try:
+        sys.stdout.flush()
+    except OSError:
+        # Python would try once more at its end, and complain.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     sys.exit(code)
+
+
+def _flushed(main: Callable[[], int | None]) -> int | str | None:
+    """Run it, with streams that take any text, and see that all it printed has gone; its exit code."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:  # a shell may have closed it
+            setattr(sys, name, open(os.devnull, "w"))  # noqa: SIM115
+        elif isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a terminal need not have every character
+    try:
+        code = main() or 0
+    except SystemExit as ended:  # argparse ends so after help
+        code = ended.code
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        error.filename = "standard output"
+        raise
+    return code
+
+
+def _complaint(error: OSError) -> str:
+    """One line for what the system refused: the place, the reason, and what to do."""
+    place = " -> ".join(str(name) for name in (error.filename, error.filename2) if name is not None)
+    said = f"{place or 'output'}: {error.strerror or error}"
+    return f"{said}; {ADVICE[error.errno]}" if error.errno in ADVICE else said

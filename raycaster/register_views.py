@@ -14,7 +14,7 @@ from peakrdl_html import HTMLExporter
 from raycaster.configuration import Configuration, configure
 from raycaster.memory_map import c_header
 from raycaster.options import CommandParser
-from raycaster.output import replaced
+from raycaster.output import printable, replaced
 from raycaster.registers import compile_registers
 
 HEADER = "raycaster_regs.h"
@@ -73,4 +73,4 @@ def main(argv: Sequence[str] | None = None) -> None:
     memory = arguments.software / MEMORY_HEADER
     memory.parent.mkdir(exist_ok=True)
     memory.write_text(c_header())
-    print(f"C headers: {header} and {memory}; page: {page}")
+    print(printable(f"C headers: {header} and {memory}; page: {page}"))

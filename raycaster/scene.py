@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import importlib.util
+import io
 import json
 import math
 import re
@@ -26,7 +27,7 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema, ErrorDetails
 
-from raycaster.configuration import MOST_REFLECTIONS, WORLD_SIZE
+from raycaster.configuration import MOST_RECTANGLES, MOST_REFLECTIONS, WORLD_SIZE
 from raycaster.errors import UserError
 
 BASIS_SCALE = 256
@@ -56,13 +57,24 @@ COMPLAINTS = {
     "too_many": (
         "rect: {count} rectangles, but the hardware holds {rectangles}; remove some or build it with RECTANGLES={count}"
     ),
+    "far_too_many": "rect: {count} rectangles, but no hardware holds more than {most}; remove some",
     "encoding": "is not UTF-8 text; a scene is a TOML file",
     "syntax": "is not TOML at line {number}{line} ({reason})",
 }
 """What is said of a file beside what the rules of its values expect; the first four by pydantic's types of errors."""
 
+MOST_BYTES = 1_000_000
+"""Bytes of the largest scene file that is read."""
+
+MOST_DOTS_SQUARED = 10**7
+"""Largest sum, over a file's lines, of the square of the number of dots: a fraction of a second to tomllib."""
+
 LONGEST_SHOWN = 60
 """Characters of the longest value or line that a complaint shows: longer ones do not help to find themselves."""
+
+
+_NO_NAME = re.compile("[\\0-\\x1f\\x7f-\\x9f\\ud800-\\udfff]")
+"""Characters that a file may have in its name, and the simulators' results, which are XML, may not."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -274,10 +286,25 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
         SceneError: the file cannot be read, is not TOML, or is not a scene; one line says where and what was expected.
     """
     path = Path(path)
+    if not path.stem.strip(".") or _NO_NAME.search(path.stem):
+        raise SceneError(
+            f"{path}: expected a name that is not all dots and has no control characters, as outputs get it; rename it"
+        )
     text = ""
     try:
+        if path.exists() and not path.is_file() and not path.is_dir():
+            raise SceneError(f"{path}: is a pipe or a device, but a scene is read more than once; save it in a file")
+        with path.open("rb") as file:
+            read = file.read(MOST_BYTES + 1)
+        if len(read) > MOST_BYTES:
+            raise SceneError(
+                f"{path}: is larger than {MOST_BYTES:,} bytes, the most of a scene file; remove some of it"
+            )
         # An editor may have written a byte order mark, which is not TOML to Python.
-        text = path.read_text(encoding="utf-8-sig")
+        text = io.TextIOWrapper(io.BytesIO(read), encoding="utf-8-sig").read()
+        # A key of many parts takes tomllib a time that grows with the square of their number.
+        if sum(line.count(".") ** 2 for line in text.split("\n")) > MOST_DOTS_SQUARED:
+            raise SceneError(f"{path}: has too many dots in a line; a key of a scene has one part")
         contents = tomllib.loads(text)
     except OSError as error:
         raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
@@ -291,7 +318,8 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
     except ValidationError as error:
         raise SceneError(f"{path}: {_first_complaint(error, contents)}") from None
     if rectangles is not None and len(scene.rect) > rectangles:
-        complaint = COMPLAINTS["too_many"].format(count=len(scene.rect), rectangles=rectangles)
+        kind = "too_many" if len(scene.rect) <= MOST_RECTANGLES else "far_too_many"
+        complaint = COMPLAINTS[kind].format(count=len(scene.rect), rectangles=rectangles, most=MOST_RECTANGLES)
         raise SceneError(f"{path}: {complaint}")
     return scene
 

@@ -12,8 +12,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-
 from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
@@ -21,6 +19,7 @@ from raycaster.fpga.cells import DECIDES, TOOLS
 from raycaster.jobs import add_job_options, executors
 from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, Check, Outcome, Published, add_keep_option, keep, kept_outcome, table
+from raycaster.output import Console
 from raycaster.report.designs import design_sections, find_designs, of_kept, to_keep
 from raycaster.report.errors import REFLECTIONS, ROUNDINGS, error_sections, find_pictures, mean_errors
 from raycaster.report.extent import Extent, extent
@@ -152,9 +151,9 @@ def main(argv: Sequence[str] | None = None) -> int:
             sweep = Sweep(Store(arguments.output / "points"), make_executor, console)
             page, figures = write_report(arguments.output, extent(arguments.quick), sweep, arguments.command_line)
     except SimulationError as error:
-        console.print(f"[red]{error}")
+        console.print(str(error), style="red")
         return 1
     scope = {"quick": arguments.quick, "reflections": REFLECTIONS}
     keep(arguments, figures, scope, lambda _: _provenance(figures), "placing and routing")
-    console.print(f"{page}, with report.md, plots and CSV beside it", highlight=False)
+    console.print(f"{page}, with report.md, plots and CSV beside it")
     return 0

@@ -19,7 +19,6 @@ from typing import Any
 
 import numpy as np
 from rich.box import SIMPLE
-from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
@@ -36,7 +35,7 @@ from raycaster.golden import exact
 from raycaster.golden.picture import count_wrong
 from raycaster.golden.world import Rectangles
 from raycaster.outcomes import Outcome, Published, commit_of, table
-from raycaster.output import replaced
+from raycaster.output import Console, replaced
 from raycaster.registers import register_map
 from raycaster.scene import Scene, load_scene, packaged_scenes
 from raycaster.screens import SCREENS, Screen

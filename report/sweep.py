@@ -14,9 +14,8 @@ from operator import attrgetter, methodcaller
 from pathlib import Path
 from typing import Any, TypeVar
 
-from rich.console import Console
-
 from raycaster.jobs import run_jobs
+from raycaster.output import Console
 from raycaster.report.points import Point, command, fingerprint
 
 P = TypeVar("P", bound=Point)

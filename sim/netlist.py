@@ -14,6 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from raycaster.errors import UserError, not_installed
+from raycaster.output import emptied
 from raycaster.sim.simulator import lock, stamped, write_stamp
 from raycaster.tools import run_yosys
 
@@ -139,8 +140,7 @@ def synthesise(
         stamp = directory / "stamp.json"
         fresh = stamped(stamp, digest.hexdigest()) is None
         if fresh:
-            shutil.rmtree(directory, ignore_errors=True)
-            directory.mkdir(parents=True)
+            emptied(directory)
             for source in verilog:
                 shutil.copy(source, directory)
             run_yosys(directory, "synthesis", script)

@@ -6,7 +6,6 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import shutil
 import sys
 import tempfile
 import time
@@ -17,9 +16,9 @@ from pathlib import Path
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
+from rich.text import Text
 
 from raycaster.configuration import Configuration
 from raycaster.convert.provenance import Provenance
@@ -37,6 +36,7 @@ from raycaster.options import (
 from raycaster.outcomes import Check, Published, add_keep_option, keep, scope_of
 from raycaster.outcomes import Outcome as Kept
 from raycaster.outcomes import table as markdown
+from raycaster.output import Console, check_replaceable, printable, replaced
 from raycaster.scene import load_scene, packaged_scenes
 from raycaster.sim.contact_sheet import write_contact_sheet
 from raycaster.sim.job import Job
@@ -121,23 +121,19 @@ def simulate(run: Design, model: Model, sim: Path, progress: Path) -> Outcome:
         progress: the file in which the simulation counts visible lines.
     """
     target = sim / run.name
-    sim.mkdir(parents=True, exist_ok=True)
-    partial = Path(tempfile.mkdtemp(prefix=f".{run.name}-", dir=sim))
-    job = Job(
-        configuration=run.configuration,
-        scene=str(run.path.resolve()),
-        output=str(partial.resolve()),
-        reflections=run.reflections,
-        progress=str(progress.resolve()),
-    )
     failure, waves = "", None
-    try:
-        waves = run_bench(model, "raycaster.sim.frame_bench", job, partial)
-    except SimulationError as error:
-        failure = str(error).replace(str(partial.resolve()), str(target))
-    partial.chmod(0o755)
-    shutil.rmtree(target, ignore_errors=True)
-    partial.rename(target)
+    with replaced(target) as partial:
+        job = Job(
+            configuration=run.configuration,
+            scene=str(run.path.resolve()),
+            output=str(partial.resolve()),
+            reflections=run.reflections,
+            progress=str(progress.resolve()),
+        )
+        try:
+            waves = run_bench(model, "raycaster.sim.frame_bench", job, partial)
+        except SimulationError as error:
+            failure = str(error).replace(str(partial.resolve()), str(target))
     results = target / "result.json"
     result = json.loads(results.read_text()) if results.exists() else None
     if failure and (target / "diff.png").exists():
@@ -160,7 +156,7 @@ def synthesise_all(runs: list[Design], build: Path, family: str, console: Consol
             directory = build / "model" / name / (f"netlist-{family}" if family != "ecp5" else "netlist")
             netlist = synthesise(convert(configuration, build), directory, family=family)
         took = f"synthesised in {time.perf_counter() - started:.1f} s" if netlist.fresh else "was synthesised before"
-        console.print(f"{name} {took}", highlight=False)
+        console.print(f"{name} {took}")
         netlists[name] = netlist
     return netlists
 
@@ -178,23 +174,23 @@ def build_models(
             started = time.perf_counter()
             model = build_model(configuration, simulator, waves=waves, build=build, **given)
         took = f"built in {time.perf_counter() - started:.1f} s" if model.fresh else "was built before"
-        console.print(f"{configuration.name} ({simulator}) {took}", highlight=False)
+        console.print(f"{configuration.name} ({simulator}) {took}")
         models[configuration.name] = model
     return models
 
 
 def run_all(runs: list[Design], models: dict[str, Model], sim: Path, jobs: int, console: Console) -> list[Outcome]:
     """Run scenes in parallel, and show how far each is."""
-    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed}/{task.total} lines"))
+    name, lines = TextColumn("{task.description}", markup=False), TextColumn("{task.completed}/{task.total} lines")
     with (
         tempfile.TemporaryDirectory() as directory,
         ThreadPoolExecutor(jobs) as pool,
-        Progress(*columns, TimeElapsedColumn(), console=console, transient=True) as bars,
+        Progress(name, BarColumn(), lines, TimeElapsedColumn(), console=console, transient=True) as bars,
     ):
         futures: dict[Future[Outcome], tuple[Any, Path]] = {}
         for run in runs:
             progress = Path(directory) / run.name
-            bar = bars.add_task(run.path.stem, total=run.configuration.screen_geometry.vertical.visible)
+            bar = bars.add_task(printable(run.path.stem), total=run.configuration.screen_geometry.vertical.visible)
             futures[pool.submit(simulate, run, models[run.configuration.name], sim, progress)] = (bar, progress)
         pending = set(futures)
         while pending:
@@ -240,10 +236,10 @@ def show(outcomes: list[Outcome], console: Console, title: str | None = None) ->
     )
     for outcome in outcomes:
         if outcome.waves:
-            console.print(f"{outcome.run.path.stem}: waveforms are in {outcome.waves}", highlight=False, soft_wrap=True)
+            console.print(f"{outcome.run.path.stem}: waveforms are in {outcome.waves}", soft_wrap=True)
     for outcome in outcomes:
         if outcome.failure:
-            console.print(f"{outcome.run.path.stem}: {outcome.failure}", style="red", markup=False, soft_wrap=True)
+            console.print(f"{outcome.run.path.stem}: {outcome.failure}", style="red", soft_wrap=True)
 
 
 def show_pictures(outcomes: list[Outcome], path: Path, console: Console) -> None:
@@ -251,7 +247,7 @@ def show_pictures(outcomes: list[Outcome], path: Path, console: Console) -> None
     frames = [path.parent / outcome.run.name / "frame.png" for outcome in outcomes if outcome.result is not None]
     if len(frames) > 1:
         write_contact_sheet(frames, path, SHEET_COLUMNS)
-        console.print(f"{path} has all their pictures", highlight=False, soft_wrap=True)
+        console.print(f"{path} has all their pictures", soft_wrap=True)
 
 
 def show_traces(outcomes: list[Outcome], options: Mapping[str, Any], simulator: str, console: Console) -> None:
@@ -267,7 +263,7 @@ def show_traces(outcomes: list[Outcome], options: Mapping[str, Any], simulator: 
         asked = {"pixel": f"{column},{row}", **options}
         asked |= {"sim": simulator} if simulator != SIMULATORS[0] else {}
         command = command_line("trace", outcome.run.path, asked)
-        console.print(f"to see where its first wrong pixel goes wrong: {command}", highlight=False, soft_wrap=True)
+        console.print(f"to see where its first wrong pixel goes wrong: {command}", soft_wrap=True)
 
 
 def _frames_per_second(configuration: Configuration, row_cycles: int) -> float:
@@ -277,20 +273,20 @@ def _frames_per_second(configuration: Configuration, row_cycles: int) -> float:
     return screen.clock_hz / (lines * row_cycles)
 
 
-def _cells(outcome: Outcome) -> list[str]:
+def _cells(outcome: Outcome) -> list[str | Text]:
     result, configuration = outcome.result, outcome.run.configuration
     if result is None:
-        return ["[red]failed[/]"] + 8 * [""]
+        return [Text("failed", "red")] + 8 * [""]
     row, group, wrong = result["worst_row_cycles"], result["worst_group_cycles"], result["wrong_vs_golden"]
     budget = configuration.group_budget
     return [
         str(result["pixels"]),
-        f"[red]{wrong}[/]" if wrong else "0",
+        Text(str(wrong), "red" if wrong else ""),
         str(result["wrong_vs_exact"]) if configuration.facts.divides else "",
         str(result["frame_cycles"] or ""),
         f"{row}/{configuration.screen_geometry.row_cycles}",
         f"{group}/{budget}",
-        "[red]underrun[/]" if result["underrun"] else str(budget - group),
+        Text("underrun", "red") if result["underrun"] else str(budget - group),
         f"{_frames_per_second(configuration, row):.0f}" if row else "",
         f"{result['sim_seconds']:.2f}",
     ]
@@ -380,6 +376,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     # Into a file or a pipe rich would print as if on 80 columns, which the table does not fit.
     console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
     runs = _planned(arguments, console)
+    outputs = arguments.build / ("gates" if gates else "sim")
+    for run in runs:
+        check_replaceable(outputs / run.name)
     find_tool(arguments.simulator)
     if gates:
         find_yosys()
@@ -387,9 +386,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         netlists = synthesise_all(runs, arguments.build, arguments.cells, console) if gates else {}
         models = build_models(runs, arguments.simulator, arguments.waves, arguments.build, netlists, console)
     except SimulationError as error:
-        console.print(str(error), style="red", markup=False, soft_wrap=True)
+        console.print(str(error), style="red", soft_wrap=True)
         return 1
-    outputs = arguments.build / ("gates" if gates else "sim")
     outcomes = run_all(runs, models, outputs, max(1, arguments.jobs), console)
     if gates:
         show_cells(netlists, console)

@@ -18,6 +18,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from xml.etree import ElementTree
 
 import cocotb
 from cocotb_tools import config as cocotb_config
@@ -33,6 +34,7 @@ from raycaster.digests import sources_digest, tools_digest
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, clocks_per_bit
 from raycaster.options import BUILD
+from raycaster.output import emptied, remove
 from raycaster.registers import address_bits
 from raycaster.sim.job import Job
 
@@ -458,12 +460,12 @@ def made(parent: Path, name: str, sources: Sequence[Path], made_with: object) ->
         mark = directory / "made"
         fresh = not mark.exists()
         if fresh:
-            shutil.rmtree(directory, ignore_errors=True)
-            directory.mkdir()
+            emptied(directory)
             for other in parent.glob("*/made"):
-                with contextlib.suppress(FileNotFoundError):  # another process may have been first
+                # Another process may have been first, and a directory without a mark is not ours.
+                with contextlib.suppress(OSError, UserError):
                     if time.time() - other.stat().st_mtime > KEPT_DAYS * 86400:
-                        shutil.rmtree(other.parent, ignore_errors=True)
+                        remove(other.parent)
         yield directory, fresh
         mark.touch()
 
@@ -598,6 +600,9 @@ def run_bench(
         tests, failures = get_results(results)
     except RuntimeError:
         raise SimulationError(f"the simulation ended without a result; its log is {log}") from None
+    except ElementTree.ParseError as error:
+        # The paths are in it, and a directory may have a character in its name that XML does not take.
+        raise SimulationError(f"{results}: is not XML, {error}; the log is {log}") from None
     if failures or not tests:
         raise SimulationError(f"{_first_failure(log) or 'no test ran'}; the log is {log}")
     return waves

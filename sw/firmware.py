@@ -12,14 +12,13 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from rich.console import Console
 from rich.table import Table
 
 from raycaster.errors import UserError, not_installed
 from raycaster.memory_map import MEMORY, MEMORY_BYTES
 from raycaster.options import run_command
-from raycaster.output import replaced
-from raycaster.tools import run_program
+from raycaster.output import Console, printable, replaced
+from raycaster.tools import ToolError, run_program
 
 SOFTWARE = Path(__file__).parent
 FIRMWARE = SOFTWARE / "firmware"
@@ -80,7 +79,7 @@ def build_firmware(output: Path, sources: Sequence[Path] = SOURCES, headers: Seq
 def _compile(*arguments: str | Path) -> None:
     done = run_program([sys.executable, *COMPILER, *map(str, arguments)], SOFTWARE, TIMEOUT)
     if done.returncode:
-        raise UserError(f"the compiler failed:\n{done.stderr.strip()}")
+        raise ToolError(f"the compiler failed:\n{done.stderr.strip()}")
 
 
 def _read_elf(path: Path) -> tuple[bytes, dict[str, int]]:
@@ -124,7 +123,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     # The compiler runs in a directory of its own.
     built = build_firmware(arguments.output.absolute())
     show(built.sections, console)
-    print(f"{arguments.output / built.elf.name} and {arguments.output / built.words.name}")
+    print(printable(f"{arguments.output / built.elf.name} and {arguments.output / built.words.name}"))
 
 
 if __name__ == "__main__":

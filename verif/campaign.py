@@ -4,17 +4,15 @@
 from __future__ import annotations
 
 import json
-import shutil
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from rich.console import Console
-
 from raycaster.configuration import Configuration
 from raycaster.jobs import run_jobs
+from raycaster.output import Console, emptied
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import VERILATOR_FLAGS, Model, SimulationError, build_model, convert, run_bench
 
@@ -70,7 +68,7 @@ class Outcome:
     def verdict(self, cases: str, console: Console) -> int:
         """Print what failed, and how many cases, as they are called, have no result; the command's exit code."""
         for failure in self.failures:
-            console.print(failure, style="red", markup=False, soft_wrap=True)
+            console.print(failure, style="red", soft_wrap=True)
         if self.missing:
             console.print(f"{self.missing} {cases} have no result", style="red")
         return int(bool(self.failures or self.missing))
@@ -93,13 +91,12 @@ def run_campaign(
     with console.status(f"building {campaign.configuration.name}"):
         _build(campaign)  # which the workers find
     started = time.perf_counter()
-    shutil.rmtree(campaign.output, ignore_errors=True)
+    emptied(campaign.output)
     cases = campaign.cases
     share = campaign.share or min(max(len(cases) // 20, 5), 20)  # starting one takes as long as showing a scene
     shares = [replace(campaign, cases=cases[first : first + share]) for first in range(0, len(cases), share)]
     found = run_jobs("simulations", run_share, shares, make_executor, console)
     results = [result for results, _ in found for result in results]
-    campaign.output.mkdir(parents=True, exist_ok=True)
     (campaign.output / "results.jsonl").write_text("".join(json.dumps(result) + "\n" for result in results))
     failures = [failure for _, failure in found if failure]
     return Outcome(results, failures, len(cases) - len(results), time.perf_counter() - started)
@@ -115,8 +112,7 @@ def _build(campaign: Campaign) -> Model:
 def run_share(share: Campaign) -> tuple[list[dict], str]:
     """The results of one simulation, and what it said if it failed."""
     directory = (share.output / f"from{share.cases[0]}").resolve()
-    shutil.rmtree(directory, ignore_errors=True)  # a worker that died may have begun it
-    directory.mkdir(parents=True)
+    emptied(directory)  # a worker that died may have begun it
     job = Job(
         share.configuration, output=str(directory), seeds=tuple(share.cases), stiff=share.stiff,
         registers=share.registers,

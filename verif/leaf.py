@@ -21,6 +21,7 @@ from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import Module, Port, convert_hierarchy
 from raycaster.convert.inside import port_signals
 from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.output import emptied
 from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.records import Record
 
@@ -161,8 +162,7 @@ class Leaf:
             expected: outputs of each cycle.
             settled: the first cycle from which outputs must be as expected.
         """
-        shutil.rmtree(directory, ignore_errors=True)
-        directory.mkdir(parents=True)
+        emptied(directory)
         for module in self.modules:
             shutil.copy(module.path, directory)
         inputs, outputs = ({name: port.width for name, port in ports.items()} for ports in (self.inputs, self.outputs))

@@ -15,8 +15,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-
 from raycaster.configuration import WORLD_SIZE, Configuration, configure
 from raycaster.convert.provenance import Provenance
 from raycaster.engines import ENGINES
@@ -25,7 +23,7 @@ from raycaster.jobs import run_jobs
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.options import CommandParser, add_build_option
 from raycaster.outcomes import Outcome, Published, add_keep_option, keep, scope_of, table
-from raycaster.output import replaced
+from raycaster.output import Console, replaced
 from raycaster.play.walk import DRAG, STEEPEST, STEP, TURN, TURNS, WALKS
 from raycaster.play.window import GAME_KEYS, TURN_KEYS, WALK_KEYS
 from raycaster.scene import load_scene, packaged_scenes
@@ -241,7 +239,6 @@ def main(argv: Sequence[str] | None = None) -> None:
     console.print(
         f"The page is {output / 'index.html'}; {size / 1e6:.2f} MB compressed. A browser opens it as it is, and any "
         "web server serves it.",
-        highlight=False,
         soft_wrap=True,
     )
     if arguments.measure:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import shutil
 import sys
 import time
 from collections import Counter
@@ -20,8 +19,8 @@ from functools import partial
 from pathlib import Path
 
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
@@ -29,6 +28,7 @@ from raycaster.errors import UserError
 from raycaster.jobs import run_jobs
 from raycaster.options import CommandParser
 from raycaster.outcomes import Check, Outcome, add_keep_option, keep, scope_of
+from raycaster.output import Console, emptied
 from raycaster.scene import find_scene, packaged_scenes
 from raycaster.sim.job import Job
 from raycaster.sim.scenes import LOG_COLUMNS
@@ -149,15 +149,15 @@ def show_code(counts: Counter[Point], judgement: Judgement, console: Console) ->
         holes = sum(module in (None, point.module) for point in judgement.unexplained)
         if module is None:
             table.add_section()
-        table.add_row(module or "all", *cells, str(explained), f"[red]{holes}[/]" if holes else "0")
+        table.add_row(module or "all", *cells, str(explained), Text(str(holes), "red" if holes else ""))
     console.print(table)
     console.print("Points that cannot be seen, by their explanation:")
     for reason, number in Counter(explanation.reason for explanation in judgement.explained.values()).items():
-        console.print(f"  {number}: {reason}", markup=False, highlight=False)
+        console.print(f"  {number}: {reason}")
     for line in describe(judgement.unexplained):
-        console.print(f"not covered: {line}", style="red", markup=False, highlight=False, soft_wrap=True)
+        console.print(f"not covered: {line}", style="red", soft_wrap=True)
     for stale in judgement.stale:
-        console.print(f"stale explanation: {stale}", style="red", markup=False, highlight=False, soft_wrap=True)
+        console.print(f"stale explanation: {stale}", style="red", soft_wrap=True)
 
 
 def _hits(counts: Counter[Point], module: str | None, types: Sequence[str]) -> tuple[int, int]:
@@ -203,16 +203,15 @@ def show_functional(functional: FunctionalCoverage, scenes: int, console: Consol
             table.add_column(f"{axis} {signs[slope]}", justify="right", no_wrap=True)
         for result, rank in kinds:
             times = [bins.get((*direction, result, rank, ray)) for direction in directions]
-            cells = ["" if n is None else f"{n:,}" if n else "[red]0[/]" for n in times]
+            cells = [Text("" if n is None else f"{n:,}", "red" if n == 0 else "") for n in times]
             table.add_row(result if rank == "none" else f"{result}, {rank}", *cells)
         console.print(table)
     console.print(
         f"{len(bins) - len(functional.holes)} of {len(bins)} bins hit in {scenes} scenes, {sum(bins.values()):,} "
         "intersections; left out as impossible:",
-        highlight=False,
     )
     for reason, number in functional.ignored.items():
-        console.print(f"  {number}: {reason}", highlight=False)
+        console.print(f"  {number}: {reason}")
     for hole in functional.holes:
         console.print(f"not hit: {', '.join(hole)}", style="red")
 
@@ -268,7 +267,7 @@ def main(argv: list[str] | None = None) -> int:
     # Into a file or a pipe rich would print as if on 80 columns, which the tables do not fit.
     console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
     output = arguments.build / "coverage"
-    shutil.rmtree(output, ignore_errors=True)
+    emptied(output)
     started = time.perf_counter()
 
     with console.status(f"building {design.name}"):
@@ -303,8 +302,8 @@ def main(argv: list[str] | None = None) -> int:
         "the other engines, a camera that turns, materials and patterns",
     )
     for failure in failures:
-        console.print(failure, style="red", markup=False, soft_wrap=True)
-    console.print(f"{time.perf_counter() - started:.0f} s; figures and holes are in {output}/", highlight=False)
+        console.print(failure, style="red", soft_wrap=True)
+    console.print(f"{time.perf_counter() - started:.0f} s; figures and holes are in {output}/")
     return verdict(judgement, functional, failures)
 
 

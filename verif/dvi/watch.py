@@ -7,7 +7,6 @@ Everything is held against the standard, and every pixel against golden.
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -16,7 +15,6 @@ from pathlib import Path
 
 import numpy as np
 from PIL import Image
-from rich.console import Console
 
 from raycaster.design import Design
 from raycaster.fit.fixing import add_fix_option, design_of
@@ -26,6 +24,7 @@ from raycaster.golden import engines
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.golden.tmds import CONTROL_SYMBOLS, decode
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
+from raycaster.output import Console, emptied, printable
 from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.scene import find_scene
 from raycaster.screens import Screen
@@ -266,15 +265,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     console = Console()
     design = design_of(arguments.scene, given_options(arguments), arguments.fix, console, **board.configuration)
     output = arguments.output / board.name / design.name
-    shutil.rmtree(output, ignore_errors=True)
-    output.mkdir(parents=True)
+    emptied(output)
     screen = design.configuration.screen_geometry
     try:
         with console.status(f"{board.name}, {design.configuration.name}: building and simulating"):
             sources = write_project(board, design, output)
             frames = watch(board, sources, screen, arguments.frames, output, simulator=arguments.simulator)
     except (SimulationError, VideoError) as error:
-        print(error, file=sys.stderr)
+        print(printable(error), file=sys.stderr)
         return 1
     expected = golden(design)
     wrong = sum(count_wrong(frame, expected) for frame in frames)
@@ -282,7 +280,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     console.print(
         f"{board.name}, {design.configuration.name}, {design.path}: {wrong} of {len(frames) * expected[..., 0].size:,} "
         f"pixels are wrong; the last frame is {output / 'frame.png'}",
-        highlight=False,
         soft_wrap=True,
     )
     return int(wrong > 0)

@@ -37,8 +37,8 @@ from typing import Any
 from unittest import mock
 
 from rich.box import SIMPLE
-from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 import raycaster.configuration
 import raycaster.rtl.common.widths
@@ -53,6 +53,7 @@ from raycaster.jobs import add_job_options, executors, run_jobs
 from raycaster.options import CommandParser
 from raycaster.outcomes import Check, add_keep_option, keep
 from raycaster.outcomes import Outcome as Kept
+from raycaster.output import Console, printable
 from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
 from raycaster.rtl.seed.divider import divider
@@ -267,15 +268,15 @@ def show(outcomes: Mapping[Bench, Outcome], number: int, console: Console) -> No
     for heading in ("vectors", "valid", "wrong", "seconds", "vectors/s"):
         table.add_column(heading, justify="right", no_wrap=True)
 
-    def add(label: str, vectors: int, valid: int, wrong: int, seconds: float) -> None:
+    def add(label: str, vectors: int, valid: int, wrong: int, seconds: float, style: str = "") -> None:
         rate = f"{vectors / max(seconds, 1e-9):,.0f}"
-        table.add_row(label, f"{vectors:,}", f"{valid:,}", f"{wrong:,}", f"{seconds:.1f}", rate)
+        table.add_row(Text(label, style), f"{vectors:,}", f"{valid:,}", f"{wrong:,}", f"{seconds:.1f}", rate)
 
     for kind in dict.fromkeys(bench.kind for bench in outcomes):
         of_kind = [(bench, outcome) for bench, outcome in outcomes.items() if bench.kind == kind]
         for bench, outcome in of_kind:
             add(bench.label, *astuple(outcome))
-        add(f"[bold]{kind}", *map(sum, zip(*(astuple(outcome) for _, outcome in of_kind), strict=True)))
+        add(kind, *map(sum, zip(*(astuple(outcome) for _, outcome in of_kind), strict=True)), "bold")
         table.add_section()
     console.print(table)
 
@@ -354,7 +355,7 @@ def main(argv: list[str] | None = None) -> int:
             found = run_jobs("benches", check, chosen, make_executor, console, label=attrgetter("label"))
         except Mismatch as mismatch:
             label = str(mismatch).partition(":")[0]
-            print(f"{mismatch}\nrepeat with: {repeat.format(label=label)}", file=sys.stderr)
+            print(printable(f"{mismatch}\nrepeat with: {repeat.format(label=label)}", lines=True), file=sys.stderr)
             return 1
     outcomes = dict(zip(chosen, found, strict=True))
     show(outcomes, arguments.seed, console)
@@ -363,5 +364,5 @@ def main(argv: list[str] | None = None) -> int:
         for name in kinds[bench.kind]:
             kinds[bench.kind][name] += getattr(outcome, name)
     keep(arguments, kinds, {"engine": "seed", "seed": arguments.seed}, provenance)
-    print(f"repeat with: {repeat.format(label=shlex.quote(arguments.only))}")
+    print(printable(f"repeat with: {repeat.format(label=shlex.quote(arguments.only))}"))
     return 0

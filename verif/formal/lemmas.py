@@ -8,12 +8,12 @@ multiplication. These facts lead from there to the definition, which is of ratio
 from __future__ import annotations
 
 import ast
-import shutil
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
+from raycaster.output import emptied
 from raycaster.tools import run_program
 
 SOLVERS = ("z3", "cvc5")
@@ -102,8 +102,7 @@ def prove_lemma(lemma: Lemma, directory: Path, timeout: float) -> tuple[str, str
     Returns:
         "proved", or which solver did what instead; and what the solver found, where that is a counterexample.
     """
-    shutil.rmtree(directory, ignore_errors=True)
-    directory.mkdir(parents=True)
+    emptied(directory)
     path = directory / "lemma.smt2"
     path.write_text(lemma.smt())
     for solver, solve in zip(SOLVERS, (_z3, _cvc5), strict=True):

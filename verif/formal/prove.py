@@ -11,9 +11,8 @@ from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
-from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
+from rich.text import Text
 
 from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
@@ -22,6 +21,7 @@ from raycaster.errors import UserError, not_installed
 from raycaster.jobs import add_job_options, executors, positive, run_jobs
 from raycaster.options import CommandParser
 from raycaster.outcomes import Check, add_keep_option, keep
+from raycaster.output import Console
 from raycaster.tools import TIMEOUT
 from raycaster.verif.formal.lemmas import LEMMAS, Lemma, prove_lemma
 from raycaster.verif.formal.properties import PROPERTIES
@@ -85,11 +85,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     keep(arguments, figures, {"small": arguments.small}, provenance, left_out="all that no property names")
     failures = [result for result in results if not result.proved]
     for result in failures:
-        console.print(
-            f"{result.proof.name}, {result.proof.label}: {escape(result.outcome)}", style="red", soft_wrap=True
-        )
+        console.print(f"{result.proof.name}, {result.proof.label}: {result.outcome}", style="red", soft_wrap=True)
         if result.detail:
-            console.print(escape(result.detail), soft_wrap=True)
+            console.print(result.detail, soft_wrap=True)
         if result.trace:
             console.print(f"trace: {result.trace}", soft_wrap=True)
     return 1 if failures else 0
@@ -122,6 +120,6 @@ def _table(results: list[Result]) -> Table:
     for result in results:
         proof = result.proof
         modules = ", ".join(module for module in proof.modules if module not in proof.cut)
-        outcome = f"[{'green' if result.proved else 'red'}]{result.outcome}[/]"
+        outcome = Text(result.outcome, style="green" if result.proved else "red")
         table.add_row(proof.name, proof.label, modules, result.method, outcome, f"{result.seconds:.1f}")
     return table

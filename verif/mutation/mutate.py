@@ -32,9 +32,8 @@ from pathlib import Path
 from typing import Any
 
 from rich.box import SIMPLE
-from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
+from rich.text import Text
 
 from raycaster import ensure_tools, rtl
 from raycaster.configuration import configure
@@ -44,8 +43,9 @@ from raycaster.errors import UserError
 from raycaster.jobs import add_job_options, executors, positive, run_jobs
 from raycaster.options import CommandParser
 from raycaster.outcomes import Check, Outcome, Published, add_keep_option, keep
+from raycaster.output import Console, emptied
 from raycaster.sim.simulator import build_program
-from raycaster.tools import run_yosys
+from raycaster.tools import ToolError, run_yosys
 from raycaster.verif.formal.prover import missing_tools
 from raycaster.verif.leaf import RECORD_VARIABLE, recording_name
 
@@ -59,7 +59,7 @@ LEAST_CAUGHT = 0.95
 OUTCOMES = ("caught", "equivalent", "contract", "explained", "surviving")
 
 
-class MutationError(UserError):
+class MutationError(ToolError):
     """Mutation testing that could not be done, or a data file that does not fit the design."""
 
 
@@ -186,8 +186,7 @@ class Recording:
         self._outputs: dict[str, int] = leaf["outputs"]
         self._settled: int = leaf["settled"]
         self._cycles: int = leaf["cycles"]
-        shutil.rmtree(work, ignore_errors=True)
-        work.mkdir(parents=True)
+        emptied(work)
         for name in self._files:
             shutil.copy(directory / name, work)
 
@@ -414,7 +413,7 @@ def record(tests: Iterable[str], directory: Path, jobs: int) -> None:
     Raises:
         MutationError: a test failed, or there is none of that name.
     """
-    shutil.rmtree(directory, ignore_errors=True)
+    emptied(directory)
     command = [sys.executable, "-m", "pytest", "-q", "-n", str(jobs), "--dist", "worksteal"]
     done = subprocess.run(
         [*command, *tests], cwd=SOURCES.parent / "tests", env=os.environ | {RECORD_VARIABLE: str(directory.resolve())},
@@ -455,18 +454,18 @@ def _table(results: list[Result]) -> Table:
     for heading in ("mutants", *OUTCOMES, "of all", "of the rest", "seconds"):
         table.add_column(heading, justify="right", no_wrap=True)
 
-    def add(label: str, chosen: list[Result]) -> None:
+    def add(label: str, chosen: list[Result], style: str = "") -> None:
         counts = _counts(chosen)
         total = sum(counts.values())
         table.add_row(
-            label, str(total), *map(str, counts.values()), f"{counts['caught'] / max(total, 1):.1%}",
+            Text(label, style), str(total), *map(str, counts.values()), f"{counts['caught'] / max(total, 1):.1%}",
             f"{share_caught(counts):.1%}", f"{sum(result.seconds for result in chosen):.0f}",
         )  # fmt: skip
 
     for module in sorted({result.module for result in results}):
         add(module, [result for result in results if result.module == module])
     table.add_section()
-    add("[bold]all", results)
+    add("all", results, "bold")
     return table
 
 
@@ -602,5 +601,5 @@ def main(argv: list[str] | None = None) -> int:
     usual = (arguments.mutants, arguments.seed) == (MUTANTS, SEED)
     found = complaints(results, known if usual else {})
     for complaint in found:
-        console.print(escape(complaint), style="red", soft_wrap=True)
+        console.print(complaint, style="red", soft_wrap=True)
     return 1 if found else 0

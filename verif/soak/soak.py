@@ -7,7 +7,6 @@ import argparse
 from collections import defaultdict
 from collections.abc import Sequence
 
-from rich.console import Console
 from rich.table import Table
 
 from raycaster.configuration import Configuration, configure
@@ -23,6 +22,7 @@ from raycaster.options import (
     given_options,
 )
 from raycaster.outcomes import Check, Outcome, add_keep_option, keep, scope_of
+from raycaster.output import Console
 from raycaster.sim.simulator import add_simulator_option
 from raycaster.verif.campaign import Campaign, run_campaign
 from raycaster.verif.random_scenes import style_of

@@ -194,7 +194,7 @@ def test_the_command(tmp_path):
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert "32,768 bytes of RAM" in done.stdout
-    assert {path.name for path in (tmp_path / "here").iterdir()} == {"firmware.elf", "firmware.hex"}
+    assert {path.name for path in (tmp_path / "here").glob("[!.]*")} == {"firmware.elf", "firmware.hex"}
 
 
 @pytest.mark.parametrize("missing", ["ziglang", "elftools"])

@@ -24,6 +24,7 @@ from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import HierarchyError, Module, Port, convert_hierarchy
 from raycaster.convert.take_home import FILE_LIST
 from raycaster.convert.write import write_verilog
+from raycaster.output import emptied
 from raycaster.rtl.common.clock_gate import clock_gate, rests_on
 from raycaster.rtl.common.given import given_verilog, load_words
 from raycaster.rtl.common.interfaces import Interface
@@ -1260,17 +1261,16 @@ def test_any_process_writes_the_same_bytes(tmp_path):
 
 def test_a_directory_is_replaced_as_a_whole(tmp_path):
     directory = tmp_path / "verilog"
-    directory.mkdir()
-    (directory / "ray_unit_of_yesterday.v").write_text("module ray_unit;")
     config = configure(screen="tiny", units=2, rectangles=2, allow_underrun=True)
+    write_verilog(config, directory)
+    (directory / "ray_unit_of_yesterday.v").write_text("module ray_unit;")
     write_verilog(config, directory)
     assert not list(directory.glob("*yesterday*"))
     assert [path.name for path in tmp_path.iterdir()] == ["verilog"], "nothing else is left"
 
 
 def test_a_conversion_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
-    directory = tmp_path / "verilog"
-    directory.mkdir()
+    directory = emptied(tmp_path / "verilog")
     (directory / "kept.v").write_text("module kept;")
 
     def fail(*_):
@@ -1279,5 +1279,5 @@ def test_a_conversion_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
     monkeypatch.setattr(write, "convert_hierarchy", fail)
     with pytest.raises(HierarchyError):
         write_verilog(configure(screen="tiny", units=2, rectangles=2, allow_underrun=True), directory)
-    assert [path.name for path in directory.iterdir()] == ["kept.v"]
+    assert [path.name for path in directory.glob("*.v")] == ["kept.v"]
     assert [path.name for path in tmp_path.iterdir()] == ["verilog"]

@@ -254,6 +254,28 @@ def test_too_many_rectangles(tmp_path):
     )
 
 
+def test_more_rectangles_than_any_hardware_holds(tmp_path):
+    path = write(tmp_path, GOOD + RECT * 40)
+    assert complaint(path, rectangles=12) == "rect: 41 rectangles, but no hardware holds more than 32; remove some"
+
+
+@pytest.mark.timeout(10)
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("a." * 50_000 + "a = 1\n", "has too many dots in a line; a key of a scene has one part"),
+        ("#" * 1_000_000, "is larger than 1,000,000 bytes, the most of a scene file; remove some of it"),
+    ],
+    ids=["dots", "bytes"],
+)
+def test_what_would_take_minutes_is_refused_at_once(tmp_path, text, expected):
+    assert complaint(write(tmp_path, text + GOOD)) == expected
+
+
+def test_a_device_is_no_scene():
+    assert "is a pipe or a device" in complaint(Path("/dev/zero"))
+
+
 def test_not_a_file(tmp_path):
     assert complaint(tmp_path) == "cannot be read: Is a directory"
     assert complaint(tmp_path / "none.toml") == "cannot be read: No such file or directory"

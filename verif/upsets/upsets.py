@@ -9,7 +9,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from rich.console import Console
 from rich.table import Table
 
 from raycaster.configuration import Configuration, configure, need_avalon
@@ -25,6 +24,7 @@ from raycaster.options import (
 )
 from raycaster.outcomes import Check, add_keep_option, keep, scope_of
 from raycaster.outcomes import Outcome as Kept
+from raycaster.output import Console
 from raycaster.sim.simulator import VERILATOR_FLAGS, convert
 from raycaster.verif.campaign import Campaign, run_campaign
 from raycaster.verif.upsets.bench import KINDS

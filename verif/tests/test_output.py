@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: MIT
+"""Output of commands: nothing of a user's is removed, text is shown as it is, and errors of the system are one line."""
+
+from __future__ import annotations
+
+import ast
+import errno
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import ROOT, SMALL_SCENE
+
+from raycaster import output
+from raycaster.fit.fixing import fix, show
+from raycaster.output import Console, emptied, printable, replaced
+from raycaster.scene import Scene, load_scene
+
+HOSTILE = "[bold]x[/nope]\x1b[31m :smile: [link=http://x]y\x9b2J\u202e\nz"
+"""A name that is broken markup, holds control sequences, and has two lines."""
+
+ESCAPED = r"[bold]x[/nope]\x1b[31m :smile: [link=http://x]y\x9b2J\u202e\nz"
+
+TINY = ("SCREEN=tiny", "UNITS=16", "RECTANGLES=4", "SIM=icarus")
+
+
+def raycaster(*words: str, cwd: Path, **options: object) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "raycaster.cli", *words]
+    return subprocess.run(command, cwd=cwd, check=False, **({"capture_output": True, "text": True} | options))
+
+
+@pytest.fixture
+def hostile_scene(tmp_path: Path) -> Path:
+    """A scene whose title and first rectangle have the name `HOSTILE`."""
+    name = "".join(f"\\u{ord(one):04x}" for one in HOSTILE)
+    title, floor = (f'{key} = "{name}"' for key in ("title", "name"))
+    lines = SMALL_SCENE.read_text().splitlines()
+    lines = [title if line.startswith("title") else floor if line == 'name = "floor"' else line for line in lines]
+    path = tmp_path / "[bold]hostile[x].toml"
+    covered = ["[[rect]]", floor, "corners = [[0, 100, 0], [9, 109, 0]]", 'colour = "#000000"']
+    path.write_text("\n".join([*lines, *covered]))
+    scene = load_scene(path)
+    assert scene.title == scene.rect[0].name == HOSTILE
+    return path
+
+
+def test_only_what_a_command_made_is_removed(tmp_path: Path):
+    made = emptied(tmp_path / "made")
+    (made / "old").touch()
+    assert not (emptied(made) / "old").exists()
+    with replaced(made) as filled:
+        (filled / "new").touch()
+    assert {path.name for path in made.iterdir()} == {"new", output.MARK}
+
+    kept = tmp_path / "kept"
+    kept.mkdir()
+    emptied(kept)  # there was nothing in it
+    (kept / output.MARK).unlink()
+    (kept / "thesis").touch()
+    (tmp_path / "link").symlink_to(made)
+    for name in ("kept", "link", "kept/thesis", "..", ".", "made/.."):
+        with pytest.raises(output.UserError):
+            emptied(tmp_path / name)
+        with pytest.raises(output.UserError), replaced(tmp_path / name):
+            raise AssertionError("it is refused before there is anything to lose")
+    assert (kept / "thesis").exists()
+    assert (made / "new").exists()
+
+
+def test_nothing_else_removes_directories():
+    """Commands leave that to the helper; the one exception is a directory that its own function made."""
+    sources = [path for path in ROOT.rglob("*.py") if not {".venv", "build", "tests"} & {*path.parts}]
+    users = {path.relative_to(ROOT).as_posix() for path in sources if "rmtree" in path.read_text()}
+    assert users == {"raycaster/output.py", "fpga/tiny_tapeout.py"}
+
+
+@pytest.mark.parametrize("name", ["...toml", "..toml", "a\x1b[31m.toml", "a\nb.toml", "a\udcff.toml"])
+@pytest.mark.parametrize("command", [("sim",), ("trace", "PIXEL=1,1"), ("verilog", "FIX=all"), ("game", "FRAMES=1")])
+def test_a_scene_file_has_a_name_for_its_outputs(tmp_path: Path, name: str, command: tuple[str, ...]):
+    (tmp_path / name).write_text(SMALL_SCENE.read_text())
+    build = tmp_path / "build"
+    (build / "sim").mkdir(parents=True)
+    (build / "thesis").touch()
+    options = TINY if command[0] in ("sim", "trace") else ()
+    done = raycaster(command[0], name, *command[1:], *options, cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(f"error: {printable(name)}: expected a name")
+    assert done.stderr.count("\n") == 1
+    assert done.stderr[:-1].isprintable()
+    assert (build / "thesis").exists()
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("verilog", "--output", "mine"),
+        ("registers", "--output", "mine"),
+        ("quartus", "--board", "de2", "--output", "."),
+    ],
+    ids=lambda words: words[0],
+)
+def test_a_users_directory_is_not_replaced(tmp_path: Path, words: tuple[str, ...]):
+    for directory in (tmp_path / "mine", tmp_path / "de2"):
+        directory.mkdir()
+        (directory / "thesis").touch()
+    done = raycaster(*words, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "has files in it" in done.stderr.splitlines()[-1]
+    assert (tmp_path / "mine" / "thesis").exists()
+    assert (tmp_path / "de2" / "thesis").exists()
+
+
+def test_text_is_shown_as_it_is():
+    assert printable(HOSTILE) == ESCAPED
+    assert printable("ä 語 [x]") == "ä 語 [x]"
+    assert printable("a\nb\x07\udcff", lines=True) == "a\nb\\x07\\udcff"
+
+
+def test_names_in_tables(hostile_scene: Path, capsys):
+    show(fix(hostile_scene, {}, "all"), Console(width=400))
+    assert ESCAPED in (said := capsys.readouterr().out)
+    assert all(line.isprintable() for line in said.splitlines())
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("trace", "PIXEL=32,40", *TINY),
+        ("verilog", "--fix", "all", "--output", "[/nope]"),
+        ("game", "ROWS=240x[/nope]"),
+        ("fit", "--error", "[/nope]\x1b"),
+        ("bitstream", "--board", "[/nope]\x1b"),
+        ("area", "--only", "[/nope]\x1b"),
+        ("verify dvi", "--board", "[/nope]\x1b"),
+        ("[/nope]\x1b",),
+    ],
+    ids=lambda words: words[0],
+)
+def test_commands_show_text_as_it_is(hostile_scene: Path, words: tuple[str, ...]):
+    """No command that takes a name or a path ends in a traceback or sends a control character to the terminal."""
+    done = raycaster(*words[0].split(), hostile_scene.name, *words[1:], cwd=hostile_scene.parent)
+    said = done.stdout + done.stderr
+    assert said
+    assert "Traceback" not in said
+    assert all(line.isprintable() for line in said.splitlines()), said
+    if words[0] == "trace":
+        assert done.returncode == 0, said
+        assert ESCAPED in done.stdout
+        assert hostile_scene.name in done.stdout
+    if words[0] == "verilog":
+        assert "[bold]x[/nope]" in done.stdout  # the table wraps the rest
+
+
+def test_every_console_is_the_projects():
+    """Rich's own takes brackets for markup."""
+    for path in ROOT.rglob("*.py"):
+        if {".venv", "build", "tests"} & {*path.parts} or path == ROOT / "raycaster" / "output.py":
+            continue
+        for node in ast.walk(ast.parse(path.read_text())):
+            assert not (isinstance(node, ast.ImportFrom) and node.module in ("rich.console", "rich.markup")), path
+            assert not (isinstance(node, ast.ImportFrom) and node.module == "rich" and node.names[0].name == "print")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("verilog", "--output", "file/x"),
+        ("verilog", "--output", "file"),
+        ("verilog", "--output", "/proc/x"),
+        ("verilog", "--output", "x" * 300),
+        ("registers", "--output", "/proc/x"),
+        ("sim", "boxes", "--build", "file"),
+        ("trace", "boxes", "PIXEL=1,1", "--build", "file"),
+        ("wave", "boxes", "--build", "/proc/x"),
+        ("quartus", "--board", "de2", "--output", "file"),
+        ("bitstream", "--output", "file"),
+        ("commands", "--output", "file"),
+        ("verify", "soak", "--build", "file"),
+        ("verify", "coverage", "--build", "file"),
+        ("verify", "upsets", "--build", "file"),
+    ],
+    ids=" ".join,
+)
+def test_what_the_system_refuses_is_one_line(tmp_path: Path, words: tuple[str, ...]):
+    (tmp_path / "file").touch()
+    done = raycaster(*words, cwd=tmp_path, env=os.environ | {"RAYCASTER_MODELS": ""})
+    assert done.returncode == 2, done.stderr
+    assert done.stderr.startswith("error: ")
+    assert done.stderr.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["file"], "nothing half-written is left"
+
+
+def test_a_full_disk(tmp_path: Path, monkeypatch, refuses):
+    """The directory stays as it was, and nothing else is left."""
+    kept = emptied(tmp_path / "kept")
+    (kept / "old").touch()
+
+    def write() -> None:
+        with replaced(kept):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    said = refuses(write)
+    assert said == (
+        f"error: {kept}: No space left on device; free some space, or choose another place for the output\n"
+    )
+    assert (kept / "old").exists()
+    assert [path.name for path in tmp_path.iterdir()] == ["kept"]
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("words", [(), ("--help",), ("scenes",), ("completion", "bash"), ("verilog",)])
+def test_standard_output_that_takes_nothing(tmp_path: Path, words: tuple[str, ...], unbuffered: str):
+    given = {"cwd": tmp_path, "env": os.environ | {"PYTHONUNBUFFERED": unbuffered}, "capture_output": False}
+    with open("/dev/full", "w") as full:
+        done = raycaster(*words, stdout=full, stderr=subprocess.PIPE, **given)
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: ")
+    assert "No space left on device; free some space" in done.stderr
+    assert done.stderr.count("\n") == 1
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = raycaster(*words, stdout=writer, stderr=subprocess.PIPE, **given)
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (128 + signal.SIGPIPE, "")
+
+
+def test_a_terminal_without_the_character(tmp_path: Path):
+    done = raycaster("sim", "größe", cwd=tmp_path, env=os.environ | {"PYTHONIOENCODING": "ascii"})
+    assert done.returncode == 2
+    assert done.stderr.startswith(r"error: gr\xf6\xdfe: no such file")
+
+
+def test_a_standard_output_that_is_closed(tmp_path: Path):
+    command = f"{sys.executable} -m raycaster.cli scenes >&-"
+    done = subprocess.run(["sh", "-c", command], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_title_of_a_scene_is_text(capsys):
+    Console(width=80).print(Scene.model_fields["title"].annotation(HOSTILE))
+    assert printable(HOSTILE, lines=True) in capsys.readouterr().out
