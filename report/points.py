@@ -31,6 +31,7 @@ from raycaster.golden.picture import wrong_pixels
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.seed_engine import Rounding
 from raycaster.golden.world import Rectangles
+from raycaster.jobs import sources_digest
 from raycaster.options import BUILD, add_configuration_options, as_options, given_options, run_command
 from raycaster.scene import BASIS_SCALE, Scene, dump_scene, load_scene
 from raycaster.screens import SCREENS, Screen
@@ -427,24 +428,13 @@ def fingerprint(point: Point) -> str:
     digest.update(dump_scene(point.scene).encode() if point.scene else b"")
     digest.update(_class_digest(type(point)))
     for name in point.sources:
-        digest.update(_sources_digest(name))
+        digest.update(sources_digest(ROOT / name))
     return digest.hexdigest()
 
 
 @cache
 def _class_digest(kind: type) -> bytes:
     return hashlib.sha256(inspect.getsource(kind).encode()).digest()
-
-
-@cache
-def _sources_digest(name: str) -> bytes:
-    """Of a file, or of all sources in a folder and the folders in it."""
-    digest = hashlib.sha256()
-    place = ROOT / name
-    for path in sorted(place.rglob("*")) if place.is_dir() else [place]:
-        if path.suffix in (".py", ".rdl", ".v"):
-            digest.update(path.read_bytes())
-    return digest.digest()
 
 
 def _parse(arguments: argparse.Namespace, options: Mapping[str, Any]) -> Point:

@@ -399,7 +399,7 @@ def test_what_a_result_depends_on_makes_it_stale(tmp_path, monkeypatch):
     assert store.find(replace(point, fraction_bits=3)) is None
     moved = View("case:facing_x", point.scene.model_copy(update={"background": (1, 2, 3)}))
     assert store.find(replace(point, view=moved)) is None
-    monkeypatch.setattr("raycaster.report.points._sources_digest", lambda name: b"edited")
+    monkeypatch.setattr("raycaster.report.points.sources_digest", lambda name: b"edited")
     assert store.find(point) is None
 
 
