@@ -42,6 +42,14 @@ def sources_digest(*places: Path) -> str:
     return digest.hexdigest()
 
 
+def digest(*parts: object) -> str:
+    """Compute a digest of values, by their `repr`, and of paths, by `sources_digest`."""
+    found = hashlib.sha256()
+    for part in parts:
+        found.update(f"{sources_digest(part) if isinstance(part, Path) else repr(part)};".encode())
+    return found.hexdigest()[:DIGITS]
+
+
 def code_digest(place: Path, root: Path) -> str:
     """Compute a digest of a file, or of the files in a folder, that comments do not change.
 

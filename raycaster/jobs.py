@@ -1,13 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""Independent jobs with a progress bar: over processes here, or over the workers of a Dask cluster."""
+"""Independent jobs with a progress bar: over processes here, or over the workers of a Dask cluster.
+
+Results can be kept, so that a command that was interrupted computes only what it has not yet.
+"""
 
 from __future__ import annotations
 
 import argparse
+import pickle
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
-from typing import TypeVar
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
@@ -37,6 +43,42 @@ def add_job_options(parser: argparse.ArgumentParser, jobs: int = 2) -> None:
         "--scheduler", metavar="ADDRESS",
         help="of a Dask scheduler, such as tcp://host:8786, whose workers see this directory (default: processes here)",
     )  # fmt: skip
+
+
+def add_fresh_option(parser: argparse.ArgumentParser) -> None:
+    """Add `--fresh`, for a command whose results are `Kept`."""
+    parser.add_argument("--fresh", action="store_true", help="compute again what an earlier run has kept")
+
+
+@dataclass(frozen=True)
+class Kept:
+    """Files in which results of jobs stay from one run of a command to the next.
+
+    Attributes:
+        place: the file of a job's result; its path has a digest of all that decides the result.
+        fresh: overwrite the files without reading them.
+        complete: decides whether a result is kept; a failure is worth another try.
+    """
+
+    place: Callable[[Any], Path]
+    fresh: bool = False
+    complete: Callable[[Any], bool] = lambda result: True
+
+    def find(self, job: object) -> tuple[bool, Any]:
+        """Whether a job's result is kept, and the result."""
+        try:
+            return (False, None) if self.fresh else (True, pickle.loads(self.place(job).read_bytes()))
+        except (FileNotFoundError, EOFError, pickle.UnpicklingError):
+            return False, None
+
+    def store(self, job: object, result: object) -> None:
+        """Keep a result, if it is complete."""
+        if self.complete(result):
+            place = self.place(job)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            partial = place.with_suffix(".partial")
+            partial.write_bytes(pickle.dumps(result))
+            partial.replace(place)
 
 
 @contextmanager
@@ -75,6 +117,7 @@ def run_jobs(
     finished: Callable[[J, R], object] = lambda job, result: None,
     before: int = 0,
     label: Callable[[J], str] = str,
+    kept: Kept | None = None,
 ) -> list[R]:
     """The function of each job, in the order of the jobs.
 
@@ -87,14 +130,21 @@ def run_jobs(
         finished: told of each result, here, as soon as it is there.
         before: jobs that were done before, which the bar counts.
         label: what a job is called where its workers die.
+        kept: where results of an earlier run are looked for, and new ones kept.
 
     Raises:
         UserError: workers died on the same jobs `ATTEMPTS` times.
     """
     results: dict[int, R] = {}
+    for place, job in enumerate(jobs if kept else ()):
+        there, result = kept.find(job)
+        if there:
+            results[place] = result
+    if results:
+        console.print(f"resumed: {len(results)} of {len(jobs)} {what} are kept from an earlier run")
     columns = TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn()
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task("", total=before + len(jobs), completed=before)
+        task = progress.add_task("", total=before + len(jobs), completed=before + len(results))
         for _ in range(ATTEMPTS):
             missing = [place for place in range(len(jobs)) if place not in results]
             if not missing:
@@ -108,6 +158,8 @@ def run_jobs(
                             results[place] = future.result()
                         except BrokenExecutor:
                             continue  # a worker died, and took the others' work with it: once more
+                        if kept:
+                            kept.store(jobs[place], results[place])
                         finished(jobs[place], results[place])
                         progress.advance(task)
                 except BaseException:

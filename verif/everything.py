@@ -1,30 +1,180 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster verify all`: all tests, those included that `make test` leaves out because they take long."""
+"""`raycaster verify all`: all tests, those included that `make test` leaves out because they take long.
+
+The outcome of each test is kept as soon as it is there. A run with the same sources as the last one runs only the
+tests that have not passed yet, those that took longest first.
+"""
 
 from __future__ import annotations
 
+import hashlib
+import json
 import subprocess
 import sys
-from collections.abc import Sequence
+import time
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
+
+from rich.console import Console
 
 from raycaster import ensure_tools
 from raycaster.errors import UserError
-from raycaster.jobs import positive
+from raycaster.jobs import add_fresh_option, positive
 from raycaster.options import CommandParser
+from raycaster.outcomes import add_keep_option, keep
 
 TESTS = Path(__file__).with_name("tests")
+STATE = Path("build/verify-all.jsonl")
+"""Lines of JSON, below the root: a digest of the sources that begins a run, the tests of it, and outcomes of tests."""
+
+
+class State:
+    """Outcomes of tests, of this run and of those before it.
+
+    Args:
+        path: where they are kept.
+
+    Attributes:
+        sources: the digest of the sources that the outcomes are of.
+        wanted: names of all tests that were asked for since these sources.
+        outcomes: by test: outcome, seconds and, of a skipped one, its reason.
+        seconds: by test, of its last run with any sources.
+        walls: the seconds that each run with these sources took.
+    """
+
+    def __init__(self, path: Path):
+        self._path = path
+        self.sources, self.wanted, self.outcomes, self.seconds, self.walls = "", set(), {}, {}, []
+        for line in path.read_text().splitlines() if path.exists() else ():
+            try:
+                self._take(json.loads(line))
+            except json.JSONDecodeError:  # the line that was being written when the machine stopped
+                continue
+
+    def add(self, entry: Mapping[str, Any]) -> None:
+        """Take an entry, and keep it."""
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        with self._path.open("a") as file:
+            file.write(json.dumps(entry) + "\n")
+        self._take(entry)
+
+    def _take(self, entry: Mapping[str, Any]) -> None:
+        if "sources" in entry:
+            if entry["sources"] != self.sources or entry["fresh"]:
+                self.wanted, self.outcomes, self.walls = set(), {}, []
+            self.sources = entry["sources"]
+            self.walls.append(0.0)
+        elif "wanted" in entry:
+            self.wanted |= set(entry["wanted"])
+        else:
+            self.outcomes[entry["test"]] = entry
+            self.seconds[entry["test"]] = entry["seconds"]
+            self.walls[-1] = entry["at"]
+
+    @property
+    def passed(self) -> set[str]:
+        """Tests that need not run again."""
+        return {test for test, entry in self.outcomes.items() if entry["outcome"] == "passed"}
+
+    def figures(self) -> dict[str, Any]:
+        """Counts, seconds, and the tests that failed, were skipped or did not run."""
+        of = {kind: [t for t, e in self.outcomes.items() if e["outcome"] == kind] for kind in ("failed", "skipped")}
+        reasons = Counter(self.outcomes[test]["reason"] for test in of["skipped"])
+        return {
+            "tests": len(self.wanted | set(self.outcomes)),
+            "passed": len(self.passed),
+            "failed": sorted(of["failed"]),
+            "skipped": dict(reasons),
+            "not_run": len(self.wanted - set(self.outcomes)),
+            "runs": len(self.walls),
+            "seconds": round(sum(entry["seconds"] for entry in self.outcomes.values())),
+            "wall_seconds": round(sum(self.walls)),
+        }
+
+
+class Recorder:
+    """Pytest's hooks in the process that distributes the tests: keeps each outcome."""
+
+    def __init__(self, state: State):
+        self._state, self._start = state, time.monotonic()
+        self._phases: dict[str, list[Any]] = {}
+
+    def pytest_xdist_node_collection_finished(self, ids: Sequence[str]) -> None:
+        """Keep the names of the tests to run."""
+        if not set(ids) <= self._state.wanted:
+            self._state.add({"wanted": list(ids)})
+
+    def pytest_runtest_logreport(self, report: Any) -> None:
+        """Keep an outcome after the last phase of a test. A worker that crashes reports one phase only."""
+        phases = self._phases.setdefault(report.nodeid, [])
+        phases.append(report)
+        if report.when in ("setup", "call"):
+            return
+        del self._phases[report.nodeid]
+        outcomes = {phase.outcome for phase in phases}
+        outcome = next((kind for kind in ("failed", "skipped") if kind in outcomes), "passed")
+        reason = ""
+        if outcome == "skipped":
+            said = next(phase.longrepr for phase in phases if phase.outcome == "skipped")
+            reason = str(said[2] if isinstance(said, tuple) else said).removeprefix("Skipped: ")
+        self._state.add({
+            "test": report.nodeid, "outcome": outcome, "reason": reason,
+            "seconds": round(sum(phase.duration for phase in phases), 2),
+            "at": round(time.monotonic() - self._start, 1),
+        })  # fmt: skip
+
+
+def pytest_addoption(parser: Any) -> None:
+    """Pytest's hook: an option that names the file of outcomes."""
+    parser.addoption("--outcomes", type=Path)
+
+
+def pytest_configure(config: Any) -> None:
+    """Pytest's hook: record outcomes, in the process that distributes the tests."""
+    if not hasattr(config, "workerinput"):
+        config.pluginmanager.register(Recorder(State(config.getoption("outcomes"))))
+
+
+def pytest_collection_modifyitems(config: Any, items: list[Any]) -> None:
+    """Pytest's hook, in each worker: leave out what has passed, and begin with what takes longest, or is not known."""
+    # A file of its own, which does not change: a worker that replaces one that crashed must find the same tests.
+    before = json.loads(_before(config.getoption("outcomes")).read_text())
+    if gone := [item for item in items if item.nodeid in before["passed"]]:
+        config.hook.pytest_deselected(items=gone)
+    left = [item for item in items if item.nodeid not in before["passed"]]
+    items[:] = sorted(left, key=lambda item: -before["seconds"].get(item.nodeid, float("inf")))
+
+
+def _before(outcomes: Path) -> Path:
+    return outcomes.with_suffix(".before.json")
+
+
+def tested_sources(root: Path, kept: Path | None) -> str:
+    """A digest of all files of the clone that git does not ignore, except the one that `--keep` writes."""
+    listed = subprocess.run(
+        ["git", "-C", str(root), "ls-files", "-coz", "--exclude-standard"], capture_output=True, text=True, check=True
+    )
+    found = hashlib.sha256()
+    for name in sorted(set(listed.stdout.split("\0")) - {""}):
+        path = root / name
+        if path.is_file() and path.resolve() != (kept and kept.resolve()):
+            found.update(name.encode() + b"\0" + path.read_bytes())
+    return found.hexdigest()
 
 
 def command_parser() -> CommandParser:
     """What the command takes."""
     parser = CommandParser("verify all", __doc__, "--jobs 4")
     parser.add_argument("--jobs", type=positive, default=2, metavar="N", help="tests at a time (default: %(default)s)")
+    add_fresh_option(parser)
+    add_keep_option(parser)
     return parser
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """The command; returns pytest's exit code.
+    """The command; returns pytest's exit code, or 130 if it was interrupted.
 
     Raises:
         UserError: there are no tests, as this is not a clone.
@@ -34,5 +184,30 @@ def main(argv: Sequence[str] | None = None) -> int:
         raise UserError("verify all: the tests come with a clone, not with the installed program")
     for tool in ensure_tools.TOOLS:
         ensure_tools.ensure(tool)
-    command = [sys.executable, "-m", "pytest", "-q", "-n", str(arguments.jobs), "--dist", "worksteal"]
-    return subprocess.run([*command, "--durations=10", str(TESTS)], cwd=TESTS.parents[1], check=False).returncode
+    root, console = TESTS.parents[1], Console()
+    path = root / STATE
+    state = State(path)
+    state.add({"sources": tested_sources(root, arguments.keep), "fresh": arguments.fresh})
+    if state.outcomes:
+        console.print(f"resumed: {len(state.passed)} of {len(state.wanted)} tests have passed with the same sources")
+    _before(path).write_text(json.dumps({"passed": sorted(state.passed), "seconds": state.seconds}))
+    # A test at a time for each worker, so that the longest begin first.
+    words = ["-q", "-n", str(arguments.jobs), "--dist", "load", "--maxschedchunk", "1", "--durations", "10"]
+    plugin = ["-p", "raycaster.verif.everything", "--outcomes", str(path)]
+    process = subprocess.Popen([sys.executable, "-m", "pytest", *words, *plugin, str(TESTS)], cwd=root)
+    try:
+        code = process.wait()
+    except KeyboardInterrupt:  # which pytest got too
+        process.wait()
+        code = 130
+    state = State(path)
+    figures = state.figures()
+    keep(arguments, figures, {"jobs": arguments.jobs})
+    failed, skipped = len(figures["failed"]), sum(figures["skipped"].values())
+    console.print(
+        f"{figures['passed']} of {figures['tests']} tests passed, {failed} failed, {skipped} skipped, "
+        f"{figures['not_run']} not run; {figures['wall_seconds']} s in {figures['runs']} runs",
+        highlight=False,
+    )
+    # Pytest's 5: no test is left.
+    return 0 if code == 5 and state.wanted == state.passed else code

@@ -12,7 +12,7 @@ import json
 import sys
 import time
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
@@ -25,10 +25,10 @@ from rich.text import Text
 from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
-from raycaster.jobs import run_jobs
+from raycaster.jobs import Kept, add_fresh_option, run_jobs
 from raycaster.options import CommandParser
 from raycaster.outcomes import Check, Outcome, add_keep_option, keep, scope_of
-from raycaster.output import Console, emptied
+from raycaster.output import Console
 from raycaster.scene import find_scene, packaged_scenes
 from raycaster.sim.job import Job
 from raycaster.sim.scenes import LOG_COLUMNS
@@ -42,7 +42,7 @@ from raycaster.sim.simulator import (
     convert,
     run_bench,
 )
-from raycaster.verif.campaign import Campaign, run_campaign
+from raycaster.verif.campaign import Campaign, bench_digest, run_campaign
 from raycaster.verif.coverage.code import KINDS, Judgement, Point, describe, judge, load_explanations, read_counts
 from raycaster.verif.coverage.functional import PROBE_MODULES, PROBES, FunctionalCoverage, read_bins
 from raycaster.verif.soak.soak import BENCH as SOAK
@@ -106,26 +106,33 @@ EXTRA_ROOMS = tuple(sorted(Path(__file__).parent.glob("extra_rooms_*.toml")))
 
 
 def run_all(
-    model: Model, runs: Sequence[Run], output: Path, jobs: int, console: Console
-) -> tuple[Counter[Point], list[str]]:
-    """Run benches on a model that counts, some at a time.
+    model: Model, runs: Sequence[Run], output: Path, jobs: int, console: Console, *, fresh: bool = False
+) -> tuple[Counter[Point], list[str], list[Path]]:
+    """Run benches on a model that counts, some at a time; `fresh` as of `Kept`.
 
     Returns:
-        The counts of all together, and what failed runs said.
+        The counts of all together, what failed runs said, and the directories of all.
     """
     counts: Counter[Point] = Counter()
     failures = []
-    runner = partial(_run, model=model, output=output)
-    for found, failure in run_jobs("benches", runner, runs, partial(ProcessPoolExecutor, jobs), console):
+    directories = {run: (output / _digest(run, model) / run.name).resolve() for run in runs}
+    kept = Kept(lambda run: directories[run] / "kept.pickle", fresh, complete=lambda found: not found[1])
+    runner = partial(_run, model=model, directories=directories)
+    for found, failure in run_jobs("benches", runner, runs, partial(ProcessPoolExecutor, jobs), console, kept=kept):
         counts.update(found)
         failures += [failure] if failure else []
-    return counts, failures
+    return counts, failures, list(directories.values())
 
 
-def _run(run: Run, model: Model, output: Path) -> tuple[Counter[Point], str]:
+def _digest(run: Run, model: Model) -> str:
+    scene = run.scene.read_text() if run.scene else ""
+    return bench_digest(f"raycaster.{run.bench}", model, scene, run.reflections)
+
+
+def _run(run: Run, model: Model, directories: Mapping[Run, Path]) -> tuple[Counter[Point], str]:
     """Its counts, and what it said if it failed."""
-    directory = (output / run.name).resolve()
-    directory.mkdir(parents=True)
+    directory = directories[run]
+    emptied(directory)
     scene = str(run.scene.resolve()) if run.scene else ""
     job = Job(model.configuration, scene=scene, output=str(directory), reflections=run.reflections)
     counts_file = directory / "coverage.dat"
@@ -225,6 +232,7 @@ def command_parser() -> CommandParser:
     parser.add_argument("--seeds", type=int, default=100, metavar="N", help="random scenes (default: %(default)s)")
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="simulations at a time (default: %(default)s)")
     parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes")
+    add_fresh_option(parser)
     add_keep_option(parser)
     return parser
 
@@ -267,40 +275,38 @@ def main(argv: list[str] | None = None) -> int:
     # Into a file or a pipe rich would print as if on 80 columns, which the tables do not fit.
     console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
     output = arguments.build / "coverage"
-    emptied(output)
+    output.mkdir(parents=True, exist_ok=True)
     started = time.perf_counter()
 
     with console.status(f"building {design.name}"):
         verilog = [*convert(design, arguments.build), *probes]
         counting = build_model(design, build=arguments.build, verilog=verilog, flags=FLAGS)
     runs = [*BENCHES, *(Run("sim.frame_bench", scene) for scene in scenes)]
-    counts, failures = run_all(counting, runs, output / "runs", arguments.jobs, console)
+    counts, failures, directories = run_all(
+        counting, runs, output / "runs", arguments.jobs, console, fresh=arguments.fresh
+    )
     judgement = judge(counts, explanations)
 
     export_code(counts, judgement, output / "code.json")
     show_code(counts, judgement, console)
     whole = Campaign(
-        SOAK, SOAK_DESIGNS[arguments.engine], range(arguments.seeds), output / "soak", arguments.build, probes=probes
-    )
+        SOAK, SOAK_DESIGNS[arguments.engine], range(arguments.seeds), output / "soak", arguments.build, probes=probes,
+        fresh=arguments.fresh,
+    )  # fmt: skip
     soaked = run_campaign(whole, console, partial(ProcessPoolExecutor, arguments.jobs))
     failures += soaked.failures
     functional = FunctionalCoverage(arguments.engine)
-    for directory in [*(output / "runs").iterdir(), *(output / "soak").glob("from*")]:
+    for directory in [*directories, *soaked.directories]:
         functional.add(read_bins(directory))
     shown = len(scenes) + len(soaked.results)
     figures: dict[str, object] = {"scenes": shown}
     figures |= {name: _hits(counts, None, types) for name, types in KINDS.items()}
     figures["bins"] = (len(functional.bins) - len(functional.holes), len(functional.bins))
     figures["intersections"] = sum(functional.bins.values())
+    left_out = "the other engines, a camera that turns, materials and patterns"
+    keep(arguments, figures, scope_of(design), provenance, left_out)
     functional.export(output / "functional")
     show_functional(functional, shown, console)
-    keep(
-        arguments,
-        figures,
-        scope_of(design),
-        provenance,
-        "the other engines, a camera that turns, materials and patterns",
-    )
     for failure in failures:
         console.print(failure, style="red", soft_wrap=True)
     console.print(f"{time.perf_counter() - started:.0f} s; figures and holes are in {output}/")

@@ -13,7 +13,7 @@ from raycaster.configuration import Configuration, configure
 from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
 from raycaster.golden.catalogue import catalogue
-from raycaster.jobs import add_job_options, executors
+from raycaster.jobs import add_fresh_option, add_job_options, executors
 from raycaster.options import (
     CommandParser,
     add_build_option,
@@ -58,6 +58,7 @@ def command_parser() -> CommandParser:
     parser.add_argument("--first", type=int, default=0, metavar="SEED", help="the first one's (default: %(default)s)")
     parser.add_argument("--stiff", action="store_true", help="all cases of the stiff catalogue instead")
     add_job_options(parser)
+    add_fresh_option(parser)
     add_simulator_option(parser)
     add_build_option(parser)
     add_configuration_options(parser)
@@ -105,8 +106,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     if arguments.stiff:
         seeds = range(len(catalogue(configuration.looks)))
     whole = Campaign(
-        BENCH, configuration, seeds, output, arguments.build, simulator=arguments.simulator, stiff=arguments.stiff
-    )
+        BENCH, configuration, seeds, output, arguments.build, simulator=arguments.simulator, stiff=arguments.stiff,
+        fresh=arguments.fresh,
+    )  # fmt: skip
     with executors(arguments.scheduler, arguments.jobs) as make_executor:
         outcome = run_campaign(whole, console, make_executor)
     results = outcome.results
@@ -117,7 +119,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             repeat = command_line("verify soak", options=which | given_options(arguments))
             console.print(
                 f"seed {result['seed']}: {result['wrong_vs_golden']} wrong pixels; the scene, and what it shrinks to, "
-                f"is in {output}/from*/{result['seed']}*.toml; repeat with: {repeat}",
+                f"is in {output}/*/from*/{result['seed']}*.toml; repeat with: {repeat}",
                 style="red",
                 soft_wrap=True,
             )

@@ -198,7 +198,7 @@ def test_verilator_counts(output):
     one.write_text(dump_scene(small.model_copy(update={"rect": small.rect[1:2]})))
     # Not optimised: there is more to compile than to run.
     model = build_model(configuration, build=BUILD, flags=(*FLAGS, "-CFLAGS", "-O0"))
-    counts, failures = run_all(model, [Run("sim.frame_bench", one, 0)], output / "runs", 1, Console())
+    counts, failures, _ = run_all(model, [Run("sim.frame_bench", one, 0)], output / "runs", 1, Console())
     assert failures == []
     modules = {point.module for point in counts}
     assert {"ray_caster_module", "divider_step", "scene_word"} <= modules

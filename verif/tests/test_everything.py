@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
 from types import SimpleNamespace
 
 import conftest
@@ -50,18 +52,71 @@ def test_all_needs_a_clone(tmp_path, monkeypatch):
         everything.main([])
 
 
-def test_all_is_all(monkeypatch):
-    """Pytest is asked for every test, and its exit code is the command's."""
-    asked = []
+TESTS = """
+import os, pathlib, time, pytest
+@pytest.mark.parametrize("number", range(3))
+def test_quick(number):
+    pathlib.Path(os.environ["RAN"]).open("a").write(f"quick{number} ")
+def test_long():
+    pathlib.Path(os.environ["RAN"]).open("a").write("long ")
+    time.sleep(1)
+def test_wrong():
+    pathlib.Path(os.environ["RAN"]).open("a").write("wrong ")
+    assert pathlib.Path(os.environ["MENDED"]).exists()
+def test_absent():
+    pytest.skip("no such board")
+"""
 
-    def run(command, **_):
-        asked.append(command)
-        return SimpleNamespace(returncode=3)
 
+@pytest.fixture
+def run_all(tmp_path, monkeypatch):
+    """Runs the command on a small clone; returns its exit code, the tests that ran, and the figures."""
+    clone, ran, kept = tmp_path / "clone", tmp_path / "ran", tmp_path / "clone" / "kept.json"
+    tests = clone / "verif" / "tests"
+    tests.mkdir(parents=True)
+    (tests / "test_small.py").write_text(TESTS)
+    (clone / ".gitignore").write_text("build\n__pycache__\n.pytest_cache\n")
+    subprocess.run(["git", "init", "-q", str(clone)], check=True)
     monkeypatch.setattr(everything.ensure_tools, "ensure", lambda tool: None)
-    monkeypatch.setattr(everything.subprocess, "run", run)
-    assert everything.main(["--jobs", "4"]) == 3
-    [command] = asked
-    assert "-m" not in command[3:]
-    assert command[-1] == str(everything.TESTS)
-    assert command[command.index("-n") + 1] == "4"
+    monkeypatch.setattr(everything, "TESTS", tests)
+    monkeypatch.setenv("RAN", str(ran))
+    monkeypatch.setenv("MENDED", str(tmp_path / "mended"))
+
+    def run(*options: str):
+        ran.write_text("")
+        code = everything.main(["--jobs", "1", "--keep", str(kept), *options])
+        return code, ran.read_text().split(), json.loads(kept.read_text())["figures"]
+
+    return run
+
+
+def test_all_is_resumed(run_all, tmp_path, capsys):
+    code, ran, figures = run_all()
+    assert code == 1
+    assert sorted(ran) == ["long", "quick0", "quick1", "quick2", "wrong"]
+    assert figures["failed"] == ["verif/tests/test_small.py::test_wrong"]
+    assert figures["skipped"] == {"no such board": 1}
+    assert (figures["tests"], figures["passed"], figures["not_run"], figures["runs"]) == (6, 4, 0, 1)
+    # With the same sources only what has not passed yet.
+    (tmp_path / "mended").touch()
+    code, ran, figures = run_all()
+    assert (code, ran, figures["failed"], figures["passed"], figures["runs"]) == (0, ["wrong"], [], 5, 2)
+    assert "resumed: 4 of 6 tests have passed" in capsys.readouterr().out
+    # Anew, the longest first.
+    code, ran, figures = run_all("--fresh")
+    assert (code, ran[0], len(ran), figures["runs"]) == (0, "long", 5, 1)
+    # With other sources too.
+    (tmp_path / "clone" / "rtl.py").write_text("changed")
+    assert len(run_all()[1]) == 5
+
+
+def test_what_an_interrupted_run_found_is_kept(tmp_path):
+    """A state ends where the machine stopped, maybe within a line."""
+    state = everything.State(tmp_path / "state")
+    state.add({"sources": "a", "fresh": False})
+    state.add({"wanted": ["x", "y"]})
+    state.add({"test": "x", "outcome": "passed", "reason": "", "seconds": 2.0, "at": 3.0})
+    with (tmp_path / "state").open("a") as file:
+        file.write('{"test": "y", "out')
+    figures = everything.State(tmp_path / "state").figures()
+    assert (figures["tests"], figures["passed"], figures["not_run"], figures["wall_seconds"]) == (2, 1, 1, 3)

@@ -14,7 +14,7 @@ from rich.table import Table
 from raycaster.configuration import Configuration, configure, need_avalon
 from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
-from raycaster.jobs import add_job_options, executors
+from raycaster.jobs import add_fresh_option, add_job_options, executors
 from raycaster.options import (
     CommandParser,
     add_build_option,
@@ -82,6 +82,7 @@ def command_parser() -> CommandParser:
     parser.add_argument("--cases", type=int, default=500, metavar="N", help="how many (default: %(default)s)")
     parser.add_argument("--first", type=int, default=0, metavar="CASE", help="the first one's number (%(default)s)")
     add_job_options(parser)
+    add_fresh_option(parser)
     add_build_option(parser)
     add_configuration_options(parser)
     add_keep_option(parser)
@@ -130,6 +131,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     campaign = Campaign(
         "raycaster.verif.upsets.bench", configuration, cases, arguments.build / "upsets", arguments.build,
         flags=FLAGS, registers=registers_of(convert(configuration, arguments.build)), share=SHARE,
+        fresh=arguments.fresh,
     )  # fmt: skip
     with executors(arguments.scheduler, arguments.jobs) as make_executor:
         outcome = run_campaign(campaign, console, make_executor)
