@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from rich.console import Console
 from rich.table import Table
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import MOST_REFLECTIONS, Configuration, configure
 from raycaster.errors import UserError
 from raycaster.golden.catalogue import catalogue
 from raycaster.jobs import add_job_options, executors
@@ -67,7 +67,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = command_parser().parse_args(argv)
     if arguments.seeds < 1 or arguments.first < 0:
         raise UserError("seeds: must be 1 or more, first: 0 or more")
-    configuration = configure(**{"reflections": 2} | given_options(arguments))
+    configuration = configure(**{"reflections": MOST_REFLECTIONS} | given_options(arguments))
     console = Console()
     output = arguments.build / "soak"
     seeds = range(arguments.first, arguments.first + arguments.seeds)
