@@ -166,6 +166,8 @@ class Result:
     seconds: float
     trace: Path | None = None
     detail: str = field(default="", compare=False)
+    kept: bool = False
+    """Whether an earlier run proved the same."""
 
     @property
     def proved(self) -> bool:
@@ -179,6 +181,16 @@ class Result:
             return " and ".join(SOLVERS)
         reach = f", reach {self.proof.reach}" if self.proof.reach else ""
         return f"induction {self.depth}{reach}"
+
+
+def inputs_of(proof: Property, depth: int) -> str:
+    """All that decides whether a property holds, except the tools: Verilog, wrapper, parameters, method."""
+    with elaboration():
+        verilog = verilog_of(proof.design)
+    sources = [verilog[f"{module}.v"] for module in proof.modules]
+    sources += [(WRAPPERS / f"{proof.wrapper}.v").read_text(), Path(__file__).read_text()]
+    settings = dict(proof.parameters), depth, proof.cut, proof.any_product, proof.as_registers, proof.reach
+    return "\n".join([*sources, repr(settings)])
 
 
 def missing_tools() -> list[str]:
@@ -272,14 +284,14 @@ def _attempt(
 
 def _generate(design: Design, directory: Path) -> None:
     with elaboration():  # of two properties at once, the second finds the first one's files
-        sources = _verilog(design)
+        sources = verilog_of(design)
     directory.mkdir()
     for name, text in sources.items():
         (directory / name).write_text(text)
 
 
 @cache
-def _verilog(design: Design) -> dict[str, str]:
+def verilog_of(design: Design) -> dict[str, str]:
     """The generated files by name: a design stands behind several properties."""
     with tempfile.TemporaryDirectory() as scratch:
         directory = Path(scratch) / "verilog"

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 from dataclasses import replace
@@ -12,7 +13,8 @@ import pytest
 
 from raycaster.errors import UserError
 from raycaster.verif.formal.properties import PROPERTIES
-from raycaster.verif.formal.prover import Property, missing_tools, prove, refute
+from raycaster.verif.formal.prove import main
+from raycaster.verif.formal.prover import Property, Result, missing_tools, prove, refute
 
 pytestmark = pytest.mark.skipif(bool(missing_tools()), reason=f"not installed: {', '.join(missing_tools())}")
 
@@ -309,7 +311,7 @@ MORE_STEPS = {
     "a-pair-announced-late": 130,
     "past-the-row": 100,
     "a-row-too-many": 70,
-    "control-runs-on": 40,
+    "control-runs-on": 75,
     "read-too-far": 90,
     "one-rectangle-too-few": 24,
 }
@@ -378,3 +380,26 @@ def test_unknown_property():
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert "no-such is none of video-timing" in done.stderr
+
+
+def test_what_was_proved_is_not_proved_again(output, monkeypatch):
+    """Until its Verilog or its property changes, or it is asked for; what is kept says what was not proved."""
+    monkeypatch.setattr("raycaster.verif.formal.prove.PROOFS", [HOST])
+    kept = output / "kept.json"
+
+    def outcome(*options: str) -> tuple[int, dict]:
+        code = main(["--jobs", "1", "--output", str(output / "proofs"), "--keep", str(kept), *options])
+        return code, json.loads(kept.read_text())["figures"]
+
+    label = f"host-transfers, {HOST.label}"
+    assert outcome() == (0, {"proved": 1, "proofs": 1, "properties": 1, "properties_proved": 1, "lemmas": 0,
+                             "lemmas_proved": 0, "failures": []})  # fmt: skip
+    monkeypatch.setattr(
+        "raycaster.verif.formal.prove.prove", lambda proof, *_, **__: Result(proof, "step failed", 1, 0)
+    )
+    assert outcome()[0] == 0
+    assert outcome("--fresh") == (1, {"proved": 0, "proofs": 1, "properties": 1, "properties_proved": 0, "lemmas": 0,
+                                      "lemmas_proved": 0, "failures": [f"{label}: step failed"]})  # fmt: skip
+    changed = replace(HOST, parameters={**HOST.parameters, "MOST_WAIT": 2})
+    monkeypatch.setattr("raycaster.verif.formal.prove.PROOFS", [changed])
+    assert outcome()[0] == 1
