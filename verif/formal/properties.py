@@ -539,7 +539,7 @@ def _blend(config: Configuration, small: bool) -> Property:
     seen = [_numbered("colour_seen", number) for number in range(mirrors + 1)]
     return Property(
         "blend-exact",
-        "a pixel is golden's blend of what rays saw, with two mirrors of half or one of any quarters, at full width",
+        "a pixel is golden's blend of what rays saw, with mirrors of half or one of any quarters, at full width",
         config,
         _label(config),
         ("colour_blend", *joints, *seen),
