@@ -4,35 +4,19 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 from raycaster import rtl
+from raycaster.configuration import Configuration, configure
 from raycaster.docs.facts import table
 from raycaster.verif.formal.lemmas import LEMMAS
 from raycaster.verif.formal.properties import PROPERTIES
+from raycaster.verif.formal.prover import FixedTable, FoldWidths, Property, TesterWidths
 from raycaster.verif.mutation.mutate import expectations
 
 RTL = Path(rtl.__file__).parent
 TESTS = RTL.parent / "verif" / "tests"
-
-FULL = (
-    "video-timing", "host-transfers", "ray-order", "line-sections", "render-counters", "divider-exact",
-    "finder-quotients", "nearest-depth", "tester-products", "nearest-products", "slope-exact", "eye-exact",
-    "cell-products", "group-safe", "row-setup", "line-start", "walked-products", "turned-walks", "contest-products",
-    "blend-exact", "shares-exact",
-)  # fmt: skip
-"""The properties that are proved of blocks as wide as in a default design, among others."""
-
-REDUCED = {
-    "avalon-agent": "2 rectangles",
-    "fixed-rects": "3 rectangles",
-    "tester-exact": "1 to 4 bits",
-    "axi4lite-transfers": "full width, bounded waits",
-    "wishbone-transfers": "full width, bounded waits",
-    "apb-transfers": "full width, bounded waits",
-    "fold-exact": "2 and 3 bits, 8 cycles from reset only",
-}
-"""In what the designs of others are smaller; of one that is in neither list no more is claimed than that it is."""
 
 EVERY_OPERAND = {
     "divider": "`divider`",
@@ -47,16 +31,49 @@ UNGATED = "clock_gate"
 """Proofs are of what goes to an FPGA, where this is a wire; so they say nothing of it."""
 
 
+def scale(of_it: Sequence[Property]) -> tuple[bool, str]:
+    """Whether numbers are as wide as in a default design in one of a property's designs, and what sizes there are.
+
+    The number of rectangles is a matter of width where a property is of their index or their memory; reflections are
+    one of range where its wrapper has them as a parameter.
+    """
+    narrow = [proof.design.coordinate for proof in of_it if isinstance(proof.design, TesterWidths | FoldWidths)]
+    tables = [len(proof.design.fixed.fixed.rectangles) for proof in of_it if isinstance(proof.design, FixedTable)]
+    configured = [proof for proof in of_it if isinstance(proof.design, Configuration)]
+    counts = [
+        proof.design.rectangles
+        for proof in configured
+        if "INDEX_BITS" in proof.parameters or "rect_mem" in proof.modules
+    ]
+    mirrors = [proof.design.reflections for proof in configured if {"REFLECTIONS", "MIRRORS"} & {*proof.parameters}]
+    mirrors += [proof.design.mirrors for proof in of_it if isinstance(proof.design, FoldWidths)]
+    full = not narrow and not tables and (not counts or max(counts) >= configure().rectangles)
+    sizes = [] if narrow or not full else ["full width"]
+    for numbers, unit in ((narrow, "bits"), (tables + counts, "rectangles"), (mirrors, "reflections")):
+        sizes += [f"{_values(numbers)} {unit}"] if numbers else []
+    sizes += ["bounded waits"] if any("MOST_WAIT" in proof.parameters for proof in of_it) else []
+    return full, ", ".join(sizes)
+
+
+def _values(numbers: list[int]) -> str:
+    """Some numbers, or a range of them."""
+    found = sorted(set(numbers))
+    if len(found) > 2 and found == list(range(found[0], found[-1] + 1)):
+        return f"{found[0]} to {found[-1]}"
+    return " and ".join(filter(None, [", ".join(map(str, found[:-1])), str(found[-1])]))
+
+
 def _proofs(module: str) -> tuple[str, str]:
     """The properties of designs as large as they come, and of smaller ones."""
     of_it = [proof for proof in PROPERTIES if module in proof.modules and module not in (*proof.cut, UNGATED)]
     full, small = [], []
     for name in dict.fromkeys(proof.name for proof in of_it):
-        products = any(proof.any_product for proof in of_it if proof.name == name)
-        if name in FULL:
-            full.append(f"`{name}`{' and lemmas' if products else ''}")
+        of_name = [proof for proof in of_it if proof.name == name]
+        at_full_width, sizes = scale(of_name)
+        if at_full_width:
+            full.append(f"`{name}`{' and lemmas' if any(proof.any_product for proof in of_name) else ''}")
         else:
-            small.append(f"`{name}` ({REDUCED.get(name, 'smaller')})")
+            small.append(f"`{name}` ({sizes})")
     return ", ".join(full), ", ".join(small)
 
 
@@ -87,16 +104,25 @@ def proved_blocks() -> str:
 
 
 def properties() -> str:
-    """Every property, with how much of a design it is of."""
+    """Every property, with the sizes of the designs that it is proved of."""
     rows = []
     for name in dict.fromkeys(proof.name for proof in PROPERTIES):
         of_it = [proof for proof in PROPERTIES if proof.name == name]
         claim = of_it[0].claim.removesuffix(", at full width")
         depths = sorted({proof.induction for proof in of_it})
         products = "any function" if any(proof.any_product for proof in of_it) else "bits"
-        width = "full width" if name in FULL else REDUCED.get(name, "smaller")
-        rows.append([name, claim, width, products, len(of_it), ", ".join(map(str, depths))])
-    return table(["property", "what it says", "of", "products", "designs", "induction depth"], rows)
+        quick = sum(proof.small for proof in of_it)
+        rows.append([name, claim, scale(of_it)[1], products, len(of_it), quick, ", ".join(map(str, depths))])
+    return table(["property", "what it says", "of", "products", "designs", "quick", "induction depth"], rows)
+
+
+def counts() -> str:
+    """How many proofs there are, and how many of them are the quick ones, in a sentence."""
+    quick = sum(proof.small for proof in PROPERTIES)
+    return (
+        f"There are {len(PROPERTIES)} proofs of properties and {len(LEMMAS)} lemmas; the quick ones are {quick} of the "
+        f"properties and {'all' if all(lemma.small for lemma in LEMMAS) else 'some'} lemmas"
+    )
 
 
 def lemmas() -> str:
@@ -111,4 +137,4 @@ def lemmas() -> str:
 
 def proofs() -> dict[str, str]:
     """All of them, by the names that pages use."""
-    return {"proved_blocks": proved_blocks(), "properties": properties(), "lemmas": lemmas()}
+    return {"proved_blocks": proved_blocks(), "properties": properties(), "lemmas": lemmas(), "proof_counts": counts()}

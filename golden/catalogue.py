@@ -40,7 +40,7 @@ class Case:
 def catalogue(looks: Collection[str] = ()) -> list[Case]:
     """All cases that need no more than these of turn, materials and patterns.
 
-    Every scene has at most 12 rectangles and two reflections.
+    Every scene has at most 12 rectangles, and two reflections; a design that has more may show it with more.
     """
     cases = [_case(*entry) for family in _FAMILIES for entry in family()]
     found = [case for case in cases if not case.scene.lacks(looks)]
@@ -298,6 +298,15 @@ def _facing() -> Iterator[_Entry]:
         yield f"facing_y_{width}", f"mirrors {width + 1} apart, side by side", (0, MIDDLE, 100), [*sides, _BACK]
     yield "facing_z", "mirrors above and below", (0, MIDDLE, 100), [_plane(2, 90), _plane(2, 112), _BACK]
     yield "facing_x", "mirrors before and behind", (300, MIDDLE, 100), [_plane(0, 290), _plane(0, 330), _FLOOR]
+    ends = [_plane(0, 0), _plane(0, LAST)]
+    yield "facing_ends", "mirrors at the ends of the world, from one of them", (0, MIDDLE, MIDDLE), ends
+    for axis, name, angles in ((0, "x", {"yaw": 180}), (1, "y", {"yaw": 90}), (2, "z", {"pitch": 90})):
+        position = [MIDDLE] * 3
+        position[axis] = LAST if angles.get("yaw") == 180 else 0
+        yield (
+            f"facing_ends_{name}", f"mirrors at the ends of the world, along {name}",
+            Camera(position=position, **angles), [_plane(axis, 0), _plane(axis, LAST)],
+        )  # fmt: skip
     yield "corner_reflector", "three mirrors that send every ray back", (0, 300, 200), [
         _plane(0, 400), _plane(1, 400), _plane(2, 100), _plane(0, 0),
     ]  # fmt: skip

@@ -349,7 +349,7 @@ def measure_beside(
             raise UserError(f"nothing was measured; {failures[0]}")
     _show(rows, console)
     for failure in failures:
-        console.print(f"not measured: {failure}", highlight=False, markup=False, soft_wrap=True)
+        console.print(f"not measured: {failure}", soft_wrap=True)
     return rows
 
 

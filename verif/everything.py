@@ -17,13 +17,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-
 from raycaster import ensure_tools
 from raycaster.errors import UserError
 from raycaster.jobs import add_fresh_option, positive
 from raycaster.options import CommandParser
 from raycaster.outcomes import add_keep_option, keep
+from raycaster.output import Console
 
 TESTS = Path(__file__).with_name("tests")
 STATE = Path("build/verify-all.jsonl")

@@ -28,7 +28,7 @@ from raycaster.errors import UserError
 from raycaster.jobs import Kept, add_fresh_option, run_jobs
 from raycaster.options import CommandParser
 from raycaster.outcomes import Check, Outcome, add_keep_option, keep, scope_of
-from raycaster.output import Console
+from raycaster.output import Console, emptied
 from raycaster.scene import find_scene, packaged_scenes
 from raycaster.sim.job import Job
 from raycaster.sim.scenes import LOG_COLUMNS

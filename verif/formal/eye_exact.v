@@ -44,7 +44,7 @@ always @* assume (axis < 3);
 
 // The definition. As the design has them, x is the highest bit of three.
 reg loaded = 1'b0;
-reg [1:0] mirrors;
+reg [2:0] mirrors;
 reg signed [WIDE-1:0] eye_x, eye_y, eye_z;
 reg [2:0] turned, met_there;
 reg [1:0] last_axis;
@@ -73,7 +73,7 @@ always @(posedge clk) begin
     end
 end
 
-function in_reach(input signed [WIDE-1:0] place, input [1:0] count);
+function in_reach(input signed [WIDE-1:0] place, input [2:0] count);
     in_reach = place >= -$signed({1'b0, LAST * count}) && place <= $signed({1'b0, LAST * (count + 1)});
 endfunction
 always @* if (loaded && mirrors <= REFLECTIONS) begin

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The seed engine's intersection at full width, with any function in the place of multiplication and of division: hit,
 // depth and point are golden's a + b * (c - d) / e within the bounds, whatever products and quotients are. What the
-// quotient is, and when, divider-exact says.
+// quotient is, and when, divider-exact says. With patterns, a hit's parities are those of the cells that its point is in,
+// u by u and v by v.
 //
 // Assumed, as the control has it: a division starts two cycles after its plane was taken, with none taken between, lasts
 // STEPS cycles, and follows the one before after as many; it may be given up as it starts. The ray holds still while a
@@ -16,7 +17,8 @@ assign result = value;
 endmodule
 
 module finder_quotients #(
-    parameter POSITION_BITS = 9, parameter FRACTION_BITS = 0, parameter LOOK_BITS = 24, parameter STEPS = 9
+    parameter POSITION_BITS = 9, parameter FRACTION_BITS = 0, parameter LOOK_BITS = 24, parameter STEPS = 9,
+    parameter PATTERNS = 0
 ) (
     input clk, input find, input load, input give_up, input [LOOK_BITS+46:0] rect, input [POSITION_BITS-1:0] x,
     input [POSITION_BITS-1:0] y, input [POSITION_BITS-1:0] z, input [2:0] backward, input [8:0] dx, input [8:0] dy,
@@ -112,11 +114,28 @@ wire [P-1:0] golden_depth = golden_x < x ? x - golden_x : golden_x - x;
 wire hit, is_towards;
 wire [P-1:0] depth;
 wire [3*P-1:0] point;
-intersection_finder dut (
-    .clk(clk), .steps_find_intersection(find), .steps_load_divider(load), .steps_store_quotient(store),
-    .rect_word(rect), .offered_word(offered), .ray_word({x, y, z, backward[0], backward[1], backward[2]}),
-    .slope_dx(dx), .slope_dy(dy), .slope_dz(dz), .hit(hit), .depth(depth), .towards(is_towards), .point_word(point)
-);
+wire [RAY_BITS-28:0] ray_word = {x, y, z, backward[0], backward[1], backward[2]};
+generate
+    if (PATTERNS) begin: patterns
+        wire odd_u, odd_v;
+        intersection_finder dut (
+            .clk(clk), .steps_find_intersection(find), .steps_load_divider(load), .steps_store_quotient(store),
+            .rect_word(rect), .offered_word(offered), .ray_word(ray_word), .slope_dx(dx), .slope_dy(dy), .slope_dz(dz),
+            .hit(hit), .depth(depth), .odd_u(odd_u), .odd_v(odd_v), .towards(is_towards), .point_word(point)
+        );
+        // Below the bounds and the second colour is log2 of a cell's size, less three.
+        wire [2:0] cell_size = offered[60 +: 3];
+        wire [8:0] cell_u = at_u >> FRACTION_BITS + 3 + cell_size, cell_v = at_v >> FRACTION_BITS + 3 + cell_size;
+        always @* if (verdict && hit) assert (odd_u == cell_u[0] && odd_v == cell_v[0]);
+    end
+    else begin: patterns
+        intersection_finder dut (
+            .clk(clk), .steps_find_intersection(find), .steps_load_divider(load), .steps_store_quotient(store),
+            .rect_word(rect), .offered_word(offered), .ray_word(ray_word), .slope_dx(dx), .slope_dy(dy), .slope_dz(dz),
+            .hit(hit), .depth(depth), .towards(is_towards), .point_word(point)
+        );
+    end
+endgenerate
 always @* if (found != 0) assert (is_towards == taken_ways[WAY_BITS-1]);
 always @* if (verdict) begin
     assert (hit == golden_hit);
@@ -125,25 +144,25 @@ end
 
 // Both axes' units, and the dividers' contract: a result is of the operands at load_divider, and stands from the cycle
 // after its store on.
-(* hierconn *) wire [8:0] \dut.intersection_helper_0_i.started_b , \dut.intersection_helper_1_i.started_b ;
-(* hierconn *) wire [8:0] \dut.intersection_helper_0_i.started_e , \dut.intersection_helper_1_i.started_e ;
-(* hierconn *) wire [P+1:0] \dut.intersection_helper_0_i.started_word , \dut.intersection_helper_1_i.started_word ;
-(* hierconn *) wire [P+1:0] \dut.intersection_helper_0_i.loaded_word , \dut.intersection_helper_1_i.loaded_word ;
-(* hierconn *) wire [P+1:0] \dut.intersection_helper_0_i.stored_word , \dut.intersection_helper_1_i.stored_word ;
-(* hierconn *) wire [P+8:0] \dut.intersection_helper_0_i.product , \dut.intersection_helper_1_i.product ;
-(* hierconn *) wire \dut.intersection_helper_0_i.overflow , \dut.intersection_helper_1_i.overflow ;
-(* hierconn *) wire [P-1:0] \dut.intersection_helper_0_i.quotient , \dut.intersection_helper_1_i.quotient ;
+(* hierconn *) wire [8:0] \patterns.dut.intersection_helper_0_i.started_b , \patterns.dut.intersection_helper_1_i.started_b ;
+(* hierconn *) wire [8:0] \patterns.dut.intersection_helper_0_i.started_e , \patterns.dut.intersection_helper_1_i.started_e ;
+(* hierconn *) wire [P+1:0] \patterns.dut.intersection_helper_0_i.started_word , \patterns.dut.intersection_helper_1_i.started_word ;
+(* hierconn *) wire [P+1:0] \patterns.dut.intersection_helper_0_i.loaded_word , \patterns.dut.intersection_helper_1_i.loaded_word ;
+(* hierconn *) wire [P+1:0] \patterns.dut.intersection_helper_0_i.stored_word , \patterns.dut.intersection_helper_1_i.stored_word ;
+(* hierconn *) wire [P+8:0] \patterns.dut.intersection_helper_0_i.product , \patterns.dut.intersection_helper_1_i.product ;
+(* hierconn *) wire \patterns.dut.intersection_helper_0_i.overflow , \patterns.dut.intersection_helper_1_i.overflow ;
+(* hierconn *) wire [P-1:0] \patterns.dut.intersection_helper_0_i.quotient , \patterns.dut.intersection_helper_1_i.quotient ;
 generate
     genvar unit;
     for (unit = 0; unit < 2; unit = unit + 1) begin: units
-        wire [8:0] started_b = unit ? \dut.intersection_helper_1_i.started_b : \dut.intersection_helper_0_i.started_b ;
-        wire [8:0] started_e = unit ? \dut.intersection_helper_1_i.started_e : \dut.intersection_helper_0_i.started_e ;
-        wire [P+1:0] started = unit ? \dut.intersection_helper_1_i.started_word : \dut.intersection_helper_0_i.started_word ;
-        wire [P+1:0] in_divider = unit ? \dut.intersection_helper_1_i.loaded_word : \dut.intersection_helper_0_i.loaded_word ;
-        wire [P+1:0] stored = unit ? \dut.intersection_helper_1_i.stored_word : \dut.intersection_helper_0_i.stored_word ;
-        wire [P+8:0] product = unit ? \dut.intersection_helper_1_i.product : \dut.intersection_helper_0_i.product ;
-        wire overflow = unit ? \dut.intersection_helper_1_i.overflow : \dut.intersection_helper_0_i.overflow ;
-        wire [P-1:0] quotient = unit ? \dut.intersection_helper_1_i.quotient : \dut.intersection_helper_0_i.quotient ;
+        wire [8:0] started_b = unit ? \patterns.dut.intersection_helper_1_i.started_b : \patterns.dut.intersection_helper_0_i.started_b ;
+        wire [8:0] started_e = unit ? \patterns.dut.intersection_helper_1_i.started_e : \patterns.dut.intersection_helper_0_i.started_e ;
+        wire [P+1:0] started = unit ? \patterns.dut.intersection_helper_1_i.started_word : \patterns.dut.intersection_helper_0_i.started_word ;
+        wire [P+1:0] in_divider = unit ? \patterns.dut.intersection_helper_1_i.loaded_word : \patterns.dut.intersection_helper_0_i.loaded_word ;
+        wire [P+1:0] stored = unit ? \patterns.dut.intersection_helper_1_i.stored_word : \patterns.dut.intersection_helper_0_i.stored_word ;
+        wire [P+8:0] product = unit ? \patterns.dut.intersection_helper_1_i.product : \patterns.dut.intersection_helper_0_i.product ;
+        wire overflow = unit ? \patterns.dut.intersection_helper_1_i.overflow : \patterns.dut.intersection_helper_0_i.overflow ;
+        wire [P-1:0] quotient = unit ? \patterns.dut.intersection_helper_1_i.quotient : \patterns.dut.intersection_helper_0_i.quotient ;
 
         wire [P:0] result;
         reg [P:0] result_held, result_stored;

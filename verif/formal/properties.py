@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from raycaster.configuration import MOST_RECTANGLES, Configuration, configure
+from raycaster.configuration import MOST_RECTANGLES, MOST_REFLECTIONS, Configuration, configure
 from raycaster.fit.fixing import fixed_rectangle
 from raycaster.fixed import FixedScene
 from raycaster.program import scene_words
@@ -239,21 +239,27 @@ def _divider(config: Configuration, part: int, small: bool) -> Property:
 
 def _finder(config: Configuration, small: bool) -> Property:
     magnitude = "magnitude_1" if config.fraction_bits else "magnitude"  # slopes have the first
-    cut = ("divider", *(("cell_parity",) if config.patterns else ()))
     return Property(
         "finder-quotients",
         "a rectangle is hit, how far and where, as golden's a + b * (c - d) / e says, at full width",
         config,
         _label(config),
-        ("intersection_finder", "intersection_helper", magnitude, *cut),
+        (
+            "intersection_finder",
+            "intersection_helper",
+            magnitude,
+            *(("cell_parity",) if config.patterns else ()),
+            "divider",
+        ),
         {
             "POSITION_BITS": position_bits(config),
             "FRACTION_BITS": config.fraction_bits,
             "LOOK_BITS": _look_bits(config),
             "STEPS": config.divider_steps,
+            "PATTERNS": int(config.patterns),
         },
         induction=1,
-        cut=cut,
+        cut=("divider",),
         any_product=True,
         reach=config.divider_steps + 5,
         small=small,
@@ -425,6 +431,8 @@ def _group(config: Configuration, small: bool) -> Property:
 
 
 def _row_setup(config: Configuration, small: bool) -> Property:
+    # The culler's has multipliers of adders and wider bounds, and no looks.
+    culler = config.culling
     return Property(
         "row-setup",
         "each rectangle is loaded once, in order, with its distances and their products with the slope, at full width",
@@ -433,6 +441,9 @@ def _row_setup(config: Configuration, small: bool) -> Property:
         ("rect_setup",),
         {
             "TURN": int(config.turn),
+            "ADDERS": int(culler),
+            "BOUND_BITS": WIDE_BITS if culler else COORDINATE_BITS,
+            "TO_BOUND_BITS": WIDE_BITS if culler else DISTANCE_BITS,
             "RECTANGLES": config.rectangles,
             "INDEX_BITS": index_bits(config),
             "COORDINATE_BITS": COORDINATE_BITS,
@@ -528,7 +539,7 @@ def _blend(config: Configuration, small: bool) -> Property:
     seen = [_numbered("colour_seen", number) for number in range(mirrors + 1)]
     return Property(
         "blend-exact",
-        "a pixel is golden's blend of what rays saw, with two mirrors of half or one of any quarters, at full width",
+        "a pixel is golden's blend of what rays saw, with mirrors of half or one of any quarters, at full width",
         config,
         _label(config),
         ("colour_blend", *joints, *seen),
@@ -592,7 +603,7 @@ def _contest(config: Configuration, small: bool) -> Property:
 def _shares(config: Configuration, small: bool) -> Property:
     return Property(
         "shares-exact",
-        "a pixel is golden's blend of what its rays saw one after the other, with two mirrors at most, at full width",
+        "a pixel is golden's blend of what its rays saw one after the other, at full width",
         config,
         _label(config),
         ("colour_combiner", "colour_share", "colour_sum"),
@@ -710,7 +721,7 @@ def _one_unit(**values: int | str) -> Configuration:
 
 EXACT = tuple(
     _one_unit(engine="exact", reflections=reflections, **options)
-    for reflections in (0, 1, 2)
+    for reflections in range(MOST_REFLECTIONS + 1)
     for options in ({}, {"turn": True}, {"turn": True, "materials": True, "patterns": True})
 )
 """The exact engine at every width that it is offered at, the narrowest first and the widest last."""
@@ -752,6 +763,12 @@ PROPERTIES: list[Property] = [
         for reflections in (0, 1, 2)
         for steps in SLOWEST
     ),
+    *(
+        _order(_ray_control(2, reflections, steps, culling), small=False)
+        for culling in (True, False)
+        for reflections in (3, MOST_REFLECTIONS)
+        for steps in (min(SLOWEST), max(SLOWEST))
+    ),
     _order(_one_unit(divider_bits=1), small=False),  # the default's control
     *(
         _order(
@@ -759,18 +776,21 @@ PROPERTIES: list[Property] = [
             small=(rectangles, reflections) in {(2, 1), (4, 2)},
         )
         for rectangles in (2, 3, 4)
-        for reflections in (0, 1, 2)
+        for reflections in range(MOST_REFLECTIONS + 1)
     ),
     _order(_one_unit(engine="exact"), small=False),
+    _order(_one_unit(engine="exact", reflections=MOST_REFLECTIONS), small=False),
     _sections(DEFAULT, small=True),
     _sections(configure(reflections=2), small=False),
     _sections(_tiny(rectangles=2), small=True),
     _sections(configure(units=16, rectangles=4), small=False),
     _counters(DEFAULT, small=True),
     _counters(configure(rows=200, reflections=2), small=False),
+    _counters(configure(reflections=MOST_REFLECTIONS), small=False),
     _counters(_tiny(rectangles=2), small=True),
     _counters(_tiny(rectangles=2, culling=False), small=False),
     _counters(configure(units=16, rectangles=4), small=False),
+    _counters(configure(rows=60, units=16, rectangles=2, reflections=0), small=False),
     _finder(_one_unit(), small=True),
     _finder(_one_unit(patterns=True, materials=True), small=False),
     _finder(_one_unit(fraction_bits=8, rounding="nearest", divider_bits=2), small=False),
@@ -781,10 +801,19 @@ PROPERTIES: list[Property] = [
     _contest(BEAM_TURN, small=False),
     _contest(BEAM_TURN_PAIRS, small=False),
     _contest(_beam(turn=True, patterns=True, reflections=4), small=True),
-    _shares(_one_unit(engine="exact"), small=True),
-    _shares(_one_unit(engine="exact", materials=True), small=False),
-    _shares(_one_unit(engine="exact", reflections=2), small=False),
-    _shares(_one_unit(engine="exact", reflections=2, materials=True), small=True),
+    *(
+        _shares(_one_unit(engine="exact", reflections=reflections, materials=materials), small)
+        for reflections, materials, small in (
+            (1, False, True),
+            (1, True, False),
+            (2, False, False),
+            (2, True, True),
+            (3, False, False),
+            (3, True, False),
+            (4, False, False),
+            (4, True, False),
+        )
+    ),
     _group(configure(engine="exact", culling=True), small=True),
     _group(configure(), small=False),
     _tester(1, 2, small=True),
@@ -803,9 +832,11 @@ PROPERTIES: list[Property] = [
     _slope(configure(engine="exact", turn=True, reflections=2), small=False),
     _blend(BEAM, small=False),
     _blend(_beam(reflections=2), small=True),
+    *(_blend(_beam(reflections=reflections), small=False) for reflections in (3, MOST_REFLECTIONS)),
     _blend(_beam(materials=True), small=True),
     _row_setup(configure(engine="beam"), small=True),
     _row_setup(BEAM_TURN_PAIRS, small=False),
+    _row_setup(configure(engine="exact", culling=True), small=True),
     _line_start(BEAM_TURN, small=True),
     _line_start(BEAM_TURN_PAIRS, small=False),
     _walked(BEAM, 0, small=True),

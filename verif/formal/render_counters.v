@@ -11,7 +11,7 @@ module render_counters #(
     parameter UNITS = 32, parameter ROWS = 240, parameter ROW_BITS = 8, parameter COLUMN_BITS = 4,
     parameter OFFSET_BITS = 4, parameter UNIT_BITS = 5
 ) (
-    input clk, input reset, input run, input [1:0] reflections, input [23:0] background, input [26:0] camera,
+    input clk, input reset, input run, input [2:0] reflections, input [23:0] background, input [26:0] camera,
     input [RECTANGLES-1:0] usable, input [70:0] rect
 );
 wire start_screen, busy, underrun;
@@ -64,7 +64,8 @@ always @* if (known) begin
     assert (\dut.place_row <= ROWS);
     if (\dut.rendering ) assert (\dut.place_row < ROWS);
     if (\dut.done ) assert (\dut.rendering && \dut.enable );
-    if (underrun) assert (\dut.scan_start_row && busy);
+    assert (busy == (run && \dut.rendering && \dut.place_column_offset != GROUPS));
+    assert (underrun == (\dut.scan_start_row && busy));
     if (!last_restart) begin
         assert (\dut.place_row == last_row);
         assert (\dut.place_column_offset == last_column + last_done);

@@ -6,14 +6,30 @@
 //
 // Assumed, as the renderer has it: a start no sooner than the last fetch, an axis of three, a rectangle two cycles
 // after its fetch. The slope and the camera are those of that cycle. Reset may come at any time.
+//
+// For the culler, ADDERS, a bound may be a unit outside the world, and the product of its operands replaces each
+// multiplier made of adders: which operands it has is proved here, its digits are tested.
+
+module array_multiplier (
+    input signed [9:0] multiplicand, input signed [8:0] multiplier, output signed [17:0] product
+);
+assign product = multiplicand * multiplier;
+endmodule
+
+module array_multiplier_1 (
+    input signed [10:0] multiplicand, input signed [8:0] multiplier, output signed [17:0] product
+);
+assign product = multiplicand * multiplier;
+endmodule
 
 module row_setup #(
-    parameter TURN = 0, parameter RECTANGLES = 12, parameter INDEX_BITS = 4, parameter COORDINATE_BITS = 9,
-    parameter LOOK_BITS = 24, parameter BASIS_BITS = 0, parameter SLOPE_BITS = 10, parameter WALK_BITS = 19
+    parameter TURN = 0, parameter ADDERS = 0, parameter RECTANGLES = 12, parameter INDEX_BITS = 4,
+    parameter COORDINATE_BITS = 9, parameter BOUND_BITS = 9, parameter TO_BOUND_BITS = 10, parameter LOOK_BITS = 24,
+    parameter BASIS_BITS = 0, parameter SLOPE_BITS = 10, parameter WALK_BITS = 19
 ) (
     input clk, input reset, input start_line, input [RECTANGLES-1:0] usable, input [1:0] axis,
-    input [COORDINATE_BITS-1:0] position, input [LOOK_BITS-1:0] look, input [COORDINATE_BITS-1:0] u_low,
-    input [COORDINATE_BITS-1:0] u_high, input [COORDINATE_BITS-1:0] v_low, input [COORDINATE_BITS-1:0] v_high,
+    input [COORDINATE_BITS-1:0] position, input [LOOK_BITS-1:0] look, input [BOUND_BITS-1:0] u_low,
+    input [BOUND_BITS-1:0] u_high, input [BOUND_BITS-1:0] v_low, input [BOUND_BITS-1:0] v_high,
     input [COORDINATE_BITS-1:0] x, input [COORDINATE_BITS-1:0] y, input [COORDINATE_BITS-1:0] z,
     input [BASIS_BITS:0] basis, input signed [SLOPE_BITS-1:0] dx, input signed [SLOPE_BITS-1:0] dy,
     input signed [SLOPE_BITS-1:0] dz
@@ -27,8 +43,9 @@ wire [1:0] facet_axis;
 wire signed [DISTANCE_BITS-1:0] distance;
 wire [LOOK_BITS-1:0] facet_look;
 wire signed [WALK_BITS-1:0] way_p, way_q, low_p, high_p, low_q, high_q;
-wire signed [DISTANCE_BITS-1:0] more_way, more_low_p, more_high_p, more_low_q, more_high_q;
-wire [2 + LOOK_BITS + 5 * COORDINATE_BITS - 1:0] rect = {axis, position, look, u_low, u_high, v_low, v_high};
+wire signed [TO_BOUND_BITS-1:0] more_way, more_low_p, more_high_p, more_low_q, more_high_q;
+wire [4 * BOUND_BITS - 1:0] bounds = {u_low, u_high, v_low, v_high};
+wire [2 + COORDINATE_BITS + LOOK_BITS + 4 * BOUND_BITS - 1:0] rect = {axis, position, look, bounds};
 wire [3 * COORDINATE_BITS + BASIS_BITS:0] camera = {x, y, z, basis};
 generate
     if (TURN) begin: design
@@ -43,8 +60,8 @@ generate
     else begin: design
         rect_setup dut (
             .clk(clk), .reset(reset), .start_line(start_line), .load(load), .rects_usable(usable), .rects_index(index),
-            .rects_fetch(fetch), .rects_rect_word(rect), .camera_word(camera[3 * COORDINATE_BITS + BASIS_BITS:1]),
-            .slope_x(dx), .slope_y(dy), .slope_z(dz),
+            .rects_fetch(fetch), .rects_rect_word(ADDERS ? {axis, position, bounds} : rect),
+            .camera_word(camera[3 * COORDINATE_BITS + BASIS_BITS:1]), .slope_x(dx), .slope_y(dy), .slope_z(dz),
             .facet_word({facet_usable, facet_axis, distance, way_q, facet_look}),
             .start_word({way_p, low_p, high_p, low_q, high_q}),
             .growth_word({more_way, more_low_p, more_high_p, more_low_q, more_high_q})
@@ -52,6 +69,18 @@ generate
     end
 endgenerate
 always @* assume (axis < 3);
+
+// A bound, and the assumption for the culler's: at most a unit outside the world.
+function signed [WIDE-1:0] place(input [BOUND_BITS-1:0] bound);
+    place = ADDERS ? $signed(bound) : $signed({1'b0, bound});
+endfunction
+function near_world(input signed [WIDE-1:0] value);
+    near_world = value >= -1 && value <= 1 << COORDINATE_BITS;
+endfunction
+always @* if (ADDERS) begin
+    assume (near_world(first_low) && near_world(first_high) && near_world(then_low) && near_world(then_high));
+    assume (look == 0);
+end
 
 // Which rectangle is fetched, and which ones were in the cycles before; the design is known from the first reset on.
 reg ready = 1'b0, busy;
@@ -81,8 +110,8 @@ end
 // is on z, then x.
 wire on_y = axis == 1, on_z = axis == 2;
 wire signed [WIDE-1:0] wide_x = {1'b0, x}, wide_y = {1'b0, y}, wide_z = {1'b0, z}, plane = {1'b0, position};
-wire signed [WIDE-1:0] first_low = {1'b0, u_low}, first_high = {1'b0, u_high}, then_low = {1'b0, v_low};
-wire signed [WIDE-1:0] then_high = {1'b0, v_high};
+wire signed [WIDE-1:0] first_low = place(u_low), first_high = place(u_high), then_low = place(v_low);
+wire signed [WIDE-1:0] then_high = place(v_high);
 wire signed [WIDE-1:0] to_plane = plane - (axis == 0 ? wide_x : on_y ? wide_y : wide_z);
 wire signed [WIDE-1:0] eye_p = on_y ? wide_x : wide_y, eye_q = on_z ? wide_x : wide_z;
 wire signed [WIDE-1:0] to_low_p = (on_z ? then_low : first_low) - eye_p;
@@ -108,13 +137,16 @@ always @(posedge clk) begin
     slope_p <= on_y ? dx : dy;
     slope_q <= on_z ? dx : dz;
 end
-function fits(input signed [WIDE-1:0] value);
-    fits = value > -(1 << DISTANCE_BITS - 1) && value < 1 << DISTANCE_BITS - 1;
+function fits(input signed [WIDE-1:0] value, input [3:0] bits);
+    fits = value > -(1 << bits - 1) && value < 1 << bits - 1;
 endfunction
-always @* assert (fits(to_plane) && fits(to_low_p) && fits(to_high_p) && fits(to_low_q) && fits(to_high_q));
+always @* assert (fits(to_plane, DISTANCE_BITS));
+always @* assert (fits(to_low_p, TO_BOUND_BITS) && fits(to_high_p, TO_BOUND_BITS));
+always @* assert (fits(to_low_q, TO_BOUND_BITS) && fits(to_high_q, TO_BOUND_BITS));
 
-wire signed [DISTANCE_BITS-1:0] n = n_1, low_p_part = low_p_1, high_p_part = high_p_1, low_q_part = low_q_1;
-wire signed [DISTANCE_BITS-1:0] high_q_part = high_q_1;
+wire signed [DISTANCE_BITS-1:0] n = n_1;
+wire signed [TO_BOUND_BITS-1:0] low_p_part = low_p_1, high_p_part = high_p_1, low_q_part = low_q_1;
+wire signed [TO_BOUND_BITS-1:0] high_q_part = high_q_1;
 wire signed [WALK_BITS-1:0] product_p = n * slope_p, product_q = n * slope_q;
 wire signed [WALK_BITS-1:0] product_low_p = low_p_part * slope_a, product_high_p = high_p_part * slope_a;
 wire signed [WALK_BITS-1:0] product_low_q = low_q_part * slope_a, product_high_q = high_q_part * slope_a;

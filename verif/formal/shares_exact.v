@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The colours of the engines that add up what rays saw, at full width: each ray has a weight, passes as many quarters of
-// it on as it mirrors, or half where MATERIALS is 0, and adds what it saw with the rest. The last one passes none on, nor,
-// with MATERIALS, one that found nothing. No quarter is lost. That the sum is golden's, which blends from the last ray back, is the
-// lemma shares. From the first ray that found nothing on, the background is seen.
+// it on as it mirrors, or half where MATERIALS is 0, and adds what it saw with the rest. The last one passes none on,
+// nor, with MATERIALS, one that found nothing. No quarter is lost. That the sum is golden's, which blends from the last
+// ray back, is the lemma shares. From the first ray that found nothing on, the background is seen.
 //
 // Assumed, as the control has it: rays come one after the other, each with one addition, and all but the last store a
 // reflected one in its cycle; the picture's reflections are constant while they do. Assumed, as the registers have it: a
@@ -65,37 +65,51 @@ generate
     end
 endgenerate
 
-// Invariants: a weight is a product of one number 0 to 4 for each mirror before, and of a 4 for each that may follow.
+// Invariants: a weight is no more than the whole, and a multiple of 4 for each mirror that may follow. With two mirrors
+// at most it is a product of two numbers 0 to 4, which is what lets the design add two summands; with more it multiplies.
 function multiple_of_4(input [SHARE_BITS-1:0] number, input [2:0] times);
     multiple_of_4 = (number & (1 << 2 * times) - 1) == 0;
 endfunction
-function of_mirrors(input [SHARE_BITS-1:0] number);
+function of_two_mirrors(input [SHARE_BITS-1:0] number);
     integer one, other;
     begin
-        of_mirrors = 0;
+        of_two_mirrors = 0;
         for (one = 0; one <= 4; one = one + 1)
             for (other = 0; other <= 4; other = other + 1)
-                if (number == one * other && number <= 1 << SHARE_BITS - 1) of_mirrors = 1;
+                if (number == one * other) of_two_mirrors = 1;
     end
 endfunction
 (* hierconn *) wire [SHARE_BITS-1:0] \design.dut.colour_share_i.weight ;
+(* hierconn *) wire [SHARE_BITS-1:0] \design.dut.colour_share_i.share ;
+(* hierconn *) wire [7:0] \design.dut.colour_sum_0_i.seen , \design.dut.colour_sum_1_i.seen ;
+(* hierconn *) wire [7:0] \design.dut.colour_sum_2_i.seen ;
 (* hierconn *) wire [SUM_BITS-1:0] \design.dut.colour_sum_0_i.total ;
 (* hierconn *) wire [SUM_BITS-1:0] \design.dut.colour_sum_1_i.total ;
 (* hierconn *) wire [SUM_BITS-1:0] \design.dut.colour_sum_2_i.total ;
 wire [3*SUM_BITS-1:0] totals = {
     \design.dut.colour_sum_0_i.total , \design.dut.colour_sum_1_i.total , \design.dut.colour_sum_2_i.total
 };
+wire [23:0] seen = {
+    \design.dut.colour_sum_0_i.seen , \design.dut.colour_sum_1_i.seen , \design.dut.colour_sum_2_i.seen
+};
+always @* if (add) begin
+    assert (\design.dut.colour_share_i.share == weight - passed);
+    if (weight != 0) assert (seen == (hit ? colour : background));
+end
 always @* if (running) begin
     assert (rays <= reflections + 1);
     if (rays <= reflections) begin
         assert (weight == \design.dut.colour_share_i.weight );
-        if (MATERIALS) assert (multiple_of_4(weight, REFLECTIONS - rays) && of_mirrors(weight) && (reached || weight == 0));
+        if (MATERIALS) assert (multiple_of_4(weight, REFLECTIONS - rays) && weight <= 1 << SHARE_BITS - 1);
+        if (MATERIALS && REFLECTIONS <= 2) assert (of_two_mirrors(weight));
+        if (MATERIALS) assert (reached || weight == 0);
         else assert (weight << rays == 1 << SHARE_BITS - 1);
         assert (missed == (MATERIALS ? weight == 0 : !reached));
     end
 end
 
-// A product, number by number: the solver looks at one after the other.
+// A product, number by number: the solver looks at one after the other. Where the design multiplies, the product's
+// operands are the design's own, which are what they should be.
 function [SUM_BITS-1:0] times(input [SHARE_BITS-1:0] share, input [7:0] saw);
     integer number;
     begin
@@ -107,11 +121,14 @@ endfunction
 generate
     genvar channel;
     for (channel = 0; channel < 3; channel = channel + 1) begin: channels
-        wire [7:0] saw = hit ? colour[8*channel +: 8] : background[8*channel +: 8];
+        wire [7:0] saw = seen[8*channel +: 8];
+        wire [SUM_BITS-1:0] shown;
+        if (MATERIALS && REFLECTIONS > 2) assign shown = saw * \design.dut.colour_share_i.share ;
+        else assign shown = times(weight - passed, saw);
         reg [SUM_BITS-1:0] sum;
         always @(posedge clk) begin
             if (reset) sum <= 0;
-            else if (add) sum <= sum + times(weight - passed, saw);
+            else if (add) sum <= sum + shown;
         end
         always @* if (running) begin
             assert (totals[SUM_BITS*channel +: SUM_BITS] == sum);

@@ -563,7 +563,7 @@ def _progress(console: Console) -> Callable[[Job, Result | str], None]:
         said = (
             found if isinstance(found, str) else f"{found.seconds:.0f} s, {share_caught(_counts([found])):.1%} caught"
         )
-        console.print(f"{job.name}: {said}", markup=False, highlight=False, soft_wrap=True)
+        console.print(f"{job.name}: {said}", soft_wrap=True)
 
     return finished
 

@@ -27,7 +27,7 @@ async def soak(bench: HierarchyObject) -> None:
     with (output / "results.jsonl").open("w") as results:
         for seed in job.seeds:
             if job.stiff:
-                scene = cases[seed].scene
+                scene = cases[seed].scene.model_copy(update={"reflections": configuration.reflections})
             else:
                 scene = random_scene(seed, configuration.rectangles, configuration.reflections, configuration.looks)
             result = {"seed": seed, "title": scene.title} | await show(harness, scene)

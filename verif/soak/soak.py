@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from rich.table import Table
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import MOST_REFLECTIONS, Configuration, configure
 from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
 from raycaster.golden.catalogue import catalogue
@@ -67,7 +67,7 @@ def command_parser() -> CommandParser:
 
 
 def _configuration(arguments: argparse.Namespace) -> Configuration:
-    return configure(**{"reflections": 2} | given_options(arguments))
+    return configure(**{"reflections": MOST_REFLECTIONS} | given_options(arguments))
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:

@@ -311,7 +311,6 @@ def values():
 
 def test_the_blocks_proofs_are_named_as_they_are():
     """Each is in the right column, and no other is named."""
-    assert set(proofs.FULL) | set(proofs.REDUCED) <= {proof.name for proof in PROPERTIES}
     rows = [line.split(" | ") for line in proofs.proved_blocks().splitlines()]
     blocks = {row[1]: row for row in rows}
     assert blocks["`rect_tester`"][2:4] == ["`tester-products` and lemmas", "`tester-exact` (1 to 4 bits)"]
@@ -319,6 +318,16 @@ def test_the_blocks_proofs_are_named_as_they_are():
     assert {path.stem for path in (ROOT / "rtl" / "exact").glob("[!_]*.py")} == {
         row[1].strip("`") for row in rows if row[0] == "| exact"
     }
+
+
+def test_the_sizes_of_proofs_are_those_of_their_designs():
+    eyes = [proof for proof in PROPERTIES if proof.name == "eye-exact"]
+    assert proofs.scale(eyes) == (True, "full width, 0 to 4 reflections")
+    assert (
+        proofs.scale([proof for proof in eyes if proof.design.reflections < 3])[1] == "full width, 0 to 2 reflections"
+    )
+    tables = [proof for proof in PROPERTIES if proof.name == "avalon-agent"]
+    assert proofs.scale(tables) == (False, "2 rectangles, 1 and 2 reflections")
 
 
 def test_all_that_is_made_has_its_place_on_a_page(values):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 from dataclasses import replace
@@ -12,7 +13,8 @@ import pytest
 
 from raycaster.errors import UserError
 from raycaster.verif.formal.properties import PROPERTIES
-from raycaster.verif.formal.prover import Property, missing_tools, prove
+from raycaster.verif.formal.prove import main
+from raycaster.verif.formal.prover import Property, Result, missing_tools, prove, refute
 
 pytestmark = pytest.mark.skipif(bool(missing_tools()), reason=f"not installed: {', '.join(missing_tools())}")
 
@@ -24,6 +26,7 @@ def chosen(name: str, label: str) -> Property:
 
 
 TIMING = chosen("video-timing", "tiny48")
+TOY = chosen("video-timing", "toy")
 PAIRS = chosen("video-timing", "beam 1080, 2 pixels")
 AGENT = chosen("avalon-agent", "vga240-u1-r2-m1-f0t-d3-c8")
 HOST = chosen("host-transfers", "6 bits, 1 and 2 cycles")
@@ -35,8 +38,9 @@ EARLY_OUT = chosen("ray-order", "tiny48-u2-r2-m1-f3t-d3-c8")
 NO_EARLY_OUT = chosen("ray-order", "tiny48-u2-r2-m1-f3t-d3-c8-k0")
 PIPELINED = chosen("ray-order", "exact-tiny48-u2-r2-m1-c8-k1")
 SECTIONS = chosen("line-sections", "tiny48-u2-r2-m1-f0t-d3-c8")
-COUNTERS = chosen("render-counters", "vga240-u16-r4-m1-f0t-d1-c8")
+COUNTERS = chosen("render-counters", "vga60-u16-r2-m0-f0t-d1-c8")
 FINDER = chosen("finder-quotients", "vga240-u1-r12-m1-f0t-d3-c8")
+CELLS = chosen("finder-quotients", "vga240-u1-r12-m1-f0t-d3-c8-materials-patterns")
 DEPTH = chosen("nearest-depth", "vga240-u1-r12-m1-f0t-d3-c8")
 GROUP = chosen("group-safe", "exact-vga240-u4-r12-m1-c8-k1")
 TESTER = chosen("tester-exact", "2 bits, 1 mirrors")
@@ -45,11 +49,12 @@ PRODUCTS = chosen("tester-products", "exact-vga240-u1-r12-m1-c8")
 CORNER_PRODUCTS = chosen("tester-products", "exact-vga240-u1-r12-m2-c8-turn")
 NEAREST = chosen("nearest-products", "exact-vga240-u1-r12-m1-c8")
 CORNER_NEAREST = chosen("nearest-products", "exact-vga240-u1-r12-m2-c8-turn-materials-patterns")
-EYE = chosen("eye-exact", "exact-vga240-u1-r12-m2-c8-turn-materials-patterns")
+EYE = chosen("eye-exact", "exact-vga240-u1-r12-m4-c8-turn-materials-patterns")
 SLOPE = chosen("slope-exact", "exact-vga240-u4-r12-m1-c8")
 TURNED = chosen("slope-exact", "exact-vga240-u4-r12-m1-c8-turn")
 CELL = chosen("cell-products", "exact-vga240-u1-r12-m1-c8-patterns")
 ROW = chosen("row-setup", "beam-vga240-s2-u1-r12-m1-c8")
+ADDERS = chosen("row-setup", "exact-vga240-u4-r12-m1-c8-k1")
 LINE = chosen("line-start", "beam-vga240-s2-u1-r2-m1-c8-turn")
 WALK = chosen("walked-products", "beam-vga240-s2-u1-r2-m1-c8")
 FIRST_LANE = chosen("walked-products", "beam-vga180-s6-u2-r2-m1-c8 lane 0")
@@ -60,6 +65,7 @@ WIDE_CONTEST = chosen("contest-products", "beam-vga180-s6-u2-r2-m1-c8-turn")
 LATE_CONTEST = chosen("contest-products", "beam-vga180-s6-u2-r2-m1-c8")
 HALF = chosen("blend-exact", "beam-vga240-s2-u1-r2-m2-c8")
 MIXED = chosen("blend-exact", "beam-vga240-s2-u1-r2-m1-c8-materials")
+MULTIPLIED = chosen("shares-exact", "exact-vga240-u1-r12-m4-c8-materials")
 SHARES = chosen("shares-exact", "exact-vga240-u1-r12-m2-c8-materials")
 HALVES = chosen("shares-exact", "exact-vga240-u1-r12-m1-c8")
 FOLD = chosen("fold-exact", "2 and 1 bits, 1 mirrors")
@@ -68,17 +74,17 @@ DIVIDER = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d3-c8 digits")
 QUOTIENT = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d1-c8 product")
 
 FAULTS = {
-    "hsync-a-pixel-long": (TIMING, "video_generator", "(x <= -9)", "(x <= -8)"),
-    "vsync-a-line-late": (TIMING, "video_generator", "(y >= -6)", "(y >= -5)"),
-    "line-too-short": (TIMING, "video_generator", "if (x == 127) begin", "if (x == 126) begin"),
-    "sync-follows-colour": (TIMING, "video_generator", "assign vga_hs = hs;",
+    "hsync-a-pixel-long": (TOY, "video_generator", "(x <= -2)", "(x <= -1)"),
+    "vsync-a-line-late": (TOY, "video_generator", "(y >= -4)", "(y >= -3)"),
+    "line-too-short": (TOY, "video_generator", "if (x == 8) begin", "if (x == 7) begin"),
+    "sync-follows-colour": (TOY, "video_generator", "assign vga_hs = hs;",
                             "assign vga_hs = hs && (pixel_red != 255);"),
-    "colour-in-blanking": (TIMING, "video_generator", "if ((x >= 0) && (y >= 0)) begin", "if (x >= 0) begin"),
-    "colour-between-pixels": (TIMING, "video_generator", "vga_r <= pixel_red;\n",
+    "colour-in-blanking": (TOY, "video_generator", "if ((x >= 0) && (y >= 0)) begin", "if (x >= 0) begin"),
+    "colour-between-pixels": (TOY, "video_generator", "vga_r <= pixel_red;\n",
                               "vga_r <= pixel_red;\n end if (x >= 0) begin\n"),
     "a-pair-announced-late": (PAIRS, "video_generator", "(x >= -21)", "(x >= -20)"),
-    "start-screen-late": (TIMING, "video_generator", "(y == -2)", "(y == -1)"),
-    "start-row-each-line": (TIMING, "video_generator", " && (line_repeat == 0)", ""),
+    "start-screen-late": (TOY, "video_generator", "(y == -3)", "(y == -2)"),
+    "start-row-each-line": (TOY, "video_generator", " && (line_repeat == 0)", ""),
     "wait-in-traffic": (AGENT, "avalon_interface", "wait_request <= 1'b0;", "wait_request <= avs_s0_write;"),
     "answer-to-write": (AGENT, "avalon_interface", "readdatavalid <= reading;",
                         "readdatavalid <= reading || bus_write;"),
@@ -87,8 +93,8 @@ FAULTS = {
     "unmapped-not-0": (AGENT, "rect_mem", "readback = pattern_word;", "readback = old_surface;"),
     "over-the-live-one": (AGENT, "rect_mem", "kept_1 = (next_pending == 1) || (next_live == 1);",
                           "kept_1 = next_pending == 1;"),
-    "over-the-pending-one": (AGENT, "rect_mem", "        next_pending = latest_copies_shadow;",
-                             "        next_pending = latest_copies_pending;"),
+    "over-the-pending-one": (AGENT, "rect_mem", "kept_1 = (next_pending == 1) || (next_live == 1);",
+                             "kept_1 = next_live == 1;"),
     "judged-before": (AGENT, "rect_slot", "pending_usable <= shadow_usable;", "pending_usable <= usable;"),
     "not-cleared": (AGENT, "rect_mem", "if (written[index]) begin", "if (1'b1) begin"),
     "commit-not-atomic": (AGENT, "scene_word", "if (bus_commit) begin", "if (bus_commit || bus_write) begin"),
@@ -166,11 +172,13 @@ FAULTS = {
     "halves-overlap": (SECTIONS, "line_buffer", "read_address = read_offset + 32;",
                        "read_address = read_offset + 31;"),
     "one-half": (SECTIONS, "line_buffer", "if (line_buf_sel) begin", "if (line_buf_sel && !write) begin"),
-    "past-the-row": (COUNTERS, "ray_caster_renderer", "(place_column_offset != 20)", "1'b1"),
-    "a-row-too-many": (COUNTERS, "ray_caster_renderer", "place_row}) == 239)", "place_row}) == 240)"),
+    "past-the-row": (COUNTERS, "ray_caster_renderer", "(place_column_offset != 5)", "1'b1"),
+    "a-row-too-many": (COUNTERS, "ray_caster_renderer", "place_row}) == 59)", "place_row}) == 60)"),
     "control-runs-on": (COUNTERS, "ray_caster_renderer", "scan_start_screen || scan_start_row || done;",
                         "scan_start_screen || done;"),
-    "read-too-far": (COUNTERS, "ray_caster_renderer", "read_offset}) != 19)", "read_offset}) != 20)"),
+    "read-too-far": (COUNTERS, "ray_caster_renderer", "read_offset}) != 4)", "read_offset}) != 5)"),
+    "underrun-lost": (COUNTERS, "ray_caster_renderer", "progress_underrun = scan_start_row && enable;",
+                      "progress_underrun = scan_start_row && enable && !done;"),
     "divisor-equal": (DIVIDER, "divider_step", "if (difference < 0) begin", "if (difference <= 0) begin"),
     "bound-left-out": (FINDER, "intersection_finder", "u_value <= $signed", "u_value < $signed"),
     "axes-crossed": (FINDER, "intersection_finder", "v_origin = ray_y;", "v_origin = ray_z;"),
@@ -178,6 +186,8 @@ FAULTS = {
     "plane-behind": (FINDER, "intersection_helper", "(difference < 0) == e_negative", "(difference > 0) == e_negative"),
     "away-a-bit-short": (FINDER, "intersection_helper", "wire [8:0] away;", "wire [7:0] away;"),
     "way-of-the-next": (FINDER, "intersection_helper", "stored_word <= loaded_word;", "stored_word <= started_word;"),
+    "cells-of-the-other-axis": (CELLS, "intersection_finder", ".value(v_value),\n    .size(offered_cell),",
+                                ".value(u_value),\n    .size(offered_cell),"),
     "the-last-as-near": (DEPTH, "z_buffer", "(depth < nearest)", "(depth <= nearest)"),
     "depth-a-bit-short": (DEPTH, "z_buffer", "nearest <= depth;", "nearest <= depth[7:0];"),
     "point-of-another": (DEPTH, "z_buffer", "        found_point_word <= point_word;\n    end",
@@ -208,8 +218,8 @@ FAULTS = {
     "corner-of-another": (CORNER_NEAREST, "nearest_hit", "    if (steps_write_z_buf && nearer) begin\n        found_at",
                           "    if (steps_write_z_buf) begin\n        found_at"),
     "mirrored-at-half": (EYE, "eye_register", "twice[9:1] = ", "twice[8:0] = "),
-    "eye-a-bit-short": (EYE, "eye_register", "image = $signed(difference[11:0]);",
-                        "image = $signed(difference[10:0]);"),
+    "eye-a-bit-short": (EYE, "eye_register", "image = $signed(difference[12:0]);",
+                        "image = $signed(difference[11:0]);"),
     "mirrored-the-other-way": (EYE, "eye_register", "twice_signed - mirrored", "mirrored - twice_signed"),
     "corner-forgotten": (EYE, "eye_register", "if (found_at_mirror) begin", "if (1'b0) begin"),
     "turned-for-good": (EYE, "eye_register", "flipped_y <= !flipped_y;", "flipped_y <= 1'b1;"),
@@ -229,6 +239,8 @@ FAULTS = {
     "bound-of-another-axis": (ROW, "rect_setup", "to_low_q_2 * slope_a_2", "to_low_q_2 * slope_q_2"),
     "distance-turned": (ROW, "rect_setup", "distance = plane - eye_a;", "distance = eye_a - plane;"),
     "distance-a-bit-short-there": (ROW, "rect_setup", "wire signed [9:0] to_high_p;", "wire signed [8:0] to_high_p;"),
+    "operands-crossed": (ADDERS, "rect_setup", ".multiplicand(to_low_q_2),", ".multiplicand(to_high_q_2),"),
+    "slopes-crossed": (ADDERS, "rect_setup", ".multiplier(slope_p_2),", ".multiplier(slope_q_2),"),
     "first-column-missed": (LINE, "line_starter", "(ages[3:1] != 0)", "(ages[3:2] != 0)"),
     "aim-a-bit-short": (LINE, "line_starter", "reg signed [19:0] y_product;", "reg signed [18:0] y_product;"),
     "centre-on-the-left": (LINE, "line_starter", "factor = -320;", "factor = 320;"),
@@ -267,6 +279,8 @@ FAULTS = {
                                 "if (steps_store_ray) begin"),
     "weight-a-bit-short": (SHARES, "colour_share", "wire [4:0] left;", "wire [3:0] left;"),
     "one-summand-only": (SHARES, "colour_sum", "at_even + at_odd", "at_even | at_odd"),
+    "mirrors-forgotten": (MULTIPLIED, "colour_share", "some = half + quarter;", "some = half;"),
+    "share-a-bit-short": (MULTIPLIED, "colour_sum", "seen * share", "seen * share[7:0]"),
     "last-keeps-half": (HALVES, "colour_share", "if (steps_store_ray) begin", "if (1'b1) begin"),
     "what-is-lost-seen": (HALVES, "colour_combiner", "if (found && !missed) begin", "if (found) begin"),
     "corner-missed": (FOLD, "fold_tester", "beyond = !met_2", "beyond = 1'b0"),
@@ -285,12 +299,30 @@ FAULTS = {
     "product-kept": (QUOTIENT, "divider", "if (load_divider) begin", "if (load_divider && (pending == 0)) begin"),
 }  # fmt: skip
 
+STEPS = 12
+"""Cycles from reset within which a fault contradicts its property, unless it is one of `MORE_STEPS`."""
+
+MORE_STEPS = {
+    "hsync-a-pixel-long": 30,
+    "vsync-a-line-late": 60,
+    "line-too-short": 40,
+    "start-screen-late": 80,
+    "start-row-each-line": 200,
+    "a-pair-announced-late": 130,
+    "past-the-row": 100,
+    "a-row-too-many": 70,
+    "control-runs-on": 75,
+    "read-too-far": 90,
+    "one-rectangle-too-few": 24,
+}
+"""Those that take a line, a row's groups or pixels, a frame's rows or lines, or all rectangles."""
+
 
 @pytest.mark.parametrize(
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
-     FINDER, DEPTH, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, TURNED_WALK, CONTEST,
-     WIDE_CONTEST, HALF, MIXED, SHARES, HALVES, FOLD, TABLE, QUOTIENT],
+     FINDER, CELLS, DEPTH, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, ADDERS, LINE, WALK,
+     TURNED_WALK, CONTEST, WIDE_CONTEST, HALF, MIXED, SHARES, MULTIPLIED, HALVES, FOLD, TABLE, QUOTIENT],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):
@@ -301,7 +333,7 @@ def test_holds(proof, output):
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_fault_is_found(fault, output):
-    """The proof fails, by a counterexample and not for want of time."""
+    """A run from reset contradicts the property; a failing induction step would not say that the fault is ever seen."""
     proof, module, right, wrong = FAULTS[fault]
 
     def plant(verilog: Path) -> None:
@@ -310,9 +342,24 @@ def test_fault_is_found(fault, output):
         assert text.count(right) == 1, f"{module}.v has {text.count(right)} places for this fault"
         path.write_text(text.replace(right, wrong))
 
-    result = prove(proof, output / "proof", timeout=100, change=plant)
-    assert result.outcome in {"base failed", "step failed", "reach failed"}
+    depth = MORE_STEPS.get(fault, STEPS)
+    result = refute(proof, output / "proof", depth=depth, one_reset=depth > STEPS, timeout=300, change=plant)
+    assert result.outcome in {"base failed", "reach failed"}
     assert result.trace or result.outcome == "reach failed"
+
+
+def test_a_state_that_no_reset_leads_to_is_no_counterexample(output):
+    """A register that reset clears and nothing sets fails an induction step, and never a run from reset."""
+
+    def plant(verilog: Path) -> None:
+        path = verilog / "avalon_host.v"
+        text = path.read_text()
+        assert text.count("avm_m0_read = reading && !waiting;") == 1
+        text = text.replace("avm_m0_read = reading && !waiting;", "avm_m0_read = (reading && !waiting) ^ never;")
+        text = text.replace(");\n", ");\nreg never;\nalways @(posedge clk) if (reset) never <= 0;\n", 1)
+        path.write_text(text)
+
+    assert refute(HOST, output / "proof", depth=STEPS, change=plant).outcome == "not refuted"
 
 
 def test_a_name_peeked_at_in_too_few_bits_is_refused(output):
@@ -333,3 +380,26 @@ def test_unknown_property():
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert "no-such is none of video-timing" in done.stderr
+
+
+def test_what_was_proved_is_not_proved_again(output, monkeypatch):
+    """Until its Verilog or its property changes, or it is asked for; what is kept says what was not proved."""
+    monkeypatch.setattr("raycaster.verif.formal.prove.PROOFS", [HOST])
+    kept = output / "kept.json"
+
+    def outcome(*options: str) -> tuple[int, dict]:
+        code = main(["--jobs", "1", "--output", str(output / "proofs"), "--keep", str(kept), *options])
+        return code, json.loads(kept.read_text())["figures"]
+
+    label = f"host-transfers, {HOST.label}"
+    assert outcome() == (0, {"proved": 1, "proofs": 1, "properties": 1, "properties_proved": 1, "lemmas": 0,
+                             "lemmas_proved": 0, "failures": []})  # fmt: skip
+    monkeypatch.setattr(
+        "raycaster.verif.formal.prove.prove", lambda proof, *_, **__: Result(proof, "step failed", 1, 0)
+    )
+    assert outcome()[0] == 0
+    assert outcome("--fresh") == (1, {"proved": 0, "proofs": 1, "properties": 1, "properties_proved": 0, "lemmas": 0,
+                                      "lemmas_proved": 0, "failures": [f"{label}: step failed"]})  # fmt: skip
+    changed = replace(HOST, parameters={**HOST.parameters, "MOST_WAIT": 2})
+    monkeypatch.setattr("raycaster.verif.formal.prove.PROOFS", [changed])
+    assert outcome()[0] == 1

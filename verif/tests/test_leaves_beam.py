@@ -346,7 +346,7 @@ def flat_tables(random: np.random.Generator, count: int) -> Rectangles:
 
 
 @by_screen
-def test_rect_setup(config, tmp_path):
+def test_rect_setup(config, tmp_path, in_adders=False):
     """Lines at random, the last of which a reset ends."""
     count = config.rectangles
     leaf = Leaf(
@@ -363,6 +363,7 @@ def test_rect_setup(config, tmp_path):
             "growth": None if config.turn else growth_of(config),
             "start": walk_of(config),
             "config": config,
+            "in_adders": in_adders,
         },
         tmp_path,
     )
@@ -409,6 +410,11 @@ def test_rect_setup(config, tmp_path):
             assert number(output[f"start_{name}"], width) == now[name], (name, case)
             if not config.turn:
                 assert number(output[f"growth_{name}"], DISTANCE_BITS) == then[name] - now[name], (name, case)
+
+
+@pytest.mark.parametrize("turn", [False, True])
+def test_rect_setup_in_adders(turn, tmp_path):
+    test_rect_setup(beam_config(screen="tiny", turn=turn), tmp_path, in_adders=True)
 
 
 # The walkers ----------------------------------------------------------------------------------------------------------

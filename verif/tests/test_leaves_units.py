@@ -10,7 +10,7 @@ import pytest
 
 from raycaster.configuration import CHANNEL_BITS, WORLD_SIZE, Configuration, configure
 from raycaster.golden import seed_engine
-from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles, random_slopes
+from raycaster.golden.random_world import EXTREMES, random_camera, random_looks, random_rectangles, random_slopes
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.common.interfaces import Picture, Place, Slope, Steps
@@ -63,7 +63,8 @@ finders = pytest.mark.parametrize(
         any_config(fraction_bits=bits, rounding=rounding, divider_bits=divider_bits)
         for bits, divider_bits in ((0, 1), (0, 3), (1, 2), (4, 3), (8, 2))
         for rounding in ("truncate", "nearest")
-    ],
+    ]
+    + [any_config(fraction_bits=bits, materials=bits > 0, patterns=True) for bits in (0, 3)],
     ids=config_id,
 )
 
@@ -106,9 +107,9 @@ def finder_stimulus(config: Configuration, rays) -> tuple[list[dict[str, int]], 
             for name in ("find_intersection", "load_divider", "store_quotient"):
                 inputs[f"steps_{name}"] = cycle.steps[f"steps_{name}"]
             if cycle.current is not None:
-                inputs |= sorted_rect(table, cycle.current, "rect")
+                inputs |= sorted_rect(table, cycle.current, "rect", config)
             if cycle.offered is not None:
-                inputs |= sorted_rect(table, cycle.offered, "offered")
+                inputs |= sorted_rect(table, cycle.offered, "offered", config)
             if cycle.steps["steps_write_z_buf"]:
                 results.append((len(stimulus), number, cycle.offered))
             stimulus.append(inputs)
@@ -176,7 +177,11 @@ def aimed_ray(config: Configuration, random: np.random.Generator) -> tuple:
 @finders
 def test_intersection_finder(config, tmp_path):
     random = np.random.default_rng(seed())
-    rays = traced_rays(config, random, 15) + [aimed_ray(config, random) for _ in range(180)]
+    rays = [
+        (origin, slope, random_looks(random, table), golden)
+        for origin, slope, table, golden in traced_rays(config, random, 15)
+        + [aimed_ray(config, random) for _ in range(180)]
+    ]
     stimulus, results = finder_stimulus(config, [ray[:3] for ray in rays])
     outputs = finder_leaf(config, tmp_path).run_both(stimulus, settled=config.divider_steps + 5)
     seen = set()
@@ -189,6 +194,10 @@ def test_intersection_finder(config, tmp_path):
         if hit:
             assert output["depth"] == depth, case
             assert [output[f"point_{axis}"] for axis in AXES] == list(point), case
+            if config.patterns:
+                cell = int(table.cells[index]) << config.fraction_bits
+                odd = [int(point[axis]) // cell % 2 for axis in OTHER_AXES[table.axes[index]]]
+                assert [output["odd_u"], output["odd_v"]] == odd, case
         seen.add((int(table.axes[index]), hit))
     assert len(seen) == 6, "each axis was to be hit and missed"
 

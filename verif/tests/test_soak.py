@@ -58,12 +58,13 @@ def test_soak():
     """A handful at full size."""
     build = BUILD / "test" / "soak"
     ran = subprocess.run(
-        [sys.executable, "-m", "raycaster.cli", "verify", "soak", "--seeds", "6", "--build", str(build)],
+        [sys.executable, "-m", "raycaster.cli", "verify", "soak", "--seeds", "8", "--build", str(build)],
         cwd=ROOT, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert ran.returncode == 0, ran.stdout + ran.stderr
     results = [json.loads(line) for line in (build / "soak" / "results.jsonl").read_text().splitlines()]
-    assert [result["seed"] for result in results] == list(range(6))
+    assert [result["seed"] for result in results] == list(range(8))
+    assert {3, 4} < {result["reflections"] for result in results}
     assert all(result["pixels"] == 640 * 480 and result["wrong_vs_golden"] == 0 for result in results)
 
 
@@ -81,6 +82,7 @@ def test_the_exact_engine_draws_the_stiff_catalogue():
     assert ran.returncode == 0, ran.stdout + ran.stderr
     results = [json.loads(line) for line in (build / "soak" / "results.jsonl").read_text().splitlines()]
     assert len(results) == len(catalogue()) >= 50
+    assert {result["reflections"] for result in results} == {4}
     assert all(result["wrong_vs_golden"] == 0 for result in results)
 
 
