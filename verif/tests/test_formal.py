@@ -63,6 +63,11 @@ MIXED = chosen("blend-exact", "beam-vga240-s2-u1-r2-m1-c8-materials")
 SHARES = chosen("shares-exact", "exact-vga240-u1-r12-m2-c8-materials")
 HALVES = chosen("shares-exact", "exact-vga240-u1-r12-m1-c8")
 FOLD = chosen("fold-exact", "2 and 1 bits, 1 mirrors")
+FOLD_PRODUCTS = chosen("fold-products", "beam-vga240-s2-u1-r2-m1-c8")
+SECOND_FOLD = chosen("fold-products", "beam-vga240-s2-u1-r2-m2-c8")
+STRAIGHT = chosen("beam-tester-products", "beam-vga240-s2-u1-r2-m1-c8 straight")
+FOLDED = chosen("beam-tester-products", "beam-vga240-s2-u1-r2-m1-c8 folded")
+STAGED_FOLDED = chosen("beam-tester-products", "beam-vga180-s6-u2-r2-m1-c8 folded")
 TABLE = chosen("fixed-rects", "seed, different")
 DIVIDER = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d3-c8 digits")
 QUOTIENT = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d1-c8 product")
@@ -277,6 +282,33 @@ FAULTS = {
                        "!under_low_q && !over_high_q"),
     "bound-missed": (FOLD, "ray_tester", "low_edge_p = twice_low_p | $signed({1'b0, back_1})",
                      "low_edge_p = twice_low_p"),
+    "one-too-few-at-full-width": (FOLD_PRODUCTS, "ray_fold", "sum_xz_1 = x_by_z - not_z_by_x",
+                                  "sum_xz_1 = x_by_z + z_by_x"),
+    "slope-of-another-axis": (FOLD_PRODUCTS, "ray_fold", "x_by_z <= turn_x * slope_z;", "x_by_z <= turn_x * slope_y;"),
+    "border-of-the-next-mirror": (FOLD_PRODUCTS, "ray_fold", "distance_1 * slope_z",
+                                  "$signed(last_distance) * slope_z"),
+    "turn-a-bit-short": (FOLD_PRODUCTS, "ray_fold", "reg signed [10:0] turn_y;", "reg signed [9:0] turn_y;"),
+    "mirror-runs-ahead": (FOLD_PRODUCTS, "ray_fold", "mirror_back_2 <= back_y != y_back;", "mirror_back_2 <= y_back;"),
+    "turned-once-more": (SECOND_FOLD, "ray_fold", "difference = doubled - turn", "difference = doubled + turn"),
+    "offset-of-equals": (SECOND_FOLD, "ray_fold", "if (back_y_2 != back_z_2) begin", "if (back_y_2 || back_z_2) begin"),
+    "forgotten-in-a-corner": (SECOND_FOLD, "ray_fold", "met_x <= last_at_mirror && before_met_x;", "met_x <= 1'b0;"),
+    "edge-missed-at-once": (STRAIGHT, "ray_tester", "low_edge_p = twice_low_p | $signed({1'b0, back_1})",
+                            "low_edge_p = twice_low_p"),
+    "high-bound-a-bit-short": (STRAIGHT, "ray_tester", "wire signed [19:0] twice_high_q;",
+                               "wire signed [18:0] twice_high_q;"),
+    "plane-through-the-eye": (STRAIGHT, "ray_tester", "ahead = (numerator != 0) && ", "ahead = "),
+    "sign-of-the-next-ray": (STRAIGHT, "ray_tester", "back_2 <= back_1;", "back_2 <= back;"),
+    "folded-way-too-short": (FOLDED, "fold_tester", "wire signed [20:0] folded_p;", "wire signed [18:0] folded_p;"),
+    "way-negated": (FOLDED, "fold_tester", "way_p = ~walk_way_p;", "way_p = -walk_way_p;"),
+    "mirror-hit-again": (FOLDED, "fold_tester", "facet_distance > mirror_distance",
+                         "facet_distance >= mirror_distance"),
+    "border-on-the-other-side": (FOLDED, "fold_tester", "beyond = before_border_2 != rising_2;",
+                                 "beyond = before_border_2 == rising_2;"),
+    "corner-left-out": (FOLDED, "fold_tester", "beyond = !met_2", "beyond = 1'b0"),
+    "distance-not-turned": (STAGED_FOLDED, "fold_tester", "distance = facet_distance - turn;",
+                            "distance = facet_distance;"),
+    "clipped-along-p": (STAGED_FOLDED, "fold_tester", "folded_clip = folded_q;", "folded_clip = folded_p;"),
+    "slope-of-the-next": (STAGED_FOLDED, "fold_tester", "numerator_2, e_2, index", "numerator_2, e, index"),
     "bounds-unsorted": (TABLE, "rect_sorter", "if (written_y_0 > written_y_1) begin", "if (1'b0) begin"),
     "not-held": (TABLE, "rect_rom", "if (rects_fetch) begin", "if (1'b1) begin"),
     "overflow-missed": (DIVIDER, "divider", "overflow <= too_large;", "overflow <= too_large && (quotient != 0);"),
@@ -290,7 +322,7 @@ FAULTS = {
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
      FINDER, DEPTH, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, TURNED_WALK, CONTEST,
-     WIDE_CONTEST, HALF, MIXED, SHARES, HALVES, FOLD, TABLE, QUOTIENT],
+     WIDE_CONTEST, HALF, MIXED, SHARES, HALVES, FOLD, FOLD_PRODUCTS, SECOND_FOLD, STRAIGHT, FOLDED, TABLE, QUOTIENT],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):
