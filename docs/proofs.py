@@ -19,7 +19,7 @@ FULL = (
     "video-timing", "host-transfers", "ray-order", "line-sections", "render-counters", "divider-exact",
     "finder-quotients", "nearest-depth", "tester-products", "nearest-products", "slope-exact", "eye-exact",
     "cell-products", "group-safe", "row-setup", "line-start", "walked-products", "turned-walks", "contest-products",
-    "fold-products", "beam-tester-products", "blend-exact", "shares-exact",
+    "unit-wiring", "fold-products", "beam-tester-products", "blend-exact", "shares-exact",
 )  # fmt: skip
 """The properties that are proved of blocks as wide as in a default design, among others."""
 

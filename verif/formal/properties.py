@@ -636,6 +636,37 @@ def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: in
     )
 
 
+def _unit_wiring(config: Configuration, small: bool) -> Property:
+    generator = "turned_generator" if config.turn else "ray_generator"
+    patterns = ("cell_finder", "divider_step", "pattern_colour") if config.patterns else ()
+    return Property(
+        "unit-wiring",
+        "each block of a unit gets what its own proof takes for given, and of the nearest hit, at full width",
+        config,
+        _label(config),
+        ("exact_unit", "exact_control", "ray_sequencer", "rect_sequencer", "rect_tester", "nearest_hit", "eye_register",
+         "colour_combiner", "colour_share", "colour_sum", generator, *patterns),
+        {
+            "PATTERNS": int(config.patterns),
+            "REFLECTIONS": config.reflections,
+            "RECTANGLES": config.rectangles,
+            "INDEX_BITS": index_bits(config),
+            "COORDINATE_BITS": COORDINATE_BITS,
+            "LOOK_BITS": _look_bits(config),
+            "CAMERA_BITS": len(camera_of(config).word),
+            "SLOPE_BITS": exact_slope_bits(config),
+            "EYE_BITS": eye_bits(config),
+            "ROW_BITS": row_bits(config),
+            "OFFSET_BITS": offset_bits(config),
+        },
+        cut=(generator,),
+        induction=config.pass_latency,
+        any_product=True,
+        reach=2 * config.pass_latency + 9,
+        small=small,
+    )  # fmt: skip
+
+
 def _fold_products(config: Configuration, small: bool) -> Property:
     return Property(
         "fold-products",
@@ -857,6 +888,10 @@ PROPERTIES: list[Property] = [
     *(_eye(config, small=config is EXACT[-1]) for config in EXACT),
     *(_cell(config, small=False) for config in EXACT if config.patterns),
     _cell(_one_unit(engine="exact", patterns=True), small=False),
+    _unit_wiring(_one_unit(engine="exact"), small=True),
+    _unit_wiring(_one_unit(engine="exact", reflections=2), small=False),
+    _unit_wiring(_one_unit(engine="exact", turn=True, materials=True, patterns=True), small=False),
+    _unit_wiring(EXACT[-1], small=False),
     _slope(configure(engine="exact"), small=False),
     _slope(configure(engine="exact", rows=200), small=False),
     _slope(configure(engine="exact", turn=True), small=True),

@@ -63,6 +63,9 @@ MIXED = chosen("blend-exact", "beam-vga240-s2-u1-r2-m1-c8-materials")
 SHARES = chosen("shares-exact", "exact-vga240-u1-r12-m2-c8-materials")
 HALVES = chosen("shares-exact", "exact-vga240-u1-r12-m1-c8")
 FOLD = chosen("fold-exact", "2 and 1 bits, 1 mirrors")
+UNIT = chosen("unit-wiring", "exact-vga240-u1-r12-m1-c8")
+CORNER_UNIT = chosen("unit-wiring", "exact-vga240-u1-r12-m2-c8")
+PATTERN_UNIT = chosen("unit-wiring", "exact-vga240-u1-r12-m1-c8-turn-materials-patterns")
 FOLD_PRODUCTS = chosen("fold-products", "beam-vga240-s2-u1-r2-m1-c8")
 SECOND_FOLD = chosen("fold-products", "beam-vga240-s2-u1-r2-m2-c8")
 STRAIGHT = chosen("beam-tester-products", "beam-vga240-s2-u1-r2-m1-c8 straight")
@@ -282,6 +285,24 @@ FAULTS = {
                        "!under_low_q && !over_high_q"),
     "bound-missed": (FOLD, "ray_tester", "low_edge_p = twice_low_p | $signed({1'b0, back_1})",
                      "low_edge_p = twice_low_p"),
+    "eyes-crossed-at-the-test": (UNIT, "exact_unit", ".rect_word(rect_word),\n    .eye_x(eye_x),\n    .eye_y(eye_y),",
+                                 ".rect_word(rect_word),\n    .eye_x(eye_y),\n    .eye_y(eye_x),"),
+    "signs-not-turned": (UNIT, "exact_unit", ".signs_word(signs_word),\n    .slope_dx",
+                         ".signs_word(initial_signs_word),\n    .slope_dx"),
+    "mirrored-at-the-last-offered": (UNIT, "exact_unit", ".found_surface_word(found_surface_word),\n    .eye_x",
+                                     ".found_surface_word(offered_word),\n    .eye_x"),
+    "distance-of-the-last-test": (UNIT, "exact_unit", ".found_distance(found_distance),\n    .steps_screen_to_ray",
+                                  ".found_distance(numerator),\n    .steps_screen_to_ray"),
+    "colour-of-another": (UNIT, "exact_unit", ".found_colour(found_surface_colour)",
+                          ".found_colour(offered_word[23:0])"),
+    "verdict-of-the-next": (UNIT, "exact_control", "offered_word <= second_word;", "offered_word <= first_word;"),
+    "corner-of-the-last-test": (CORNER_UNIT, "exact_unit",
+                                ".found_at_mirror(found_at_mirror),\n    .steps_screen_to_ray",
+                                ".found_at_mirror(at_mirror),\n    .steps_screen_to_ray"),
+    "cells-stored-early": (PATTERN_UNIT, "exact_control", "in_flight[6] && (in_flight[5:0] == 0)",
+                           "in_flight[5] && (in_flight[4:0] == 0)"),
+    "cells-of-the-last-test": (PATTERN_UNIT, "exact_unit", ".found_slope(found_slope),\n    .odd_u(odd_u)",
+                               ".found_slope(denominator),\n    .odd_u(odd_u)"),
     "one-too-few-at-full-width": (FOLD_PRODUCTS, "ray_fold", "sum_xz_1 = x_by_z - not_z_by_x",
                                   "sum_xz_1 = x_by_z + z_by_x"),
     "slope-of-another-axis": (FOLD_PRODUCTS, "ray_fold", "x_by_z <= turn_x * slope_z;", "x_by_z <= turn_x * slope_y;"),
@@ -322,7 +343,8 @@ FAULTS = {
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
      FINDER, DEPTH, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, LINE, WALK, TURNED_WALK, CONTEST,
-     WIDE_CONTEST, HALF, MIXED, SHARES, HALVES, FOLD, FOLD_PRODUCTS, SECOND_FOLD, STRAIGHT, FOLDED, TABLE, QUOTIENT],
+     WIDE_CONTEST, HALF, MIXED, SHARES, HALVES, FOLD, UNIT, CORNER_UNIT, FOLD_PRODUCTS,
+     SECOND_FOLD, STRAIGHT, TABLE, QUOTIENT],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):
