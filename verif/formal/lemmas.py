@@ -263,6 +263,17 @@ LEMMAS: tuple[Lemma, ...] = (
         "Da*(z*t*Dp + Tp) == s*z*n*Dp + (Tp*Da - s*z*Ta*Dp)",
     ),
     Lemma(
+        "folded-bounds", "with E = C + T: lo <= E + D n/e <= hi is (lo - C) e <= D n + T e <= (hi - C) e, or turned",
+        "lo hi C T D n e t", ("e != 0", "t*e == n"),
+        "(lo <= C + T + D*t <= hi) == ((e > 0 and (lo - C)*e <= D*n + T*e <= (hi - C)*e)"
+        " or (e < 0 and (hi - C)*e <= D*n + T*e <= (lo - C)*e))",
+    ),
+    Lemma(
+        "ahead-of-mirror", "what is beyond a mirror that is ahead, m/d > 0, or in its plane, is ahead",
+        "n e m d", ("e > 0", "d > 0", "m > 0", "m*e <= d*n"),
+        "n > 0",
+    ),
+    Lemma(
         "complement-adds-one", "a + b + 1 = a - ~b, and ~w + 1 = -w",
         "a b", (),
         "a + b + 1 == a - (-b - 1) and (-b - 1) + 1 == -b",

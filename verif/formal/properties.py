@@ -9,6 +9,8 @@ from raycaster.fixed import FixedScene
 from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.beam.beam_lane import beam_latency
+from raycaster.rtl.beam.fold_tester import LATENCY as TESTER_LATENCY
+from raycaster.rtl.beam.fold_tester import fold_lead, is_staged
 from raycaster.rtl.beam.line_starter import AIM_LATENCY
 from raycaster.rtl.beam.nearest_of_two import contest_latency
 from raycaster.rtl.bus.avalon_interface import engine_word, size_word
@@ -23,6 +25,7 @@ from raycaster.rtl.common.widths import (
     exact_slope_bits,
     eye_bits,
     factor_bits,
+    fold_bits,
     index_bits,
     offset_bits,
     pixel_bits,
@@ -30,6 +33,7 @@ from raycaster.rtl.common.widths import (
     row_bits,
     share_bits,
     steepest_slope,
+    turn_bits,
     unit_bits,
     walk_bits,
     wide_walk_bits,
@@ -643,6 +647,92 @@ def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: in
     )
 
 
+def _unit_wiring(config: Configuration, small: bool) -> Property:
+    generator = "turned_generator" if config.turn else "ray_generator"
+    patterns = ("cell_finder", "divider_step", "pattern_colour") if config.patterns else ()
+    return Property(
+        "unit-wiring",
+        "each block of a unit gets what its own proof takes for given, and of the nearest hit, at full width",
+        config,
+        _label(config),
+        ("exact_unit", "exact_control", "ray_sequencer", "rect_sequencer", "rect_tester", "nearest_hit", "eye_register",
+         "colour_combiner", "colour_share", "colour_sum", generator, *patterns),
+        {
+            "PATTERNS": int(config.patterns),
+            "REFLECTIONS": config.reflections,
+            "RECTANGLES": config.rectangles,
+            "INDEX_BITS": index_bits(config),
+            "COORDINATE_BITS": COORDINATE_BITS,
+            "LOOK_BITS": _look_bits(config),
+            "CAMERA_BITS": len(camera_of(config).word),
+            "SLOPE_BITS": exact_slope_bits(config),
+            "EYE_BITS": eye_bits(config),
+            "ROW_BITS": row_bits(config),
+            "OFFSET_BITS": offset_bits(config),
+        },
+        cut=(generator,),
+        induction=config.pass_latency,
+        any_product=True,
+        reach=2 * config.pass_latency + 9,
+        small=small,
+    )  # fmt: skip
+
+
+def _fold_products(config: Configuration, small: bool) -> Property:
+    return Property(
+        "fold-products",
+        "at each mirror the ray folds as the mirrored eye and slope do, and no number is too wide, at full width",
+        config,
+        _label(config),
+        ("ray_fold",),
+        {
+            "COORDINATE_BITS": COORDINATE_BITS,
+            "SLOPE_BITS": exact_slope_bits(config),
+            "STEEPEST": steepest_slope(config),
+            "REFLECTIONS": config.reflections,
+            "WALK_BITS": walk_bits(config),
+            "TURN_BITS": turn_bits(config),
+            "FOLD_BITS": fold_bits(config),
+        },
+        induction=4,
+        any_product=True,
+        reach=5,
+        small=small,
+    )
+
+
+def _beam_tester(config: Configuration, folded: bool, small: bool) -> Property:
+    latency = TESTER_LATENCY + (fold_lead(config) if folded else 0)
+    return Property(
+        "beam-tester-products",
+        "a rectangle is hit where the cross-multiplied definition from the mirrored eye says, at full width",
+        config,
+        f"{_label(config)} {'folded' if folded else 'straight'}",
+        ("fold_tester" if folded else "ray_tester",),
+        {
+            "FOLDED": int(folded),
+            "STAGED": int(is_staged(config)),
+            "TURN": int(config.turn),
+            "PATTERNS": int(config.patterns),
+            "COORDINATE_BITS": COORDINATE_BITS,
+            "LOOK_BITS": _look_bits(config),
+            "SLOPE_BITS": exact_slope_bits(config),
+            "STEEPEST": steepest_slope(config),
+            "REFLECTIONS": config.reflections,
+            "WALK_BITS": walk_bits(config),
+            "TURN_BITS": turn_bits(config),
+            "FOLD_BITS": fold_bits(config),
+            "NUMERATOR_BITS": len(candidate_of(config).numerator),
+            "INDEX_BITS": index_bits(config),
+            "VIEW_DISTANCE": config.screen_geometry.view_distance,
+        },
+        induction=latency + 1,
+        any_product=True,
+        reach=latency + 2,
+        small=small,
+    )
+
+
 FIXED_SCENE = Scene(
     camera=Camera(position=(20, 250, 100)),
     rect=(
@@ -736,6 +826,7 @@ BEAM = _beam()
 BEAM_PAIRS = _beam(rows=180, scale=6, pixels=2)
 BEAM_TURN = _beam(turn=True)
 BEAM_TURN_PAIRS = _beam(rows=180, scale=6, pixels=2, turn=True)
+BEAM_DEEPEST = _beam(turn=True, patterns=True, reflections=4)
 
 PROPERTIES: list[Property] = [
     _video(_one_unit(), "vga240", small=True),
@@ -800,7 +891,7 @@ PROPERTIES: list[Property] = [
     _contest(BEAM_PAIRS, small=True),
     _contest(BEAM_TURN, small=False),
     _contest(BEAM_TURN_PAIRS, small=False),
-    _contest(_beam(turn=True, patterns=True, reflections=4), small=True),
+    _contest(BEAM_DEEPEST, small=True),
     *(
         _shares(_one_unit(engine="exact", reflections=reflections, materials=materials), small)
         for reflections, materials, small in (
@@ -826,6 +917,10 @@ PROPERTIES: list[Property] = [
     *(_eye(config, small=config is EXACT[-1]) for config in EXACT),
     *(_cell(config, small=False) for config in EXACT if config.patterns),
     _cell(_one_unit(engine="exact", patterns=True), small=False),
+    _unit_wiring(_one_unit(engine="exact"), small=True),
+    _unit_wiring(_one_unit(engine="exact", reflections=2), small=False),
+    _unit_wiring(_one_unit(engine="exact", turn=True, materials=True, patterns=True), small=False),
+    _unit_wiring(EXACT[-1], small=False),
     _slope(configure(engine="exact"), small=False),
     _slope(configure(engine="exact", rows=200), small=False),
     _slope(configure(engine="exact", turn=True), small=True),
@@ -850,6 +945,16 @@ PROPERTIES: list[Property] = [
     _fold(2, 2, 2, 1, small=False),
     _fold(2, 2, 2, 2, small=False),
     _fold(3, 2, 3, 1, small=False),
+    _fold_products(BEAM, small=True),
+    _fold_products(_beam(reflections=2), small=False),
+    _fold_products(BEAM_PAIRS, small=False),
+    _fold_products(BEAM_TURN_PAIRS, small=False),
+    _fold_products(BEAM_DEEPEST, small=False),
+    *(
+        _beam_tester(config, folded, small=config is BEAM)
+        for config in (BEAM, _beam(reflections=2), BEAM_PAIRS, BEAM_TURN_PAIRS, BEAM_DEEPEST)
+        for folded in (False, True)
+    ),
     _fixed("seed", False, small=True),
     _fixed("seed", True, small=False),
     _fixed("beam", False, small=True),

@@ -69,6 +69,14 @@ MULTIPLIED = chosen("shares-exact", "exact-vga240-u1-r12-m4-c8-materials")
 SHARES = chosen("shares-exact", "exact-vga240-u1-r12-m2-c8-materials")
 HALVES = chosen("shares-exact", "exact-vga240-u1-r12-m1-c8")
 FOLD = chosen("fold-exact", "2 and 1 bits, 1 mirrors")
+UNIT = chosen("unit-wiring", "exact-vga240-u1-r12-m1-c8")
+CORNER_UNIT = chosen("unit-wiring", "exact-vga240-u1-r12-m2-c8")
+PATTERN_UNIT = chosen("unit-wiring", "exact-vga240-u1-r12-m1-c8-turn-materials-patterns")
+FOLD_PRODUCTS = chosen("fold-products", "beam-vga240-s2-u1-r2-m1-c8")
+SECOND_FOLD = chosen("fold-products", "beam-vga240-s2-u1-r2-m2-c8")
+STRAIGHT = chosen("beam-tester-products", "beam-vga240-s2-u1-r2-m1-c8 straight")
+FOLDED = chosen("beam-tester-products", "beam-vga240-s2-u1-r2-m1-c8 folded")
+STAGED_FOLDED = chosen("beam-tester-products", "beam-vga180-s6-u2-r2-m1-c8 folded")
 TABLE = chosen("fixed-rects", "seed, different")
 DIVIDER = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d3-c8 digits")
 QUOTIENT = chosen("divider-exact", "tiny48-u2-r2-m1-f0t-d1-c8 product")
@@ -291,6 +299,51 @@ FAULTS = {
                        "!under_low_q && !over_high_q"),
     "bound-missed": (FOLD, "ray_tester", "low_edge_p = twice_low_p | $signed({1'b0, back_1})",
                      "low_edge_p = twice_low_p"),
+    "eyes-crossed-at-the-test": (UNIT, "exact_unit", ".rect_word(rect_word),\n    .eye_x(eye_x),\n    .eye_y(eye_y),",
+                                 ".rect_word(rect_word),\n    .eye_x(eye_y),\n    .eye_y(eye_x),"),
+    "signs-not-turned": (UNIT, "exact_unit", ".signs_word(signs_word),\n    .slope_dx",
+                         ".signs_word(initial_signs_word),\n    .slope_dx"),
+    "mirrored-at-the-last-offered": (UNIT, "exact_unit", ".found_surface_word(found_surface_word),\n    .eye_x",
+                                     ".found_surface_word(offered_word),\n    .eye_x"),
+    "distance-of-the-last-test": (UNIT, "exact_unit", ".found_distance(found_distance),\n    .steps_screen_to_ray",
+                                  ".found_distance(numerator),\n    .steps_screen_to_ray"),
+    "colour-of-another": (UNIT, "exact_unit", ".found_colour(found_surface_colour)",
+                          ".found_colour(offered_word[23:0])"),
+    "verdict-of-the-next": (UNIT, "exact_control", "offered_word <= second_word;", "offered_word <= first_word;"),
+    "corner-of-the-last-test": (CORNER_UNIT, "exact_unit",
+                                ".found_at_mirror(found_at_mirror),\n    .steps_screen_to_ray",
+                                ".found_at_mirror(at_mirror),\n    .steps_screen_to_ray"),
+    "cells-stored-early": (PATTERN_UNIT, "exact_control", "in_flight[6] && (in_flight[5:0] == 0)",
+                           "in_flight[5] && (in_flight[4:0] == 0)"),
+    "cells-of-the-last-test": (PATTERN_UNIT, "exact_unit", ".found_slope(found_slope),\n    .odd_u(odd_u)",
+                               ".found_slope(denominator),\n    .odd_u(odd_u)"),
+    "one-too-few-at-full-width": (FOLD_PRODUCTS, "ray_fold", "sum_xz_1 = x_by_z - not_z_by_x",
+                                  "sum_xz_1 = x_by_z + z_by_x"),
+    "slope-of-another-axis": (FOLD_PRODUCTS, "ray_fold", "x_by_z <= turn_x * slope_z;", "x_by_z <= turn_x * slope_y;"),
+    "border-of-the-next-mirror": (FOLD_PRODUCTS, "ray_fold", "distance_1 * slope_z",
+                                  "$signed(last_distance) * slope_z"),
+    "turn-a-bit-short": (FOLD_PRODUCTS, "ray_fold", "reg signed [10:0] turn_y;", "reg signed [9:0] turn_y;"),
+    "mirror-runs-ahead": (FOLD_PRODUCTS, "ray_fold", "mirror_back_2 <= back_y != y_back;", "mirror_back_2 <= y_back;"),
+    "turned-once-more": (SECOND_FOLD, "ray_fold", "difference = doubled - turn", "difference = doubled + turn"),
+    "offset-of-equals": (SECOND_FOLD, "ray_fold", "if (back_y_2 != back_z_2) begin", "if (back_y_2 || back_z_2) begin"),
+    "forgotten-in-a-corner": (SECOND_FOLD, "ray_fold", "met_x <= last_at_mirror && before_met_x;", "met_x <= 1'b0;"),
+    "edge-missed-at-once": (STRAIGHT, "ray_tester", "low_edge_p = twice_low_p | $signed({1'b0, back_1})",
+                            "low_edge_p = twice_low_p"),
+    "high-bound-a-bit-short": (STRAIGHT, "ray_tester", "wire signed [19:0] twice_high_q;",
+                               "wire signed [18:0] twice_high_q;"),
+    "plane-through-the-eye": (STRAIGHT, "ray_tester", "ahead = (numerator != 0) && ", "ahead = "),
+    "sign-of-the-next-ray": (STRAIGHT, "ray_tester", "back_2 <= back_1;", "back_2 <= back;"),
+    "folded-way-too-short": (FOLDED, "fold_tester", "wire signed [20:0] folded_p;", "wire signed [18:0] folded_p;"),
+    "way-negated": (FOLDED, "fold_tester", "way_p = ~walk_way_p;", "way_p = -walk_way_p;"),
+    "mirror-hit-again": (FOLDED, "fold_tester", "facet_distance > mirror_distance",
+                         "facet_distance >= mirror_distance"),
+    "border-on-the-other-side": (FOLDED, "fold_tester", "beyond = before_border_2 != rising_2;",
+                                 "beyond = before_border_2 == rising_2;"),
+    "corner-left-out": (FOLDED, "fold_tester", "beyond = !met_2", "beyond = 1'b0"),
+    "distance-not-turned": (STAGED_FOLDED, "fold_tester", "distance = facet_distance - turn;",
+                            "distance = facet_distance;"),
+    "clipped-along-p": (STAGED_FOLDED, "fold_tester", "folded_clip = folded_q;", "folded_clip = folded_p;"),
+    "slope-of-the-next": (STAGED_FOLDED, "fold_tester", "numerator_2, e_2, index", "numerator_2, e, index"),
     "bounds-unsorted": (TABLE, "rect_sorter", "if (written_y_0 > written_y_1) begin", "if (1'b0) begin"),
     "not-held": (TABLE, "rect_rom", "if (rects_fetch) begin", "if (1'b1) begin"),
     "overflow-missed": (DIVIDER, "divider", "overflow <= too_large;", "overflow <= too_large && (quotient != 0);"),
@@ -322,7 +375,8 @@ MORE_STEPS = {
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
      FINDER, CELLS, DEPTH, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, ADDERS, LINE, WALK,
-     TURNED_WALK, CONTEST, WIDE_CONTEST, HALF, MIXED, SHARES, MULTIPLIED, HALVES, FOLD, TABLE, QUOTIENT],
+     TURNED_WALK, CONTEST, WIDE_CONTEST, HALF, MIXED, SHARES, MULTIPLIED, HALVES, FOLD, UNIT, CORNER_UNIT,
+     FOLD_PRODUCTS, SECOND_FOLD, STRAIGHT, TABLE, QUOTIENT],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):

@@ -47,6 +47,8 @@ FAULTS = {
     "fold-at-a-mirror": [("(2*n - T)", "(2*n + T)"), ("-s*(X - E) +", "s*(X - E) +"), ("(2*n - T)", "(n - T)")],
     "fold-at-two-on-an-axis": [("2*(n - m)", "2*(m - n)"), ("x + 2", "-x + 2"), ("2*(n - m)", "(n - m)")],
     "folded-way": [("Tp*Da - s*z", "Tp*Da + s*z"), ("s*z*n*Dp", "n*Dp"), ("s*s == 1", None), ("+ Ta == n", "== n")],
+    "folded-bounds": [("D*n + T*e <= (hi", "D*n <= (hi"), ("e > 0 and", "e > 1 and"), ("(lo <= C", "(lo < C")],
+    "ahead-of-mirror": [("n > 0", "n > 1"), ("m > 0", "m >= 0"), ("d > 0", None)],
     "complement-adds-one": [("a + b + 1", "a + b"), ("== -b", "== b"), ("(-b - 1) + 1", "(-b - 1)")],
     "division": [("(k <= q)", "(k < q)"), ("r > 0", "r >= 0"), ("0 <= r < e", "0 <= r <= e"), ("q < k", "q <= k")],
     "division-step": [("2*r + b >= e", "2*r + b > e"), ("s < e", "s < e - 1"), ("- d*e", "+ d*e"),

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+// A unit of the exact engine and its control: each block's inputs are those that its own proof assumes. A test gets
+// the rectangle at hand, the mirrored eye, the slope and the last mirror. Its verdict is offered with that rectangle's
+// surface. The nearest hit reaches the eye, the cells, which need it constant for as long as they divide, and the
+// colours.
+//
+// Any function stands for multiplication. Verdicts are read at the tester's outputs; tester-products, nearest-products
+// and slope-exact say that blocks' outputs are right. Assumed: a reset first, an axis of three, and a slope that is
+// constant from the cycle after its step, as slope-exact proves for a constant pixel. All else may change in every
+// cycle.
+
+module unit_wiring #(
+    parameter PATTERNS = 0, parameter REFLECTIONS = 1, parameter RECTANGLES = 2,
+    parameter INDEX_BITS = 1, parameter COORDINATE_BITS = 9, parameter LOOK_BITS = 24, parameter CAMERA_BITS = 27,
+    parameter SLOPE_BITS = 8, parameter EYE_BITS = 11, parameter ROW_BITS = 8, parameter OFFSET_BITS = 9
+) (
+    input clk, input reset, input enable, input other_alive, input [2:0] reflections, input [RECTANGLES-1:0] usable,
+    input [2+5*COORDINATE_BITS+LOOK_BITS-1:0] rect, input [CAMERA_BITS-1:0] camera, input [ROW_BITS-1:0] row,
+    input [OFFSET_BITS-1:0] offset, input [23:0] background
+);
+localparam SURFACE_BITS = 2 + COORDINATE_BITS + LOOK_BITS, RECT_BITS = SURFACE_BITS + 4 * COORDINATE_BITS;
+localparam DISTANCE_BITS = EYE_BITS - 1, WAY_BITS = DISTANCE_BITS + SLOPE_BITS, WIDE = EYE_BITS + 3;
+localparam CORNERS = REFLECTIONS > 1, MIRROR_BITS = 3 + DISTANCE_BITS + (CORNERS ? 3 : 0), TRAVEL = PATTERNS ? 9 : 3;
+
+wire [INDEX_BITS-1:0] index;
+wire fetch, done, screen_to_ray, initial_ray, find, reset_nearest, write, reset_colour, add, reflect;
+wire [SURFACE_BITS-1:0] offered;
+generate
+    if (PATTERNS) begin: design
+        wire load, store, alive;
+        exact_control control (
+            .clk(clk), .reset_ray_caster(reset), .enable(enable), .done(done), .picture_reflections(reflections),
+            .rects_usable(usable), .rects_index(index), .rects_fetch(fetch), .rects_rect_word(rect),
+            .steps_screen_to_ray(screen_to_ray), .steps_initial_ray(initial_ray), .steps_find_intersection(find),
+            .steps_load_divider(load), .steps_store_quotient(store), .steps_reset_z_buf(reset_nearest),
+            .steps_write_z_buf(write), .steps_reset_colour(reset_colour), .steps_add_colour(add),
+            .steps_store_ray(reflect), .fate_any_alive(alive || other_alive), .fate_may_hit({RECTANGLES{1'b1}}),
+            .offered_word(offered)
+        );
+        exact_unit unit (
+            .clk(clk), .column_base(1'b0), .steps_screen_to_ray(screen_to_ray), .steps_find_intersection(find),
+            .steps_load_divider(load), .steps_store_quotient(store), .steps_reset_z_buf(reset_nearest),
+            .steps_write_z_buf(write), .steps_reset_colour(reset_colour), .steps_add_colour(add),
+            .steps_store_ray(reflect), .place_row(row), .place_column_offset(offset), .camera_word(camera),
+            .rect_word(rect), .offered_word(offered), .picture_background(background), .fate_alive(alive)
+        );
+    end
+    else begin: design
+        exact_control control (
+            .clk(clk), .reset_ray_caster(reset), .enable(enable), .done(done), .picture_reflections(reflections),
+            .rects_usable(usable), .rects_index(index), .rects_fetch(fetch), .rects_rect_word(rect),
+            .steps_screen_to_ray(screen_to_ray), .steps_initial_ray(initial_ray), .steps_find_intersection(find),
+            .steps_reset_z_buf(reset_nearest), .steps_write_z_buf(write), .steps_reset_colour(reset_colour),
+            .steps_add_colour(add), .steps_store_ray(reflect), .fate_any_alive(1'b1),
+            .fate_may_hit({RECTANGLES{1'b1}}), .offered_word(offered)
+        );
+        exact_unit unit (
+            .clk(clk), .column_base(1'b0), .steps_screen_to_ray(screen_to_ray), .steps_find_intersection(find),
+            .steps_reset_z_buf(reset_nearest), .steps_write_z_buf(write), .steps_reset_colour(reset_colour),
+            .steps_add_colour(add), .steps_store_ray(reflect), .place_row(row), .place_column_offset(offset),
+            .camera_word(camera), .rect_word(rect), .offered_word(offered), .picture_background(background)
+        );
+    end
+endgenerate
+always @* assume (rect[RECT_BITS-1 -: 2] < 3);
+
+// The generator is cut: any slope that stays constant.
+(* hierconn *) wire [2:0] \design.unit.initial_signs_word ;
+(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.slope_dx , \design.unit.slope_dy , \design.unit.slope_dz ;
+wire [3*SLOPE_BITS+2:0] generated = {\design.unit.initial_signs_word , \design.unit.slope_dx , \design.unit.slope_dy ,
+                                     \design.unit.slope_dz };
+wire [3*SLOPE_BITS-1:0] slope = generated[3*SLOPE_BITS-1:0];
+reg known = 1'b0, loaded = 1'b0, settled = 1'b0, found_known = 1'b0;
+reg [3*SLOPE_BITS+2:0] last_generated;
+always @(posedge clk) begin
+    known <= known || reset;
+    loaded <= loaded || screen_to_ray;
+    found_known <= found_known || reset_nearest;
+    settled <= loaded && !screen_to_ray;
+    last_generated <= generated;
+end
+always @* if (settled) assume (generated == last_generated);
+
+// The control's states: 1 generates a slope, 2 traces, 3 blends, 4 is done.
+(* hierconn *) wire [2:0] \design.control.ray_sequencer_i.state ;
+wire [2:0] state = \design.control.ray_sequencer_i.state ;
+always @* begin
+    assume (known || reset);
+    if (known && state > 1) assert (loaded);
+    if (loaded) assert (found_known);
+    if (find) assert (state == 2);
+    if (screen_to_ray) assert (state == 1);
+    if (add) assert (state == 3);
+end
+
+// Tests under way, the latest first, and the surfaces of their rectangles.
+reg [TRAVEL-1:0] starts;
+reg [3*SURFACE_BITS-1:0] tested;
+always @(posedge clk) begin
+    starts <= reset ? 0 : {starts, find};
+    tested <= {tested, rect[RECT_BITS-1 -: SURFACE_BITS]};
+end
+always @* if (known) begin
+    assert (write == starts[2]);
+    if (write) assert (offered == tested[3*SURFACE_BITS-1 -: SURFACE_BITS]);
+    if (state != 2) assert (starts == 0);
+    assert (reset_nearest == (screen_to_ray || add) && (add || !reflect));
+end
+
+// Inputs and outputs that only some designs have; nothing reads them in the others.
+(* hierconn *) wire \design.unit.rect_tester_i.at_mirror ;
+(* hierconn *) wire \design.unit.eye_register_i.found_at_mirror ;
+(* hierconn *) wire [2:0] \design.unit.colour_combiner_i.found_mirror ;
+(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.cell_finder_i.eye_x , \design.unit.cell_finder_i.eye_y ;
+(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.cell_finder_i.eye_z ;
+(* hierconn *) wire [2:0] \design.unit.cell_finder_i.signs_word ;
+(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.cell_finder_i.slope_dx , \design.unit.cell_finder_i.slope_dy ;
+(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.cell_finder_i.slope_dz ;
+(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.cell_finder_i.found_slope ;
+(* hierconn *) wire [DISTANCE_BITS-1:0] \design.unit.cell_finder_i.found_distance ;
+(* hierconn *) wire [SURFACE_BITS-1:0] \design.unit.cell_finder_i.found_surface_word ;
+(* hierconn *) wire \design.unit.cell_finder_i.odd_u , \design.unit.cell_finder_i.odd_v ;
+
+// The nearest of the hits at the tester's outputs.
+(* hierconn *) wire \design.unit.rect_tester_i.hit ;
+(* hierconn *) wire [DISTANCE_BITS-1:0] \design.unit.rect_tester_i.numerator ;
+(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.rect_tester_i.denominator ;
+wire in_mirror;
+wire [DISTANCE_BITS-1:0] n = \design.unit.rect_tester_i.numerator ;
+wire [SLOPE_BITS-1:0] e = \design.unit.rect_tester_i.denominator ;
+reg found, corner;
+reg [DISTANCE_BITS-1:0] distance;
+reg [SLOPE_BITS-1:0] divisor;
+reg [SURFACE_BITS-1:0] surface;
+wire [WAY_BITS-1:0] way = n * divisor, nearest_way = distance * e;
+always @(posedge clk) begin
+    if (reset_nearest) found <= 1'b0;
+    else if (write && \design.unit.rect_tester_i.hit && (!found || way < nearest_way)) begin
+        found <= 1'b1;
+        corner <= in_mirror;
+        distance <= n;
+        divisor <= e;
+        surface <= tested[3*SURFACE_BITS-1 -: SURFACE_BITS];
+    end
+end
+wire [1:0] axis = surface[SURFACE_BITS-1 -: 2];
+
+// The eye, its signs and the last mirror, as eye-exact defines them; don't care after a ray that hit nothing.
+reg signed [EYE_BITS-1:0] x, y, z;
+reg [2:0] turned;
+reg [MIRROR_BITS-1:0] mirror;
+reg counts = 1'b0;
+wire [2:0] signs = generated[3*SLOPE_BITS +: 3] ^ turned, on_axis = 3'b100 >> axis;
+wire signed [WIDE-1:0] plane = {1'b0, surface[SURFACE_BITS-3 -: COORDINATE_BITS]};
+generate
+    if (CORNERS) begin: corners
+        assign in_mirror = \design.unit.rect_tester_i.at_mirror ;
+        wire [2:0] met = corner ? mirror[2:0] | on_axis : on_axis;
+        wire [MIRROR_BITS-1:0] next_mirror = {1'b1, axis, distance, met};
+    end
+    else begin: corners
+        assign in_mirror = 0;
+        wire [MIRROR_BITS-1:0] next_mirror = {1'b1, axis, distance};
+    end
+endgenerate
+always @(posedge clk) begin
+    if (screen_to_ray) begin
+        x <= {1'b0, camera[CAMERA_BITS-1 -: COORDINATE_BITS]};
+        y <= {1'b0, camera[CAMERA_BITS-1-COORDINATE_BITS -: COORDINATE_BITS]};
+        z <= {1'b0, camera[CAMERA_BITS-1-2*COORDINATE_BITS -: COORDINATE_BITS]};
+        turned <= 0;
+        mirror <= 0;
+        counts <= 1'b1;
+    end
+    else if (reflect) begin
+        if (axis == 0) x <= 2 * plane - x;
+        if (axis == 1) y <= 2 * plane - y;
+        if (axis == 2) z <= 2 * plane - z;
+        turned <= turned ^ on_axis;
+        mirror <= corners.next_mirror;
+        counts <= counts && found;
+    end
+end
+
+// Inputs of blocks.
+(* hierconn *) wire [RECT_BITS-1:0] \design.unit.rect_tester_i.rect_word ;
+(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.rect_tester_i.eye_x , \design.unit.rect_tester_i.eye_y ;
+(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.rect_tester_i.eye_z ;
+(* hierconn *) wire [2:0] \design.unit.rect_tester_i.signs_word ;
+(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.rect_tester_i.slope_dx , \design.unit.rect_tester_i.slope_dy ;
+(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.rect_tester_i.slope_dz ;
+(* hierconn *) wire [MIRROR_BITS-1:0] \design.unit.rect_tester_i.mirror_word ;
+(* hierconn *) wire \design.unit.colour_combiner_i.found ;
+(* hierconn *) wire [23:0] \design.unit.colour_combiner_i.found_colour ;
+(* hierconn *) wire \design.unit.nearest_hit_i.found ;
+(* hierconn *) wire [DISTANCE_BITS-1:0] \design.unit.eye_register_i.found_distance ;
+(* hierconn *) wire [SURFACE_BITS-1:0] \design.unit.eye_register_i.found_surface_word ;
+(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.nearest_hit_i.found_slope ;
+always @* if (found_known) begin
+    assert (\design.unit.nearest_hit_i.found == found && \design.unit.colour_combiner_i.found == found);
+    if (found) begin
+        assert (\design.unit.eye_register_i.found_distance == distance);
+        assert (\design.unit.eye_register_i.found_surface_word == surface);
+        assert (\design.unit.nearest_hit_i.found_slope == divisor && axis < 3);
+    end
+end
+always @* if (known && counts && state > 1) begin
+    assert (\design.unit.rect_tester_i.eye_x == x && \design.unit.rect_tester_i.eye_y == y);
+    assert (\design.unit.rect_tester_i.eye_z == z && \design.unit.rect_tester_i.signs_word == signs);
+    assert (\design.unit.rect_tester_i.mirror_word == mirror);
+    assert ({\design.unit.rect_tester_i.slope_dx , \design.unit.rect_tester_i.slope_dy ,
+             \design.unit.rect_tester_i.slope_dz } == slope);
+    if (find) assert (\design.unit.rect_tester_i.rect_word == rect);
+end
+generate
+    if (CORNERS) begin: corner_known
+        always @* if (found_known && found) assert (\design.unit.eye_register_i.found_at_mirror == corner);
+    end
+    if (PATTERNS) begin: cells
+        // cell-products assumes three cycles for each of P[u] and P[v], in which the hit is constant.
+        wire [DISTANCE_BITS+SLOPE_BITS+SURFACE_BITS-1:0] hit = {distance, divisor, surface};
+        reg [DISTANCE_BITS+SLOPE_BITS+SURFACE_BITS-1:0] last_hit;
+        reg [5:0] loads, stores;
+        always @(posedge clk) begin
+            last_hit <= hit;
+            loads <= reset ? 0 : {loads, design.load};
+            stores <= reset ? 0 : {stores, design.store};
+        end
+        wire [23:0] painted;
+        pattern_colour painter (
+            .odd_u(\design.unit.cell_finder_i.odd_u ), .odd_v(\design.unit.cell_finder_i.odd_v ), .colour(painted),
+            .look_word(surface)
+        );
+        always @* if (known && counts && state > 1) begin
+            assert (\design.unit.cell_finder_i.eye_x == x && \design.unit.cell_finder_i.eye_y == y);
+            assert (\design.unit.cell_finder_i.eye_z == z && \design.unit.cell_finder_i.signs_word == signs);
+            assert ({\design.unit.cell_finder_i.slope_dx , \design.unit.cell_finder_i.slope_dy ,
+                     \design.unit.cell_finder_i.slope_dz } == slope);
+            if (found) assert ({\design.unit.cell_finder_i.found_distance , \design.unit.cell_finder_i.found_slope ,
+                                \design.unit.cell_finder_i.found_surface_word } == hit);
+            if (design.store) assert (loads[2:0] == 3'b100 && stores[2:0] == 0);
+            if (design.load) assert (!design.store);
+            if ((loads[2:0] || stores[2:0]) && !design.load) assert (hit == last_hit);
+            if (add && found) assert (stores[2:0] == 3'b100 && loads[2:0] == 0);
+            if (add && found) assert (\design.unit.colour_combiner_i.found_colour == painted);
+            if (add && found) assert (\design.unit.colour_combiner_i.found_mirror == surface[LOOK_BITS-25 -: 3]);
+        end
+    end
+    else begin: cells
+        always @* if (found_known && add && found)
+            assert (\design.unit.colour_combiner_i.found_colour == surface[23:0]);
+    end
+endgenerate
+
+always @* cover (known && add && counts && mirror != 0 && found);
+endmodule
