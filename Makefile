@@ -8,11 +8,18 @@ PYTHON := $(VENV)/bin/python
 COMMANDS := sim scenes options play game web wave trace verilog fit area quartus bitstream tinytapeout registers report docs results commands
 CHECKS := soak prove mutate exhaustive coverage upsets dvi verify-all
 comma := ,
-ARGUMENTS = $(filter-out PYTHON3=% PYTHON=% VENV=%,$(MAKEOVERRIDES))
+# Variables of the command line go to the program as they were typed: `value` and `unexport` keep make from expanding
+# them, quotes keep the shell from it, and one shell for a recipe keeps a line break within them.
+GIVEN := $(foreach name,$(.VARIABLES),$(if $(filter command,$(firstword $(origin $(name)))),$(name)))
+$(foreach name,$(GIVEN),$(eval unexport $(name)))
+quoted = '$(subst ','\'',$1)'
+ARGUMENTS = $(foreach name,$(filter-out PYTHON3 PYTHON VENV,$(GIVEN)),$(call quoted,$(name)=$(value $(name))))
+.ONESHELL:
+.SHELLFLAGS := -ec
 
 # Extras of pyproject.toml that a target needs beside the program itself.
 play game: EXTRAS := play
-web: EXTRAS := $(if $(filter-out 0,$(MEASURE)),play$(comma)test,play)
+web: EXTRAS := $(if $(filter-out 0,$(value MEASURE)),play$(comma)test,play)
 fit area tinytapeout: EXTRAS := fpga
 results: EXTRAS := fpga,docs
 bitstream: EXTRAS := fpga,play
@@ -20,7 +27,7 @@ report: EXTRAS := fpga,report
 docs: EXTRAS := docs,play
 coverage: EXTRAS := coverage
 prove: EXTRAS := formal
-sim: EXTRAS := $(if $(filter-out 0,$(GATES)),formal)
+sim: EXTRAS := $(if $(filter-out 0,$(value GATES)),formal)
 mutate: EXTRAS := formal,test
 lint: EXTRAS := test
 test verify-all: EXTRAS := formal,fpga,report,coverage,play,docs,test
@@ -41,7 +48,8 @@ flash:
 
 lint test: $(VENV)/base
 	@$(call install,$(EXTRAS))
-	@$(if $(filter lint,$@),$(PYTHON) -m ruff check && $(PYTHON) -m ruff format --check)
+	@$(if $(filter lint,$@),$(PYTHON) -m ruff check)
+	@$(if $(filter lint,$@),$(PYTHON) -m ruff format --check)
 	@$(if $(filter lint,$@),$(PYTHON) -m raycaster.verif.rtl_lint,$(PYTHON) -m raycaster.ensure_tools icarus chromium tcl)
 	@$(if $(filter test,$@),$(PYTHON) -m pytest -q -n 2 --dist worksteal -m 'not slow' --durations=10 verif/tests)
 
@@ -52,7 +60,7 @@ clean:
 # Where uv is, it installs. A stamp stands for each set of extras, so that nothing is asked of an index twice.
 PIP = $(or $(addsuffix  pip install --python $(PYTHON),$(shell command -v uv)),$(PYTHON) -m pip install --use-pep517)
 ADD = $(PIP) -q -c constraints.txt -e
-install = $(if $1,[ -e $(VENV)/$1 ] || { echo "installing $1" && $(ADD) '.[$1]' && touch $(VENV)/$1; },true)
+install = $(if $1,if [ ! -e $(VENV)/$1 ]; then echo "installing $1"; $(ADD) '.[$1]'; touch $(VENV)/$1; fi)
 $(VENV)/base: pyproject.toml constraints.txt
 	@$(PYTHON3) -c 'import sys, ensurepip, venv; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { echo \
 	    "error: $(PYTHON3) is not Python 3.11 or newer with its venv module (Debian: apt-get install python3-venv)" >&2; exit 2; }

@@ -367,8 +367,10 @@ MORE_STEPS = {
     "control-runs-on": 75,
     "read-too-far": 90,
     "one-rectangle-too-few": 24,
+    "cells-stored-early": 18,
+    "cells-of-the-last-test": 18,
 }
-"""Those that take a line, a row's groups or pixels, a frame's rows or lines, or all rectangles."""
+"""Those that take a line, a row's groups or pixels, a frame's rows or lines, all rectangles, or a pattern's cell."""
 
 
 @pytest.mark.parametrize(

@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import importlib
+import json
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -139,3 +141,40 @@ def test_complaints_are_in_the_users_form(tmp_path: Path):
         ["make", "-n", "sim"], cwd=ROOT, env=outside_make(), capture_output=True, text=True, check=True
     )
     assert f"{FROM_MAKE}=1 " in recipes.stdout
+
+
+@pytest.mark.parametrize(
+    "value",
+    ["x;touch bad", "$(shell touch bad)", "`touch bad`", 'it\'s  "q"', "a|b&c*", "two\nlines", "$HOME$$(x)", "#\\ a"],
+)
+def test_make_hands_on_what_was_typed(tmp_path: Path, value: str):
+    """Neither make nor the shell expands it, in a recipe and in the recipe of a make below; nothing runs."""
+    for name in ("Makefile", "pyproject.toml", "constraints.txt"):
+        shutil.copy(ROOT / name, tmp_path)
+    (tmp_path / ".venv").mkdir()
+    for name in ("base", "fpga,play"):
+        (tmp_path / ".venv" / name).touch()
+    show = tmp_path / "show.py"
+    show.write_text(f"#!{sys.executable}\nimport json, sys\nprint(json.dumps(sys.argv[4:]))\n")
+    show.chmod(0o755)
+    for target, more in (("sim", []), ("flash", ["FLASH=1"])):
+        command = ["make", "-s", target, f"SCENE={value}", "PYTHON=./show.py"]
+        done = subprocess.run(command, cwd=tmp_path, env=outside_make(), capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        assert json.loads(done.stdout) == [f"SCENE={value}", *more]
+    assert not (tmp_path / "bad").exists()
+
+
+def test_a_failing_line_of_a_recipe_ends_it(tmp_path: Path):
+    """All lines of a recipe share a shell, which must not go on after one that fails."""
+    for name in ("Makefile", "pyproject.toml", "constraints.txt"):
+        shutil.copy(ROOT / name, tmp_path)
+    (tmp_path / ".venv").mkdir()
+    for name in ("base", "test"):
+        (tmp_path / ".venv" / name).touch()
+    show = tmp_path / "show.py"
+    show.write_text('#!/bin/sh\necho "$*"\nfalse\n')
+    show.chmod(0o755)
+    command = ["make", "-s", "lint", "PYTHON=./show.py"]
+    done = subprocess.run(command, cwd=tmp_path, env=outside_make(), capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (2, "-m ruff check\n")
