@@ -33,6 +33,7 @@ from raycaster.play import game
 from raycaster.report import __main__ as report
 from raycaster.report import beside
 from raycaster.sim import scenes
+from raycaster.verif import everything
 from raycaster.verif.benches.bus_bench import CYCLES
 from raycaster.verif.coverage import measure as coverage
 from raycaster.verif.exhaustive import run as exhaustive
@@ -72,7 +73,7 @@ def _buses(kept: Outcome) -> str:
 
 CHECKS: Sequence[Check] = (
     *scenes.CHECKS, *soak.CHECKS, *game.CHECKS, *exhaustive.CHECKS, *report.CHECKS, *prove.CHECKS, *mutate.CHECKS,
-    *upsets.CHECKS, *coverage.CHECKS,
+    *upsets.CHECKS, *coverage.CHECKS, *everything.CHECKS,
 )  # fmt: skip
 """Rows of the table of long checks."""
 

@@ -71,7 +71,7 @@ def test_absent():
 @pytest.fixture
 def run_all(tmp_path, monkeypatch):
     """Runs the command on a small clone; returns its exit code, the tests that ran, and the figures."""
-    clone, ran, kept = tmp_path / "clone", tmp_path / "ran", tmp_path / "clone" / "kept.json"
+    clone, ran, kept = tmp_path / "clone", tmp_path / "ran", tmp_path / "clone" / "results" / "kept.json"
     tests = clone / "verif" / "tests"
     tests.mkdir(parents=True)
     (tests / "test_small.py").write_text(TESTS)
@@ -108,12 +108,23 @@ def test_all_is_resumed(run_all, tmp_path, capsys):
     # With other sources too.
     (tmp_path / "clone" / "rtl.py").write_text("changed")
     assert len(run_all()[1]) == 5
+    # A page is no source, and a change in a file of tests is one of its tests alone.
+    (tmp_path / "clone" / "page.md").write_text("changed")
+    tests = tmp_path / "clone" / "verif" / "tests"
+    (tests / "test_more.py").write_text(TESTS.replace("quick", "more"))
+    code, ran, figures = run_all()
+    assert sorted(ran) == ["long", "more0", "more1", "more2", "wrong"]
+    assert (code, figures["tests"], figures["passed"]) == (0, 12, 10)
+    (tests / "test_more.py").write_text(TESTS.replace("quick", "other"))
+    code, ran, figures = run_all()
+    assert sorted(ran) == ["long", "other0", "other1", "other2", "wrong"]
+    assert (code, figures["tests"], figures["passed"]) == (0, 12, 10)
 
 
 def test_what_an_interrupted_run_found_is_kept(tmp_path):
     """A state ends where the machine stopped, maybe within a line."""
     state = everything.State(tmp_path / "state")
-    state.add({"sources": "a", "fresh": False})
+    state.add({"sources": "a", "files": {}, "fresh": False})
     state.add({"wanted": ["x", "y"]})
     state.add({"test": "x", "outcome": "passed", "reason": "", "seconds": 2.0, "at": 3.0})
     with (tmp_path / "state").open("a") as file:
