@@ -21,6 +21,7 @@ from filelock import FileLock
 
 from raycaster.cli.__main__ import loaded
 from raycaster.cli.commands import COMMANDS
+from raycaster.configuration import Configuration
 from raycaster.convert.provenance import ROOT, Provenance, verilog_digest
 from raycaster.digests import code_digest
 from raycaster.docs import engine_figures, scaling
@@ -159,7 +160,7 @@ def _current(commands: Sequence[str]) -> Mapping[str, Digests | str]:
         if wanted:
             described = run_jobs("commands", _described, wanted, pool, console)
             designs = {one.name: one for each in described if isinstance(each, Provenance) for one in each.designs}
-            digests = run_jobs("designs", verilog_digest, list(designs.values()), pool, console)
+            digests = run_jobs("designs", _digested, list(designs.values()), pool, console)
             known = dict(zip(designs, digests, strict=True))
             made = (each.digests(known) if isinstance(each, Provenance) else each for each in described)
             found |= zip(wanted, made, strict=True)
@@ -183,6 +184,14 @@ def _described(command: str) -> Provenance | str:
         return module.provenance(module.command_parser().parse_args(words[taken:]))
     except UserError as error:
         return str(error)
+
+
+def _digested(design: Configuration) -> str:
+    """The digest of a design's Verilog, or why there is none."""
+    try:
+        return verilog_digest(design)
+    except UserError as error:
+        return f"refused: {error}"
 
 
 def _changed(then: Digests, now: Digests | str) -> Sequence[str]:
