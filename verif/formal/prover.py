@@ -223,6 +223,7 @@ def refute(
     depth: int,
     change: Callable[[Path], None],
     one_reset: bool = False,
+    step: bool = False,
     timeout: float = TIMEOUT,
 ) -> Result:
     """Look for a counterexample of a property that starts from reset, in changed Verilog.
@@ -236,11 +237,14 @@ def refute(
         depth: steps from reset.
         change: changes the generated Verilog, whose directory it gets, before it is read.
         one_reset: look at runs only in which reset is low after the first step, which takes far less time per step.
+        step: look for one of the induction step instead, where the solver finds none from reset in time.
         timeout: as for `prove`.
 
     Raises:
         ProofError: as for `prove`.
     """
+    if step:
+        return _attempt(proof, directory, [("step", ["-i", "-t", str(depth)])], depth, timeout, change)
     options = ["-t", str(depth)]
     if one_reset:
         options += ["--smtc", "one_reset.smtc"]
