@@ -199,7 +199,7 @@ def test_placing_and_routing_alone(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(area, "prepare_wasm", lambda name: None)
     monkeypatch.setattr(area, "register_products", lambda netlist: 0)
     monkeypatch.setattr(flows, "run_program", run_nextpnr)
-    monkeypatch.setattr(area, "_synthesise", lambda config, family, directory, top: directory.mkdir(parents=True))
+    monkeypatch.setattr(area, "synthesise", lambda config, family, directory, top: directory.mkdir(parents=True))
     options = ("--engine", "beam", "--rows", "180", "--scale", "6", "--pixels", "2", "--route-only", "--seed", "3")
     kept = tmp_path / "routed.json"
     area.main([*options, "--output", str(tmp_path / "area"), "--keep", str(kept)])

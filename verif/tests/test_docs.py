@@ -313,7 +313,8 @@ def test_the_blocks_proofs_are_named_as_they_are():
     """Each is in the right column, and no other is named."""
     rows = [line.split(" | ") for line in proofs.proved_blocks().splitlines()]
     blocks = {row[1]: row for row in rows}
-    assert blocks["`rect_tester`"][2:4] == ["`tester-products` and lemmas", "`tester-exact` (1 to 4 bits)"]
+    full = "`tester-products` and lemmas, `unit-wiring` and lemmas"
+    assert blocks["`rect_tester`"][2:4] == [full, "`tester-exact` (1 to 4 bits)"]
     assert blocks["`processor_host`"][2:] == ["", "", "", "", "in frames |"]
     assert {path.stem for path in (ROOT / "rtl" / "exact").glob("[!_]*.py")} == {
         row[1].strip("`") for row in rows if row[0] == "| exact"
@@ -458,8 +459,9 @@ def counts_of(kept: outcomes.Outcome) -> Iterator[tuple[str, int]]:
             yield replace(config, units=int(units), allow_underrun=True).name, area["tables"]
     elif kept.name in ("engines", "features", "scaling", "report"):
         for row in figures["designs"]:
-            if row.get("found", True) and row.get("module", TOP) == TOP and "refused" not in row:
-                options = row.get("options", {})
+            series = row.get("option", "units") != "resolution"  # which is no option
+            if row.get("found", True) and row.get("module", TOP) == TOP and "refused" not in row and series:
+                options = {"allow_underrun": True, **row.get("options", {})}
                 options |= {"engine": row["engine"]} if "engine" in row else {}
                 options |= {row["option"]: row["value"]} if "option" in row else {}
                 yield configure(**options).name, row["luts"] if "luts" in row else row["tables"]
