@@ -171,7 +171,7 @@ def _current(commands: Sequence[str]) -> Mapping[str, Digests | str]:
 
 
 def _state() -> list[str]:
-    packages = sorted(f"{one.name} {one.version}" for one in distributions())
+    packages = sorted({f"{one.name} {one.version}" for one in distributions()})  # one on two paths comes twice
     return [*(code_digest(ROOT / place, ROOT) for place in DECIDING), *packages]
 
 

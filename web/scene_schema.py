@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from raycaster.configuration import MOST_RECTANGLES
 from raycaster.scene import COMPLAINTS, LONGEST_SHOWN, PATTERNS, Scene
 
 
@@ -11,11 +12,12 @@ def scene_schema() -> dict[str, object]:
 
     `model` is the JSON schema of `Scene`: tables, their keys in order, defaults, and the `checks` of each value in the
     order in which they are applied. `complaints` are the other words, with names in braces. `longest_shown` is in
-    characters. `patterns` are in the order of the registers' codes.
+    characters, and `most_rectangles` the most of any hardware. `patterns` are in the order of the registers' codes.
     """
     return {
         "model": Scene.model_json_schema(),
         "complaints": dict(COMPLAINTS),
         "longest_shown": LONGEST_SHOWN,
+        "most_rectangles": MOST_RECTANGLES,
         "patterns": list(PATTERNS),
     }

@@ -222,7 +222,8 @@ def _words(part: object, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str
 
 def test_no_word_of_the_schema_is_left_unsaid(in_browser):
     """If one is changed, one of the mistakes is told in other words."""
-    texts = [text for text, _ in _mistakes()] + list(_parts()) + ["rect = 999"]
+    many = FULL + FULL[FULL.rindex("[[rect]]") :] * 40
+    texts = [text for text, _ in _mistakes()] + list(_parts()) + ["rect = 999", many]
     usual = in_browser(texts, rectangles=1)
     words = list(_words(scene_schema()))
     assert len(words) > 30
@@ -248,6 +249,7 @@ def test_no_word_of_the_schema_is_left_unsaid(in_browser):
         "rows = 0x" + "f" * 4000,
         FULL.replace('"floor"', "'fl\u00f6\u2028\U0001f600\"'").replace("colour =", "color ="),
         FULL + FULL[FULL.rindex("[[rect]]") :] * 11,
+        FULL + FULL[FULL.rindex("[[rect]]") :] * 40,
     ],
     ids=itertools.count(),
 )

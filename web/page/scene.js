@@ -223,7 +223,9 @@ const RayCasterScene = (() => {
     const first = found.find((mistake) => mistake.isKey) ?? found[0];
     if (first) return refuse(`${placeText(first.place, contents)}: ${first.expected}`);
     const count = contents.rect.length;
-    if (count > rectangles) return refuse(fill(schema.complaints.too_many, { count, rectangles }));
+    const most = schema.most_rectangles;
+    const tooMany = schema.complaints[count > most ? "far_too_many" : "too_many"];
+    if (count > rectangles) return refuse(fill(tooMany, { count, rectangles, most }));
     return { scene: built(contents, schema), error: null };
   }
 
