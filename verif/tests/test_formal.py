@@ -386,7 +386,7 @@ NOT_FROM_RESET = {"control-runs-on"}
 )  # fmt: skip
 def test_holds(proof, output):
     """What the faults below are planted in is proved without them."""
-    result = prove(proof, output / "proof", timeout=100)
+    result = prove(proof, output / "proof", timeout=250)
     assert result.proved, f"{result.outcome}: {result.detail}; trace {result.trace}"
 
 
