@@ -10,12 +10,14 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from cocotb.handle import ArrayObject
+from cocotb.types import Range
 from conftest import BUILD
 
 from raycaster.configuration import configure
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import SimulationError, build_model, convert, run_bench
-from raycaster.verif.upsets.bench import KINDS
+from raycaster.verif.upsets.bench import KINDS, bits_of
 from raycaster.verif.upsets.upsets import FLAGS, registers_of
 
 BENCH = "raycaster.verif.upsets.bench"
@@ -68,6 +70,30 @@ def test_a_sound_design_comes_back(tmp_path: Path):
     flipped = [result for result in results if result["kind"] == "upset"]
     assert all(result["where"].startswith("ray_caster_renderer_i.video_generator_i.y[") for result in flipped)
     assert any(result["lost_sync"] and result["outcome"] == "StartScreen" for result in flipped)
+
+
+class Word(list):
+    """A register of as many bits."""
+
+
+class Memory(ArrayObject):
+    """A memory of words."""
+
+    def __init__(self, words: int, bits: int):
+        self.words = [Word(range(bits)) for _ in range(words)]
+
+    range = property(lambda self: Range(len(self.words) - 1, "downto", 0))
+
+    def __len__(self) -> int:
+        return len(self.words)
+
+    def __getitem__(self, place: int) -> Word:
+        return self.words[place]
+
+
+def test_a_register_weighs_as_much_as_its_bits():
+    assert bits_of(Word([0])) == 1
+    assert bits_of(Memory(16, 32)) == 512
 
 
 def test_one_that_hangs_is_told(tmp_path: Path):

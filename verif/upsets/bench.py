@@ -63,6 +63,13 @@ def find_registers(scope: HierarchyObject, names: Mapping[str, set[str]]) -> Ite
             yield child
 
 
+def bits_of(register: ValueObjectBase) -> int:
+    """The number of bits of a register, or of all words of a memory."""
+    if isinstance(register, ArrayObject):
+        return len(register) * len(register[register.range.left])
+    return len(register)
+
+
 async def _case(harness: Harness, registers: list[ValueObjectBase], number: int) -> dict[str, object]:
     """What was done, what became of it, and the frames from then on that were not right."""
     random = Random(number)
@@ -138,8 +145,8 @@ async def _shows(harness: Harness, scene: Scene) -> bool:
 
 
 async def _flip(harness: Harness, registers: list[ValueObjectBase], random: Random) -> dict[str, object]:
-    """Flip a bit; each register or memory is as likely as any other, large or small."""
-    register = random.choice(registers)
+    """Flip a bit; each one of all registers and memories is as likely as any other."""
+    [register] = random.choices(registers, [bits_of(register) for register in registers])
     if isinstance(register, ArrayObject):
         register = register[random.choice(list(register.range))]
     bit = random.randrange(len(register))
