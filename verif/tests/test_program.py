@@ -143,23 +143,29 @@ def test_complaints_are_in_the_users_form(tmp_path: Path):
     assert f"{FROM_MAKE}=1 " in recipes.stdout
 
 
+def make_with(directory: Path, script: str, *words: str) -> subprocess.CompletedProcess[str]:
+    """Run make in a directory where everything is installed, and a script stands for Python."""
+    for name in ("Makefile", "pyproject.toml", "constraints.txt"):
+        shutil.copy(ROOT / name, directory)
+    (directory / ".venv").mkdir(exist_ok=True)
+    for name in ("base", "fpga,play", "test"):
+        (directory / ".venv" / name).touch()
+    python = directory / "python"
+    python.write_text(script)
+    python.chmod(0o755)
+    command = ["make", "-s", *words, "PYTHON=./python"]
+    return subprocess.run(command, cwd=directory, env=outside_make(), capture_output=True, text=True, check=False)
+
+
 @pytest.mark.parametrize(
     "value",
     ["x;touch bad", "$(shell touch bad)", "`touch bad`", 'it\'s  "q"', "a|b&c*", "two\nlines", "$HOME$$(x)", "#\\ a"],
 )
 def test_make_hands_on_what_was_typed(tmp_path: Path, value: str):
     """Neither make nor the shell expands it, in a recipe and in the recipe of a make below; nothing runs."""
-    for name in ("Makefile", "pyproject.toml", "constraints.txt"):
-        shutil.copy(ROOT / name, tmp_path)
-    (tmp_path / ".venv").mkdir()
-    for name in ("base", "fpga,play"):
-        (tmp_path / ".venv" / name).touch()
-    show = tmp_path / "show.py"
-    show.write_text(f"#!{sys.executable}\nimport json, sys\nprint(json.dumps(sys.argv[4:]))\n")
-    show.chmod(0o755)
+    script = f"#!{sys.executable}\nimport json, sys\nprint(json.dumps(sys.argv[4:]))\n"
     for target, more in (("sim", []), ("flash", ["FLASH=1"])):
-        command = ["make", "-s", target, f"SCENE={value}", "PYTHON=./show.py"]
-        done = subprocess.run(command, cwd=tmp_path, env=outside_make(), capture_output=True, text=True, check=False)
+        done = make_with(tmp_path, script, target, f"SCENE={value}")
         assert done.returncode == 0, done.stderr
         assert json.loads(done.stdout) == [f"SCENE={value}", *more]
     assert not (tmp_path / "bad").exists()
@@ -167,14 +173,5 @@ def test_make_hands_on_what_was_typed(tmp_path: Path, value: str):
 
 def test_a_failing_line_of_a_recipe_ends_it(tmp_path: Path):
     """All lines of a recipe share a shell, which must not go on after one that fails."""
-    for name in ("Makefile", "pyproject.toml", "constraints.txt"):
-        shutil.copy(ROOT / name, tmp_path)
-    (tmp_path / ".venv").mkdir()
-    for name in ("base", "test"):
-        (tmp_path / ".venv" / name).touch()
-    show = tmp_path / "show.py"
-    show.write_text('#!/bin/sh\necho "$*"\nfalse\n')
-    show.chmod(0o755)
-    command = ["make", "-s", "lint", "PYTHON=./show.py"]
-    done = subprocess.run(command, cwd=tmp_path, env=outside_make(), capture_output=True, text=True, check=False)
+    done = make_with(tmp_path, '#!/bin/sh\necho "$*"\nfalse\n', "lint")
     assert (done.returncode, done.stdout) == (2, "-m ruff check\n")
