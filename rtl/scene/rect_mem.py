@@ -49,7 +49,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     all_copies = [Copies() for _ in range(count)]
     copies_words = [copies.word for copies in all_copies]
     latest_copies, read_copies = Copies(), Copies()
-    next_pending, next_live, place = (unsigned(PLACE_BITS) for _ in range(3))
+    next_live, place = (unsigned(PLACE_BITS) for _ in range(2))
     kept_0, kept_1 = bit(), bit()
 
     sorted_rect = rect_of(config)
@@ -172,20 +172,17 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     def find_copies():
         latest_copies.word.next = copies_words[latest_index]
 
-    # Whose places are kept at the end of this cycle.
+    # Whose place is kept at the end of this cycle. No commit comes while a rectangle is stored.
     @always_comb
     def look_ahead():
-        next_pending.next = latest_copies.pending
-        if bus.commit:
-            next_pending.next = latest_copies.shadow
         next_live.next = latest_copies.live
         if bus.go_live:
             next_live.next = latest_copies.pending
 
     @always_comb
     def find_kept():
-        kept_0.next = (next_pending == 0) or (next_live == 0)
-        kept_1.next = (next_pending == 1) or (next_live == 1)
+        kept_0.next = (latest_copies.pending == 0) or (next_live == 0)
+        kept_1.next = (latest_copies.pending == 1) or (next_live == 1)
 
     @always_comb
     def choose_place():

@@ -213,10 +213,12 @@ class Recording:
             The mutants with their outcomes.
 
         Raises:
-            MutationError: the replay fails without a fault, or an invariant does not hold.
+            MutationError: there is no place for a fault, the replay fails without one, or an invariant does not hold.
         """
         begin = time.monotonic()
         mutants = self.plant(count, seed, expectation.look_into)
+        if not mutants:
+            raise MutationError(f"{self.module} has no cell that a fault could be in")
         self._replay(mutants)
         survivors = [mutant for mutant in mutants if mutant.outcome == "surviving"]
         if survivors:
@@ -249,6 +251,8 @@ class Recording:
         lines = self._choose(count, seed)
         mutants = [self._describe(number, line) for number, line in enumerate(lines, 1)]
         cut = [
+            # Of a $pmux with two bits of S set, Verilog and SMT-LIB would each have another branch.
+            "pmuxtree",
             f"write_verilog -noattr -selected {self.module}_mutants.v",
             "select -clear",
             *(f"setattr -mod -set keep_hierarchy 1 {name}" for name in submodules if name not in look_into),

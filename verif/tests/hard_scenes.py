@@ -106,6 +106,52 @@ def rivalled(random: np.random.Generator, table: Rectangles, winner: int, camera
     return replace(table, corners=corners, enabled=enabled)
 
 
+def cornered(random: np.random.Generator, table: Rectangles, camera, slope) -> Rectangles:
+    """The table with one rectangle, or two of different axes, that the ray meets at a point of whole coordinates: a
+    corner, on an edge, inside, or the camera; in some after another mirror. Unchanged where there is no such point."""
+    camera, slope = np.array(camera), np.array(slope)
+    moving = np.flatnonzero(slope)
+    if len(moving) < 2 or len(table) < 3:
+        return table
+    for _ in range(20):
+        point = camera + int(random.integers(9)) * slope
+        planes = []
+        if random.random() < 0.7:
+            axis = int(random.choice(moving))
+            between = sorted((camera[axis], point[axis]))
+            plane = int(random.integers(between[0], between[1] + 1))
+            planes.append((axis, plane, camera + slope * (plane - camera[axis]) / slope[axis]))
+            point[axis] = 2 * plane - point[axis]
+        planes += [(int(axis), int(point[axis]), point) for axis in random.permutation(moving)[: random.integers(1, 3)]]
+        places = np.array([place for _, _, place in planes])
+        if np.all((places >= 0) & (places < WORLD_SIZE)):
+            break
+    else:
+        return table
+    corners, enabled = table.corners.copy(), table.enabled.copy()
+    for (axis, plane, place), index in zip(planes, random.permutation(len(table)), strict=False):
+        around = random.choice([0, 3, 40, 400], (2, 3)) * np.array([[-1], [1]])
+        corners[index] = np.clip(np.rint(place) + around, 0, WORLD_SIZE - 1)
+        corners[index, :, axis] = plane
+        enabled[index] = True
+    return replace(table, corners=corners, enabled=enabled)
+
+
+def facing(random: np.random.Generator, table: Rectangles, camera, slope) -> Rectangles:
+    """The table with two rectangles that fill opposite walls of the world, between which the ray goes as far as any
+    does, and a third that crosses it on its way."""
+    corners, enabled = table.corners.copy(), np.zeros(len(table), bool)
+    other, axis = np.argsort(np.abs(slope))[1:]
+    t = random.uniform(0, 3 * WORLD_SIZE / abs(slope[axis]))
+    across = np.clip(round(camera[other] + slope[other] * t), 0, WORLD_SIZE - 1)
+    planes = (axis, 0), (axis, WORLD_SIZE - 1), (other, across)
+    for (flat, plane), index in zip(planes, random.permutation(len(table)), strict=False):
+        corners[index] = [[0] * 3, [WORLD_SIZE - 1] * 3]
+        corners[index, :, flat] = plane
+        enabled[index] = True
+    return replace(table, corners=corners, enabled=enabled)
+
+
 def tracer(config: Configuration, **given) -> Callable:
     """Golden's trace by a design's engine, with these of its arguments, to be called with the others."""
     if config.engine != "seed":

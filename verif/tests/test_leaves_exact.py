@@ -8,7 +8,7 @@ from math import gcd
 import numpy as np
 import pytest
 from fates import control_leaf, group_fate_in, mask_of, random_fate
-from hard_scenes import pixel_of, pixel_word, rivalled, sharpened, traced_scene, tracer, verdict
+from hard_scenes import cornered, facing, pixel_of, pixel_word, rivalled, sharpened, traced_scene, tracer, verdict
 
 from raycaster.configuration import GROUP_OVERHEAD, WORLD_SIZE, Configuration, ConfigurationError, configure
 from raycaster.golden.random_world import EXTREMES, random_basis, random_camera, random_looks, random_rectangles
@@ -820,7 +820,7 @@ def held_inputs(camera, background, reflections) -> dict[str, int]:
     [
         exact_config(screen=screen, units=units, rectangles=rectangles, reflections=reflections, colour_bits=bits)
         for screen, units, rectangles, reflections, bits in (
-            ("vga", 4, 8, 1, 8), ("vga", 5, 8, 2, 4), ("tiny", 2, 8, 0, 1), ("vga", 320, 8, 2, 8), ("vga", 1, 4, 2, 8),
+            ("vga", 4, 8, 1, 8), ("vga", 5, 8, 2, 8), ("tiny", 2, 8, 0, 1), ("vga", 320, 8, 2, 4), ("vga", 1, 4, 2, 8),
             ("vga", 8, 8, 4, 8),
         )
     ]
@@ -858,16 +858,28 @@ def test_exact_unit(config, tmp_path):
     rows, columns, _ = slopes.shape
     stimulus, results, fates, alive = [], [], set(), {}
     ends = config.culling or config.materials
-    for _ in range(300 if config.colour_bits == 4 else 80):
+    for _ in range(500 if config == exact_config(units=5, rectangles=8, reflections=2) else 80):
         basis = random_basis(random) if config.turn else None
         if basis is not None:
             slopes = primary_slopes(config.screen_geometry, basis)
         row = int(random.choice([0, 1, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))
         column = int(random.choice([0, 1, columns // 2, columns - 1, random.integers(columns)]))
+        hard = random.choice(["none", "rivalled", "cornered", "facing"], p=[0.3, 0.3, 0.3, 0.1])
+        if hard == "facing":
+            # A ray along x, so that it does not leave the world between the walls.
+            row, column = (
+                min(max(middle + int(random.integers(-20, 21)), 0), count - 1)
+                for middle, count in ((config.screen_geometry.horizon_row, rows), (columns // 2, columns))
+            )
         slope = slopes[row, column][None]
         camera, table, background, reflections, traced = traced_scene(random, config, slope)
-        if random.random() < 0.5:
-            table = rivalled(random, table, int(traced.winners[0][0]), camera, slope[0])
+        if hard != "none":
+            if hard == "rivalled":
+                table = rivalled(random, table, int(traced.winners[0][0]), camera, slope[0])
+            elif hard == "cornered":
+                table = cornered(random, table, camera, slope[0])
+            else:
+                table = facing(random, table, camera, slope[0])
             given = {"camera": camera, "background": background, "slopes": slope, "reflections": reflections}
             traced = tracer(config, **given)(table)
         fates.add((reflections, sum(int(winner[0]) >= 0 for winner in traced.winners)))

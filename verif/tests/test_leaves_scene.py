@@ -214,7 +214,7 @@ def test_rect_sorter(options, tmp_path):
 
 def table_stimulus(random: np.random.Generator, table: Table, rectangles: int) -> list[dict[str, int]]:
     """Rectangles written one after the other, in part too, at random and to neighbouring addresses; others whole, then
-    read, and shown."""
+    read, and shown; others whole, again and again, with commits and frames in between."""
     stimulus = [{**random_bus(random, [0]), "reset": 1}] * 2
     last = 1 << address_bits(rectangles)
     written = list(table.words)
@@ -223,11 +223,20 @@ def table_stimulus(random: np.random.Generator, table: Table, rectangles: int) -
         _, words = rectangle_words(random)
         slot, size = int(random.integers(rectangles)), len(table.names)
         data = words[int(random.integers(len(words)))]
+        addresses = written[size * slot : size * (slot + 1)]
+        idle = {"bus_write": 0, "bus_commit": 0, "bus_go_live": 0, "bus_mask": EVERY_BIT, "reset": 0}
+        if random.random() < 0.25:
+            # The shadow's, the pending and the live rectangle are each in one of three places.
+            for _, data in zip(range(8), words, strict=False):
+                for address, word in zip(addresses, data, strict=False):
+                    stimulus.append({**idle, "bus_write": 1, "bus_address": address, "bus_data": word})
+                stimulus += [{**idle, "bus_address": addresses[0], "bus_data": 0}] * 2
+                show = {name: int(random.random() < 0.5) for name in ("bus_commit", "bus_go_live")}
+                stimulus.append({**stimulus[-1], **show, "reset": int(random.random() < 0.05)})
+            continue
         if random.random() < 0.5:
-            idle = {"bus_write": 0, "bus_commit": 0, "bus_go_live": 0, "bus_mask": EVERY_BIT, "reset": 0}
             if random.random() < 0.8:
                 data = almost_flat(random)
-            addresses = written[size * slot : size * (slot + 1)]
             for address, word in zip(addresses, data, strict=False):
                 stimulus.append({**idle, "bus_write": 1, "bus_address": address, "bus_data": word})
             stimulus += [{**idle, "bus_address": address, "bus_data": 0} for address in addresses]
