@@ -17,7 +17,7 @@ from raycaster.outcomes import Digests
 from raycaster.rtl.system.ports import module_ports
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).resolve().parents[1]
 
 
 @dataclass(frozen=True)

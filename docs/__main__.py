@@ -22,7 +22,7 @@ from raycaster.register_views import write_page
 from raycaster.sim.simulator import BUILD, SimulationError
 from raycaster.web.site import main as build_page
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).resolve().parent
 REFERENCE = (
     "raycaster.scene",
     "raycaster.configuration",

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from raycaster.errors import UserError
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 README = ROOT / "README.md"
 PAGES = (*sorted(HERE.glob("*.md")), README, ROOT / "CONTRIBUTING.md")

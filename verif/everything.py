@@ -28,7 +28,7 @@ from raycaster.options import CommandParser
 from raycaster.outcomes import Check, Outcome, add_keep_option, keep
 from raycaster.output import Console
 
-TESTS = Path(__file__).with_name("tests")
+TESTS = Path(__file__).resolve().with_name("tests")
 STATE = Path("build/verify-all.jsonl")
 """Lines of JSON, below the root: digests of the sources that begin a run, the tests of it, and outcomes of tests."""
 

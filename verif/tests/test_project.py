@@ -7,6 +7,7 @@ import ast
 import importlib.metadata
 import os
 import re
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -91,22 +92,20 @@ def test_no_two_folders_may_import_each_other():
         seen.append(folder)
 
 
-def test_each_file_is_in_the_package():
-    """What a clone imports by its folder, an installed package has too."""
-    tool = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
-    folders = {path.parent for folder in MAY_IMPORT for path in (ROOT / folder).rglob("*.py")}
-    wanted = {path.relative_to(ROOT).as_posix().replace("/", ".") for path in folders}
-    wanted -= {"verif.tests", "raycaster"}
-    assert set(tool["packages"]) == {"raycaster"} | {f"raycaster.{name}" for name in wanted}
+def test_each_folder_is_linked_into_the_package():
+    """An import of raycaster.golden finds golden/, in an editor too."""
+    links = {path.name: path.readlink() for path in (ROOT / "raycaster").iterdir() if path.is_symlink()}
+    assert links == {folder: Path("..", folder) for folder in MAY_IMPORT if folder != "raycaster"}
 
 
 def test_the_wheel_has_every_file(tmp_path: Path):
     """What a folder's code reads from beside it is in the wheel, and so is every module; the tests are not."""
     tracked = subprocess.run(["git", "ls-files", *MAY_IMPORT], cwd=ROOT, capture_output=True, text=True, check=True)
-    wanted = {name for name in tracked.stdout.split() if not name.startswith("verif/tests/")}
-    for name in wanted | {"pyproject.toml", "README.md", "LICENSE"}:
+    names = {name for name in tracked.stdout.split() if not name.startswith("verif/tests/")}
+    for name in names | {"pyproject.toml", "README.md", "LICENSE"}:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_bytes((ROOT / name).read_bytes())
+        shutil.copy(ROOT / name, tmp_path / name, follow_symlinks=False)
+    wanted = {name for name in names if not (ROOT / name).is_symlink()}
     (tmp_path / "verif" / "tests").mkdir()
     (tmp_path / "verif" / "tests" / "data.toml").touch()
     command = [sys.executable, "-c", "import setuptools; setuptools.setup()", "-q", "bdist_wheel", "-d", "wheel"]
