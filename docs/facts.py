@@ -16,11 +16,11 @@ from raycaster.registers import compile_registers
 from raycaster.rtl.beam import fold_tester, hit_cells, ray_fold
 from raycaster.rtl.beam.beam_lane import beam_latency, pass_latency
 from raycaster.rtl.beam.beam_pass import rounds
+from raycaster.rtl.beam.colour_blend import blend_latency
 from raycaster.rtl.beam.line_starter import start_cycles
 from raycaster.rtl.beam.nearest_of_two import contest_latency
 from raycaster.rtl.common.widths import exact_slope_bits
 from raycaster.rtl.engine import rect_setup
-from raycaster.rtl.engine.colour_blend import blend_latency
 from raycaster.rtl.exact.exact_control import WRITE_AT
 
 ACCESS = {"r": "read", "rw": "read, write", "woclr": "read, write 1 to clear", "woset": "read, write 1 to set"}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The one home of what distinguishes the engines. The blocks are named here and found by `raycaster.rtl.engine`."""
+"""The one home of what distinguishes the engines."""
 
 from __future__ import annotations
 
@@ -24,8 +24,7 @@ class Engine:
         turns: whether its camera turns; the seed's depth is measured along x.
         margin: how far outside a rectangle's bounds a primary ray may pass that hits it, in world units: a rounded
             coordinate is off by less than one.
-        renderer: the block that fills the screen, as room and name in `raycaster.rtl`.
-        control, unit: of the engines behind a line buffer, the block that operates all units, and one of these.
+        line_buffered: whether units fill a line buffer ahead of the monitor, group after group.
     """
 
     name: str
@@ -37,39 +36,28 @@ class Engine:
     rect_latency: int
     margin: int
     turns: bool
-    renderer: str
-    control: str | None = None
-    unit: str | None = None
+    line_buffered: bool
 
     @property
     def divides(self) -> bool:
         """Whether it forms quotients, which have a fraction and are rounded."""
         return self.slot_cycles is None
 
-    @property
-    def line_buffered(self) -> bool:
-        """Whether units fill a line buffer ahead of the monitor, group after group."""
-        return self.unit is not None
 
-
-ENGINES: Mapping[str, Engine] = {
-    engine.name: engine
-    for engine in (
-        # Slope and plane latched, product, divider loaded, hit point, depth compared, ray stored.
-        Engine(
-            "seed", 0, SCREENS, slot_cycles=None, result_latency=6, pattern_latency=0, rect_latency=1, margin=1,
-            turns=False, renderer="video.ray_caster_renderer", control="seed.ray_control", unit="seed.ray_unit",
-        ),
-        # Two more stages of the test after the first, which the slot is, depth compared, ray stored. The cells of u and
-        # of v: dividend, three cycles of two bits each; in the last the ray is stored.
-        Engine(
-            "exact", 1, SCREENS, slot_cycles=1, result_latency=4, pattern_latency=6, rect_latency=1, margin=0,
-            turns=True, renderer="video.ray_caster_renderer", control="exact.exact_control", unit="exact.exact_unit",
-        ),
-        Engine(
-            "beam", 2, BEAM_SCREENS, slot_cycles=0, result_latency=0, pattern_latency=0, rect_latency=2, margin=0,
-            turns=True, renderer="beam.beam_renderer",
-        ),
-    )
-}  # fmt: skip
+# Slope and plane latched, product, divider loaded, hit point, depth compared, ray stored.
+SEED = Engine(
+    "seed", 0, SCREENS, slot_cycles=None, result_latency=6, pattern_latency=0, rect_latency=1, margin=1, turns=False,
+    line_buffered=True,
+)  # fmt: skip
+# Two more stages of the test after the first, which the slot is, depth compared, ray stored. The cells of u and of v:
+# dividend, three cycles of two bits each; in the last the ray is stored.
+EXACT = Engine(
+    "exact", 1, SCREENS, slot_cycles=1, result_latency=4, pattern_latency=6, rect_latency=1, margin=0, turns=True,
+    line_buffered=True,
+)  # fmt: skip
+BEAM = Engine(
+    "beam", 2, BEAM_SCREENS, slot_cycles=0, result_latency=0, pattern_latency=0, rect_latency=2, margin=0, turns=True,
+    line_buffered=False,
+)  # fmt: skip
+ENGINES: Mapping[str, Engine] = {engine.name: engine for engine in (SEED, EXACT, BEAM)}
 """By name."""

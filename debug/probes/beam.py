@@ -181,7 +181,7 @@ class BeamProbes(Description):
             walker=f"{one}.{numbered('rect_walker', rectangle, count)}",
             tester=f"{one}.{numbered('fold_tester' if bounce else 'ray_tester', rectangle, count)}",
             fold=f"{LANE}.{numbered('ray_fold', max(0, bounce - 1), passes - 1)}",
-            kept=f"{LANE}.{numbered('winner_delay', late, len(delays))}",
+            kept=f"{LANE}.{numbered('delay_line', late, len(delays))}",
             look=f"{LANE}.{numbered('look_up', bounce, passes)}",
             seen=f"{BLEND}.{numbered('colour_seen', bounce, passes)}",
             mirror=f"{LANE}.{numbered('mirror_look_up', min(bounce, passes - 2), passes - 1)}",
@@ -192,9 +192,7 @@ class BeamProbes(Description):
         """In a pass, the winner of the contest in which a rectangle, or who has won against it, stands in a round."""
         left, number = -(-self.config.rectangles >> turn), rectangle >> turn + 1
         one = (
-            f"{numbered('nearest_of_two', number, left // 2)}.nearest"
-            if 2 * number + 1 < left
-            else "winner_delay_i.late"
+            f"{numbered('nearest_of_two', number, left // 2)}.nearest" if 2 * number + 1 < left else "delay_line_i.late"
         )
         return ".".join([*["nearest_of_i"] * (turn + 1), one])
 

@@ -10,16 +10,16 @@ from raycaster.rtl.beam import hit_cells as cells
 from raycaster.rtl.beam import look_up as looking
 from raycaster.rtl.beam import ray_fold as folder
 from raycaster.rtl.beam.beam_pass import beam_pass, winner_latency
+from raycaster.rtl.beam.colour_blend import blend_latency, colour_blend
 from raycaster.rtl.beam.fold_tester import fold_lead
 from raycaster.rtl.beam.hit_cells import hit_cells
 from raycaster.rtl.beam.look_up import look_up
 from raycaster.rtl.beam.mirror_look_up import mirror_look_up
 from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.beam.slope_walker import ray_slope, slope_walker
-from raycaster.rtl.beam.winner_delay import winner_delay
+from raycaster.rtl.common.delay_line import delay_line
 from raycaster.rtl.common.records import Reflector, Sight, candidate_of, fold_of, seen_of, turn_of, winner_of
 from raycaster.rtl.common.widths import bit, index_bits, side_by_side, unsigned
-from raycaster.rtl.engine.colour_blend import blend_latency, colour_blend
 
 ENTRY_LATENCY = 1
 """Cycles from next_column to the first walkers' step."""
@@ -131,11 +131,11 @@ def beam_lane(
     # What each pass sees, and the same delayed until the last pass sees something too.
     stages = [[one, *(one.twin() for _ in sights[number:])] for number, one in enumerate(sights, 1)]
     delays = [
-        winner_delay(clk, now.word, late.word, pass_latency(config)) for one in stages for now, late in pairwise(one)
+        delay_line(clk, now.word, late.word, pass_latency(config)) for one in stages for now, late in pairwise(one)
     ]
     # The last ray's image serves its pattern alone.
     image_delays = [
-        winner_delay(clk, fold.image, image.word, fold_lead(config) + looked_up)
+        delay_line(clk, fold.image, image.word, fold_lead(config) + looked_up)
         for fold, image in zip(folds[1:], images[1:], strict=True)
         if config.patterns or fold is not folds[-1]
     ]

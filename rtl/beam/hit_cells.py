@@ -7,7 +7,7 @@ from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.rtl.beam.cell_step import SMALLEST_CELL_BITS, cell_step
-from raycaster.rtl.beam.winner_delay import winner_delay
+from raycaster.rtl.common.delay_line import delay_line
 from raycaster.rtl.common.records import CellDivision, winner_of
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
@@ -59,7 +59,7 @@ def hit_cells(clk, turn, nearest, winner, slope, camera, sight, config: Configur
     of_u, of_v = ([CellDivision(slope_bits, place + 1) for place in (*places, places[-1] - 1)] for _ in "uv")
     dividend_u, dividend_v, quotient_u, quotient_v = of_u[0], of_v[0], of_u[-1], of_v[-1]
 
-    delay = winner_delay(clk, winner.word, late.word, LATENCY)
+    delay = delay_line(clk, winner.word, late.word, LATENCY)
 
     @always(clk.posedge)
     def stage_1():

@@ -4,7 +4,7 @@
 from myhdl import block, instances
 
 from raycaster.rtl.beam.nearest_of_two import nearest_of_two
-from raycaster.rtl.beam.winner_delay import winner_delay
+from raycaster.rtl.common.delay_line import delay_line
 from raycaster.rtl.common.widths import side_by_side
 
 
@@ -20,7 +20,7 @@ def nearest_of(clk, candidates, nearest, rounds: int, latency: int):
     contests = [
         nearest_of_two(clk, *pair, winner, latency)
         if len(pair) == 2
-        else winner_delay(clk, pair[0].word, winner.word, latency)
+        else delay_line(clk, pair[0].word, winner.word, latency)
         for pair, winner in zip([ones[i : i + 2] for i in range(0, len(ones), 2)], winners, strict=True)
     ]
     if rounds > 1:

@@ -5,19 +5,18 @@ from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.registers import address_bits
-from raycaster.rtl.bus.apb_bridge import apb_bridge
+from raycaster.rtl.beam.beam_renderer import beam_renderer
 from raycaster.rtl.bus.avalon_interface import avalon_interface
-from raycaster.rtl.bus.axi4lite_bridge import axi4lite_bridge
-from raycaster.rtl.bus.wishbone_bridge import wishbone_bridge
+from raycaster.rtl.bus.buses import BUSES
 from raycaster.rtl.common.clock_gate import clock_gate, rests_on
 from raycaster.rtl.common.interfaces import AvalonPort, Picture, Progress, Rects, SceneBus
 from raycaster.rtl.common.records import camera_of
 from raycaster.rtl.common.ties import tied, unconnected
 from raycaster.rtl.common.widths import WORD_BITS, bit, unsigned
-from raycaster.rtl.engine.engines import block_named
 from raycaster.rtl.scene.camera_mem import camera_mem
 from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.rtl.scene.rect_rom import rect_rom
+from raycaster.rtl.system.ray_caster_renderer import ray_caster_renderer
 
 
 @block
@@ -51,14 +50,11 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
         if not config.facts.line_buffered and config.reflections == 0:
             picture.reflections = unconnected(picture.reflections)  # where there are none, it does not ask how many
         position = camera_mem(clk, reset, bus, camera_readback, camera, config)
-    if config.bus != "avalon":
+    foreign = BUSES[config.bus]
+    if foreign.bridge:
         avs_s0 = AvalonPort(len(bus.address))
-    if config.bus == "axi4lite":
-        bridge = axi4lite_bridge(clk, reset, s_axi=s_axi, avm_m0=avs_s0)
-    elif config.bus == "wishbone":
-        bridge = wishbone_bridge(clk, reset, wb=wb, avm_m0=avs_s0)
-    elif config.bus == "apb":
-        bridge = apb_bridge(clk, reset, s_apb=s_apb, avm_m0=avs_s0)
+        port = {"s_axi": s_axi, "wb": wb, "s_apb": s_apb}[foreign.port]
+        bridge = foreign.bridge(clk, reset, avm_m0=avs_s0, **{foreign.port: port})
     registers = avalon_interface(
         clk, reset, avs_s0=avs_s0, irq=irq, bus=bus, camera_readback=camera_readback, rect_readback=rect_readback,
         bad_rectangle=bad_rectangle, picture=picture, progress=progress, config=config,
@@ -73,7 +69,8 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
 
         gate = clock_gate(clk, awake=scene_awake, gated_clk=scene_clk)
         rests_on(scene_clk, rectangles, position)
-    renderer = block_named(config.facts.renderer)(
+    block_of_renderer = ray_caster_renderer if config.facts.line_buffered else beam_renderer
+    renderer = block_of_renderer(
         clk, reset, picture=picture, camera=camera, rects=rects, progress=progress, vga=vga, config=config
     )
 

@@ -9,6 +9,7 @@ from raycaster.fixed import FixedScene
 from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.beam.beam_lane import beam_latency
+from raycaster.rtl.beam.colour_blend import blend_latency, mixes
 from raycaster.rtl.beam.fold_tester import LATENCY as TESTER_LATENCY
 from raycaster.rtl.beam.fold_tester import fold_lead, is_staged
 from raycaster.rtl.beam.line_starter import AIM_LATENCY
@@ -38,9 +39,9 @@ from raycaster.rtl.common.widths import (
     walk_bits,
     wide_walk_bits,
 )
-from raycaster.rtl.engine.colour_blend import blend_latency, mixes
 from raycaster.rtl.engine.rect_setup import LATENCY as SETUP_LATENCY
 from raycaster.rtl.scene.written_rect import CORNER, surface_mask
+from raycaster.rtl.system.ray_caster import CONTROLS
 from raycaster.scene import Camera, Rectangle, Scene
 from raycaster.screens import Screen, Span
 from raycaster.verif.formal.prover import BridgeWidths, FixedTable, FoldWidths, HostWidths, Property, TesterWidths
@@ -157,7 +158,7 @@ def _order(config: Configuration, small: bool) -> Property:
         "budget's cycles",
         config,
         _label(config),
-        (config.facts.control.rpartition(".")[2], "ray_sequencer", "rect_sequencer"),
+        (CONTROLS[config.engine].__name__, "ray_sequencer", "rect_sequencer"),
         {
             "RECTANGLES": config.rectangles,
             "INDEX_BITS": index_bits(config),

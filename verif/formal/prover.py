@@ -23,14 +23,13 @@ from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.beam.ray_tester import ray_tester
 from raycaster.rtl.bus.avalon_host import avalon_host
+from raycaster.rtl.bus.buses import BUSES
 from raycaster.rtl.common.interfaces import Access, AvalonPort, Direction, Eye, Rects, Scan, SceneBus, Slope, Steps, Vga
 from raycaster.rtl.common.records import Candidate, Facet, Fold, Mirror, Pixel, Rect, Reflector, Signs, Turn, Walk
 from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, unsigned
-from raycaster.rtl.engine.engines import block_named
 from raycaster.rtl.exact.rect_tester import rect_tester
 from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.rtl.scene.rect_rom import rect_rom
-from raycaster.rtl.system.ports import BUS_PORTS
 from raycaster.rtl.video.video_generator import video_generator
 from raycaster.screens import Screen
 from raycaster.tools import TIMEOUT, ToolError, find_program, run_program, run_yosys
@@ -367,10 +366,10 @@ def _convert_host(widths: HostWidths, directory: Path) -> None:
 
 
 def _convert_bridge(widths: BridgeWidths, directory: Path) -> None:
-    name, interface = BUS_PORTS[widths.bus]
-    bridge = block_named(f"bus.{widths.bus}_bridge")
+    bus = BUSES[widths.bus]
     with elaboration():
-        top = bridge(bit(), reset_signal(), avm_m0=AvalonPort(widths.address), **{name: interface(widths.address)})
+        ports = {bus.port: bus.interface(widths.address)}
+        top = bus.bridge(bit(), reset_signal(), avm_m0=AvalonPort(widths.address), **ports)
     convert_hierarchy(top, directory, "// {module}")
 
 

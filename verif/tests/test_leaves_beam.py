@@ -31,6 +31,10 @@ from raycaster.rtl.beam.beam_lane import beam_lane, beam_latency
 from raycaster.rtl.beam.beam_pass import beam_pass, winner_latency
 from raycaster.rtl.beam.beam_renderer import blanking_left, check_blanking
 from raycaster.rtl.beam.cell_step import cell_step
+from raycaster.rtl.beam.colour_blend import blend_latency, colour_blend, mixes
+from raycaster.rtl.beam.colour_mean import colour_mean
+from raycaster.rtl.beam.colour_mix import colour_mix
+from raycaster.rtl.beam.colour_seen import colour_seen
 from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.hit_cells import hit_cells
 from raycaster.rtl.beam.lane_start import lane_start
@@ -44,8 +48,8 @@ from raycaster.rtl.beam.ray_tester import ray_tester
 from raycaster.rtl.beam.rect_walker import rect_walker
 from raycaster.rtl.beam.row_register import row_register
 from raycaster.rtl.beam.slope_walker import slope_walker
-from raycaster.rtl.beam.winner_delay import winner_delay
 from raycaster.rtl.beam.word_of import word_of
+from raycaster.rtl.common.delay_line import delay_line
 from raycaster.rtl.common.interfaces import Direction, Picture, Rects, Slope
 from raycaster.rtl.common.records import (
     CellDivision,
@@ -85,10 +89,6 @@ from raycaster.rtl.common.widths import (
     walk_bits,
 )
 from raycaster.rtl.engine import rect_setup as setup
-from raycaster.rtl.engine.colour_blend import blend_latency, colour_blend, mixes
-from raycaster.rtl.engine.colour_mean import colour_mean
-from raycaster.rtl.engine.colour_mix import colour_mix
-from raycaster.rtl.engine.colour_seen import colour_seen
 from raycaster.rtl.engine.rect_setup import rect_setup
 from raycaster.scene import UNTURNED
 from raycaster.screens import BEAM_SCREENS
@@ -1016,7 +1016,7 @@ def test_nearest_of(count, contest, tmp_path):
 @pytest.mark.parametrize("cycles", [1, 2, 3, 13])
 def test_winner_delay(cycles, tmp_path):
     leaf = Leaf(
-        winner_delay,
+        delay_line,
         lambda: {"clk": bit(), "word": unsigned(5), "late_word": unsigned(5), "cycles": cycles},
         tmp_path,
     )

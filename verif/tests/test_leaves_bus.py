@@ -11,12 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from raycaster.rtl.bus.apb_bridge import apb_bridge
-from raycaster.rtl.bus.axi4lite_bridge import axi4lite_bridge
-from raycaster.rtl.bus.wishbone_bridge import wishbone_bridge
+from raycaster.rtl.bus.buses import BUSES
 from raycaster.rtl.common.interfaces import AvalonPort
 from raycaster.rtl.common.widths import LANES, WORD_BITS, bit
-from raycaster.rtl.system.ports import BUS_PORTS
 from raycaster.verif.leaf import Leaf, reset_signal
 from raycaster.verif.seeds import repeat, seed
 
@@ -66,14 +63,14 @@ def any_byte_address(random: np.random.Generator) -> int:
     return int(random.integers(4 << ADDRESS_BITS))
 
 
-def bridge_leaf(bridge, bus: str, directory: Path) -> Leaf:
-    name, interface = BUS_PORTS[bus]
+def bridge_leaf(name: str, directory: Path) -> Leaf:
+    bus = BUSES[name]
     return Leaf(
-        bridge,
+        bus.bridge,
         lambda: {
             "clk": bit(),
             "reset": reset_signal(),
-            name: interface(ADDRESS_BITS),
+            bus.port: bus.interface(ADDRESS_BITS),
             "avm_m0": AvalonPort(ADDRESS_BITS),
         },
         directory,
@@ -94,7 +91,7 @@ def check(leaf: Leaf, stimulus: list[dict[str, int]], expected: list[dict[str, i
 @pytest.mark.parametrize("pause", [0.0, 0.5])
 def test_axi4lite_bridge(patience, latency, pause, tmp_path):
     """Channels come in any order and at any distance, and responses are taken at any time."""
-    leaf = bridge_leaf(axi4lite_bridge, "axi4lite", tmp_path)
+    leaf = bridge_leaf("axi4lite", tmp_path)
     random = np.random.default_rng(seed())
     agent = Agent(random, patience, latency)
     stimulus: list[dict[str, int]] = [{"reset": 1}]
@@ -173,7 +170,7 @@ def test_axi4lite_bridge(patience, latency, pause, tmp_path):
 @agents
 def test_wishbone_bridge(patience, latency, tmp_path):
     """A master takes what it asked for, or gives up; then nobody else gets its answer."""
-    leaf = bridge_leaf(wishbone_bridge, "wishbone", tmp_path)
+    leaf = bridge_leaf("wishbone", tmp_path)
     random = np.random.default_rng(seed())
     agent = Agent(random, patience, latency)
     stimulus: list[dict[str, int]] = [{"reset": 1}]
@@ -242,7 +239,7 @@ def test_wishbone_bridge(patience, latency, tmp_path):
 @agents
 def test_apb_bridge(patience, latency, tmp_path):
     """Writes are taken in their access phase, reads begin in their setup phase; some follow one another at once."""
-    leaf = bridge_leaf(apb_bridge, "apb", tmp_path)
+    leaf = bridge_leaf("apb", tmp_path)
     random = np.random.default_rng(seed())
     agent = Agent(random, patience, latency)
     stimulus: list[dict[str, int]] = [{"reset": 1}]

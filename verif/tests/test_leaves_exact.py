@@ -40,14 +40,14 @@ from raycaster.rtl.common.widths import (
 from raycaster.rtl.engine.pattern_colour import pattern_colour
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
 from raycaster.rtl.engine.rect_sequencer import rect_sequencer
-from raycaster.rtl.engine.slope_component import slope_component
-from raycaster.rtl.engine.turned_generator import turned_generator
 from raycaster.rtl.exact.cell_finder import cell_finder
 from raycaster.rtl.exact.exact_control import exact_control
 from raycaster.rtl.exact.exact_unit import exact_unit
 from raycaster.rtl.exact.eye_register import eye_register
 from raycaster.rtl.exact.nearest_hit import nearest_hit
 from raycaster.rtl.exact.rect_tester import rect_tester
+from raycaster.rtl.exact.slope_component import slope_component
+from raycaster.rtl.exact.turned_generator import turned_generator
 from raycaster.rtl.seed.ray_control import ray_control
 from raycaster.verif.leaf import EARLY_OUT_AT, Leaf, TraceCycle, ends_early, slot_length, sorted_rect, trace_cycles
 from raycaster.verif.seeds import repeat, seed

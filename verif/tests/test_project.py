@@ -42,6 +42,21 @@ MAY_IMPORT = {
 }
 """By folder, the folders that it may import of beside itself: no two of each other, however many between them."""
 
+MAY_IMPORT_IN_RTL = {
+    "common": (),
+    "dvi": ("common",),
+    "scene": ("common",),
+    "video": ("common",),
+    "bus": ("common", "scene"),
+    "engine": ("common",),
+    "cull": ("common", "engine"),
+    "seed": ("common", "engine"),
+    "exact": ("common", "engine"),
+    "beam": ("common", "engine", "video"),
+    "system": ("common", "dvi", "scene", "video", "bus", "engine", "cull", "seed", "exact", "beam"),
+}
+"""The same of the folders in rtl/."""
+
 
 def pre_commit(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     """Run it, with its cache and git's settings away from this user's."""
@@ -64,15 +79,20 @@ def test_version():
     assert re.findall(r"^## \[(\d+\.\d+)\]", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[0] == numbers
 
 
-def imported_folders(path: Path) -> set[str]:
-    """The folders of this project that a file imports of."""
+def imported_modules(path: Path) -> set[str]:
+    """The modules of this project that a file imports of, and what it imports of them, with dots in between."""
     names = set()
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             names |= {f"{node.module}.{alias.name}" for alias in node.names}
-    parts = [name.split(".") for name in names if name.split(".")[0] == "raycaster"]
+    return {name for name in names if name.split(".")[0] == "raycaster"}
+
+
+def imported_folders(path: Path) -> set[str]:
+    """The folders of this project that a file imports of."""
+    parts = [name.split(".") for name in imported_modules(path)]
     return {part[1] if len(part) > 1 and part[1] in MAY_IMPORT else "raycaster" for part in parts}
 
 
@@ -85,11 +105,24 @@ def test_dependencies_point_one_way(folder):
         assert imported_folders(path) <= {folder, *MAY_IMPORT[folder]}, path
 
 
-def test_no_two_folders_may_import_each_other():
+@pytest.mark.parametrize("folder", MAY_IMPORT_IN_RTL)
+def test_dependencies_in_rtl_point_one_way(folder):
+    for path in (ROOT / "rtl" / folder).glob("*.py"):
+        modules = imported_modules(path)
+        folders = {name.split(".")[2] for name in modules if name.startswith("raycaster.rtl.")}
+        assert folders <= {folder, *MAY_IMPORT_IN_RTL[folder]}, path
+
+
+@pytest.mark.parametrize("order", [MAY_IMPORT, MAY_IMPORT_IN_RTL])
+def test_no_two_folders_may_import_each_other(order):
     seen = []
-    for folder, others in MAY_IMPORT.items():
+    for folder, others in order.items():
         assert set(others) <= set(seen), folder
         seen.append(folder)
+
+
+def test_each_folder_of_rtl_has_its_place_in_the_order():
+    assert {path.parent.name for path in (ROOT / "rtl").glob("*/__init__.py")} == set(MAY_IMPORT_IN_RTL)
 
 
 def test_each_folder_is_linked_into_the_package():

@@ -5,7 +5,7 @@ from myhdl import always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.widths import bit, row_bits, signed, unsigned
-from raycaster.rtl.engine.slope_component import slope_component
+from raycaster.rtl.exact.slope_component import slope_component
 
 
 @block

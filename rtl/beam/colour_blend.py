@@ -4,15 +4,15 @@
 from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.beam.winner_delay import winner_delay
+from raycaster.rtl.beam import colour_mix as mixing
+from raycaster.rtl.beam import colour_seen as looking
+from raycaster.rtl.beam.colour_mean import colour_mean
+from raycaster.rtl.beam.colour_mix import colour_mix
+from raycaster.rtl.beam.colour_seen import colour_seen
+from raycaster.rtl.common.delay_line import delay_line
 from raycaster.rtl.common.records import seen_of, shade_of
 from raycaster.rtl.common.ties import tied, unconnected
 from raycaster.rtl.common.widths import bit, unsigned
-from raycaster.rtl.engine import colour_mix as mixing
-from raycaster.rtl.engine import colour_seen as looking
-from raycaster.rtl.engine.colour_mean import colour_mean
-from raycaster.rtl.engine.colour_mix import colour_mix
-from raycaster.rtl.engine.colour_seen import colour_seen
 
 MEAN_LATENCY = 1
 """Cycles from the colours to their mean."""
@@ -59,7 +59,7 @@ def colour_blend(clk, seen, picture, pixel, config: Configuration):
         # A mirror's own colour waits until it is known what is behind.
         nears = [*(shade.twin() for shade in shades[: mirrors - 1]), shades[mirrors - 1]]
         waits = [
-            winner_delay(clk, shades[number].word, nears[number].word, (mirrors - 1 - number) * mixing.LATENCY)
+            delay_line(clk, shades[number].word, nears[number].word, (mirrors - 1 - number) * mixing.LATENCY)
             for number in range(mirrors - 1)
         ]
         mixers = [

@@ -8,7 +8,7 @@ from raycaster.rtl.common.clock_gate import clock_gate, rests_on
 from raycaster.rtl.common.interfaces import Place, Scan
 from raycaster.rtl.common.records import Pixel
 from raycaster.rtl.common.widths import CYCLE_BITS, bit, bits_for, pixel_bits, unit_bits, unsigned
-from raycaster.rtl.engine.ray_caster import ray_caster
+from raycaster.rtl.system.ray_caster import ray_caster
 from raycaster.rtl.video.line_buffer import line_buffer
 from raycaster.rtl.video.video_generator import video_generator
 

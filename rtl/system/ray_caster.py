@@ -4,13 +4,23 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.engines import EXACT, SEED
 from raycaster.rtl.common.interfaces import GroupFate, RayFate, Steps
 from raycaster.rtl.common.records import Pixel, rect_of, surface_of
 from raycaster.rtl.common.ties import tied, unconnected
 from raycaster.rtl.common.widths import side_by_side, unit_bits
 from raycaster.rtl.cull.group_culler import group_culler
-from raycaster.rtl.engine.engines import block_named
 from raycaster.rtl.engine.ray_sequencer import ends_early
+from raycaster.rtl.exact.exact_control import exact_control
+from raycaster.rtl.exact.exact_unit import exact_unit
+from raycaster.rtl.seed.ray_control import ray_control
+from raycaster.rtl.seed.ray_unit import ray_unit
+
+CONTROLS = {SEED.name: ray_control, EXACT.name: exact_control}
+"""By engine, the block that operates all units."""
+
+UNITS = {SEED.name: ray_unit, EXACT.name: exact_unit}
+"""By engine, the block of one unit."""
 
 
 @block
@@ -20,7 +30,7 @@ def ray_caster(clk, reset_ray_caster, enable, place, camera, picture, rects, don
     Starts where enable is high and reset_ray_caster low; place and the scene then hold still until done, which stays
     high, as pixels do, until reset_ray_caster. pixels: all units' `Pixel` words, unit 0's in the lowest bits.
     """
-    control, unit = block_named(config.facts.control), block_named(config.facts.unit)
+    control, unit = CONTROLS[config.engine], UNITS[config.engine]
     steps = Steps()
     offered = rect_of(config) if config.facts.divides else surface_of(config)
     unit_pixels = [Pixel(config.colour_bits) for _ in range(config.units)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A record as it was some cycles ago: a winner until its reflection has one too, or who is unopposed in a round."""
+"""A shift register for records."""
 
 from myhdl import always, always_comb, block, concat, instances
 
@@ -7,8 +7,8 @@ from raycaster.rtl.common.widths import unsigned
 
 
 @block
-def winner_delay(clk, word, late_word, cycles: int):
-    """late_word is word as many cycles later, at least one: a shift register."""
+def delay_line(clk, word, late_word, cycles: int):
+    """late_word is word `cycles` cycles later, at least one."""
     kept_bits = (cycles - 1) * len(word)
 
     if cycles == 1:
