@@ -9,11 +9,10 @@ from pathlib import Path
 from typing import get_args
 
 import shtab
-from pydantic.fields import FieldInfo
 
 from raycaster.cli.__main__ import loaded
 from raycaster.cli.commands import COMMANDS
-from raycaster.configuration import OPTION_NAMES, Configuration
+from raycaster.configuration import OPTIONS
 from raycaster.errors import UserError
 from raycaster.options import CommandParser
 from raycaster.scene import packaged_scenes
@@ -44,12 +43,11 @@ def whole_parser() -> argparse.ArgumentParser:
 
 def _completed(parser: CommandParser) -> CommandParser:
     """The parser with what its arguments may be, as far as that is known."""
-    fields: dict[str, FieldInfo] = Configuration.__pydantic_fields__
     for action in parser._actions:
         if action.dest == "scene":
             action.choices = list(packaged_scenes())
-        elif action.dest in OPTION_NAMES and action.nargs != 0:
-            action.choices = [one for one in get_args(fields[action.dest].annotation) if isinstance(one, str)] or None
+        elif action.dest in OPTIONS and action.nargs != 0:
+            action.choices = [one for one in get_args(OPTIONS[action.dest].annotation) if isinstance(one, str)] or None
         elif action.type is Path:
             action.complete = shtab.FILE
     return parser

@@ -5,11 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pydantic.fields import FieldInfo
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
-from raycaster.configuration import OPTION_NAMES, Configuration
+from raycaster.configuration import OPTIONS
 from raycaster.options import CommandParser, shown_default
 from raycaster.output import Console
 
@@ -22,8 +21,7 @@ def command_parser() -> CommandParser:
 def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
     command_parser().parse_args(argv)
-    fields: dict[str, FieldInfo] = Configuration.__pydantic_fields__
     table = Table("option", "what it is", "default", box=SIMPLE_HEAD, pad_edge=False)
-    for name in OPTION_NAMES:
-        table.add_row("--" + name.replace("_", "-"), fields[name].description, shown_default(fields[name]))
+    for name in OPTIONS:
+        table.add_row("--" + name.replace("_", "-"), OPTIONS[name].description, shown_default(OPTIONS[name]))
     Console().print(table)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from raycaster.configuration import OPTION_NAMES, Configuration
+from raycaster.configuration import OPTIONS, Configuration
 from raycaster.convert.hierarchy import Port
 from raycaster.registers import compile_registers
 
@@ -128,7 +128,7 @@ def component(config: Configuration, ports: Sequence[Port], sources: Sequence[st
 
 def _macros(config: Configuration) -> dict[str, str | int]:
     """What software is told of the design: by macro, its C expression, as a word of Tcl."""
-    values = {name: getattr(config, name) for name in OPTION_NAMES}
+    values = {name: getattr(config, name) for name in OPTIONS}
     if config.fixed:
         values["fixed"] = config.fixed.scope
     return {name.upper(): f'{{"{value}"}}' if isinstance(value, str) else int(value) for name, value in values.items()}

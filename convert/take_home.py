@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from raycaster.configuration import OPTION_NAMES, Configuration
+from raycaster.configuration import OPTIONS, Configuration
 from raycaster.convert import ip_xact
 from raycaster.convert.hierarchy import Module
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM, component
@@ -53,7 +53,7 @@ def write_take_home(config: Configuration, modules: Sequence[Module], directory:
 
 def _description(config: Configuration) -> str:
     """The configuration as comment lines, without what its engine has no choice of, and a fixed scene where none is."""
-    values = {name: getattr(config, name) for name in OPTION_NAMES}
+    values = {name: getattr(config, name) for name in OPTIONS}
     if config.fixed:
         values["fixed"] = config.fixed.name
     if config.facts.line_buffered:

@@ -12,7 +12,7 @@ from pathlib import Path
 from sphinx.cmd.build import build_main
 
 from raycaster import ensure_tools
-from raycaster.configuration import Configuration
+from raycaster.configuration import configure
 from raycaster.docs import timing
 from raycaster.docs.drawings import draw_all
 from raycaster.errors import UserError
@@ -81,7 +81,7 @@ def write_site(output: Path, web: Path | None = None) -> Path:
             shutil.copytree(web, pages / "extra" / "web")
             index = pages / "index.md"
             index.write_text(re.sub(r"^!\[.*\]\(.*\)$", EMBEDDED, index.read_text(), count=1, flags=re.MULTILINE))
-        write_page(Configuration().rectangles, pages / "extra" / "register_map")
+        write_page(configure().rectangles, pages / "extra" / "register_map")
         if build_main(["-q", "-W", "--keep-going", "-d", f"{scratch}/doctrees", str(pages), str(written)]):
             raise UserError("the pages have faults, which stand above")
     return output / "index.html"

@@ -8,33 +8,25 @@ from dataclasses import replace
 from pydantic.fields import FieldInfo
 from systemrdl.node import FieldNode, Node, RegNode
 
-from raycaster.configuration import GROUP_OVERHEAD, OPTION_NAMES, Configuration, configure
+from raycaster.configuration import OPTIONS, configure
 from raycaster.docs.timing import CONFIGURATION, DIAGRAMS, kept, measured
-from raycaster.engines import ENGINES
+from raycaster.engines import beam, exact
+from raycaster.engines.engine import SETUP_LATENCY
 from raycaster.outcomes import table
 from raycaster.registers import compile_registers
-from raycaster.rtl.beam import fold_tester, hit_cells, ray_fold
-from raycaster.rtl.beam.beam_lane import beam_latency, pass_latency
-from raycaster.rtl.beam.beam_pass import rounds
-from raycaster.rtl.beam.colour_blend import blend_latency
-from raycaster.rtl.beam.line_starter import start_cycles
-from raycaster.rtl.beam.nearest_of_two import contest_latency
 from raycaster.rtl.common.widths import exact_slope_bits
-from raycaster.rtl.engine import rect_setup
-from raycaster.rtl.exact.exact_control import WRITE_AT
 
 ACCESS = {"r": "read", "rw": "read, write", "woclr": "read, write 1 to clear", "woset": "read, write 1 to set"}
 
 
 def options() -> str:
     """What a design is configured with, on the command line of make."""
-    fields: dict[str, FieldInfo] = Configuration.__pydantic_fields__
 
     def default(field: FieldInfo) -> str:
         value = int(field.default) if isinstance(field.default, bool) else field.default
         return "as suits the rest" if value is None else f"`{value}`"
 
-    rows = ([f"`{name.upper()}`", fields[name].description, default(fields[name])] for name in OPTION_NAMES)
+    rows = ([f"`{name.upper()}`", OPTIONS[name].description, default(OPTIONS[name])] for name in OPTIONS)
     return table(["option", "what it is", "where it is not given"], rows)
 
 
@@ -78,8 +70,8 @@ def beam_screens() -> str:
         size = f"{screen.columns}x{screen.rows}, {rate} a second"
         size += f", {pixels} pixels a clock" if pixels > 1 else ""
         turned = replace(config, turn=True)
-        setup = [f"{start_cycles(one)}" for one in (config, turned)]
-        rows.append([size, f"{screen.clock_hz / 1e6:g} MHz", beam_latency(config), *setup, screen.beats.blank])
+        setup = [f"{beam.start_cycles(one)}" for one in (config, turned)]
+        rows.append([size, f"{screen.clock_hz / 1e6:g} MHz", beam.beam_latency(config), *setup, screen.beats.blank])
     head = ["rays, frames", "clock", "cycles from a column to its colour", "to set up a row", "with a turned camera"]
     return table([*head, "blanking before it"], rows)
 
@@ -89,18 +81,22 @@ def beam_latencies() -> str:
     config = configure(engine="beam")
     turned, two_lanes = replace(config, turn=True), configure(engine="beam", rows=180, scale=6, pixels=2)
     rows = [
-        ["`ray_tester`, `fold_tester`", "whether the ray hits, all rectangles at once", fold_tester.LATENCY],
-        ["`nearest_of_two`", f"a round; {config.rectangles} rectangles take {rounds(config)}", contest_latency(config)],
-        ["`ray_fold`", "how the ray folds at its mirror", ray_fold.LATENCY],
-        ["", "all of it, from a ray to its reflection", pass_latency(config)],
-        ["", "the same where the camera turns, as each `fold_tester` registers its fold", pass_latency(turned)],
+        ["`ray_tester`, `fold_tester`", "whether the ray hits, all rectangles at once", beam.TESTER_LATENCY],
+        [
+            "`nearest_of_two`",
+            f"a round; {config.rectangles} rectangles take {beam.rounds(config)}",
+            beam.contest_latency(config),
+        ],
+        ["`ray_fold`", "how the ray folds at its mirror", beam.FOLD_LATENCY],
+        ["", "all of it, from a ray to its reflection", beam.pass_latency(config)],
+        ["", "the same where the camera turns, as each `fold_tester` registers its fold", beam.pass_latency(turned)],
         [
             "",
             "at 1920x1080 with two pixels a clock, as each `nearest_of_two` takes a cycle more too",
-            pass_latency(two_lanes),
+            beam.pass_latency(two_lanes),
         ],
-        ["`colour_blend`", "the pixel's colour", blend_latency(config)],
-        ["`hit_cells`", "with patterns, in which of its cells the nearest rectangle is hit", hit_cells.LATENCY],
+        ["`colour_blend`", "the pixel's colour", beam.blend_latency(config)],
+        ["`hit_cells`", "with patterns, in which of its cells the nearest rectangle is hit", beam.CELL_LATENCY],
     ]
     return table(["block", "what it does", "cycles"], rows)
 
@@ -108,7 +104,7 @@ def beam_latencies() -> str:
 def registers() -> str:
     """Every register with its fields."""
     parts = []
-    for node in compile_registers(Configuration().rectangles).descendants():
+    for node in compile_registers(configure().rectangles).descendants():
         if not isinstance(node, RegNode):
             continue
         entry = node.parent if node.parent.is_array else None
@@ -156,16 +152,16 @@ def facts() -> dict[str, str]:
         "units": str(default.units),
         "rectangles": str(default.rectangles),
         "slot": str(default.slot_cycles),
-        "seed_latency": str(ENGINES["seed"].result_latency),
-        "overhead": str(GROUP_OVERHEAD),
-        "verdict": str(WRITE_AT + 1),
-        "exact_latency": str(ENGINES["exact"].result_latency),
+        "seed_latency": str(configure().pass_latency),
+        "overhead": str(exact.Exact.GROUP_OVERHEAD),
+        "verdict": str(exact.WRITE_AT + 1),
+        "exact_latency": str(configure(engine="exact").pass_latency),
         "turned_slope_bits": str(exact_slope_bits(configure(engine="exact", turn=True))),
-        "pattern_latency": str(ENGINES["exact"].pattern_latency),
+        "pattern_latency": str(exact.PATTERN_LATENCY),
         "group": str(default.group_cycles),
         "budget": str(default.group_budget),
         "row": f"{default.screen_geometry.row_cycles:,}",
-        "setup": str(rect_setup.LATENCY),
+        "setup": str(SETUP_LATENCY),
         "traced_units": str(CONFIGURATION.units),
         "traced_group": str(CONFIGURATION.group_cycles),
     }

@@ -1,22 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""The one home of what a design is: its screen, its size, its arithmetic, and the row budget that they must meet."""
+"""The one home of what a design is: what a user chooses of it, and what is decided from that."""
 
 from __future__ import annotations
 
-from dataclasses import fields
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
-from pydantic import ConfigDict, Field, ValidationError, model_validator
+from pydantic import ConfigDict, Field, ValidationError
 from pydantic.dataclasses import dataclass as validated_dataclass
+from pydantic.fields import FieldInfo
 
 from raycaster.engines import ENGINES, Engine
 from raycaster.errors import UserError
 from raycaster.fixed import FixedScene
-from raycaster.screens import Screen
-
-COORDINATE_BITS = 9
-"""World coordinates are unsigned: 0..511."""
+from raycaster.screens import COORDINATE_BITS, Screen
 
 WORLD_SIZE = 1 << COORDINATE_BITS
 MOST_RECTANGLES = 32
@@ -28,12 +27,6 @@ MOST_REFLECTIONS = 4
 CHANNEL_BITS = 8
 """Bits a colour channel has until it leaves for the monitor."""
 
-UNIT_CELLS = {1: 559, 2: 607, 3: 647}
-"""LUT4 of an ECP5 that a unit of the seed engine takes, by quotient bits a cycle; from `make area DIVIDER_BITS=`."""
-
-GROUP_OVERHEAD = 4
-"""Cycles a group pays once: the write to the line buffer with the reset of two cycles, idling, ray generation."""
-
 SLOW_HZ = 50_000_000
 """A clock that designs meet on the chips of the boards without registers on long wires."""
 
@@ -43,17 +36,10 @@ class ConfigurationError(UserError):
 
 
 @validated_dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid"))
-class Configuration:
-    """Everything that distinguishes one generated design from another.
+class Options:
+    """What a user chooses of a design. What is None, or "auto", is decided from the rest, as `configure` does.
 
-    `rows`, `scale`, `units` and `divider_bits` may be left to the default (`None`, `"auto"`); a constructed
-    configuration holds the numbers that were chosen, so that equal designs compare equal. An engine without quotients
-    has no fraction, no rounding and no divider bits; the beam engine has a unit for each pixel of a clock, and every
-    scale that its monitor has pixels for. With a fixed scene, `rectangles` are the scene's, and the seed engine too
-    takes as few units as do. Culling saves cycles in most groups and none in the worst case, so the row budget does not
-    know of it.
-
-    Raises `ConfigurationError` through `configure`; constructed directly, pydantic's `ValidationError`.
+    Raises pydantic's `ValidationError`.
     """
 
     engine: Literal["seed", "exact", "beam"] = Field("seed", description="what computes the rays: seed, exact or beam")
@@ -99,152 +85,58 @@ class Configuration:
     )
     fixed: FixedScene | None = Field(None, description="what of a scene is built in")
 
-    @model_validator(mode="after")
-    def _complete(self) -> Configuration:
-        if self.fixed is not None:
-            object.__setattr__(self, "rectangles", len(self.fixed.rectangles))
-            if len(self.fixed.passes) != self.reflections + 1:
-                raise ValueError(f"fixed: is for {len(self.fixed.passes) - 1} reflections, not {self.reflections}")
-        self._choose_rows()
-        self._choose_scale()
-        self._check_pixels()
-        if not self.facts.divides:
-            self._refuse_quotients()
-        self._choose_culling()
-        self._choose_looks()
-        if self.units is None:
-            self._choose_units()
-        elif not self.facts.line_buffered and self.units != self.pixels:
-            raise ValueError(
-                f"units: the beam engine has one for each of PIXELS={self.pixels} a clock, not {self.units}"
-            )
-        if self.screen_geometry.columns % self.units:
-            columns = self.screen_geometry.columns
-            divisors = ", ".join(str(n) for n in range(1, columns + 1) if columns % n == 0)
-            raise ValueError(f"units: {self.units} does not divide the {columns} columns; choose one of {divisors}")
-        self._choose_divider_bits()
-        self._check_budget()
-        return self
+
+@dataclass(frozen=True, kw_only=True)
+class Configuration:
+    """Everything that distinguishes one generated design from another, all of it decided. `configure` makes one.
+
+    Attributes:
+        engine: the name of what computes the rays.
+        units: ray units in parallel; of the beam engine one for each pixel of a clock.
+        rectangles: that the hardware holds; of a fixed scene those that it has.
+        reflections: that a ray may have.
+        rows: of rays.
+        scale: how many times finer than `rows` the picture is, in both directions.
+        pixels: a clock.
+        fraction_bits: of origins, planes and quotients; 0 where the engine does not divide.
+        rounding: of quotients.
+        divider_bits: quotient bits a cycle; 0 where the engine does not divide.
+        colour_bits: a channel, on the VGA output.
+        screen: its name.
+        allow_underrun: whether it may miss the row budget.
+        culling: whether units give up early what no ray of a group can hit. It saves cycles in most groups and none in
+            the worst case, so the row budget does not know of it.
+        turn: whether the camera turns.
+        materials: whether rectangles mirror more or less than half.
+        patterns: whether rectangles have patterns.
+        bus: the name of the bus.
+        fixed: what of a scene is built in.
+    """
+
+    engine: str
+    units: int
+    rectangles: int
+    reflections: int
+    rows: int
+    scale: int
+    pixels: int
+    fraction_bits: int
+    rounding: str
+    divider_bits: int
+    colour_bits: int
+    screen: str
+    allow_underrun: bool
+    culling: bool
+    turn: bool
+    materials: bool
+    patterns: bool
+    bus: str
+    fixed: FixedScene | None = None
 
     @property
     def facts(self) -> Engine:
-        """What its engine is."""
+        """Its engine."""
         return ENGINES[self.engine]
-
-    def _choose_rows(self) -> None:
-        allowed = [rows for screen, rows in self.facts.screens if screen == self.screen]
-        if not allowed:
-            raise ValueError(f"screen: {self.screen} needs the beam engine, ENGINE=beam, not {self.engine}")
-        if self.rows is None:
-            object.__setattr__(self, "rows", allowed[0])
-        elif self.rows not in allowed:
-            choices = " or ".join(map(str, allowed))
-            beam = "; 180 rows need the beam engine, ENGINE=beam" if self.rows == 180 and self.screen == "vga" else ""
-            raise ValueError(f"rows: the {self.screen} screen has {choices} rows, not {self.rows}{beam}")
-
-    def _choose_scale(self) -> None:
-        """The finest that the monitor shows, where the engine is one that has scales."""
-        screen = self.facts.screens[self.screen, self.rows]
-        allowed = [1] if self.facts.line_buffered else screen.scales
-        if self.scale is None:
-            object.__setattr__(self, "scale", 1 if self.facts.line_buffered else screen.doubling)
-        elif self.scale not in allowed:
-            scales = " or ".join(map(str, allowed))
-            beam = "; scales need the beam engine, ENGINE=beam" if self.engine != "beam" else ""
-            shown = f"the {self.engine} engine shows {self.rows} rows at {scales}"
-            raise ValueError(f"scale: {shown}, not {self.scale}{beam}")
-
-    def _check_pixels(self) -> None:
-        """Two pixels a clock are two neighbouring columns, and both edges of each sync are between two clocks."""
-        if self.pixels == 1:
-            return
-        if self.facts.line_buffered:
-            raise ValueError(f"pixels: 2 a clock need the beam engine, ENGINE=beam, not {self.engine}")
-        screen = self.facts.screens[self.screen, self.rows].scaled(self.scale)
-        if screen.doubling != 1:
-            finest = self.scale * screen.doubling
-            raise ValueError(
-                f"pixels: 2 a clock need a column for each of the monitor's pixels, SCALE={finest}, not {self.scale}"
-            )
-        line = screen.horizontal
-        if any(part % 2 for part in (line.visible, line.front, line.sync, line.back)):
-            raise ValueError(
-                f"pixels: 2 a clock need an even width and blanking, and the {self.screen} screen's are not"
-            )
-
-    def _refuse_quotients(self) -> None:
-        if self.fraction_bits:
-            raise ValueError(f"fraction_bits: the {self.engine} engine has none, not {self.fraction_bits}")
-        if self.rounding != "truncate":
-            raise ValueError(f"rounding: the {self.engine} engine does not round; leave out {self.rounding}")
-        if self.divider_bits not in ("auto", 0):
-            raise ValueError(f"divider_bits: the {self.engine} engine has no divider; leave out {self.divider_bits}")
-        object.__setattr__(self, "divider_bits", 0)
-
-    def _choose_culling(self) -> None:
-        """The seed engine's slots are long enough to be worth it; what a fixed scene does not need is left out."""
-        if self.culling is None:
-            object.__setattr__(self, "culling", self.facts.divides and self.fixed is None)
-        elif self.culling and not self.facts.line_buffered:
-            raise ValueError("culling: the beam engine takes all rectangles at once; leave it out")
-        elif self.culling and self.fixed is not None:
-            raise ValueError("culling: is for scenes that change; leave it out, or what is fixed")
-
-    def _choose_looks(self) -> None:
-        """What no scene asks for is left out."""
-        for name in ("turn", "materials", "patterns"):
-            object.__setattr__(self, name, bool(getattr(self, name)))
-        if self.turn and not self.facts.turns:
-            raise ValueError(
-                f"turn: the {self.engine} engine measures depth along x, so its camera cannot turn; "
-                "choose ENGINE=exact or ENGINE=beam"
-            )
-
-    def _choose_units(self) -> None:
-        """The seed's 32; a beam for each pixel of a clock; otherwise as few as meet the row budget."""
-        if not self.facts.line_buffered:
-            object.__setattr__(self, "units", self.pixels)
-        elif not self.facts.divides:
-            object.__setattr__(self, "units", self._fewest_units(0))
-        elif self.fixed is None:
-            object.__setattr__(self, "units", 32)
-        else:
-            # A faster divider makes a unit larger, but there may be fewer of them.
-            given = self.divider_bits
-            fewest = {bits: self._fewest_units(bits) for bits in UNIT_CELLS if given in ("auto", bits)}
-            chosen = min(fewest, key=lambda bits: fewest[bits] * UNIT_CELLS[bits], default=given)
-            object.__setattr__(self, "units", fewest.get(chosen, 32))
-            object.__setattr__(self, "divider_bits", chosen)
-
-    def _fewest_units(self, divider_bits: int) -> int:
-        """Those that meet the row budget with so many quotient bits a cycle, or all columns where none do."""
-        columns = self.screen_geometry.columns
-        fitting = (
-            units
-            for units in range(1, columns + 1)
-            if columns % units == 0 and self._group_cycles(divider_bits) <= self._group_budget(units)
-        )
-        return next(fitting, columns)
-
-    def _choose_divider_bits(self) -> None:
-        if not self.facts.divides:
-            return
-        if self.divider_bits == "auto":
-            costs = {bits: self._group_cycles(bits) for bits in (1, 2, 3)}
-            chosen = next((bits for bits, cycles in costs.items() if cycles <= self.group_budget), 3)
-            object.__setattr__(self, "divider_bits", chosen)
-        elif self.divider_bits not in (1, 2, 3):
-            raise ValueError(f"divider_bits: must be auto, 1, 2 or 3, not {self.divider_bits}")
-
-    def _check_budget(self) -> None:
-        if self.group_cycles > self.group_budget and not self.allow_underrun:
-            raise ValueError(
-                f"row budget: a group of {self.units} columns takes {self.group_cycles} cycles with {self.rectangles} "
-                f"rectangles, {self.reflections} reflections and {self.slot_cycles} cycles a rectangle, but a row "
-                f"leaves it {self.group_budget} (less than {self.screen_geometry.row_cycles} cycles over {self.groups} "
-                "groups); "
-                "take more units or divider bits, fewer rectangles, reflections or fraction bits, or ALLOW_UNDERRUN=1"
-            )
 
     @property
     def looks(self) -> tuple[str, ...]:
@@ -267,10 +159,14 @@ class Configuration:
         return None if self.fixed else self.rectangles
 
     @cached_property
+    def whole_screen(self) -> Screen:
+        """The screen of this name, these rows and this scale, in single pixels."""
+        return self.facts.screens[self.screen, self.rows].scaled(self.scale)
+
+    @cached_property
     def screen_geometry(self) -> Screen:
-        """The screen of this name, these rows and this scale, and with so many pixels a clock."""
-        screen = self.facts.screens[self.screen, self.rows].scaled(self.scale)
-        return screen if self.pixels == 1 else screen.paired()
+        """The same screen with so many pixels a clock."""
+        return self.whole_screen if self.pixels == 1 else self.whole_screen.paired()
 
     @property
     def has_long_wires(self) -> bool:
@@ -295,34 +191,22 @@ class Configuration:
     @property
     def slot_cycles(self) -> int:
         """Cycles from one rectangle to the next; the beam engine takes all at once."""
-        return self._slot_cycles(self.divider_bits)
-
-    def _slot_cycles(self, divider_bits: int) -> int:
-        return -(-self.quotient_bits // divider_bits) if self.facts.divides else self.facts.slot_cycles
+        return self.facts.slot_cycles(self)
 
     @property
     def pass_latency(self) -> int:
         """Cycles from the end of a pass's last slot to the first cycle of the next pass."""
-        return self.facts.result_latency + (self.facts.pattern_latency if self.patterns else 0)
-
-    def _group_cycles(self, divider_bits: int) -> int:
-        if not self.facts.line_buffered:
-            return 1
-        slots = sum(mask.bit_count() for mask in self.passes) * self._slot_cycles(divider_bits)
-        return slots + len(self.passes) * self.pass_latency + GROUP_OVERHEAD
+        return self.facts.pass_latency(self)
 
     @property
     def group_cycles(self) -> int:
         """Cycles from one group's start to the next one's with all rectangles enabled: the worst case."""
-        return self._group_cycles(self.divider_bits)
+        return self.facts.group_cycles(self)
 
     @property
     def group_budget(self) -> int:
         """Cycles that a group may take for a row to be ready before the row above it was shown."""
-        return self._group_budget(self.units)
-
-    def _group_budget(self, units: int) -> int:
-        return (self.screen_geometry.row_cycles - 1) // (self.screen_geometry.columns // units)
+        return (self.screen_geometry.row_cycles - 1) // self.groups
 
     @property
     def name(self) -> str:
@@ -351,8 +235,77 @@ def need_avalon(config: Configuration, what: str) -> None:
         raise ConfigurationError(f"bus: {what} drives the registers itself, by Avalon-MM; leave out {config.bus}")
 
 
-OPTION_NAMES = tuple(field.name for field in fields(Configuration) if field.name != "fixed")
-"""Of the fields that people choose one by one; what is fixed comes from a scene."""
+OPTIONS: Mapping[str, FieldInfo] = {
+    name: field for name, field in Options.__pydantic_fields__.items() if name != "fixed"
+}
+"""What users choose one by one, with its bounds, default and help, by name; what is fixed comes from a scene."""
+
+
+def decided(options: Options) -> Configuration:
+    """Decide what the user left open.
+
+    Raises:
+        ValueError: there is no such design; `option: why, and what to do instead`.
+    """
+    engine, fixed = ENGINES[options.engine], options.fixed
+    if fixed is not None and len(fixed.passes) != options.reflections + 1:
+        raise ValueError(f"fixed: is for {len(fixed.passes) - 1} reflections, not {options.reflections}")
+    rows = _rows(options, engine)
+    scale = _scale(options, engine, rows)
+    engine.refuse(options)
+    config = Configuration(
+        engine=options.engine,
+        units=options.units or 1,
+        rectangles=len(fixed.rectangles) if fixed else options.rectangles,
+        reflections=options.reflections,
+        rows=rows,
+        scale=scale,
+        pixels=options.pixels,
+        fraction_bits=options.fraction_bits,
+        rounding=options.rounding,
+        divider_bits=0,
+        colour_bits=options.colour_bits,
+        screen=options.screen,
+        allow_underrun=options.allow_underrun,
+        culling=engine.culls(options) if options.culling is None else options.culling,
+        turn=bool(options.turn),
+        materials=bool(options.materials),
+        patterns=bool(options.patterns),
+        bus=options.bus,
+        fixed=fixed,
+    )
+    columns = config.screen_geometry.columns
+    if columns % config.units:
+        divisors = ", ".join(str(n) for n in range(1, columns + 1) if columns % n == 0)
+        raise ValueError(f"units: {config.units} does not divide the {columns} columns; choose one of {divisors}")
+    config = engine.sized(config, options)
+    engine.check(config)
+    return config
+
+
+def _rows(options: Options, engine: Engine) -> int:
+    allowed = [rows for screen, rows in engine.screens if screen == options.screen]
+    if not allowed:
+        raise ValueError(f"screen: {options.screen} needs the beam engine, ENGINE=beam, not {engine.name}")
+    if options.rows is None:
+        return allowed[0]
+    if options.rows not in allowed:
+        choices = " or ".join(map(str, allowed))
+        other = next((one for one in ENGINES.values() if (options.screen, options.rows) in one.screens), None)
+        hint = f"; {options.rows} rows need the {other.name} engine, ENGINE={other.name}" if other else ""
+        raise ValueError(f"rows: the {options.screen} screen has {choices} rows, not {options.rows}{hint}")
+    return options.rows
+
+
+def _scale(options: Options, engine: Engine, rows: int) -> int:
+    allowed = engine.scales(engine.screens[options.screen, rows])
+    if options.scale is None:
+        return allowed[0]
+    if options.scale not in allowed:
+        scales = " or ".join(map(str, sorted(allowed)))
+        hint = "; scales need the beam engine, ENGINE=beam" if engine.line_buffered else ""
+        raise ValueError(f"scale: the {engine.name} engine shows {rows} rows at {scales}, not {options.scale}{hint}")
+    return options.scale
 
 
 def configure(**values: Any) -> Configuration:
@@ -362,10 +315,12 @@ def configure(**values: Any) -> Configuration:
         ConfigurationError: one line that names the option, what was given and what was expected.
     """
     try:
-        return Configuration(**values)
+        return decided(Options(**values))
     except ValidationError as error:
         first = error.errors()[0]
-        message = first["msg"].removeprefix("Value error, ")
+        message = first["msg"]
         if first["loc"]:
             message = f"{first['loc'][0]}: {message}, not {first['input']!r}"
         raise ConfigurationError(message) from None
+    except ValueError as error:
+        raise ConfigurationError(str(error)) from None

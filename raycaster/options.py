@@ -18,7 +18,7 @@ from typing import Any, NoReturn
 
 from pydantic.fields import FieldInfo
 
-from raycaster.configuration import OPTION_NAMES, Configuration
+from raycaster.configuration import OPTIONS, Configuration
 from raycaster.errors import UserError
 from raycaster.output import printable
 from raycaster.scene import find_scene
@@ -118,7 +118,7 @@ class _Help(argparse.HelpFormatter):
     """Help without those options of the configuration that are seldom asked for."""
 
     def add_argument(self, action: argparse.Action) -> None:
-        if action.dest not in OPTION_NAMES or action.dest in USUAL:
+        if action.dest not in OPTIONS or action.dest in USUAL:
             super().add_argument(action)
 
 
@@ -143,9 +143,10 @@ def command_line(name: str, scene: Path | str | None = None, options: Mapping[st
         scene: its scene.
         options: by name, as in `fraction_bits`; a switch is True.
     """
-    fields: dict[str, FieldInfo] = Configuration.__pydantic_fields__
     given = {
-        option: int(value) if option in fields and isinstance(value, bool) and not _is_switch(fields[option]) else value
+        option: int(value)
+        if option in OPTIONS and isinstance(value, bool) and not _is_switch(OPTIONS[option])
+        else value
         for option, value in (options or {}).items()
     }
     given = {option: value for option, value in given.items() if value is not False}
@@ -177,9 +178,8 @@ def add_build_option(parser: argparse.ArgumentParser) -> None:
 def add_configuration_options(parser: argparse.ArgumentParser) -> None:
     """Add `--units`, `--fraction-bits` and the others, each with the configuration's own description."""
     group = parser.add_argument_group("design", "more of it: raycaster options")
-    fields: dict[str, FieldInfo] = Configuration.__pydantic_fields__
-    for name in OPTION_NAMES:
-        field = fields[name]
+    for name in OPTIONS:
+        field = OPTIONS[name]
         option = "--" + name.replace("_", "-")
         help_text = f"{field.description} (default: {shown_default(field)})"
         if _is_switch(field):
@@ -203,18 +203,17 @@ def _is_switch(field: FieldInfo) -> bool:
 def given_options(arguments: argparse.Namespace) -> dict[str, Any]:
     """The configuration's options that stood on the command line, by field name."""
     values = vars(arguments)
-    return {name: values[name] for name in OPTION_NAMES if values.get(name) is not None}
+    return {name: values[name] for name in OPTIONS if values.get(name) is not None}
 
 
 def as_options(config: Configuration) -> list[str]:
     """The options that make a configuration: those whose values are not the defaults."""
-    fields: dict[str, FieldInfo] = Configuration.__pydantic_fields__
     words = []
-    for name in OPTION_NAMES:
+    for name in OPTIONS:
         value = getattr(config, name)
-        if value != fields[name].default:
+        if value != OPTIONS[name].default:
             words.append("--" + name.replace("_", "-"))
-            if _is_switch(fields[name]):
+            if _is_switch(OPTIONS[name]):
                 continue
             words.append(str(int(value)) if isinstance(value, bool) else str(value))
     return words

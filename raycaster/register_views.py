@@ -11,7 +11,7 @@ from peakrdl_cheader.c_standards import CStandard
 from peakrdl_cheader.exporter import CHeaderExporter
 from peakrdl_html import HTMLExporter
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import configure
 from raycaster.memory_map import c_header
 from raycaster.options import CommandParser
 from raycaster.output import printable, replaced
@@ -57,7 +57,7 @@ def command_parser() -> CommandParser:
     parser = CommandParser("registers", __doc__, "")
     parser.add_argument("--output", type=Path, default=Path("build/registers"), help="the page (default: %(default)s)")
     parser.add_argument("--software", type=Path, default=SOFTWARE, help="the C headers (default: %(default)s)")
-    default = Configuration().rectangles
+    default = configure().rectangles
     parser.add_argument("--rectangles", default=default, help="entries of the table (default: %(default)s)")
     return parser
 

@@ -6,6 +6,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+COORDINATE_BITS = 9
+"""World coordinates are unsigned: 0..511."""
+
 VIEW_DISTANCE = 100
 """Slope along x of every primary ray: the distance of the viewing rectangle, in world units."""
 

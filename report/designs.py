@@ -10,7 +10,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from raycaster.configuration import OPTION_NAMES, Configuration, configure
+from raycaster.configuration import OPTIONS, configure
 from raycaster.golden.seed_engine import Rounding
 from raycaster.report import hardware, plots
 from raycaster.report.extent import Extent
@@ -50,11 +50,11 @@ class Designs:
 
 def to_keep(found: Designs) -> list[dict[str, Any]]:
     """Of every design what the manual's table and plot need; its options are of the configuration."""
-    defaults = Configuration.__pydantic_fields__
+    defaults = OPTIONS
     best = found.best
     rows = []
     for one in found.every:
-        values = {name: getattr(one.config, name) for name in OPTION_NAMES}
+        values = {name: getattr(one.config, name) for name in OPTIONS}
         rows.append(
             {
                 "design": describe(one.config),

@@ -20,6 +20,7 @@ from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import Module, Port, convert_hierarchy
 from raycaster.convert.inside import port_signals
+from raycaster.engines.exact import PATTERN_LATENCY
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.output import emptied
 from raycaster.rtl.common.interfaces import Steps
@@ -402,7 +403,7 @@ def trace_cycles(
         offered = [start + offered_after for start, ended in zip(starts, early, strict=False) if not ended]
         # Where there is nothing to trace, a pass only looks for it and adds the background; a lost ray adds at once.
         traced = lost is None or bounce <= lost
-        patterns = config.facts.pattern_latency if config.patterns else 0
+        patterns = PATTERN_LATENCY if config.patterns else 0
         length = 2 + max([starts[-1], *(end + patterns for end in offered)]) if traced else 1
         first = len(cycles)
         cycles += [TraceCycle(idle | {"steps_initial_ray": int(bounce == 0)}, bounce) for _ in range(length)]

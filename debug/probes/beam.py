@@ -37,12 +37,8 @@ from raycaster.debug.probes.units import (
     sorted_rect,
 )
 from raycaster.debug.waves import Samples, signed
+from raycaster.engines import beam
 from raycaster.golden.rays import primary_slopes
-from raycaster.rtl.beam import beam_lane as beam
-from raycaster.rtl.beam import beam_pass
-from raycaster.rtl.beam import fold_tester as tester
-from raycaster.rtl.beam import look_up as looking
-from raycaster.rtl.beam.nearest_of_two import contest_latency
 from raycaster.rtl.common.records import (
     Facet,
     Look,
@@ -185,7 +181,7 @@ class BeamProbes(Description):
             look=f"{LANE}.{numbered('look_up', bounce, passes)}",
             seen=f"{BLEND}.{numbered('colour_seen', bounce, passes)}",
             mirror=f"{LANE}.{numbered('mirror_look_up', min(bounce, passes - 2), passes - 1)}",
-            **{f"round_{turn}": self._contest(turn, rectangle) for turn in range(beam_pass.rounds(config))},
+            **{f"round_{turn}": self._contest(turn, rectangle) for turn in range(beam.rounds(config))},
         )
 
     def _contest(self, turn: int, rectangle: int) -> str:
@@ -244,17 +240,17 @@ class BeamProbes(Description):
             if values[f"{RENDERER}.rects_fetch"][cycle] and index in range(count):
                 events.append(Event("fetch", cycle, Place(0, index)))
             events += [Event("load", cycle, Place(0, i)) for i in range(count) if load >> i & 1]
-        end = column + self.starts[-1] + beam_pass.winner_latency(self.config)
+        end = column + self.starts[-1] + beam.winner_latency(self.config)
         for bounce, start in enumerate(self.starts[: ray.reflections + 1]):
             entered = column + start
             events.append(Event("ray", entered, Place(bounce)))
             events += [Event("test", entered, Place(bounce, i)) for i in range(count)]
-            for turn in range(beam_pass.rounds(self.config)):
-                cycle = entered + tester.LATENCY + (turn + 1) * contest_latency(self.config)
+            for turn in range(beam.rounds(self.config)):
+                cycle = entered + beam.TESTER_LATENCY + (turn + 1) * beam.contest_latency(self.config)
                 events += [Event(f"round {turn}", cycle, Place(bounce, i)) for i in range(0, count, 2 << turn)]
-            events.append(Event("winner", entered + beam_pass.winner_latency(self.config), Place(bounce)))
+            events.append(Event("winner", entered + beam.winner_latency(self.config), Place(bounce)))
             events.append(Event("kept", end, Place(bounce)))
-            events.append(Event("blend", end + looking.LATENCY, Place(bounce)))
+            events.append(Event("blend", end + beam.LOOK_UP_LATENCY, Place(bounce)))
         events.append(Event("done", column + beam.beam_latency(self.config), Place(ray.reflections)))
         return events + shown_events(samples, ray, VIDEO, column)
 
@@ -263,7 +259,7 @@ class BeamProbes(Description):
         """In the order in which values depend on each other."""
         config = self.config
         facet, walk, winner = Facet(walk_bits(config)), Walk(walk_bits(config)), Winner(index_bits(config))
-        last, passes = beam_pass.rounds(config) - 1, len(self.starts)
+        last, passes = beam.rounds(config) - 1, len(self.starts)
         candidate, fold, reflector = candidate_of(config), fold_of(config), Reflector()
         rounds = [
             Probe("nearest of some", fields("{beam}", f"{{round_{turn}}}", ("valid", "index"), candidate),
@@ -302,9 +298,9 @@ class BeamProbes(Description):
                 lambda ray, place: way_p(ray, place) if place.bounce else None, signed=True),
             Probe("bounds p, q", tuple(f"{{walker}}.{name}" for name in BOUNDS), "test", walked, late=1,
                 signed=True),
-            Probe("inside", fields("{tester}", "hit", ("valid",), candidate), "test", hit, late=tester.LATENCY),
+            Probe("inside", fields("{tester}", "hit", ("valid",), candidate), "test", hit, late=beam.TESTER_LATENCY),
             Probe("t", fields("{tester}", "hit", ("numerator", "denominator"), candidate), "test", fraction,
-                late=tester.LATENCY),
+                late=beam.TESTER_LATENCY),
             *rounds,
             Probe("nearest", fields("{beam}", f"{{round_{last}}}", ("valid", "index"), candidate), "winner",
                 nearest_of(0)),

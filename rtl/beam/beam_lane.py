@@ -6,12 +6,17 @@ from itertools import pairwise
 from myhdl import always, block, concat, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.beam import hit_cells as cells
-from raycaster.rtl.beam import look_up as looking
-from raycaster.rtl.beam import ray_fold as folder
-from raycaster.rtl.beam.beam_pass import beam_pass, winner_latency
-from raycaster.rtl.beam.colour_blend import blend_latency, colour_blend
-from raycaster.rtl.beam.fold_tester import fold_lead
+from raycaster.engines.beam import (
+    ENTRY_LATENCY,
+    LOOK_UP_LATENCY,
+    cell_latency,
+    fold_lead,
+    pass_latency,
+    tested,
+    winner_latency,
+)
+from raycaster.rtl.beam.beam_pass import beam_pass
+from raycaster.rtl.beam.colour_blend import colour_blend
 from raycaster.rtl.beam.hit_cells import hit_cells
 from raycaster.rtl.beam.look_up import look_up
 from raycaster.rtl.beam.mirror_look_up import mirror_look_up
@@ -20,34 +25,6 @@ from raycaster.rtl.beam.slope_walker import ray_slope, slope_walker
 from raycaster.rtl.common.delay_line import delay_line
 from raycaster.rtl.common.records import Reflector, Sight, candidate_of, fold_of, seen_of, turn_of, winner_of
 from raycaster.rtl.common.widths import bit, index_bits, side_by_side, unsigned
-
-ENTRY_LATENCY = 1
-"""Cycles from next_column to the first walkers' step."""
-
-
-def tested(config: Configuration) -> list[list[int]]:
-    """For the primary ray and each reflection, the numbers of the rectangles that it is tested against.
-
-    A fixed scene may leave none for a reflection, which is then none; one rectangle is always tested.
-    """
-    return [[i for i in range(config.rectangles) if mask >> i & 1] for mask in config.passes if mask]
-
-
-def pass_latency(config: Configuration) -> int:
-    """Cycles from a ray to its reflection."""
-    return winner_latency(config) + looking.LATENCY + folder.LATENCY + fold_lead(config)
-
-
-def cell_latency(config: Configuration) -> int:
-    """Cycles from a winner to the cells of its pattern that it is hit in."""
-    return cells.LATENCY if config.patterns else 0
-
-
-def beam_latency(config: Configuration) -> int:
-    """Cycles from next_column to the column's colour."""
-    reflections = len(tested(config)) - 1
-    entered = ENTRY_LATENCY + reflections * pass_latency(config)
-    return entered + winner_latency(config) + cell_latency(config) + looking.LATENCY + blend_latency(config)
 
 
 @block
@@ -64,7 +41,7 @@ def beam_lane(
     numbers = tested(config)
     passes, reflections = len(numbers), len(numbers) - 1
     starts = [ENTRY_LATENCY + number * pass_latency(config) for number in range(passes)]
-    looked_up = winner_latency(config) + looking.LATENCY
+    looked_up = winner_latency(config) + LOOK_UP_LATENCY
     seen = starts[-1] + winner_latency(config) + cell_latency(config)
     every_step = (1 << seen) - 1
 

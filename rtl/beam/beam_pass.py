@@ -7,10 +7,9 @@ from functools import partial
 from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.beam import fold_tester as tester
+from raycaster.engines.beam import contest_latency, is_staged, rounds
 from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.nearest_of import nearest_of
-from raycaster.rtl.beam.nearest_of_two import contest_latency
 from raycaster.rtl.beam.ray_tester import ray_tester
 from raycaster.rtl.beam.rect_walker import rect_walker
 from raycaster.rtl.beam.slope_walker import ray_slope, slope_walker
@@ -19,17 +18,6 @@ from raycaster.rtl.common.magnitude import magnitude
 from raycaster.rtl.common.records import Signs, candidate_of, facet_of, stride_of, walk_of
 from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import exact_slope_bits, index_bits, side_by_side
-
-
-def rounds(config: Configuration) -> int:
-    """Rounds in which the nearest of a pass's rectangles is found, two by two; one alone has one too."""
-    most = max(mask.bit_count() for mask in config.passes)
-    return max(1, (most - 1).bit_length())
-
-
-def winner_latency(config: Configuration) -> int:
-    """Cycles from a pass's ray to the rectangle that it sees."""
-    return tester.LATENCY + rounds(config) * contest_latency(config)
 
 
 @block
@@ -75,7 +63,7 @@ def beam_pass(
             size_1.dy.next = size.dy
             size_1.dz.next = size.dz
 
-    if tester.is_staged(config):
+    if is_staged(config):
         tested_size = size_1
     else:
         tested_size = Slope(slope_bits)
@@ -90,7 +78,7 @@ def beam_pass(
     tests = ray_tester if fold is None else partial(fold_tester, fold=fold)
     testers = [
         tests(clk, step_way=step, step_bounds=step_bounds, step_slope=step_slope, facet=facet, walk=walk, signs=signs,
-            slope=tested_size, index=tied(i, index_bits(config)), hit=hit, staged=tester.is_staged(config))
+            slope=tested_size, index=tied(i, index_bits(config)), hit=hit, staged=is_staged(config))
         for i, facet, walk, hit in zip(tested, seen, walks, hits, strict=True)
     ]  # fmt: skip
     all_hits = side_by_side([hit.word for hit in hits])

@@ -3,37 +3,13 @@
 
 from myhdl import always_comb, always_seq, block, instances
 
-from raycaster.configuration import Configuration, ConfigurationError
+from raycaster.configuration import Configuration
+from raycaster.engines.beam import beam_latency
 from raycaster.rtl.beam.beam_caster import beam_caster
-from raycaster.rtl.beam.beam_lane import beam_latency
-from raycaster.rtl.beam.line_starter import start_cycles
 from raycaster.rtl.common.interfaces import Scan
 from raycaster.rtl.common.records import shown_of
 from raycaster.rtl.common.widths import CYCLE_BITS, bit, bits_for, factor_bits, row_bits, signed, unsigned
 from raycaster.rtl.video.video_generator import video_generator
-
-
-def blanking_left(config: Configuration) -> int:
-    """Cycles of a line's blanking that are left when its first column starts; negative where it comes too late."""
-    horizontal = config.screen_geometry.beats
-    # The horizontal sync is seen a pixel after its turn, and the columns start before theirs.
-    return horizontal.blank - horizontal.front - beam_latency(config) - 1 - start_cycles(config)
-
-
-def check_blanking(config: Configuration) -> None:
-    """Refuse a design that cannot set up a line while the monitor is in its blanking.
-
-    Raises:
-        ConfigurationError: it cannot.
-    """
-    if (left := blanking_left(config)) < 0:
-        turning = " and a camera that turns" if config.turn else ""
-        paired = " at two pixels a clock" if config.pixels > 1 else ""
-        ways = ["take fewer of either", *(["TURN=0"] if turning else []), *(["PIXELS=1"] if paired else [])]
-        raise ConfigurationError(
-            f"rectangles: with {config.rectangles} of them, {config.reflections} reflections{turning}{paired}, the "
-            f"beam engine is {-left} cycles short of a line's blanking on this screen; {' or '.join(ways)}"
-        )
 
 
 @block
@@ -44,7 +20,6 @@ def beam_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
     stays low. The video generator announces each column beam_latency cycles before its pixel is due. row_cycles: cycles
     since the line's first column, with the present one; group_cycles: a pixel's, or a pair's, which is 1.
     """
-    check_blanking(config)
     screen = config.screen_geometry
     rows, horizon_row, hs_active = screen.rows, screen.horizon_row, screen.horizontal.active_high
     last_repeat = screen.doubling - 1

@@ -3,10 +3,8 @@
 
 from myhdl import always, always_comb, block, concat, instances
 
+from raycaster.engines.engine import SMALLEST_CELL_BITS
 from raycaster.rtl.common.widths import bit, signed, unsigned
-
-SMALLEST_CELL_BITS = 3
-"""log2 of the smallest cell's size in world units."""
 
 
 @block

@@ -4,8 +4,7 @@
 from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.beam import colour_mix as mixing
-from raycaster.rtl.beam import colour_seen as looking
+from raycaster.engines.beam import MIX_LATENCY, mixes
 from raycaster.rtl.beam.colour_mean import colour_mean
 from raycaster.rtl.beam.colour_mix import colour_mix
 from raycaster.rtl.beam.colour_seen import colour_seen
@@ -13,19 +12,6 @@ from raycaster.rtl.common.delay_line import delay_line
 from raycaster.rtl.common.records import seen_of, shade_of
 from raycaster.rtl.common.ties import tied, unconnected
 from raycaster.rtl.common.widths import bit, unsigned
-
-MEAN_LATENCY = 1
-"""Cycles from the colours to their mean."""
-
-
-def mixes(config: Configuration) -> bool:
-    """Whether mirrors may show more or less than half."""
-    return "mirror" in seen_of(config).layout
-
-
-def blend_latency(config: Configuration) -> int:
-    """Cycles from what was seen to the pixel."""
-    return looking.LATENCY + (config.reflections * mixing.LATENCY if mixes(config) else MEAN_LATENCY)
 
 
 @block
@@ -59,7 +45,7 @@ def colour_blend(clk, seen, picture, pixel, config: Configuration):
         # A mirror's own colour waits until it is known what is behind.
         nears = [*(shade.twin() for shade in shades[: mirrors - 1]), shades[mirrors - 1]]
         waits = [
-            delay_line(clk, shades[number].word, nears[number].word, (mirrors - 1 - number) * mixing.LATENCY)
+            delay_line(clk, shades[number].word, nears[number].word, (mirrors - 1 - number) * MIX_LATENCY)
             for number in range(mirrors - 1)
         ]
         mixers = [

@@ -5,12 +5,10 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.rtl.common.widths import signed, unsigned
 
-LATENCY = 1
-
 
 @block
 def colour_mix(clk, near, mirror, far, mixed):
-    """mixed = (4 - mirror) * near + mirror * far, of worth a quarter, LATENCY cycles later: no bit is lost.
+    """mixed = (4 - mirror) * near + mirror * far, of worth a quarter, MIX_LATENCY cycles later: no bit is lost.
 
     near: the mirror's own, 8 bits; mirror: 0 to 4; far: near's width and two bits of fraction for each mirror behind
     this one; mixed: two bits more.

@@ -5,12 +5,10 @@ from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.rtl.common.widths import MIRROR_BITS, RGB_BITS, bit, unsigned
 
-LATENCY = 1
-
 
 @block
 def colour_seen(clk, reached, seen, picture, found, shade, number: int):
-    """The colour that a ray saw, or the background from the first ray that found nothing on, LATENCY cycles later.
+    """The colour that a ray saw, or the background from the first ray that found nothing on, SEEN_LATENCY cycles later.
 
     reached: all rays before it have found something; seen: a `Seen`; found: it has too, combinational; shade: a
     `Shade`; number: of reflections before it. Of the last hit that a scene asks for, nothing is behind.

@@ -3,32 +3,12 @@
 
 from myhdl import always, always_comb, block, concat, instances
 
-from raycaster.configuration import Configuration
 from raycaster.rtl.common.widths import bit, signed, unsigned
-
-LATENCY = 3
-"""Cycles from the way to the hit; the bounds are read one cycle in, the slope's magnitudes `slope_at`."""
-
-
-def is_staged(config: Configuration) -> bool:
-    """What a tester chooses of the fold and of the slope is registered: where the camera turns, as all is wider, and
-    where wires are long."""
-    return bool(config.turn) or config.has_long_wires
-
-
-def fold_lead(config: Configuration) -> int:
-    """Cycles from the fold to the way."""
-    return 1 if is_staged(config) else 0
-
-
-def slope_at(config: Configuration) -> int:
-    """Cycles from the way to the slope's magnitudes."""
-    return 1 if is_staged(config) else 2
 
 
 @block
 def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope, fold, index, hit, staged: bool):
-    """A ray a clock, as ray_fold folds it; hit, of the rectangle index, follows LATENCY cycles later.
+    """A ray a clock, as ray_fold folds it; hit, of the rectangle index, follows TESTER_LATENCY cycles later.
 
     Along p the folded ray meets the plane at W = +-n D[p] + fold.p, over D[a]: between the two bounds it hits, which
     are compared as in `ray_tester`. It must be beyond its last mirror, on the side that it runs

@@ -6,7 +6,9 @@ from itertools import pairwise
 from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
-from raycaster.rtl.beam.cell_step import SMALLEST_CELL_BITS, cell_step
+from raycaster.engines.beam import CELL_LATENCY
+from raycaster.engines.engine import SMALLEST_CELL_BITS
+from raycaster.rtl.beam.cell_step import cell_step
 from raycaster.rtl.common.delay_line import delay_line
 from raycaster.rtl.common.records import CellDivision, winner_of
 from raycaster.rtl.common.widths import (
@@ -20,21 +22,16 @@ from raycaster.rtl.common.widths import (
     unsigned,
 )
 
-SLOPE_AT = 2
-"""Cycles from the nearest hit to that in which the slope is read."""
-
-LATENCY = SLOPE_AT + 3 + COORDINATE_BITS - SMALLEST_CELL_BITS
-
 
 @block
 def hit_cells(clk, turn, nearest, winner, slope, camera, sight, config: Configuration):
-    """A hit a clock; sight, which is the winner with odd_u and odd_v, follows LATENCY cycles later.
+    """A hit a clock; sight, which is the winner with odd_u and odd_v, follows CELL_LATENCY cycles later.
 
     With the mirrored eye E' and slope D', the ray is at E' + D' t, and t is the hit's numerator / denominator: so the
     quotient of E' * denominator + D' * numerator and the denominator is a world coordinate (Heckbert and Hanrahan
     1984), whose bit of a cell's worth a restoring division finds. Only the nearest rectangle's are formed.
 
-    nearest: a Candidate; turn: the ray's `Turn`, a cycle after nearest; slope: D, SLOPE_AT cycles after it.
+    nearest: a Candidate; turn: the ray's `Turn`, a cycle after nearest; slope: D, CELL_SLOPE_AT cycles after it.
     """
     slope_bits, numerator_bits, base_bits = exact_slope_bits(config), eye_bits(config) - 1, turn_bits(config) + 1
     way_bits, base_way_bits = slope_bits + 1 + numerator_bits, base_bits + slope_bits
@@ -59,7 +56,7 @@ def hit_cells(clk, turn, nearest, winner, slope, camera, sight, config: Configur
     of_u, of_v = ([CellDivision(slope_bits, place + 1) for place in (*places, places[-1] - 1)] for _ in "uv")
     dividend_u, dividend_v, quotient_u, quotient_v = of_u[0], of_v[0], of_u[-1], of_v[-1]
 
-    delay = delay_line(clk, winner.word, late.word, LATENCY)
+    delay = delay_line(clk, winner.word, late.word, CELL_LATENCY)
 
     @always(clk.posedge)
     def stage_1():

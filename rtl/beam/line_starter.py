@@ -4,20 +4,8 @@
 from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
+from raycaster.engines.beam import AIM_LATENCY
 from raycaster.rtl.common.widths import BASIS_BITS, bit, exact_slope_bits, factor_bits, signed, unsigned
-from raycaster.rtl.engine import rect_setup as setup
-
-AIM_LATENCY = 5
-"""Cycles from start_line to the first ray."""
-
-
-def start_cycles(config: Configuration) -> int:
-    """Cycles from start_line until the first column may come."""
-    if not config.turn:
-        # Two lanes' starts are registered by themselves.
-        return setup.LATENCY + config.rectangles + config.pixels - 1
-    # A sweep reads its slope from the third cycle on, and the next one starts with its last load.
-    return AIM_LATENCY - 3 + (config.pixels + 1) * (setup.LATENCY + config.rectangles - 1) + 1
 
 
 @block

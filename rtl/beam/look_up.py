@@ -9,12 +9,10 @@ from raycaster.rtl.common.records import Look, facet_of
 from raycaster.rtl.common.widths import RGB_BITS, bit, unsigned
 from raycaster.rtl.engine.pattern_colour import pattern_colour
 
-LATENCY = 1
-
 
 @block
 def look_up(clk, step, facets, sight, seen, config: Configuration):
-    """seen, a `Seen`: of the rectangle that sight tells, LATENCY cycles after a step.
+    """seen, a `Seen`: of the rectangle that sight tells, LOOK_UP_LATENCY cycles after a step.
 
     facets: each rectangle's `Facet`, side by side, the first in the lowest bits; sight: a `Winner`, with patterns a
     `Sight`.

@@ -11,7 +11,7 @@ from raycaster.rtl.common.widths import unsigned
 
 @block
 def mirror_look_up(clk, facets, winner, last, config: Configuration):
-    """last, a `Reflector`: the rectangle that a `Winner` tells, `look_up.LATENCY` cycles later.
+    """last, a `Reflector`: the rectangle that a `Winner` tells, LOOK_UP_LATENCY cycles later.
 
     facets: each rectangle's `Facet`, side by side, the first in the lowest bits.
     """

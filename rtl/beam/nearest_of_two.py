@@ -3,16 +3,10 @@
 
 from myhdl import always, always_comb, block, concat, instances, intbv
 
-from raycaster.configuration import Configuration
 from raycaster.rtl.common.widths import bit, unsigned
 
 MULTIPLIER_BITS = 18
 """Of a factor that one hard multiplier takes; a denominator has some more, which are added up."""
-
-
-def contest_latency(config: Configuration) -> int:
-    """Cycles of a contest; where wires are long, what the multipliers put out has one for its way."""
-    return 3 if config.has_long_wires else 2
 
 
 @block

@@ -5,13 +5,10 @@ from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.rtl.common.widths import AXIS_BITS, bit, signed, unsigned
 
-LATENCY = 3
-"""Cycles from the mirror to the fold; the slope is read one cycle in."""
-
 
 @block
 def ray_fold(clk, before, last, slope, fold):
-    """A ray a clock; the fold follows LATENCY cycles later.
+    """A ray a clock; the fold follows FOLD_LATENCY cycles later.
 
     A mirror leaves the ray straight and turns the room behind it (Heckbert and Hanrahan 1984 mirror the eye in the same
     way): to a point X on the straight ray from the eye E belongs the point x - E = +-(X - E) + T in the room, component

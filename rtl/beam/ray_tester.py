@@ -8,7 +8,7 @@ from raycaster.rtl.common.widths import bit, signed, unsigned
 
 @block
 def ray_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope, index, hit, staged: bool):
-    """A ray a clock; hit, of the rectangle index, follows `fold_tester`'s LATENCY cycles later, never at a mirror.
+    """A ray a clock; hit, of the rectangle index, follows TESTER_LATENCY cycles later, never at a mirror.
 
     Along p the ray meets the plane at W = n D[p], over D[a]: between the two bounds it hits. Where D[a] is negative
     they have changed places, and W <= low is 2 W < 2 low + 1: one comparison a bound, with the sign as its lowest bit.

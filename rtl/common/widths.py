@@ -31,9 +31,6 @@ KIND_BITS = 2
 CELL_BITS = 3
 """Of a pattern: its kind, and log2 of a cell's size in world units, less three."""
 
-SMALLEST_CELL_BITS = 3
-"""log2 of the smallest cell's size in world units."""
-
 WORD_BITS = 32
 LANES = 4
 """Bytes of a word, each of which has an enable of its own."""

@@ -10,11 +10,7 @@ from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import WIDE_BITS, bit, exact_slope_bits, signed, unsigned, walk_bits, wide_walk_bits
 from raycaster.rtl.cull.group_tester import group_tester
 from raycaster.rtl.cull.rect_copy import rect_copy
-from raycaster.rtl.engine import rect_setup as setup
 from raycaster.rtl.engine.rect_setup import rect_setup
-
-LATENCY = setup.LATENCY
-"""Cycles from start_group to the first reset_ray_caster that finds an answer, beside one for each rectangle."""
 
 
 @block
@@ -26,8 +22,8 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
     if the predicted group is the one at place in that cycle and all its rectangles were tested, and otherwise all ones,
     which is correct for any group. Only a prediction of the same scene is correct, so there is none before rect_copy
     has all its rectangles, at done of a frame's first group: a frame's first two groups have none. Neither has a group
-    after one that ended LATENCY cycles and one for each rectangle after its start_group, or earlier, and after one that
-    it does not follow in the frame.
+    after one that ended SETUP_LATENCY cycles and one for each rectangle after its start_group, or earlier, and after
+    one that it does not follow in the frame.
 
     rects: only listened to, as in rect_copy. start_group, done: of the group at place, which changes at the end of the
     first cycle of reset_ray_caster; that lasts two cycles at least.

@@ -16,15 +16,12 @@ from raycaster.rtl.common.widths import (
 )
 from raycaster.rtl.engine.array_multiplier import array_multiplier
 
-LATENCY = 5
-"""Cycles from start_line to the first load, beside one for each rectangle."""
-
 
 @block
 def rect_setup(
     clk, reset, start_line, rects, camera, slope, load, facet, growth, start, config: Configuration, in_adders=False
 ):  # fmt: skip
-    """From start_line on, fetch a rectangle a cycle; LATENCY cycles later the outputs are its own.
+    """From start_line on, fetch a rectangle a cycle; SETUP_LATENCY cycles later the outputs are its own.
 
     Six products of a distance and a component of the ray through the first column (Kensler and Shirley 2006); along the
     row they grow linearly, so no later column needs one (forward differences). load: a bit for each rectangle, high

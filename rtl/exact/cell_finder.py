@@ -4,7 +4,8 @@
 from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import COORDINATE_BITS
-from raycaster.rtl.common.widths import SMALLEST_CELL_BITS, bit, signed, unsigned
+from raycaster.engines.engine import SMALLEST_CELL_BITS
+from raycaster.rtl.common.widths import bit, signed, unsigned
 from raycaster.rtl.engine.divider_step import divider_step
 
 

@@ -4,13 +4,11 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.engines.exact import PATTERN_LATENCY, WRITE_AT
 from raycaster.rtl.common.records import surface_of
 from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import unsigned
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
-
-WRITE_AT = 2
-"""The bit of in_flight that comes three cycles after find_intersection."""
 
 
 @block
@@ -21,7 +19,7 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
     rectangle that find_intersection then started on. With config.patterns a pass goes on until the cells of the
     nearest hit are known: load_divider in the cycle after a write_z_buf, and store_quotient three after the last one.
     """
-    in_flight = unsigned(WRITE_AT + 1 + (config.facts.pattern_latency if config.patterns else 0))
+    in_flight = unsigned(WRITE_AT + 1 + (PATTERN_LATENCY if config.patterns else 0))
     first, second = surface_of(config), surface_of(config)
 
     sequencer = ray_sequencer(

@@ -4,16 +4,21 @@
 from __future__ import annotations
 
 from raycaster.configuration import MOST_RECTANGLES, MOST_REFLECTIONS, Configuration, configure
+from raycaster.engines.beam import (
+    AIM_LATENCY,
+    TESTER_LATENCY,
+    beam_latency,
+    blend_latency,
+    contest_latency,
+    fold_lead,
+    is_staged,
+    mixes,
+)
+from raycaster.engines.engine import SETUP_LATENCY
 from raycaster.fit.fixing import fixed_rectangle
 from raycaster.fixed import FixedScene
 from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
-from raycaster.rtl.beam.beam_lane import beam_latency
-from raycaster.rtl.beam.colour_blend import blend_latency, mixes
-from raycaster.rtl.beam.fold_tester import LATENCY as TESTER_LATENCY
-from raycaster.rtl.beam.fold_tester import fold_lead, is_staged
-from raycaster.rtl.beam.line_starter import AIM_LATENCY
-from raycaster.rtl.beam.nearest_of_two import contest_latency
 from raycaster.rtl.bus.avalon_interface import engine_word, size_word
 from raycaster.rtl.common.records import camera_of, candidate_of, look_fields, rect_of, surface_of
 from raycaster.rtl.common.widths import (
@@ -39,7 +44,6 @@ from raycaster.rtl.common.widths import (
     walk_bits,
     wide_walk_bits,
 )
-from raycaster.rtl.engine.rect_setup import LATENCY as SETUP_LATENCY
 from raycaster.rtl.scene.written_rect import CORNER, surface_mask
 from raycaster.rtl.system.ray_caster import CONTROLS
 from raycaster.scene import Camera, Rectangle, Scene

@@ -64,7 +64,7 @@ class FoldWidths:
     slope: int
     mirrors: int
     staged: bool
-    """As `raycaster.rtl.beam.fold_tester.is_staged`."""
+    """As `raycaster.engines.beam.is_staged`."""
 
     @property
     def walk(self) -> int:

@@ -11,7 +11,7 @@ import pytest
 from generated import ODD, examples, options
 from hypothesis import given
 
-from raycaster.configuration import OPTION_NAMES, Configuration, ConfigurationError, configure
+from raycaster.configuration import OPTIONS, Configuration, ConfigurationError, configure
 from raycaster.engines import ENGINES
 from raycaster.options import CommandParser, add_configuration_options, as_options, command_line, given_options
 
@@ -39,7 +39,7 @@ def test_options_make_a_design_that_holds_together_or_one_line(chosen):
         return
     screen = config.screen_geometry
     assert {name: getattr(config, name) for name in chosen if chosen[name] != "auto"}.items() <= chosen.items()
-    assert None not in [getattr(config, name) for name in OPTION_NAMES]
+    assert None not in [getattr(config, name) for name in OPTIONS]
     assert config.units * config.groups == screen.columns
     assert config.quotient_bits == 9 + config.fraction_bits
     # A row holds its last cycle to hand over; a beam has its pixels' time.
@@ -61,7 +61,7 @@ def test_options_are_said_again(chosen):
     for from_make in ("", "1"):
         with pytest.MonkeyPatch.context() as patch:
             patch.setenv("RAYCASTER_FROM_MAKE", from_make)
-            said = command_line("sim", options={name: getattr(config, name) for name in OPTION_NAMES})
+            said = command_line("sim", options={name: getattr(config, name) for name in OPTIONS})
         words = shlex.split(said)
         assert words[:2] == ["make" if from_make else "raycaster", "sim"]
         assert parsed(parser, words[2:]) == config

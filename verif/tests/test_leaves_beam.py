@@ -19,30 +19,44 @@ from raycaster.configuration import (
     ConfigurationError,
     configure,
 )
+from raycaster.engines.beam import (
+    AIM_LATENCY,
+    CELL_LATENCY,
+    CELL_SLOPE_AT,
+    FOLD_LATENCY,
+    SETUP_LATENCY,
+    TESTER_LATENCY,
+    beam_latency,
+    blanking_left,
+    blend_latency,
+    contest_latency,
+    fold_lead,
+    is_staged,
+    mixes,
+    slope_at,
+    start_cycles,
+    winner_latency,
+)
 from raycaster.golden import exact
 from raycaster.golden.random_world import EXTREMES, random_basis, random_camera, random_looks, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.beam import fold_tester as tester
-from raycaster.rtl.beam import hit_cells as hit_cells_module
-from raycaster.rtl.beam import ray_fold as folder
 from raycaster.rtl.beam.beam_caster import beam_caster
-from raycaster.rtl.beam.beam_lane import beam_lane, beam_latency
-from raycaster.rtl.beam.beam_pass import beam_pass, winner_latency
-from raycaster.rtl.beam.beam_renderer import blanking_left, check_blanking
+from raycaster.rtl.beam.beam_lane import beam_lane
+from raycaster.rtl.beam.beam_pass import beam_pass
 from raycaster.rtl.beam.cell_step import cell_step
-from raycaster.rtl.beam.colour_blend import blend_latency, colour_blend, mixes
+from raycaster.rtl.beam.colour_blend import colour_blend
 from raycaster.rtl.beam.colour_mean import colour_mean
 from raycaster.rtl.beam.colour_mix import colour_mix
 from raycaster.rtl.beam.colour_seen import colour_seen
 from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.hit_cells import hit_cells
 from raycaster.rtl.beam.lane_start import lane_start
-from raycaster.rtl.beam.line_starter import AIM_LATENCY, line_starter, start_cycles
+from raycaster.rtl.beam.line_starter import line_starter
 from raycaster.rtl.beam.look_up import look_up
 from raycaster.rtl.beam.mirror_look_up import mirror_look_up
 from raycaster.rtl.beam.nearest_of import nearest_of
-from raycaster.rtl.beam.nearest_of_two import contest_latency, nearest_of_two
+from raycaster.rtl.beam.nearest_of_two import nearest_of_two
 from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.beam.ray_tester import ray_tester
 from raycaster.rtl.beam.rect_walker import rect_walker
@@ -88,7 +102,6 @@ from raycaster.rtl.common.widths import (
     unsigned,
     walk_bits,
 )
-from raycaster.rtl.engine import rect_setup as setup
 from raycaster.rtl.engine.rect_setup import rect_setup
 from raycaster.scene import UNTURNED
 from raycaster.screens import BEAM_SCREENS
@@ -150,7 +163,7 @@ by_depth = pytest.mark.parametrize(
         beam_config(reflections=3, screen="tiny"),
         beam_config(reflections=4, rows=180),
         beam_config(reflections=3, rows=240, turn=True, patterns=True),
-        beam_config(reflections=4, screen="tiny", turn=True),
+        beam_config(reflections=4, screen="tiny", turn=True, rectangles=3),
     ],
     ids=config_id,
 )
@@ -269,12 +282,12 @@ def test_two_pixels_a_clock_take_an_even_line(part):
 def test_every_row_is_set_up_in_its_blanking(place, rectangles, reflections):
     """The latest column has left, and all rectangles are loaded, before the first column's turn."""
     screen, rows = place
-    config = beam_config(screen=screen, rows=rows, rectangles=rectangles, reflections=reflections)
-    fits = screen == "vga" or rectangles < 32 or reflections < 3
-    assert (blanking_left(config) >= 0) == fits
-    if not fits:
-        with pytest.raises(ConfigurationError, match=r"^rectangles: with 32 of them, [34] reflections, .*either$"):
-            check_blanking(config)
+    size = {"screen": screen, "rows": rows, "rectangles": rectangles, "reflections": reflections}
+    if screen == "vga" or rectangles < 32 or reflections < 3:
+        assert blanking_left(beam_config(**size)) >= 0
+        return
+    with pytest.raises(ConfigurationError, match=r"^rectangles: with 32 of them, [34] reflections, .*either$"):
+        beam_config(**size)
 
 
 @pytest.mark.parametrize(
@@ -287,7 +300,7 @@ def test_every_row_of_a_turned_camera_is_set_up_in_its_blanking(screen, rows, mo
     with pytest.raises(
         ConfigurationError, match=r"^rectangles: with 32 of them, 2 reflections .* is 31 cycles short of a line's"
     ):
-        check_blanking(beam_config(screen="play", rectangles=32, reflections=2, turn=True))
+        beam_config(screen="play", rectangles=32, reflections=2, turn=True)
 
 
 @pytest.mark.parametrize(
@@ -303,11 +316,11 @@ def test_every_row_of_a_turned_camera_is_set_up_in_its_blanking(screen, rows, mo
 )
 def test_two_pixels_a_clock_halve_the_blanking(options, fits):
     """There is one set-up for both lanes, which the shorter blanking must be long enough for."""
-    config = beam_config(pixels=2, **options)
-    assert (blanking_left(config) >= 0) == fits
-    if not fits:
-        with pytest.raises(ConfigurationError, match=r"^rectangles: .* at two pixels a clock, the .*PIXELS=1$"):
-            check_blanking(config)
+    if fits:
+        assert blanking_left(beam_config(pixels=2, **options)) >= 0
+        return
+    with pytest.raises(ConfigurationError, match=r"^rectangles: .* at two pixels a clock, the .*PIXELS=1$"):
+        beam_config(pixels=2, **options)
 
 
 def pixels_of(config: Configuration, channels: list[int]) -> list[int]:
@@ -382,14 +395,14 @@ def test_rect_setup(config, tmp_path, in_adders=False):
         for index in range(count):
             # Two cycles after it was asked for.
             stimulus.append({**held, **sorted_rect(table, index, "rects_rect", config)})
-            loads[start + setup.LATENCY + index] = table, index, camera, slope
-        stimulus += [held] * (setup.LATENCY + int(random.integers(5)))
+            loads[start + SETUP_LATENCY + index] = table, index, camera, slope
+        stimulus += [held] * (SETUP_LATENCY + int(random.integers(5)))
     # Every stage of the last line has something at hand.
-    end = start + setup.LATENCY + min(1, count - 1)
+    end = start + SETUP_LATENCY + min(1, count - 1)
     stimulus[end] = stimulus[end] | {"reset": 1}
     stimulus[end + 1] = stimulus[end + 1] | {"reset": 0}
     loads = {cycle: load for cycle, load in loads.items() if cycle <= end}
-    outputs = leaf.run_both(stimulus, settled=2 + setup.LATENCY)
+    outputs = leaf.run_both(stimulus, settled=2 + SETUP_LATENCY)
     width = walk_bits(config)
     for cycle, output in enumerate(outputs[2:], 2):
         assert output["load"] == (1 << loads[cycle][1] if cycle in loads else 0), (cycle, repeat())
@@ -623,7 +636,7 @@ def test_line_starter(config, tmp_path):
         }
         held |= {"reset": 0, "start_line": 0, "loaded": 0}
         start, ended = len(stimulus), random.random() < 0.2
-        sweep = setup.LATENCY + config.rectangles - 1
+        sweep = SETUP_LATENCY + config.rectangles - 1
         first_end = AIM_LATENCY - 3 + sweep
         ends = [first_end + sweep * lane for lane in range(config.pixels)]
         stimulus += [
@@ -779,7 +792,7 @@ def test_fold_tester(config, tmp_path):
 
 def check_tester(block, ports, config: Configuration, tmp_path) -> None:
     """Rays with mirrors where there is a port for their fold, and otherwise rays from the camera."""
-    slope_bits, lead = exact_slope_bits(config), tester.fold_lead(config) if ports else 0
+    slope_bits, lead = exact_slope_bits(config), fold_lead(config) if ports else 0
     strobes = ("step_way", "step_bounds", "step_slope")
     leaf = Leaf(
         block,
@@ -793,7 +806,7 @@ def check_tester(block, ports, config: Configuration, tmp_path) -> None:
             **{name: port.twin() for name, port in ports.items()},
             "index": unsigned(index_bits(config)),
             "hit": candidate_of(config),
-            "staged": tester.is_staged(config),
+            "staged": is_staged(config),
         },
         tmp_path,
     )
@@ -823,7 +836,7 @@ def check_tester(block, ports, config: Configuration, tmp_path) -> None:
             case_stimulus[lead] |= {f"signs_d{axis}": int(part < 0) for axis, part in zip(AXES, slope, strict=True)}
             case_stimulus[lead if ports else 1] |= ways
             case_stimulus[lead + 1] |= bounds
-            case_stimulus[lead + tester.slope_at(config)] |= {f"slope_d{AXES[c]}": abs(int(slope[c])) for c in range(3)}
+            case_stimulus[lead + slope_at(config)] |= {f"slope_d{AXES[c]}": abs(int(slope[c])) for c in range(3)}
             case_stimulus[lead + 2] |= {"index": index}
             # What comes without its strobe is another ray's.
             case_stimulus[lead + 1] |= {f"signs_d{axis}": int(random.integers(2)) for axis in AXES}
@@ -837,8 +850,8 @@ def check_tester(block, ports, config: Configuration, tmp_path) -> None:
             at_mirror = hit and not verdict(table, index, eye, turned, mirror)[0]
             seen.add((len(met), hit, at_mirror))
             case = table.corners[index].tolist(), camera, slope, mirrors, repeat()
-            expected[start + tester.LATENCY] = facet, hit and bool(facet["facet_usable"]), at_mirror, n, e, index, case
-    outputs = leaf.run_both([*stimulus, dict.fromkeys(strobes, 0)], settled=lead + tester.LATENCY)
+            expected[start + TESTER_LATENCY] = facet, hit and bool(facet["facet_usable"]), at_mirror, n, e, index, case
+    outputs = leaf.run_both([*stimulus, dict.fromkeys(strobes, 0)], settled=lead + TESTER_LATENCY)
     # With no mirror; with one, and two in one point, where a third plane may be too. Three in one point hide the rest.
     assert len([case for case in seen if case[0] < 3]) == (3 * min(config.reflections, 2) if ports else 2)
     assert ((3, False, False) in seen) == (config.reflections > 2 and bool(ports))
@@ -882,7 +895,7 @@ def test_ray_fold(config, tmp_path):
     )
     random = np.random.default_rng(seed())
     rays = [ray[2:] for ray in beam_rays(random, config, 4000) if ray[-1]]
-    stimulus = [{} for _ in range(len(rays) + folder.LATENCY + 1)]
+    stimulus = [{} for _ in range(len(rays) + FOLD_LATENCY + 1)]
     for cycle, (camera, slope, mirrors) in enumerate(rays):
         before = image_of(config, camera, slope, mirrors[:-1])
         stimulus[cycle] |= {f"before_{name}": value for name, value in before.items()}
@@ -890,10 +903,10 @@ def test_ray_fold(config, tmp_path):
         distance, at_mirror = word(plane - int(camera[axis]), DISTANCE_BITS), len(met_last(camera, slope, mirrors)) > 1
         stimulus[cycle] |= {"last_axis": axis, "last_distance": distance, "last_at_mirror": int(at_mirror)}
         stimulus[cycle + 1] |= direction_ports("slope", config, slope)
-    outputs = leaf.run_both(stimulus, settled=folder.LATENCY)
+    outputs = leaf.run_both(stimulus, settled=FOLD_LATENCY)
     for cycle, (camera, slope, mirrors) in enumerate(rays):
         expected = {f"fold_{name}": value for name, value in folded(config, camera, slope, mirrors).items()}
-        assert outputs[cycle + folder.LATENCY] == expected, (camera, slope, mirrors, repeat())
+        assert outputs[cycle + FOLD_LATENCY] == expected, (camera, slope, mirrors, repeat())
 
 
 # The nearest ----------------------------------------------------------------------------------------------------------
@@ -1295,7 +1308,7 @@ def test_cell_step(place, tmp_path):
 )
 def test_hit_cells(config, tmp_path):
     """Points of all axes, many of them right at a cell's edge; what sees nothing is don't care."""
-    slope_bits, latency = exact_slope_bits(config), hit_cells_module.LATENCY
+    slope_bits, latency = exact_slope_bits(config), CELL_LATENCY
     leaf = Leaf(
         hit_cells,
         lambda: {
@@ -1336,7 +1349,7 @@ def test_hit_cells(config, tmp_path):
             stimulus[cycle] |= {"winner_valid": 1, "winner_index": number}
             image = image_of(config, camera, slope, mirrors)
             stimulus[cycle + 1] |= {f"turn_{name}": value for name, value in image.items()}
-            stimulus[cycle + hit_cells_module.SLOPE_AT] |= direction_ports("slope", config, slope)
+            stimulus[cycle + CELL_SLOPE_AT] |= direction_ports("slope", config, slope)
             expected[cycle + latency] = *parities, number
             cycle += 1
     assert len(expected) > 400
@@ -1454,7 +1467,7 @@ def test_beam_caster(config, lines, tmp_path):
     # Of a camera that turns, the rectangles are set up for each lane, and once more.
     turns = range(config.pixels + 1)
     sweeps = (
-        [AIM_LATENCY - 3 + (setup.LATENCY + config.rectangles - 1) * turn for turn in turns] if config.turn else [0]
+        [AIM_LATENCY - 3 + (SETUP_LATENCY + config.rectangles - 1) * turn for turn in turns] if config.turn else [0]
     )
     # Until no column is on its way, whatever the registers started from.
     stimulus, expected, fates = [{"reset": 1}] * beam_latency(config), {}, set()

@@ -9,6 +9,7 @@ import pytest
 from fates import margin_of, may_hit_mask
 
 from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
+from raycaster.engines.engine import SETUP_LATENCY
 from raycaster.golden import exact, seed_engine
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
@@ -24,7 +25,7 @@ from raycaster.rtl.common.widths import (
     walk_bits,
     wide_walk_bits,
 )
-from raycaster.rtl.cull.group_culler import LATENCY, group_culler
+from raycaster.rtl.cull.group_culler import group_culler
 from raycaster.rtl.cull.group_tester import group_tester
 from raycaster.rtl.cull.rect_copy import rect_copy
 from raycaster.verif.leaf import Leaf, sorted_rect
@@ -385,9 +386,9 @@ def test_group_culler(config, tmp_path):
                 stimulus.append({**here, **any_rect(random, shown), "rects_fetch": 1, "rects_index": index})
                 stimulus += [{**here, **any_rect(random, shown)}] * (latency - 1)
                 stimulus.append({**here, **any_rect(random, shown), **shown[index]})
-            time = count + LATENCY + int(random.integers(3))
+            time = count + SETUP_LATENCY + int(random.integers(3))
             if random.random() < 0.2:
-                time = int(random.integers(3, count + LATENCY))
+                time = int(random.integers(3, count + SETUP_LATENCY))
             # What is on the table's port and was not fetched is nobody's.
             stimulus += [{**here, **any_rect(random, shown)} for _ in range(time - 1)]
             # A frame of which not even that is done has taught nothing.
@@ -396,7 +397,7 @@ def test_group_culler(config, tmp_path):
             expected |= dict.fromkeys(range(begun, len(stimulus)), (answer, place, camera, table))
 
             following = (place[0], place[1] + 1) if place[1] < groups - 1 else (place[0] + 1, 0)
-            predicted = following if known and time >= count + LATENCY else None
+            predicted = following if known and time >= count + SETUP_LATENCY else None
             known = known or (number == 0 and not abandoned)
             place = following
             if abandoned or place[0] == rows:

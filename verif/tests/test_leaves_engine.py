@@ -13,6 +13,7 @@ from fates import control_leaf, group_fate_in, mask_of, may_hit_mask, random_fat
 from hard_scenes import edged, pixel_of, pixel_word, rectangles_in_view, traced_scene, tracer, with_looks
 
 from raycaster.configuration import WORLD_SIZE, Configuration, configure
+from raycaster.engines.engine import SETUP_LATENCY
 from raycaster.golden import engines, seed_engine
 from raycaster.golden.random_world import random_basis
 from raycaster.golden.rays import primary_slopes
@@ -23,7 +24,6 @@ from raycaster.rtl.beam.beam_renderer import beam_renderer
 from raycaster.rtl.common.interfaces import Picture, Place, Progress, RayFate, Rects, Steps, vga_of
 from raycaster.rtl.common.records import Pixel, Point, camera_of, rect_of
 from raycaster.rtl.common.widths import bit, pixel_bits, unit_bits, unsigned
-from raycaster.rtl.cull.group_culler import LATENCY
 from raycaster.rtl.seed.ray_control import ray_control
 from raycaster.rtl.seed.ray_unit import ray_unit
 from raycaster.rtl.system.camera_axis import STEP
@@ -445,7 +445,7 @@ def test_ray_caster(config, tmp_path):
             case = f"group {place} of {places}, camera {camera}, corners {table.corners.tolist()}; {repeat()}"
             results.append((len(stimulus) - 1, colours, case))
             # In the first the rectangles are copied; the others test them if they take long enough.
-            tests = place != (0, 0) and len(cycles) >= config.rectangles + LATENCY
+            tests = place != (0, 0) and len(cycles) >= config.rectangles + SETUP_LATENCY
             following = place_after(config, place) if tests else None
         stimulus.append({})
         results.append((len(stimulus) - 1, *results[-1][1:]))

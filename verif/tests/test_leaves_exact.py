@@ -10,7 +10,8 @@ import pytest
 from fates import control_leaf, group_fate_in, mask_of, random_fate
 from hard_scenes import cornered, facing, pixel_of, pixel_word, rivalled, sharpened, traced_scene, tracer, verdict
 
-from raycaster.configuration import GROUP_OVERHEAD, WORLD_SIZE, Configuration, ConfigurationError, configure
+from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
+from raycaster.engines import EXACT
 from raycaster.golden.random_world import EXTREMES, random_basis, random_camera, random_looks, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
@@ -108,7 +109,7 @@ def test_a_room_that_does_not_mirror_takes_fewer_cycles(reflections):
     every = range(config.rectangles)
     matte, mirrors = (len(trace_cycles(config, every, reflections, lost=lost)) + 3 for lost in (0, None))
     assert mirrors == config.group_cycles
-    assert matte == config.rectangles + config.facts.result_latency + reflections + GROUP_OVERHEAD <= 0.6 * mirrors
+    assert matte == config.rectangles + config.pass_latency + reflections + EXACT.GROUP_OVERHEAD <= 0.6 * mirrors
 
 
 @pytest.mark.parametrize(

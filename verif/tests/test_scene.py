@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import configure
 from raycaster.errors import UserError
 from raycaster.scene import Camera, SceneError, dump_scene, load_scene
 
@@ -309,7 +309,7 @@ def test_deep_values_are_refused_too(tmp_path):
 
 @pytest.mark.parametrize("path", sorted(SCENES.glob("*.toml")), ids=lambda path: path.stem)
 def test_scenes_of_the_repository_fit_the_default_hardware(path):
-    scene = load_scene(path, Configuration().rectangles)
+    scene = load_scene(path, configure().rectangles)
     assert scene.title
     assert all(rectangle.name for rectangle in scene.rect)
     assert path.read_text(encoding="utf-8").startswith("# SPDX-License-Identifier: MIT\n# ")

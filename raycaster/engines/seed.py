@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: MIT
+"""The seed's engine: it divides, and rounds what it divided."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from raycaster.engines.engine import LineBufferedEngine
+
+if TYPE_CHECKING:
+    from raycaster.configuration import Configuration, Options
+
+UNIT_CELLS = {1: 559, 2: 607, 3: 647}
+"""LUT4 of an ECP5 that a unit takes, by quotient bits a cycle; from `make area DIVIDER_BITS=`."""
+
+DEFAULT_UNITS = 32
+
+LOAD_AT = 2
+"""Cycles from find_intersection to load_divider; store_quotient comes as many after that as a division takes."""
+
+WRITE_AFTER = 2
+"""Cycles from store_quotient to write_z_buf."""
+
+
+class Seed(LineBufferedEngine):
+    """A divider a unit, which a rectangle occupies for as long as a division takes.
+
+    A rounded coordinate is off by less than one, and the depth is measured along x.
+    """
+
+    name, code = "seed", 0
+    margin, turns, divides = 1, False, True
+
+    def culls(self, options: Options) -> bool:
+        """Its slots are long enough to be worth it; a fixed scene has left out what it does not need."""
+        return options.fixed is None
+
+    def sized(self, config: Configuration, options: Options) -> Configuration:
+        """Take 32 units, or as few as a fixed scene needs; the divider as small as the row budget allows."""
+        given = options.divider_bits
+        if given not in ("auto", *UNIT_CELLS):
+            raise ValueError(f"divider_bits: must be auto, 1, 2 or 3, not {given}")
+        designs = [replace(config, divider_bits=bits) for bits in UNIT_CELLS if given in ("auto", bits)]
+        if options.units is None and config.fixed is not None:
+            # A faster divider makes a unit larger, but there may be fewer of them.
+            return min(map(self.fewest_units, designs), key=lambda one: one.units * UNIT_CELLS[one.divider_bits])
+        designs = [replace(one, units=options.units or DEFAULT_UNITS) for one in designs]
+        return next((one for one in designs if self.fits(one)), designs[-1])
+
+    def slot_cycles(self, config: Configuration) -> int:
+        """A division."""
+        return config.divider_steps
+
+    def pass_latency(self, config: Configuration) -> int:
+        """Slope and plane latched, product, divider loaded, hit point, depth compared, ray stored."""
+        return LOAD_AT + WRITE_AFTER + 2
