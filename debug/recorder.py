@@ -59,7 +59,7 @@ def window_clocks(configuration: Configuration, first_row: int, last_row: int) -
     A line buffer is filled while the row before is shown, and StartScreen comes a row's time before the first is.
     """
     row_cycles = configuration.screen_geometry.row_cycles
-    first = first_row if configuration.engine != "beam" else first_row + 1
+    first = first_row if configuration.facts.line_buffered else first_row + 1
     return first * row_cycles, (last_row + 2) * row_cycles + MARGIN
 
 

@@ -52,7 +52,7 @@ def trace(
     reflections: int,
 ) -> exact.Trace | seed_engine.Trace:
     """What becomes of rays; the arguments are those of `raycaster.golden.exact.trace`."""
-    if config.engine != "seed":
+    if not config.facts.divides:
         return exact.trace(rectangles, camera, background, slopes, reflections)
     return seed_engine.trace(
         rectangles, camera, background, slopes, reflections,

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from raycaster.configuration import Configuration, configure
-from raycaster.engines import ENGINES
+from raycaster.engines import ENGINES, EXACT, SEED
 from raycaster.errors import UserError
 from raycaster.scene import Scene, load_scene, packaged_scenes
 
@@ -80,12 +80,13 @@ def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, An
     scene = load_scene(path)
     chosen = {**(defaults or {}), **options}
     if "rows" not in chosen and chosen.get("screen", "vga") == "vga":
-        if scene.rows == 180 and chosen.get("engine") != "beam":
+        engine = ENGINES.get(chosen.get("engine", SEED.name))
+        if engine and ("vga", scene.rows) not in engine.screens:
             raise UserError(f"{path}: rows: 180 rows need the beam engine; give ENGINE=beam, or ROWS=240 or 200")
         chosen["rows"] = scene.rows
     chosen.setdefault("reflections", scene.reflections)
     if scene.camera.turned:
-        chosen.setdefault("engine", "exact")
+        chosen.setdefault("engine", EXACT.name)
     configuration = configure(**dict.fromkeys(scene.lacks(()), True) | chosen)
     if lacking := scene.lacks(configuration.looks):
         raise UserError(f"{path}: the scene needs {NEEDED_FOR[lacking[0]]}; leave {lacking[0].upper()} out")

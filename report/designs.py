@@ -82,9 +82,9 @@ def of_kept(rows: Sequence[Mapping[str, Any]]) -> Designs:
             one = Candidate(config, row["wrong_share"], foretold=row["luts"])
         every.append(one)
         best += [one] if row["best"] else []
-    seeds = [one for one in best if one.config.engine == "seed"]
+    seeds = [one for one in best if one.config.facts.divides]
     by_time, by_cells = (hardware.frontier(seeds, measure, error) for measure in (time, cells))
-    return Designs(every, by_time, by_cells, [one for one in best if one.config.engine != "seed"], [])
+    return Designs(every, by_time, by_cells, [one for one in best if not one.config.facts.divides], [])
 
 
 def error_and_time(found: Designs) -> Figure:
@@ -123,7 +123,7 @@ def find_designs(what: Extent, errors: Errors, sweep: Sweep) -> Designs:
         ]
     ]
     culled = [
-        Candidate(config, errors[config.fraction_bits, config.rounding] if config.engine == "seed" else 0.0)
+        Candidate(config, errors[config.fraction_bits, config.rounding] if config.facts.divides else 0.0)
         for config in hardware.culled_designs(what.design_fractions, what.screen)
         if config.engine in what.culled
     ]
@@ -185,8 +185,8 @@ def design_sections(
     """
     every, best = found.every, found.best
     write_csv(EVERY_COLUMNS, [_whole_row(one, one in best) for one in every], directory / "designs.csv")
-    rounded = [one for one in every if one.config.engine == "seed"]
-    exact = [one for one in every if one.config.engine != "seed"]
+    rounded = [one for one in every if one.config.facts.divides]
+    exact = [one for one in every if not one.config.facts.divides]
     fewest, fastest = (min(found.without_error, key=measure) for measure in (cells, time))
     by_cells = list(dict.fromkeys([*found.by_cells, fewest, fastest]))
     figures = (
@@ -245,7 +245,7 @@ def design_sections(
 
 def _row(one: Candidate, spreads: Mapping[tuple[int, Rounding], Spread]) -> list:
     config = one.config
-    spread = spreads[config.fraction_bits, config.rounding] if config.engine == "seed" else Spread(0, 0, 0, 0)
+    spread = spreads[config.fraction_bits, config.rounding] if config.facts.divides else Spread(0, 0, 0, 0)
     row = [describe(config), *(round(100 * share, 4) for share in (spread.mean, spread.median, spread.most))]
     row += [one.cells, one.counted["multipliers"], one.pixel_ns, one.frame_ms]
     return [*row, hardware.clock_words(config), one.timing["seconds"]]
@@ -256,7 +256,7 @@ def _whole_row(one: Candidate, is_best: bool) -> list:
     quotients = [config.fraction_bits, config.rounding, config.divider_bits]
     screen = config.screen_geometry
     return [
-        config.engine, *(quotients if config.engine == "seed" else [None] * 3), config.units, int(bool(config.culling)),
+        config.engine, *(quotients if config.facts.divides else [None] * 3), config.units, int(bool(config.culling)),
         f"{screen.columns}x{screen.rows}", one.error, counted.get("cells"), one.foretold, counted.get("registers"),
         counted.get("multipliers"), one.frame_cycles, "yes" if one.is_found else "no", one.pixel_ns, one.frame_ms,
         screen.clock_hz / 1e6, hardware.routed_clocks().get(config.name), timing.get("seconds"), timing.get("wrong"),

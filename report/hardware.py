@@ -214,14 +214,4 @@ def clock_words(config: Configuration) -> str:
 
 def describe(config: Configuration) -> str:
     """A design in a few words."""
-    screen = config.screen_geometry
-    if config.engine == "beam":
-        return f"beam {screen.columns}x{screen.rows}" + (", 2 pixels a clock" if config.pixels == 2 else "")
-    if config.engine == "exact":
-        words = f"exact, {config.units} units"
-    else:
-        words = (
-            f"seed F = {config.fraction_bits} {config.rounding}, {config.units} units, "
-            f"{config.divider_bits} bit{'s' if config.divider_bits > 1 else ''} a cycle"
-        )
-    return words + (", culling" if config.culling else "")
+    return config.facts.describe(config) + (", culling" if config.culling else "")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from raycaster.configuration import Configuration
 from raycaster.design import design_for
+from raycaster.engines import ENGINES
 from raycaster.report import hardware, plots
 from raycaster.report.extent import Extent
 from raycaster.report.page import Plot, Section, Table, write_csv
@@ -88,7 +89,7 @@ def _culling(what: Extent, scenes: Sequence[View], directory: Path, sweep: Sweep
     points = {}
     for engine in what.culled:
         for scene in scenes:
-            if scene.scene.camera.turned and engine == "seed":
+            if scene.scene.camera.turned and not ENGINES[engine].turns:
                 continue
             for culling in (False, True):
                 options = {"engine": engine, "screen": what.screen, "culling": culling}

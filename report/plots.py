@@ -107,15 +107,6 @@ def _plain(axis: Axis) -> None:
 # Designs --------------------------------------------------------------------------------------------------------------
 
 
-def _short(one: Candidate) -> str:
-    config = one.config
-    if config.engine == "beam":
-        return f"{config.screen_geometry.rows}p" + (" x2" if config.pixels == 2 else "")
-    if config.engine == "exact":
-        return f"{config.units}"
-    return f"F{config.fraction_bits}{config.rounding[0]}"
-
-
 def _dots(axes: Axes, every: Sequence[Candidate], across: str, up: str) -> None:
     """Each design, filled where it was simulated and counted; small where it has culling."""
     for engine, (colour, marker) in ENGINES.items():
@@ -138,7 +129,9 @@ def _value(one: Candidate, name: str) -> float:
 
 def _label(axes: Axes, labelled: Sequence[Candidate], across: str, up: str, every: Sequence[Candidate]) -> None:
     texts = [
-        axes.text(_value(one, across), _value(one, up), _short(one), fontsize=LABEL_POINTS, zorder=4)
+        axes.text(
+            _value(one, across), _value(one, up), one.config.facts.label(one.config), fontsize=LABEL_POINTS, zorder=4
+        )
         for one in labelled
     ]
     adjust_text(

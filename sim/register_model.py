@@ -148,7 +148,7 @@ class Agent:
             "id": {"magic": int.from_bytes(b"RAYC", "big")},
             "version": {field: value.reset for field, value in registers["version"].fields.items()},
             "engine": {
-                "engine": {"seed": 0, "exact": 1, "beam": 2}[config.engine],
+                "engine": config.facts.code,
                 "fraction_bits": config.fraction_bits,
                 "nearest": int(config.rounding == "nearest"),
                 "divider_bits": config.divider_bits,

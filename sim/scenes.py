@@ -269,7 +269,7 @@ def show_traces(outcomes: list[Outcome], options: Mapping[str, Any], simulator: 
 def _frames_per_second(configuration: Configuration, row_cycles: int) -> float:
     """How often a picture could be computed; the beam engine computes each line of a doubled row."""
     screen = configuration.screen_geometry
-    lines = screen.rows * (screen.doubling if configuration.engine == "beam" else 1)
+    lines = screen.rows * (1 if configuration.facts.line_buffered else screen.doubling)
     return screen.clock_hz / (lines * row_cycles)
 
 

@@ -358,7 +358,7 @@ def step_names(config: Configuration) -> list[str]:
 
 def slot_length(config: Configuration) -> int:
     """Cycles from one rectangle to the next: one, or those of a quotient's 9 bits and its fraction's."""
-    return -(-(9 + config.fraction_bits) // config.divider_bits) if config.engine == "seed" else 1
+    return -(-(9 + config.fraction_bits) // config.divider_bits) if config.facts.divides else 1
 
 
 def ends_early(config: Configuration) -> bool:
@@ -387,7 +387,7 @@ def trace_cycles(
         lost: the bounce after which no ray is alive.
     """
     division = slot_length(config)
-    exact = config.engine == "exact"
+    exact = not config.facts.divides
     offered_after = 3 if exact else division + 4
     idle = {f"steps_{name}": 0 for name in step_names(config)}
     cycles = [TraceCycle(dict(idle), 0)]
@@ -403,7 +403,7 @@ def trace_cycles(
         offered = [start + offered_after for start, ended in zip(starts, early, strict=False) if not ended]
         # Where there is nothing to trace, a pass only looks for it and adds the background; a lost ray adds at once.
         traced = lost is None or bounce <= lost
-        patterns = PATTERN_LATENCY if config.patterns else 0
+        patterns = PATTERN_LATENCY if config.patterns and exact else 0
         length = 2 + max([starts[-1], *(end + patterns for end in offered)]) if traced else 1
         first = len(cycles)
         cycles += [TraceCycle(idle | {"steps_initial_ray": int(bounce == 0)}, bounce) for _ in range(length)]

@@ -216,7 +216,7 @@ class Ray:
         arguments = self.rectangles, self.scene.camera.position, self.scene.background, slopes, design.reflections
         self.true = exact.trace(*arguments, keep=True)
         self.golden: seed_engine.Trace | exact.Trace = self.true
-        if self.config.engine == "seed":
+        if self.config.facts.divides:
             self.golden = seed_engine.trace(
                 *arguments, fraction_bits=self.config.fraction_bits, rounding=self.config.rounding, keep=True
             )
@@ -262,7 +262,7 @@ class Ray:
         bounce = self.golden.bounces[number]
         hits = [i for i in candidates if i < len(self.rectangles) and bounce.hits[i, 0]]
         # Of a fraction; the seed engine's depths are all over one.
-        divisors = np.ones(len(self.rectangles)) if self.config.engine == "seed" else bounce.denominators[:, 0]
+        divisors = np.ones(len(self.rectangles)) if self.config.facts.divides else bounce.denominators[:, 0]
         return min(hits, key=lambda i: (Fraction(int(bounce.depths[i, 0]), int(divisors[i])), i), default=-1)
 
     def colour(self, rectangle: int) -> int:

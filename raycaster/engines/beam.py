@@ -153,6 +153,15 @@ class Beam(Engine):
             self._check_pairs(config)
         return replace(config, units=config.pixels)
 
+    def describe(self, config: Configuration) -> str:
+        """Screen and lanes."""
+        screen = config.screen_geometry
+        return f"beam {screen.columns}x{screen.rows}" + (", 2 pixels a clock" if config.pixels == 2 else "")
+
+    def label(self, config: Configuration) -> str:
+        """Rows and lanes."""
+        return f"{config.screen_geometry.rows}p" + (" x2" if config.pixels == 2 else "")
+
     def slot_cycles(self, config: Configuration) -> int:
         """It takes all rectangles at once."""
         return 0

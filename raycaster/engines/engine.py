@@ -101,6 +101,14 @@ class Engine(ABC):
         """Cycles from one group's start to the next one's with all rectangles enabled: the worst case."""
 
     @abstractmethod
+    def describe(self, config: Configuration) -> str:
+        """A design in a few words."""
+
+    @abstractmethod
+    def label(self, config: Configuration) -> str:
+        """What distinguishes a design from others of the engine, as short as a plot wants it."""
+
+    @abstractmethod
     def check(self, config: Configuration) -> None:
         """Refuse a design that is too slow for its screen.
 

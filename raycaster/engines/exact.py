@@ -29,6 +29,14 @@ class Exact(LineBufferedEngine):
             return replace(config, units=options.units)
         return self.fewest_units(config)
 
+    def describe(self, config: Configuration) -> str:
+        """Units."""
+        return f"exact, {config.units} units"
+
+    def label(self, config: Configuration) -> str:
+        """Units."""
+        return str(config.units)
+
     def slot_cycles(self, config: Configuration) -> int:
         """Each clock has a rectangle."""
         return 1

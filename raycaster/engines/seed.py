@@ -48,6 +48,15 @@ class Seed(LineBufferedEngine):
         designs = [replace(one, units=options.units or DEFAULT_UNITS) for one in designs]
         return next((one for one in designs if self.fits(one)), designs[-1])
 
+    def describe(self, config: Configuration) -> str:
+        """Fraction, rounding, units and divider."""
+        bits = f"{config.divider_bits} bit{'s' if config.divider_bits > 1 else ''} a cycle"
+        return f"seed F = {config.fraction_bits} {config.rounding}, {config.units} units, {bits}"
+
+    def label(self, config: Configuration) -> str:
+        """Fraction and rounding."""
+        return f"F{config.fraction_bits}{config.rounding[0]}"
+
     def slot_cycles(self, config: Configuration) -> int:
         """A division."""
         return config.divider_steps

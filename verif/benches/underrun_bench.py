@@ -35,7 +35,7 @@ async def underrun(bench: HierarchyObject) -> None:
     """A light scene, one that is too heavy, and the light one again. The monitor checks the sync of each frame."""
     harness = Harness(bench)
     bus, monitor, configuration = harness.bus, harness.monitor, harness.configuration
-    assert configuration.allow_underrun == (configuration.engine != "beam"), "the beam engine is late for no scene"
+    assert configuration.allow_underrun == configuration.facts.line_buffered, "the beam engine is late for no scene"
     light, heavy = _light(), _heavy(configuration.rectangles)
     reflections = configuration.reflections
     light_picture, heavy_picture = harness.golden(light, reflections), harness.golden(heavy, reflections)

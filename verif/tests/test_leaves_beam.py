@@ -1302,7 +1302,7 @@ def test_cell_step(place, tmp_path):
         beam_config(screen="tiny", patterns=True, reflections=0),
         beam_config(patterns=True, rows=180),
         beam_config(screen="tiny", patterns=True, turn=True, reflections=2),
-        beam_config(screen="tiny", patterns=True, reflections=4),
+        beam_config(screen="tiny", patterns=True, reflections=4, rectangles=3),
     ],
     ids=config_id,
 )

@@ -18,6 +18,7 @@ from pathlib import Path
 import pytest
 from conftest import ROOT
 
+from raycaster.engines import ENGINES
 from raycaster.registers import register_map
 
 HOOKS = ROOT / ".pre-commit-config.yaml"
@@ -119,6 +120,23 @@ def test_no_two_folders_may_import_each_other(order):
     for folder, others in order.items():
         assert set(others) <= set(seen), folder
         seen.append(folder)
+
+
+def compared_names(path: Path) -> list[str]:
+    """Lines of a file that compare something with the name of an engine."""
+    trees = (node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Compare))
+    return [
+        f"{path}:{tree.lineno}"
+        for tree in trees
+        if any(isinstance(side, ast.Constant) and side.value in ENGINES for side in (tree.left, *tree.comparators))
+    ]
+
+
+def test_nothing_outside_an_engine_asks_for_its_name():
+    """What an engine can do is a property of it. Tests may ask for names."""
+    files = [path for folder in MAY_IMPORT for path in (ROOT / folder).rglob("*.py")]
+    outside = [path for path in files if path.parent not in (ROOT / "raycaster/engines", ROOT / "verif/tests")]
+    assert [line for path in outside for line in compared_names(path)] == []
 
 
 def test_each_folder_of_rtl_has_its_place_in_the_order():
