@@ -11,7 +11,6 @@ from pathlib import Path
 
 from sphinx.cmd.build import build_main
 
-from raycaster import ensure_tools
 from raycaster.configuration import configure
 from raycaster.docs import timing
 from raycaster.docs.drawings import draw_all
@@ -19,6 +18,7 @@ from raycaster.errors import UserError
 from raycaster.options import CommandParser
 from raycaster.output import printable, replaced
 from raycaster.register_views import write_page
+from raycaster.sim import ensure_tools
 from raycaster.sim.simulator import BUILD, SimulationError
 from raycaster.web.site import main as build_page
 

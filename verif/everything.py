@@ -18,7 +18,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from raycaster import ensure_tools
 from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
 from raycaster.engines import ENGINES
@@ -27,6 +26,7 @@ from raycaster.jobs import add_fresh_option, positive
 from raycaster.options import CommandParser
 from raycaster.outcomes import Check, Outcome, add_keep_option, keep
 from raycaster.output import Console
+from raycaster.sim import ensure_tools
 
 TESTS = Path(__file__).resolve().with_name("tests")
 STATE = Path("build/verify-all.jsonl")

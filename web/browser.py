@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from raycaster.ensure_tools import find, missing
 from raycaster.errors import UserError, not_installed
+from raycaster.sim.ensure_tools import find, missing
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

@@ -37,7 +37,7 @@ from rich.table import Table
 from rich.text import Text
 
 import raycaster
-from raycaster import convert, ensure_tools, golden, rtl
+from raycaster import convert, golden, rtl
 from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
 from raycaster.digests import digest
@@ -47,6 +47,7 @@ from raycaster.jobs import Kept, add_fresh_option, add_job_options, executors, p
 from raycaster.options import CommandParser
 from raycaster.outcomes import Check, Outcome, Published, add_keep_option, keep
 from raycaster.output import Console, emptied
+from raycaster.sim import ensure_tools
 from raycaster.sim.simulator import build_program
 from raycaster.tools import ToolError, run_yosys
 from raycaster.verif import leaf, seeds

@@ -6,7 +6,7 @@ from __future__ import annotations
 import subprocess
 from pathlib import Path
 
-from raycaster import ensure_tools
+from raycaster.sim import ensure_tools
 
 
 def run_tcl(directory: Path, script: str, *arguments: str) -> subprocess.CompletedProcess[str]:

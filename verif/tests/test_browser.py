@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from raycaster.ensure_tools import UserError
+from raycaster.sim.ensure_tools import UserError
 from raycaster.web.browser import browser_page
 
 

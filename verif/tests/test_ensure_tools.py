@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from raycaster import ensure_tools
-from raycaster.ensure_tools import UserError, ensure, find, install_command
+from raycaster.sim import ensure_tools
+from raycaster.sim.ensure_tools import UserError, ensure, find, install_command
 
 
 def _program(directory: Path, name: str, text: str = "exit 1") -> None:
