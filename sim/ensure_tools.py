@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.sim.ensure_tools icarus chromium tcl`: see to it that the tools are there that pip does not have."""
+"""`python -m raycaster.sim.ensure_tools icarus`: see that tools are there that pip does not have, or install them."""
 
 from __future__ import annotations
 
