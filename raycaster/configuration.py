@@ -6,13 +6,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import ConfigDict, Field, ValidationError
 from pydantic.dataclasses import dataclass as validated_dataclass
 from pydantic.fields import FieldInfo
 
-from raycaster.engines import ENGINES, Engine
+from raycaster.engines import ENGINES, SEED, Engine
 from raycaster.errors import UserError
 from raycaster.fixed import FixedScene
 from raycaster.screens import COORDINATE_BITS, Screen
@@ -31,6 +31,12 @@ SLOW_HZ = 50_000_000
 """A clock that designs meet on the chips of the boards without registers on long wires."""
 
 
+if TYPE_CHECKING:
+    EngineName = str
+else:
+    EngineName = Literal[*ENGINES]
+
+
 class ConfigurationError(UserError):
     """A configuration that cannot be built, with one line that says what, where and what to do."""
 
@@ -42,7 +48,7 @@ class Options:
     Raises pydantic's `ValidationError`.
     """
 
-    engine: Literal["seed", "exact", "beam"] = Field("seed", description="what computes the rays: seed, exact or beam")
+    engine: EngineName = Field(SEED.name, description=f"what computes the rays: {' or '.join(ENGINES)}")
     units: int | None = Field(
         None, ge=1, description="ray units in parallel, a divisor of the columns: 32; the fewest of the exact engine; 1"
     )

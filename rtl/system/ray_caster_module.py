@@ -4,6 +4,7 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.engines import BEAM, EXACT, SEED
 from raycaster.registers import address_bits
 from raycaster.rtl.beam.beam_renderer import beam_renderer
 from raycaster.rtl.bus.avalon_interface import avalon_interface
@@ -17,6 +18,9 @@ from raycaster.rtl.scene.camera_mem import camera_mem
 from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.rtl.scene.rect_rom import rect_rom
 from raycaster.rtl.system.ray_caster_renderer import ray_caster_renderer
+
+RENDERERS = {SEED.name: ray_caster_renderer, EXACT.name: ray_caster_renderer, BEAM.name: beam_renderer}
+"""By engine, the block that fills the screen."""
 
 
 @block
@@ -69,8 +73,7 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
 
         gate = clock_gate(clk, awake=scene_awake, gated_clk=scene_clk)
         rests_on(scene_clk, rectangles, position)
-    block_of_renderer = ray_caster_renderer if config.facts.line_buffered else beam_renderer
-    renderer = block_of_renderer(
+    renderer = RENDERERS[config.engine](
         clk, reset, picture=picture, camera=camera, rects=rects, progress=progress, vga=vga, config=config
     )
 

@@ -20,7 +20,6 @@ from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.program import basis_fields
 from raycaster.registers import register_map
-from raycaster.rtl.beam.beam_renderer import beam_renderer
 from raycaster.rtl.common.interfaces import Picture, Place, Progress, RayFate, Rects, Steps, vga_of
 from raycaster.rtl.common.records import Pixel, Point, camera_of, rect_of
 from raycaster.rtl.common.widths import bit, pixel_bits, unit_bits, unsigned
@@ -29,8 +28,7 @@ from raycaster.rtl.seed.ray_unit import ray_unit
 from raycaster.rtl.system.camera_axis import STEP
 from raycaster.rtl.system.ports import module_ports, system_ports
 from raycaster.rtl.system.ray_caster import ray_caster
-from raycaster.rtl.system.ray_caster_module import ray_caster_module
-from raycaster.rtl.system.ray_caster_renderer import ray_caster_renderer
+from raycaster.rtl.system.ray_caster_module import RENDERERS, ray_caster_module
 from raycaster.rtl.system.ray_caster_system import ray_caster_system
 from raycaster.rtl.system.reset_release import HOLD_CYCLES
 from raycaster.rtl.system.scene_player import BUTTONS
@@ -504,7 +502,7 @@ def start_screen_cycle(screen: Screen) -> int:
 
 def renderer_leaf(config: Configuration, directory) -> Leaf:
     return Leaf(
-        ray_caster_renderer if config.facts.line_buffered else beam_renderer,
+        RENDERERS[config.engine],
         lambda: {
             "clk": bit(),
             "reset": reset_signal(),
