@@ -242,7 +242,7 @@ def need_avalon(config: Configuration, what: str) -> None:
 
 
 OPTIONS: Mapping[str, FieldInfo] = {
-    name: field for name, field in Options.__pydantic_fields__.items() if name != "fixed"
+    name: field for name, field in vars(Options)["__pydantic_fields__"].items() if name != "fixed"
 }
 """What users choose one by one, with its bounds, default and help, by name; what is fixed comes from a scene."""
 

@@ -54,7 +54,7 @@ class ProcessorDesign:
 def packaged_for(options: Mapping[str, Any]) -> list[Path]:
     """The packaged scenes that hardware with these options shows: those that need nothing which it lacks."""
     lacking = {name for name in NEEDED_FOR if str(options.get(name)) in ("0", "False")}
-    engine = ENGINES.get(options.get("engine"))
+    engine = ENGINES.get(str(options.get("engine")))
     if engine and not engine.turns:
         lacking.add("turn")
     return [

@@ -53,7 +53,7 @@ class FixedScene:
     @property
     def camera_fields(self) -> dict[str, int]:
         """The fixed camera's position and basis, as its record names them."""
-        vectors = zip(("", "forward_", "right_", "up_"), (self.camera, *self.basis), strict=True)
+        vectors = zip(("", "forward_", "right_", "up_"), (self._eye, *self.basis), strict=True)
         return {f"{name}{axis}": part for name, vector in vectors for axis, part in zip("xyz", vector, strict=True)}
 
     @property
@@ -69,7 +69,13 @@ class FixedScene:
     @property
     def distances(self) -> tuple[int, ...]:
         """From the fixed camera to each rectangle's plane, with the sign."""
-        return tuple(rectangle.position - self.camera[rectangle.axis] for rectangle in self.rectangles)
+        return tuple(rectangle.position - self._eye[rectangle.axis] for rectangle in self.rectangles)
+
+    @property
+    def _eye(self) -> tuple[int, int, int]:
+        if self.camera is None:
+            raise ValueError("the camera is live")
+        return self.camera
 
     def column(self, name: str) -> tuple[int, ...]:
         """One attribute of every rectangle."""

@@ -136,10 +136,11 @@ def run_jobs(
         UserError: workers died on the same jobs `ATTEMPTS` times.
     """
     results: dict[int, R] = {}
-    for place, job in enumerate(jobs if kept else ()):
-        there, result = kept.find(job)
-        if there:
-            results[place] = result
+    if kept:
+        for place, job in enumerate(jobs):
+            there, result = kept.find(job)
+            if there:
+                results[place] = result
     if results:
         console.print(f"resumed: {len(results)} of {len(jobs)} {what} are kept from an earlier run")
     columns = TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn()

@@ -55,7 +55,7 @@ ADVICE = {
 class CommandParser(argparse.ArgumentParser):
     """The options of a subcommand, which may be given as make's variables too: `ENGINE=beam` for `--engine beam`."""
 
-    def __init__(self, name: str, doc: str, example: str):
+    def __init__(self, name: str, doc: str | None, example: str):
         """Begin with what every command's help begins with.
 
         Args:
@@ -63,7 +63,7 @@ class CommandParser(argparse.ArgumentParser):
             doc: the module's docstring, whose first line says what it does.
             example: arguments that are worth trying.
         """
-        purpose = re.sub(r"^`raycaster [\w ]+`: |: `make [\w ]+`", "", doc.strip().splitlines()[0])
+        purpose = re.sub(r"^`raycaster [\w ]+`: |: `make [\w ]+`", "", (doc or name).strip().splitlines()[0])
         super().__init__(
             prog=f"raycaster {name}",
             usage=argparse.SUPPRESS,

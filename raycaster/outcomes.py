@@ -34,6 +34,7 @@ class Provenance(Protocol):
 
     def digests(self) -> Digests:
         """Digest all of it."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -165,7 +166,7 @@ def kept_outcome(path: Path) -> Outcome:
         UserError: it cannot be read.
     """
     try:
-        kept = json.loads(path.read_text())
+        kept: dict[str, Any] = json.loads(path.read_text())
     except OSError as error:
         raise UserError(f"{path}: cannot be read: {error.strerror}; a command with --keep {path} writes it") from None
     kept = {"provenance": {}} | {name: kept[name] for name in kept if name != "tools"}

@@ -48,7 +48,7 @@ def write_page(rectangles: int, directory: Path) -> Path:
         The page's first file.
     """
     with replaced(directory) as written:
-        HTMLExporter().export(compile_registers(rectangles), str(written), title="RayCaster registers")
+        HTMLExporter().export(compile_registers(rectangles), str(written), title="RayCaster registers")  # pyright: ignore[reportArgumentType]
     return directory / "index.html"
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from systemrdl import RDLCompiler
+from systemrdl.compiler import RDLCompiler
 from systemrdl.node import AddrmapNode, FieldNode, RegNode
 
 SOURCE = Path(__file__).with_name("registers.rdl")
@@ -84,7 +84,8 @@ def register_map(rectangles: int) -> dict[str, Register]:
 
 
 def _field(node: FieldNode) -> tuple[str, RegisterField]:
-    return node.inst_name, RegisterField(node.low, node.width, node.get_property("reset") or 0)
+    reset = node.get_property("reset")
+    return node.inst_name, RegisterField(node.low, node.width, reset if isinstance(reset, int) else 0)
 
 
 def address_bits(rectangles: int) -> int:

@@ -12,7 +12,7 @@ import tomllib
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
@@ -111,9 +111,9 @@ class _Check:
         return validator.__get_pydantic_core_schema__(source, handler)
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, object]:
-        described = handler(schema)
+        described: dict[str, Any] = handler(schema)
         rule = {"kind": self.holds.__name__.strip("_"), "expected": self.expected, "after": self.after}
-        return described | {"checks": [*described.get("checks", []), rule | self.parameters]}
+        return {**described, "checks": [*described.get("checks", []), {**rule, **self.parameters}]}
 
 
 def _whole(value: object, lowest: int, highest: int) -> bool:
@@ -147,7 +147,8 @@ def _integer(lowest: int, highest: int) -> _Check:
 
 
 def _channels(colour: str | tuple[int, int, int]) -> tuple[int, int, int]:
-    return colour if isinstance(colour, tuple) else tuple(bytes.fromhex(colour[1:]))
+    red, green, blue = colour if isinstance(colour, tuple) else bytes.fromhex(colour[1:])
+    return red, green, blue
 
 
 Coordinate = Annotated[int, _integer(0, WORLD_SIZE - 1)]
@@ -181,6 +182,10 @@ class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
+def _scaled(x: float, y: float, z: float) -> tuple[int, int, int]:
+    return round(x * BASIS_SCALE), round(y * BASIS_SCALE), round(z * BASIS_SCALE)
+
+
 class Camera(_Strict):
     """Where all rays start, and how the view is turned, in degrees: not at all, it is along x with z upwards.
 
@@ -197,10 +202,10 @@ class Camera(_Strict):
         """Forward, right and up, each the x, y, z of its vector, times 256 and rounded: what the registers hold."""
         angles = (math.radians(angle) for angle in (self.yaw, self.pitch, self.roll))
         (cy, sy), (cp, sp), (cr, sr) = ((math.cos(angle), math.sin(angle)) for angle in angles)
-        forward = cy * cp, sy * cp, sp
-        right = -sy * cr - cy * sp * sr, cy * cr - sy * sp * sr, cp * sr
-        up = sy * sr - cy * sp * cr, -cy * sr - sy * sp * cr, cp * cr
-        return tuple(tuple(round(part * BASIS_SCALE) for part in vector) for vector in (forward, right, up))
+        forward = _scaled(cy * cp, sy * cp, sp)
+        right = _scaled(-sy * cr - cy * sp * sr, cy * cr - sy * sp * sr, cp * sr)
+        up = _scaled(sy * sr - cy * sp * cr, -cy * sr - sy * sp * cr, cp * cr)
+        return forward, right, up
 
     @property
     def turned(self) -> bool:
@@ -327,8 +332,8 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
 def packaged_scenes(*, plain: bool = False) -> dict[str, Path]:
     """The scenes that come with it, by name; plain: only those that need nothing which a design may lack."""
     spec = importlib.util.find_spec("raycaster.scenes")
-    folders = map(Path, spec.submodule_search_locations)
-    paths = [path for folder in folders for path in sorted(folder.glob("*.toml"))]
+    folders = (spec and spec.submodule_search_locations) or ()
+    paths = [path for folder in folders for path in sorted(Path(folder).glob("*.toml"))]
     return {path.stem: path for path in paths if not (plain and any(load_scene(path).needs.values()))}
 
 
@@ -374,7 +379,7 @@ def dump_scene(scene: Scene) -> str:
         lines.append(f"colour = {colour(rectangle.colour)}")
         if rectangle.mirror != Rectangle.model_fields["mirror"].default:
             lines.append(f"mirror = {rectangle.mirror}")
-        if rectangle.pattern != "plain":
+        if rectangle.pattern != "plain" and rectangle.colour2:
             lines.append(f'pattern = "{rectangle.pattern}"')
             lines.append(f"colour2 = {colour(rectangle.colour2)}")
             lines.append(f"cell = {rectangle.cell}")
@@ -429,7 +434,7 @@ def _expected(details: ErrorDetails) -> str:
             table = {1: Scene, 2: Camera, 3: Rectangle}[len(details["loc"])]
             return COMPLAINTS[kind].format(keys=", ".join(table.model_fields))
         case "value_error":
-            expected = str(details["ctx"]["error"])
+            expected = str(details.get("ctx", {}).get("error"))
         case kind:
             expected = COMPLAINTS.get(kind, details["msg"])
     return expected + _given(details["input"])

@@ -107,6 +107,8 @@ class Screen:
         if scale == 1:
             return self
         if self.doubling % scale:
+            if self.finer is None:
+                raise ValueError(f"scale: {scale} is none of {self.scales}")
             return self.finer.scaled(scale)
         return replace(
             self,
