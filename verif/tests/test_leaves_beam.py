@@ -803,7 +803,7 @@ def check_tester(block, ports, config: Configuration, tmp_path) -> None:
     random = np.random.default_rng(seed())
     stimulus, expected, seen = [], {}, set()
     # Of more mirrors fewer are in one point.
-    count, most = (3000 * max(1, config.reflections - 1), None) if ports else (1500, 0)
+    count, most = (3600 * max(1, config.reflections - 1), None) if ports else (1500, 0)
     for table, chosen, camera, slope, mirrors in beam_rays(random, config, count, most):
         if bool(mirrors) != bool(ports):
             continue
@@ -1158,7 +1158,7 @@ def test_colour_blend(config, tmp_path):
     random = np.random.default_rng(seed())
     stimulus, expected = [], []
     latency, background, reflections = blend_latency(config), 0x123456, 0
-    for number in range(1800):
+    for number in range(3000):
         if number % 100 == 0:
             background, reflections = int(random.integers(1 << RGB_BITS)), number // 100 % rays
         found = (random.random(rays) < 0.8).astype(int).tolist()
@@ -1599,7 +1599,7 @@ def test_beam_pass(mirrors, tmp_path):
     steepest = steepest_slope(config)
     spare = steepest - int(abs(slopes[..., 1]).max())
     stimulus, expected = [quiet] * winner_latency(config), {}
-    for _ in range(400):
+    for _ in range(500):
         # Of another screen's view, from any column on, for each bit of the slopes to count.
         view = slopes[int(random.integers(len(slopes)))].copy()
         view[:, 0] = random.integers(1, steepest + 1)
