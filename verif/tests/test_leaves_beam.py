@@ -828,7 +828,7 @@ def check_tester(block, ports, config: Configuration, tmp_path) -> None:
             case_stimulus[lead if ports else 1] |= ways
             case_stimulus[lead + 1] |= bounds
             case_stimulus[lead + tester.slope_at(config)] |= {f"slope_d{AXES[c]}": abs(int(slope[c])) for c in range(3)}
-            # No less than the rectangles' own, of which the table has fewer.
+            # Any of the design's rectangles, of which the table has fewer.
             number = int(random.integers(config.rectangles))
             case_stimulus[lead + 2] |= {"index": number}
             # What comes without its strobe is another ray's.
