@@ -287,7 +287,7 @@ def test_rect_tester(reflections, turn, tmp_path):
     leaf = leaf_of_tester(config, tmp_path)
     random = np.random.default_rng(seed())
     stimulus, expected, distance = [], [], 0
-    for table, chosen, eye, slope, mirror in mirrored_rays(random, config, 1000):
+    for table, chosen, eye, slope, mirror in mirrored_rays(random, config, 1300):
         met = {mirror[0]} if mirror else set()
         if mirror and reflections > 1 and random.random() < 0.5:
             met |= set(random.choice(3, int(random.integers(3))).tolist())
@@ -598,7 +598,7 @@ def test_controls(function, config, tmp_path):
     count = config.rectangles
     every = (1 << count) - 1
     masks = [every, 0, 1, 1 << (count - 1), every]
-    masks += [int(random.integers(1 << count)) & int(random.integers(1 << count)) for _ in range(16)]
+    masks += [int(random.integers(1 << count)) & int(random.integers(1 << count)) for _ in range(24)]
     masks += [1 << index for index in range(count)] + [1 | 1 << index for index in range(count)]
     table = Rectangles(
         random.integers(WORLD_SIZE, size=(count, 2, 3)),
