@@ -319,9 +319,7 @@ def test_group_tester_at_its_limits(config, tmp_path):
 
 def seen_rect(table: Rectangles, index: int) -> dict[str, int]:
     """What the table shows of a rectangle to who listens."""
-    shown = sorted_rect(table, index, "rects_rect")
-    del shown["rects_rect_colour"]
-    return shown
+    return sorted_rect(table, index, "rects_rect")
 
 
 def any_rect(random: np.random.Generator, table: Sequence[dict[str, int]]) -> dict[str, int]:
@@ -359,7 +357,9 @@ def closest_calls(
 def any_start(random: np.random.Generator, rows: int, groups: int) -> tuple[int, int]:
     """A group but the frame's first: often one that differs from that in a single bit, or the end of such a row."""
     while True:
-        row = random.choice([0, 1 << int(random.integers(rows.bit_length())), random.integers(rows)])
+        # The last rows are those below the horizon.
+        any_row, last_row = random.integers(rows), rows - 1 - random.integers(rows // 4)
+        row = random.choice([0, 1 << int(random.integers(rows.bit_length())), any_row, last_row, last_row])
         offset = random.choice([0, groups - 1, 1 << int(random.integers(groups.bit_length())), random.integers(groups)])
         if 0 < row * groups + offset < rows * groups and offset < groups:
             return int(row), int(offset)
