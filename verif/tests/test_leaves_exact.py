@@ -287,7 +287,7 @@ def test_rect_tester(reflections, turn, tmp_path):
     leaf = leaf_of_tester(config, tmp_path)
     random = np.random.default_rng(seed())
     stimulus, expected, distance = [], [], 0
-    for table, chosen, eye, slope, mirror in mirrored_rays(random, config, 2000):
+    for table, chosen, eye, slope, mirror in mirrored_rays(random, config, 1000):
         met = {mirror[0]} if mirror else set()
         if mirror and reflections > 1 and random.random() < 0.5:
             met |= set(random.choice(3, int(random.integers(3))).tolist())
