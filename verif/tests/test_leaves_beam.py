@@ -576,9 +576,11 @@ def test_slope_walker(config, tmp_path):
         tmp_path,
     )
     random = np.random.default_rng(seed())
-    columns, walked = config.screen_geometry.columns // config.pixels, AXES if config.turn else "y"
+    lane, walked = config.screen_geometry.columns // config.pixels, AXES if config.turn else "y"
     stimulus, expected = [], []
-    for _ in range(3):
+    for line in range(100):
+        # Few steps tell of many aims.
+        columns = lane if line < 3 else 8
         first, more = row_slopes(random, config, columns)
         aim = direction_ports("aim", config, more if config.turn else first)
         aim = {name: value for name, value in aim.items() if name[-1] in walked}
@@ -664,11 +666,12 @@ def test_line_starter(config, tmp_path):
 # ray_fold and the testers ---------------------------------------------------------------------------------------------
 
 
-def beam_rays(random: np.random.Generator, config: Configuration, count: int):
+def beam_rays(random: np.random.Generator, config: Configuration, count: int, most: int | None = None):
     """Tables, rectangles of them to look at, cameras, slopes and mirrors (axis and plane, as the ray meets them).
 
-    As the engine meets them, and as extreme as its widths allow.
+    As the engine meets them, and as extreme as its widths allow. most: mirrors, if not as many as there can be.
     """
+    most = config.reflections if most is None else most
     steepest, view = steepest_slope(config), config.screen_geometry.view_distance
     powers = 1 << np.arange(steepest.bit_length())
     for _ in range(count):
@@ -679,7 +682,7 @@ def beam_rays(random: np.random.Generator, config: Configuration, count: int):
         slope = random.choice(extremes, 3) * random.choice([-1, 1], 3)
         if not config.turn:
             slope[0] = view
-        wanted = int(random.integers(config.reflections + 1))
+        wanted = int(random.integers(most + 1))
         mirrors: list[tuple[int, int]] = []
         met = Fraction(0)
         for _ in range(20):
@@ -813,7 +816,8 @@ def check_tester(block, ports, config: Configuration, tmp_path) -> None:
     random = np.random.default_rng(seed())
     stimulus, expected, seen = [], {}, set()
     # Of more mirrors fewer are in one point.
-    for table, chosen, camera, slope, mirrors in beam_rays(random, config, 3000 * max(1, config.reflections - 1)):
+    count, most = (3600 * max(1, config.reflections - 1), None) if ports else (1500, 0)
+    for table, chosen, camera, slope, mirrors in beam_rays(random, config, count, most):
         if bool(mirrors) != bool(ports):
             continue
         fold = {f"fold_{name}": value for name, value in folded(config, camera, slope, mirrors).items()}
@@ -837,7 +841,9 @@ def check_tester(block, ports, config: Configuration, tmp_path) -> None:
             case_stimulus[lead if ports else 1] |= ways
             case_stimulus[lead + 1] |= bounds
             case_stimulus[lead + slope_at(config)] |= {f"slope_d{AXES[c]}": abs(int(slope[c])) for c in range(3)}
-            case_stimulus[lead + 2] |= {"index": index}
+            # Any of the design's rectangles, of which the table has fewer.
+            number = int(random.integers(config.rectangles))
+            case_stimulus[lead + 2] |= {"index": number}
             # What comes without its strobe is another ray's.
             case_stimulus[lead + 1] |= {f"signs_d{axis}": int(random.integers(2)) for axis in AXES}
             case_stimulus[lead + 2] |= {name: int(random.integers(1 << walk_bits(config))) for name in bounds}
@@ -850,15 +856,15 @@ def check_tester(block, ports, config: Configuration, tmp_path) -> None:
             at_mirror = hit and not verdict(table, index, eye, turned, mirror)[0]
             seen.add((len(met), hit, at_mirror))
             case = table.corners[index].tolist(), camera, slope, mirrors, repeat()
-            expected[start + TESTER_LATENCY] = facet, hit and bool(facet["facet_usable"]), at_mirror, n, e, index, case
+            expected[start + TESTER_LATENCY] = facet, hit and bool(facet["facet_usable"]), at_mirror, n, e, number, case
     outputs = leaf.run_both([*stimulus, dict.fromkeys(strobes, 0)], settled=lead + TESTER_LATENCY)
     # With no mirror; with one, and two in one point, where a third plane may be too. Three in one point hide the rest.
     assert len([case for case in seen if case[0] < 3]) == (3 * min(config.reflections, 2) if ports else 2)
     assert ((3, False, False) in seen) == (config.reflections > 2 and bool(ports))
-    for cycle, (facet, hit, at_mirror, n, e, index, case) in expected.items():
+    for cycle, (facet, hit, at_mirror, n, e, number, case) in expected.items():
         output = outputs[cycle]
         assert output["hit_valid"] == hit, case
-        assert output["hit_index"] == index, case
+        assert output["hit_index"] == number, case
         if config.patterns:
             assert (output["hit_axis"], output["hit_cell"]) == (facet["facet_axis"], facet["facet_cell"]), case
         if hit:
@@ -1009,8 +1015,11 @@ def test_nearest_of(count, contest, tmp_path):
         field = [any_candidate(random, config) for _ in range(count)]
         field = [(int(valid and random.random() < share), *others) for valid, *others in field]
         if count > 1 and random.random() < 0.5:
-            place = 2 * int(random.integers(count // 2))
-            field[place : place + 2] = close_candidates(random, config)
+            # Neighbours meet in the first round, and any two in the last one at the latest.
+            first = 2 * int(random.integers(count // 2))
+            places = [first, first + 1] if random.random() < 0.5 else random.choice(count, 2, replace=False).tolist()
+            for place, one in zip(places, close_candidates(random, config), strict=True):
+                field[place] = one
         fields.append(field)
     stimulus = [
         {"candidates": sum(record.pack(dict(zip(CANDIDATE, one, strict=True))) << i * len(record.word)
@@ -1027,7 +1036,7 @@ def test_nearest_of(count, contest, tmp_path):
 
 
 @pytest.mark.parametrize("cycles", [1, 2, 3, 13])
-def test_winner_delay(cycles, tmp_path):
+def test_delay_line(cycles, tmp_path):
     leaf = Leaf(
         delay_line,
         lambda: {"clk": bit(), "word": unsigned(5), "late_word": unsigned(5), "cycles": cycles},
@@ -1162,7 +1171,7 @@ def test_colour_blend(config, tmp_path):
     random = np.random.default_rng(seed())
     stimulus, expected = [], []
     latency, background, reflections = blend_latency(config), 0x123456, 0
-    for number in range(1800):
+    for number in range(3000):
         if number % 100 == 0:
             background, reflections = int(random.integers(1 << RGB_BITS)), number // 100 % rays
         found = (random.random(rays) < 0.8).astype(int).tolist()
@@ -1296,6 +1305,30 @@ def test_cell_step(place, tmp_path):
         assert tuple(output[f"after_{name}"] for name in ("rest", "divisor", "cell", "odd")) == expected, repeat()
 
 
+def to_edge(random: np.random.Generator, config: Configuration, axis: int, plane: int, eye, turned, slope):
+    """A slope with which the ray meets a plane at a cell's edge, or next to it by the least that its fraction can say.
+
+    The sum that is divided is then a cell's edge times the divisor, plus -1, 0 or 1: (edge - E) e + more = D n.
+    """
+    found, steepest = np.array(slope), steepest_slope(config)
+    n, sign = abs(int(plane - eye[axis])), 1 if plane > eye[axis] else -1
+    u = int(random.choice(OTHER_AXES[axis]))
+    way, more = 8 * int(random.integers(64)) - int(eye[u]), int(random.integers(-1, 2))
+    if n == 0 or gcd(way, n) > 1:
+        return found
+    # The least divisor, and any that is as many times the distance more; without a turn it is what it is along x.
+    least = -more * pow(way, -1, n) % n
+    most = min(steepest, (steepest * n - 1) // max(abs(way), 1))
+    if most < least or (not config.turn and 0 in (axis, u)):
+        return found
+    e = least + n * int(random.integers((most - least) // n + 1))
+    if e > 0:
+        # The mirrors have turned around what differs from the ray's own.
+        found[axis] = sign * e * (-1 if turned[axis] != slope[axis] else 1)
+        found[u] = (way * e + more) // n * (-1 if turned[u] != slope[u] else 1)
+    return found
+
+
 @pytest.mark.parametrize(
     "config",
     [
@@ -1325,15 +1358,16 @@ def test_hit_cells(config, tmp_path):
     )
     random = np.random.default_rng(seed())
     stimulus, expected = [{} for _ in range(4000)], {}
-    camera = random.integers(100, 400, size=3).tolist()
-    stimulus[0] |= {f"camera_{axis}": value for axis, value in zip(AXES, camera, strict=True)}
     cycle = 0
-    for table, chosen, _, slope, mirrors in beam_rays(random, config, 1200):
-        eye, turned = seen_from(camera, slope, mirrors)
+    for table, chosen, camera, ray, mirrors in beam_rays(random, config, 1200):
         for index in 8 * list(chosen):
-            axis, plane = int(table.axes[index]), any_place(random)
+            axis, plane, slope = int(table.axes[index]), any_place(random), ray
+            eye, turned = seen_from(camera, slope, mirrors)
             u, v = OTHER_AXES[axis]
-            if turned[u] and random.random() < 0.5:
+            if random.random() < 0.5:
+                slope = to_edge(random, config, axis, plane, eye, turned, slope)
+                eye, turned = seen_from(camera, slope, mirrors)
+            elif turned[u] and random.random() < 0.5:
                 t = Fraction(8 * int(random.integers(64)) - int(eye[u]), int(turned[u]))
                 plane = int(eye[axis] + int(turned[axis]) * t) if turned[axis] else plane
             n, e = (plane - int(eye[axis])) * int(np.sign(turned[axis])), abs(int(turned[axis]))
@@ -1349,6 +1383,7 @@ def test_hit_cells(config, tmp_path):
             stimulus[cycle] |= {"winner_valid": 1, "winner_index": number}
             image = image_of(config, camera, slope, mirrors)
             stimulus[cycle + 1] |= {f"turn_{name}": value for name, value in image.items()}
+            stimulus[cycle + 1] |= {f"camera_{name}": int(value) for name, value in zip(AXES, camera, strict=True)}
             stimulus[cycle + CELL_SLOPE_AT] |= direction_ports("slope", config, slope)
             expected[cycle + latency] = *parities, number
             cycle += 1
@@ -1577,7 +1612,7 @@ def test_beam_pass(mirrors, tmp_path):
     steepest = steepest_slope(config)
     spare = steepest - int(abs(slopes[..., 1]).max())
     stimulus, expected = [quiet] * winner_latency(config), {}
-    for _ in range(400):
+    for _ in range(500):
         # Of another screen's view, from any column on, for each bit of the slopes to count.
         view = slopes[int(random.integers(len(slopes)))].copy()
         view[:, 0] = random.integers(1, steepest + 1)
@@ -1645,16 +1680,23 @@ def test_beam_lane(config, first, lines, tmp_path):
         tmp_path,
     )
     random = np.random.default_rng(seed())
-    slopes = primary_slopes(config.screen_geometry)
+    slopes, steepest = primary_slopes(config.screen_geometry), steepest_slope(config)
+    spare = steepest - int(abs(slopes[..., 1]).max())
     stimulus, expected = [{"next_column": 0}] * beam_latency(config), {}
-    for _ in range(lines):
-        row = int(random.integers(len(slopes)))
-        camera, table, column = race(random, config, slopes[row])
+    for number in range(lines):
+        view = slopes[int(random.integers(len(slopes)))].copy()
+        if number % 2:
+            # Of another screen's view, for each bit of the slopes to count.
+            view[:, 0] = random.integers(1, steepest + 1)
+            view[:, 1] += random.integers(-spare, spare + 1)
+            view[:, 2] = random.integers(-steepest, steepest + 1)
+        camera, table, column = race(random, config, view)
         background = random.integers(256, size=3)
-        line = slopes[row, : column + 1 + int(random.integers(4))]
-        traced = exact.trace(table, camera, background, line[first :: config.pixels], config.reflections)
-        held, begin = row_ports(config, table, camera, slopes[row, first : first + 2])
-        held |= {"next_column": 0, "picture_reflections": config.reflections}
+        reflections = config.reflections if number % 4 else int(random.integers(config.reflections))
+        line = view[: column + 1 + int(random.integers(4))]
+        traced = exact.trace(table, camera, background, line[first :: config.pixels], reflections)
+        held, begin = row_ports(config, table, camera, view[first : first + 2])
+        held |= {"next_column": 0, "picture_reflections": reflections}
         held["picture_background"] = int.from_bytes(bytes(background.astype(np.uint8)))
         stimulus += [held | cycle for cycle in begin]
         for colour in traced.colours:

@@ -599,7 +599,7 @@ def test_controls(function, config, tmp_path):
     count = config.rectangles
     every = (1 << count) - 1
     masks = [every, 0, 1, 1 << (count - 1), every]
-    masks += [int(random.integers(1 << count)) & int(random.integers(1 << count)) for _ in range(16)]
+    masks += [int(random.integers(1 << count)) & int(random.integers(1 << count)) for _ in range(24)]
     masks += [1 << index for index in range(count)] + [1 | 1 << index for index in range(count)]
     table = Rectangles(
         random.integers(WORLD_SIZE, size=(count, 2, 3)),

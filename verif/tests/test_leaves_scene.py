@@ -206,6 +206,13 @@ def test_rect_sorter(options, tmp_path):
                 names = Table(config).names
                 stimulus.append({f"written_{name}": word for name, word in zip(names, written, strict=False)})
                 expected.append(sorted_rect(table, index, "rect", config))
+                if config.patterns and random.random() < 0.2:
+                    # A cell as large as the world, and one that is larger, have no pattern.
+                    size = int(random.integers(6, 8))
+                    cell = register_map(1)["rectangle[0].pattern"].fields["cell"]
+                    others = written[-1] & ~((1 << cell.width) - 1 << cell.lsb)
+                    stimulus[-1][f"written_{names[3]}"] = others | size << cell.lsb
+                    expected[-1] |= {"rect_kind": 0, "rect_cell": size}
     outputs = leaf.run_both(stimulus)
     assert {rect["rect_axis"] for rect in expected} == {0, 1, 2}
     for inputs, output, rect in zip(stimulus, outputs, expected, strict=True):
@@ -272,17 +279,17 @@ def test_rect_slot(number, tmp_path):
     random = np.random.default_rng(seed())
     stimulus = [
         {
-            "reset": int(cycle == 0 or random.random() < 0.02),
-            "bus_commit": int(random.random() < 0.15),
-            "bus_go_live": int(random.random() < 0.15),
-            "storing": int(random.random() < 0.7),
+            "reset": int(cycle == 0 or random.random() < 0.05),
+            "bus_commit": int(random.random() < 0.3),
+            "bus_go_live": int(random.random() < 0.3),
+            "storing": int(random.random() < 0.4),
             "index": int(random.choice([number, random.integers(4)])),
             "number": number,
             "place": int(random.integers(PLACES)),
             "enable": int(random.integers(2)),
             "flat": int(random.integers(2)),
         }
-        for cycle in range(CYCLES)
+        for cycle in range(2 * CYCLES)
     ]
     outputs = leaf.run_both(stimulus, settled=1)
     # Of each copy its place, and in the bit above whether it is usable.
