@@ -38,7 +38,7 @@ def loaded(command: Command) -> ModuleType:
     try:
         return importlib.import_module(command.module)
     except ModuleNotFoundError as error:
-        if not command.extra or (error.name or "").startswith("raycaster"):
+        if not command.extra or not error.name or error.name.startswith("raycaster"):
             raise
         raise UserError(not_installed(error.name, command.extra)) from None
 

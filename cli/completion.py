@@ -49,7 +49,7 @@ def _completed(parser: CommandParser) -> CommandParser:
         elif action.dest in OPTIONS and action.nargs != 0:
             action.choices = [one for one in get_args(OPTIONS[action.dest].annotation) if isinstance(one, str)] or None
         elif action.type is Path:
-            action.complete = shtab.FILE
+            action.complete = shtab.FILE  # pyright: ignore[reportAttributeAccessIssue] shtab's own attribute
     return parser
 
 

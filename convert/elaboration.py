@@ -4,10 +4,13 @@
 from __future__ import annotations
 
 import inspect
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
+from myhdl._block import _Block
 from myhdl._simulator import _signals
 
 _ELABORATING = threading.RLock()
@@ -45,9 +48,14 @@ def forgetting() -> Iterator[None]:
         del _signals[known:]
 
 
+def elaborated(block: Any, **arguments: Any) -> _Block:
+    """Elaborate a block, for whose function MyHDL has no type."""
+    return block(**arguments)
+
+
 def _callers() -> list[inspect.FrameInfo]:
     """What `inspect.stack` returns, but for the source."""
-    found, frame = [], inspect.currentframe()
+    found, frame = [], sys._getframe()
     while frame := frame.f_back:
         code = frame.f_code
         found.append(inspect.FrameInfo(frame, code.co_filename, frame.f_lineno, code.co_name, None, None))

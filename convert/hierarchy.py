@@ -64,10 +64,14 @@ class Module:
     parameters: tuple[tuple[str, str], ...] = ()
 
 
+Connection = _Signal | str | None
+"""A signal, a number as Verilog writes it, or nothing."""
+
+
 class _Instance(_UserVerilogCode):
     """The text that stands for a block in its parent; names are only known when it is printed."""
 
-    def __init__(self, module: Module, name: str, connections: dict[str, _Signal | str | None]):
+    def __init__(self, module: Module, name: str, connections: dict[str, Connection]):
         super().__init__("", {}, module.name, None, None, None)
         self._module, self.name, self.connections = module, name, connections
 
@@ -89,7 +93,7 @@ class _Loading(_UserVerilogCode):
         return f'\n// What the memory holds from the start.\ninitial $readmemh("{self._file}", {self._memory.name});\n'
 
 
-def _printed(connection: _Signal | str | None) -> str:
+def _printed(connection: Any) -> str:
     """A signal by its name in the parent, a number as it is, and nothing for what is not connected."""
     if connection is None:
         return ""
@@ -170,29 +174,28 @@ def convert_hierarchy(top: _Block, directory: Path, header: str) -> list[Module]
 class _Converter:
     def __init__(self, directory: Path, header: str):
         self._directory, self._header = directory, header
-        self._modules: dict[str, tuple[Any, Module | None]] = {}
+        self._kinds: dict[str, Any] = {}
+        self._modules: dict[str, Module] = {}
 
     def convert(self, top: _Block) -> list[Module]:
         self._module_of(top)
-        return [module for _, module in self._modules.values()]
+        return [*self._modules.values()]
 
     def _module_of(self, block: _Block) -> Module:
         """The block's module, which is written unless a block of the same kind has one."""
         if given := getattr(block.func, "given_verilog", None):
             return self._copy(given, block)
         kind = _kind(block)
-        for known, module in self._modules.values():
-            if known == kind:
+        for known, module in self._modules.items():
+            if self._kinds[known] == kind:
                 return module
         name, number = block.func.__name__, 0
-        while name in self._modules:
+        while name in self._kinds:
             number += 1
             name = f"{block.func.__name__}_{number}"
-        self._modules[name] = kind, None  # the name is taken while the block's own parts are converted
-        module = self._convert_block(block, name, block_ports(block))
-        del self._modules[name]
-        self._modules[name] = kind, module
-        return module
+        self._kinds[name] = kind  # the name is taken while the block's own parts are converted
+        self._modules[name] = self._convert_block(block, name, block_ports(block))
+        return self._modules[name]
 
     def _copy(self, given: GivenVerilog, block: _Block) -> Module:
         """The module of given Verilog: one file for all instances, each of which has its own parameters."""
@@ -207,19 +210,19 @@ class _Converter:
             for parameter, value in block_arguments(block).items()
             if not any(signals_in(parameter, value))
         )
-        if name not in self._modules:
+        if name not in self._kinds:
             path = self._directory / f"{name}.v"
             shutil.copyfile(given.source(), path)
-            self._modules[name] = block.func, Module(name, path, shapes, {}, parameters)
-        known, module = self._modules[name]
-        if known is not block.func:
+            self._kinds[name], self._modules[name] = block.func, Module(name, path, shapes, {}, parameters)
+        if self._kinds[name] is not block.func:
             raise HierarchyError(f"{name} is given Verilog, whose name stays, and another block's name; rename that")
-        return replace(module, ports=shapes, parameters=parameters)
+        return replace(self._modules[name], ports=shapes, parameters=parameters)
 
     def _convert_block(self, block: _Block, name: str, ports: dict[str, _Signal]) -> Module:
-        children = []
+        children: list[_Block] = []
+        loading: Any = load_words
         for sub in block.subs:
-            if isinstance(sub, _Block) and sub.func is load_words.func:
+            if isinstance(sub, _Block) and sub.func is loading.func:
                 _replace_by_loading(sub, block)
             elif isinstance(sub, _Block):
                 children.append(sub)
@@ -250,13 +253,14 @@ class _Converter:
         for port, signal in ports.items():
             if isinstance(signal, _SliceSignal):
                 signal._name = port  # MyHDL names a slice after the vector that the parent cut it from
-        convertor = _RecordingConvertor(fields)
-        convertor.name = toVerilog.name = name
+        convertor: Any = _RecordingConvertor(fields)
+        printer: Any = toVerilog
+        convertor.name = printer.name = name
         convertor.directory = str(self._directory)
         # The functions that print the module read these from MyHDL's global convertor, not from the one that runs.
-        toVerilog.no_myhdl_header = toVerilog.no_testbench = True
-        toVerilog.header = self._header.format(module=name).replace("$", "$$")
-        toVerilog.initial_values = False
+        printer.no_myhdl_header = printer.no_testbench = True
+        printer.header = self._header.format(module=name).replace("$", "$$")
+        printer.initial_values = False
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("error", category=ToVerilogWarning)
@@ -264,8 +268,8 @@ class _Converter:
         except ToVerilogWarning as warning:
             raise HierarchyError(f"{name}: {warning}") from None
         finally:
-            toVerilog.no_myhdl_header = toVerilog.no_testbench = False
-            toVerilog.header, toVerilog.name = "", None
+            printer.no_myhdl_header = printer.no_testbench = False
+            printer.header, printer.name = "", None
         if not {port.name for port in convertor.ports} <= set(ports):
             raise HierarchyError(f"{name}: MyHDL found other ports than its arguments")
         path = self._directory / f"{name}.v"
@@ -280,7 +284,7 @@ class _Converter:
 class _Constant:
     """An argument that is no signal. Equal ones have one type, value and text: True == 1, and -0.0 == 0.0."""
 
-    __hash__ = None
+    __hash__: Any = None
 
     def __init__(self, value: Any):
         self._value = value
@@ -323,7 +327,7 @@ def _description_of_signal(signal: _Signal) -> tuple[int, ...]:
     return len(signal) or 1, signal.min or 0, signal.max or 1 << (len(signal) or 1)
 
 
-def _check_names(block: _Block, ports: Mapping[int, str], memories: list[_MemInfo]) -> None:
+def _check_names(block: _Block, ports: Mapping[int, str], memories: list[Any]) -> None:
     """Refuse two signals, memories or instances of one name in Verilog: MyHDL would print one for the other."""
     owners: dict[str, int] = {memory.name: id(memory) for memory in memories if memory._used}
     owners |= {name: number for number, name in ports.items()}
@@ -342,7 +346,7 @@ def _check_names(block: _Block, ports: Mapping[int, str], memories: list[_MemInf
             raise HierarchyError(f"{block.name}: two things would be called {name or variable} in Verilog; rename one")
 
 
-def _check_values(block: _Block, signals: list[_Signal], memories: list[_MemInfo]) -> None:
+def _check_values(block: _Block, signals: list[_Signal], memories: list[Any]) -> None:
     """Refuse what MyHDL would print as other values: slices that processes index, and constants below 0."""
     for memory in memories:
         if memory._used and any(isinstance(one, _ShadowSignal) for one in memory.mem):
@@ -350,8 +354,9 @@ def _check_values(block: _Block, signals: list[_Signal], memories: list[_MemInfo
                 f"{_place(block, memory.name)}: a process indexes {memory.name}, whose slices would have no value "
                 "in Verilog; index the signal that they are cut from"
             )
-    for signal in signals:
-        if isinstance(signal, Constant) and signal._read and int(signal.val) < 0:
+    constants: list[Any] = [signal for signal in signals if isinstance(signal, Constant)]
+    for signal in constants:
+        if signal._read and int(signal.val) < 0:
             raise HierarchyError(
                 f"{_place(block, signal._name)}: {signal._name} is {int(signal.val)}, and a constant below 0 is no "
                 "Verilog; use tied()"
@@ -365,7 +370,7 @@ def _place(block: _Block, name: str) -> str:
     return f"{inspect.getsourcefile(block.func)}:{first + next(given, 0)}"
 
 
-def _fields_read(block: _Block, children: list[_Block]) -> dict[int, Field]:
+def _fields_read(block: _Block, children: list[Any]) -> dict[int, Field]:
     """The fields of records that a block's processes and instances read, by identity."""
     read = [sub.symdict[name] for sub in block.subs if isinstance(sub, _Instantiator) for name in sorted(sub.inputs)]
     read += [signal for child in children for signal in child.verilog_code.connections.values()]
@@ -378,7 +383,7 @@ def _shape(signal: _Signal) -> str:
     return f"{'signed ' if (signal.min or 0) < 0 else ''}{f'[{width - 1}:0] ' if width > 1 else ''}"
 
 
-def _number(signal: _Signal) -> str:
+def _number(signal: Any) -> str:
     """What never changes, as Verilog writes it."""
     width, value = len(signal) or 1, int(signal.val)
     if (signal.min or 0) < 0:
@@ -393,7 +398,7 @@ def _replace_by_instance(child: _Block, module: Module, name: str, parent_ports:
     if (clock := getattr(child, "verilog_clk", None)) is not None:
         signals["clk"] = clock
     passed_on = {id(signal) for signal in parent_ports.values()}
-    connections = {port.name: signals[port.name] for port in module.ports}
+    connections: dict[str, Connection] = {port.name: signals[port.name] for port in module.ports}
     for port, signal in connections.items():
         if isinstance(signal, Unconnected) and id(signal) not in passed_on:
             connections[port] = None
@@ -442,7 +447,7 @@ def _mark_processes(block: _Block) -> None:
 
 
 def _name_signals(
-    block: _Block, children: list[_Block], ports: Mapping[str, _Signal], fields: Mapping[int, Field]
+    block: _Block, children: list[Any], ports: Mapping[str, _Signal], fields: Mapping[int, Field]
 ) -> None:
     """Give MyHDL a name for every signal that only instances use, and for records of which only fields are used."""
     named = {id(signal) for signal in block.sigdict.values()}
@@ -455,7 +460,7 @@ def _name_signals(
         for path, signal in signals_in(name, value):
             candidates.setdefault(id(signal), path)
 
-    def name(connected: _Signal, where: str) -> None:
+    def give_name(connected: _Signal, where: str) -> None:
         signal = connected._sig if isinstance(connected, _SliceSignal) and id(connected) not in arrived else connected
         if id(signal) in named:
             return
@@ -467,6 +472,6 @@ def _name_signals(
     for child in children:
         for port, connected in child.verilog_code.connections.items():
             if isinstance(connected, _Signal):
-                name(connected, f"{child.func.__name__}.{port} connects to")
+                give_name(connected, f"{child.func.__name__}.{port} connects to")
     for field in fields.values():
-        name(field, f"a process reads {field.field} of")
+        give_name(field, f"a process reads {field.field} of")

@@ -136,7 +136,8 @@ def state_names(top: _Block) -> dict[tuple[str, str], dict[int, str]]:
     found = {}
     for name, signal in top.sigdict.items():
         if isinstance(signal.val, EnumItemType):
-            states = signal.val._type
+            value: Any = signal.val
+            states = value._type
             found[top.func.__name__, name] = {int(getattr(states, item)._val, 2): item for item in states._names}
     for sub in top.subs:
         if isinstance(sub, _Block):

@@ -32,7 +32,8 @@ register_namespace("spirit", SPIRIT)
 
 def _add(parent: Element, tag: str, text: object = None, /, **attributes: str) -> Element:
     """An element below another, with its text."""
-    child = SubElement(parent, QName(SPIRIT, tag), {QName(SPIRIT, key): value for key, value in attributes.items()})
+    qualified = {QName(SPIRIT, key).text: value for key, value in attributes.items()}
+    child = SubElement(parent, QName(SPIRIT, tag).text, qualified)
     child.text = None if text is None else str(text)
     return child
 
@@ -46,7 +47,7 @@ def component(config: Configuration, ports: Sequence[Port], sources: Sequence[st
         sources: the files' names, each after those that it needs; the top is the last.
     """
     top = sources[-1].removesuffix(".v")
-    root = Element(QName(SPIRIT, "component"))
+    root = Element(QName(SPIRIT, "component").text)
     for name, text in (("vendor", "raycaster"), ("library", "video"), ("name", top), ("version", _version())):
         _add(root, name, text)
     _add_interfaces(_add(root, "busInterfaces"), config, ports)
@@ -114,7 +115,9 @@ def _add_interface(
         port = _add(maps, "portMap")
         _add(_add(port, "logicalPort"), "name", logical)
         _add(_add(port, "physicalPort"), "name", physical)
-    listed = _add(interface, "parameters") if parameters else None
+    if not parameters:
+        return
+    listed = _add(interface, "parameters")
     for parameter, value in parameters.items():
         one = _add(listed, "parameter")
         _add(one, "name", parameter)

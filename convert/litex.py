@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from litex.build.generic_platform import GenericPlatform
 from litex.gen import ClockSignal, Instance, LiteXModule, ResetSignal, Signal
@@ -47,6 +48,10 @@ class RayCaster(LiteXModule):
         UserError: the design has another bus than LiteX does, or more than one pixel a clock.
     """
 
+    comb: Any
+    specials: Any
+    """Migen makes both when they are asked for."""
+
     def __init__(self, platform: GenericPlatform, config: Configuration, directory: Path):
         if config.bus not in BUSES:
             raise UserError(f"bus: LiteX takes {' or '.join(BUSES)}, not {config.bus}")
@@ -60,7 +65,7 @@ class RayCaster(LiteXModule):
         self.ev.frame = EventSourceLevel(description="A frame has begun; cleared in the ray tracer's irq_pending.")
         self.ev.finalize()
         self.vga = {name: Signal(len(port), name=f"vga_{name}") for name, port in vars(vga_of(config)).items()}
-        ports = {f"o_vga_{name}": signal for name, signal in self.vga.items()}
+        ports: dict[str, Any] = {f"o_vga_{name}": signal for name, signal in self.vga.items()}
         self.specials += Instance(
             "ray_caster_module",
             i_clk=ClockSignal(),
@@ -73,7 +78,8 @@ class RayCaster(LiteXModule):
 
     def _wishbone(self, words: int) -> dict[str, Signal]:
         """The ports of that bus."""
-        self.bus = bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
+        bus: Any = wishbone.Interface(data_width=32, address_width=32, addressing="word")
+        self.bus = bus
         self.comb += bus.err.eq(0)
         inputs = {f"i_wb_{name}": getattr(bus, name) for name in ("cyc", "stb", "we", "sel", "dat_w")}
         return inputs | {"i_wb_adr": bus.adr[:words], "o_wb_ack": bus.ack, "o_wb_dat_r": bus.dat_r}

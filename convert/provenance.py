@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from raycaster.configuration import Configuration
-from raycaster.convert.elaboration import elaboration
+from raycaster.convert.elaboration import elaborated, elaboration
 from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.digests import DIGITS, code_digest, tool_versions, uncommented
 from raycaster.outcomes import Digests
@@ -54,7 +54,7 @@ class Provenance:
 def verilog_digest(configuration: Configuration) -> str:
     """Digest the Verilog of `ray_caster_module`, without its comments."""
     with TemporaryDirectory() as directory, elaboration():
-        top = ray_caster_module(**module_ports(configuration), config=configuration)
+        top = elaborated(ray_caster_module, **module_ports(configuration), config=configuration)
         return files_digest(module.path for module in convert_hierarchy(top, Path(directory), ""))
 
 

@@ -9,6 +9,7 @@ import operator
 import re
 import textwrap
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from myhdl._block import _Block
 from myhdl._enum import EnumItemType
@@ -98,7 +99,7 @@ def _sensitivity(match: re.Match[str]) -> str:
     return "always @*"
 
 
-def _name_states(text: str, signal: str, state: EnumItemType) -> str:
+def _name_states(text: str, signal: str, state: Any) -> str:
     """Write states by name instead of code."""
     names: Mapping[str, str] = {code: name for name, code in state._type._codedict.items()}
     width = state._nrbits
@@ -132,8 +133,8 @@ def _fold_constants(text: str) -> str:
 def _evaluate(expression: str) -> int:
     def value(node: ast.expr) -> int:
         match node:
-            case ast.Constant():
-                return node.value
+            case ast.Constant(value=int(number)):
+                return number
             case ast.BinOp():
                 return _OPERATORS[type(node.op)](value(node.left), value(node.right))
             case ast.UnaryOp():
@@ -179,6 +180,8 @@ def _is_one_group(text: str) -> bool:
 def _declare_ports(text: str, ports: Sequence[str]) -> str:
     """Declare each port once, in the module's head, and put the text about the module above that."""
     head = re.search(r"^module (\w+) \(\n[^)]*\);\n((?://[^\n]*\n)*)", text, re.M)
+    if not head:
+        raise ValueError("no module begins as MyHDL writes it")
     before, name, purpose, body = text[: head.start()], head[1], head[2], text[head.end() :]
     rows = []
     for port in ports:

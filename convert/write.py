@@ -10,7 +10,7 @@ from pathlib import Path
 from myhdl._block import _Block
 
 from raycaster.configuration import Configuration, need_avalon
-from raycaster.convert.elaboration import elaboration
+from raycaster.convert.elaboration import elaborated, elaboration
 from raycaster.convert.hierarchy import Module, convert_hierarchy
 from raycaster.convert.inside import state_names
 from raycaster.convert.take_home import write_take_home
@@ -36,7 +36,7 @@ def write_verilog(config: Configuration, directory: Path) -> list[Path]:
     return _write(
         config,
         directory,
-        lambda: ray_caster_module(**module_ports(config), config=config),
+        lambda: elaborated(ray_caster_module, **module_ports(config), config=config),
         partial(write_take_home, config),
     )
 
@@ -48,7 +48,9 @@ def write_system(config: Configuration, scene: Scene, directory: Path) -> list[P
         UserError: the configuration has another bus than Avalon-MM.
     """
     need_avalon(config, "a system without a processor")
-    return _write(config, directory, lambda: ray_caster_system(**system_ports(config), config=config, scene=scene))
+    return _write(
+        config, directory, lambda: elaborated(ray_caster_system, **system_ports(config), config=config, scene=scene)
+    )
 
 
 def write_processor_system(config: Configuration, directory: Path, program: str = PROGRAM_FILE) -> list[Path]:
@@ -65,19 +67,21 @@ def write_processor_system(config: Configuration, directory: Path, program: str 
     """
     need_avalon(config, "a system with a processor")
     return _write(
-        config, directory, lambda: processor_system(**processor_ports(config), config=config, program=program)
+        config,
+        directory,
+        lambda: elaborated(processor_system, **processor_ports(config), config=config, program=program),
     )
 
 
 def write_dvi_encoder(config: Configuration, directory: Path) -> list[Path]:
     """Write `dvi_encoder`, which turns a VGA output of 8 bits a channel into a DVI link; config names the files."""
-    return _write(config, directory, lambda: dvi_encoder(**dvi_ports()))
+    return _write(config, directory, lambda: elaborated(dvi_encoder, **dvi_ports()))
 
 
 def design_states(config: Configuration) -> dict[tuple[str, str], dict[int, str]]:
     """The enumerated signals of `ray_caster_module`; see `raycaster.convert.inside.state_names`."""
     with elaboration():
-        return state_names(ray_caster_module(**module_ports(config), config=config))
+        return state_names(elaborated(ray_caster_module, **module_ports(config), config=config))
 
 
 def _write(

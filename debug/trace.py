@@ -13,7 +13,7 @@ from rich.text import Text
 
 from raycaster.configuration import CHANNEL_BITS
 from raycaster.debug.probes.engines import description_of
-from raycaster.debug.probes.ray import Place, Probe, Ray, Reading, Value, first_difference, read
+from raycaster.debug.probes.ray import Number, Place, Probe, Ray, Reading, Value, first_difference, read
 from raycaster.debug.recorder import add_recording_options, build_and_record, pixel_place
 from raycaster.debug.waves import Waves
 from raycaster.design import design_for
@@ -112,7 +112,7 @@ def _others(ray: Ray, readings: Sequence[Reading], first: Reading | None) -> Tab
 
 def _rectangles(ray: Ray, bounce: int, readings: Sequence[Reading], first: Reading | None) -> Table:
     """A rectangle's values side by side: golden's, the hardware's below them, and below these the exact ones."""
-    by_place: dict[tuple[int, Probe], Reading] = {}
+    by_place: dict[tuple[int | None, str], Reading] = {}
     probes: dict[str, Probe] = {}
     for reading in readings:
         probes[reading.probe.quantity] = reading.probe
@@ -178,13 +178,13 @@ def _one(ray: Ray, probe: Probe, value: Value) -> str:
     return str(int(value))
 
 
-def _true_text(values: Sequence[Value]) -> str:
+def _true_text(values: Sequence[Number]) -> str:
     return ", ".join(
         "-" if value is None else f"{float(value):.{ERROR_DIGITS}f}".rstrip("0").rstrip(".") for value in values
     )
 
 
-def _error_text(ray: Ray, probe: Probe, golden: Sequence[Value], true: Sequence[Value]) -> str:
+def _error_text(ray: Ray, probe: Probe, golden: Sequence[Value], true: Sequence[Number]) -> str:
     """How far golden is from the value without rounding; nothing where there is no error."""
     unit = 1 << ray.config.fraction_bits if probe.scale else 1
     errors = [

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import cocotb
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import RisingEdge
@@ -20,5 +22,6 @@ async def one_window(bench: HierarchyObject) -> None:
     await harness.reset()
     await harness.bus.load_scene(scene)
     await harness.bus.commit(reflections=scene.reflections if job.reflections is None else job.reflections)
-    bench.window.armed.value = 1
-    await RisingEdge(bench.window.closed)
+    window: Any = bench.window
+    window.armed.value = 1
+    await RisingEdge(window.closed)

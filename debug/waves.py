@@ -18,6 +18,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
+from typing import Any
 
 import pywellen
 
@@ -65,7 +66,7 @@ class Waves:
         if not path.is_file():
             raise UserError(f"{path}: there is no such file")
         try:
-            self._file = pywellen.Waveform(str(path))
+            self._file = pywellen.Waveform(str(path))  # pyright: ignore[reportAttributeAccessIssue] compiled, no stubs
         except RuntimeError as error:
             raise UserError(f"{path}: not a waveform: {error}") from None
         self.path = path
@@ -188,7 +189,7 @@ class Waves:
         first = bisect_left(rising, start_ns / self._tick_ns - 0.5)
         return rising[first : bisect_left(rising, end_ns / self._tick_ns - 0.5)]
 
-    def _variable(self, name: str) -> pywellen.Var:
+    def _variable(self, name: str) -> Any:
         if name not in self._variables:
             raise self._missing(name)
         return self._variables[name]

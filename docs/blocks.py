@@ -8,12 +8,13 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import takewhile
+from typing import Any
 
 import pygraphviz
 from myhdl._block import _Block
 
 from raycaster.configuration import Configuration, configure
-from raycaster.convert.elaboration import elaboration
+from raycaster.convert.elaboration import elaborated, elaboration
 from raycaster.convert.inside import Inside, Part, find_block, look_inside
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.rtl.system.ports import module_ports, processor_ports
@@ -42,11 +43,11 @@ class Drawing:
 
 
 def _module(config: Configuration) -> _Block:
-    return ray_caster_module(**module_ports(config), config=config)
+    return elaborated(ray_caster_module, **module_ports(config), config=config)
 
 
 def _system(config: Configuration) -> _Block:
-    return processor_system(**processor_ports(config), config=config, program=PROGRAM_FILE)
+    return elaborated(processor_system, **processor_ports(config), config=config, program=PROGRAM_FILE)
 
 
 DRAWINGS = (
@@ -139,7 +140,7 @@ def graph(drawing: Drawing, inside: Inside) -> pygraphviz.AGraph:
     drawn.node_attr.update(fontname=FONT, fontsize=11, fontcolor=INK, color=INK, height=0.25, margin="0.08,0.04")
     drawn.edge_attr.update(fontname=FONT, fontsize=9, fontcolor=INK, color=PALE, arrowsize=0.6)
     counts = Counter(map(_key, inside.parts))
-    clusters = {(): drawn}
+    clusters: dict[tuple[str, ...], pygraphviz.AGraph] = {(): drawn}
     for part in inside.parts:
         for depth in range(1, len(part.within) + 1):
             place = part.within[:depth]
@@ -180,4 +181,5 @@ def _add_net(drawn: pygraphviz.AGraph, cluster: pygraphviz.AGraph, net: Net, nam
 def draw(drawing: Drawing) -> str:
     """A diagram as SVG."""
     # To a file it would open for itself, as some versions of Python do not let it.
-    return graph(drawing, inside_of(drawing)).draw(format="svg", prog="dot").decode()
+    svg: Any = graph(drawing, inside_of(drawing)).draw(format="svg", prog="dot")
+    return svg.decode()

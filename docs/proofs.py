@@ -38,14 +38,14 @@ def scale(of_it: Sequence[Property]) -> tuple[bool, str]:
     one of range where its wrapper has them as a parameter.
     """
     narrow = [proof.design.coordinate for proof in of_it if isinstance(proof.design, TesterWidths | FoldWidths)]
-    tables = [len(proof.design.fixed.fixed.rectangles) for proof in of_it if isinstance(proof.design, FixedTable)]
-    configured = [proof for proof in of_it if isinstance(proof.design, Configuration)]
+    tables = [proof.design.fixed.rectangles for proof in of_it if isinstance(proof.design, FixedTable)]
+    configured = [(proof, proof.design) for proof in of_it if isinstance(proof.design, Configuration)]
     counts = [
-        proof.design.rectangles
-        for proof in configured
+        design.rectangles
+        for proof, design in configured
         if "INDEX_BITS" in proof.parameters or "rect_mem" in proof.modules
     ]
-    mirrors = [proof.design.reflections for proof in configured if {"REFLECTIONS", "MIRRORS"} & {*proof.parameters}]
+    mirrors = [design.reflections for proof, design in configured if {"REFLECTIONS", "MIRRORS"} & {*proof.parameters}]
     mirrors += [proof.design.mirrors for proof in of_it if isinstance(proof.design, FoldWidths)]
     full = not narrow and not tables and (not counts or max(counts) >= configure().rectangles)
     sizes = [] if narrow or not full else ["full width"]
@@ -95,7 +95,7 @@ def proved_blocks() -> str:
             full, small = _proofs(module)
             faults = f"`{module}`" if module in mutated else ""
             replayed = mutated[module].tests if module in mutated else ()
-            names = {re.search(r"::test_(\w+)", test)[1] for test in replayed} | ({module} & tested)
+            names = {*re.findall(r"::test_(\w+)", "\n".join(replayed))} | ({module} & tested)
             tests = ", ".join(f"`{name}`" for name in sorted(names)) or "in frames"
             rows.append([folder, f"`{module}`", full, small, EVERY_OPERAND.get(module, ""), faults, tests])
     return table(

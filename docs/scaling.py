@@ -150,8 +150,7 @@ def draw_scaling(rows: Sequence[Mapping[str, Any]], measured: str, path: Path) -
         measured: the day, which the file has.
         path: replaced.
     """
-    settings = {"svg.hashsalt": "raycaster", "svg.fonttype": "none", "font.size": 9}
-    with mpl.rc_context(settings):
+    with mpl.rc_context({"svg.hashsalt": "raycaster", "svg.fonttype": "none", "font.size": 9}):
         figure = Figure(figsize=(8, 8.4), layout="constrained")
         for axes, (option, count, title) in zip(figure.subplots(len(PANELS)), PANELS, strict=True):
             for engine, colour in COLOURS.items():

@@ -43,9 +43,6 @@ CASTER = RENDERER + "ray_caster_i."
 VIDEO = RENDERER + "video_generator_i."
 UNIT = CASTER + "ray_unit_0_i."
 
-GAP = None
-"""A column in place of cycles that are not drawn."""
-
 
 @dataclass(frozen=True)
 class Lane:
@@ -271,6 +268,8 @@ def simulate(build: Path, verilog: Sequence[Path] | None = None) -> Iterator[tup
     with tempfile.TemporaryDirectory(dir=build, prefix=".timing-") as scratch:
         job = Job(CONFIGURATION, scene=str(SCENE.resolve()), output=str(Path(scratch).resolve()))
         waves = run_bench(model, "raycaster.sim.frame_bench", job, Path(scratch))
+        if waves is None:
+            raise ValueError("the model writes no waveform")
         frame = Frame(Waves(waves), CONFIGURATION)
         for diagram in DIAGRAMS:
             yield diagram.name, wave_json(diagram, frame)
@@ -278,24 +277,24 @@ def simulate(build: Path, verilog: Sequence[Path] | None = None) -> Iterator[tup
 
 def wave_json(diagram: Diagram, frame: Frame) -> str:
     """A diagram as WaveJSON, a lane a line."""
-    columns: list[int | None] = []
+    columns: list[int | None] = []  # None stands for cycles that are not drawn
     texts: dict[str, dict[int, str]] = {}
     lanes = list(chain.from_iterable(diagram.groups.values()))
     for start, end in diagram.windows(frame):
         cycles = range(start, end)
         seen = {lane.name: dict(zip(cycles, frame.texts(lane, cycles), strict=True)) for lane in lanes}
-        columns += [*([GAP] if columns else []), *cycles]
+        columns += [*([None] if columns else []), *cycles]
         for name, values in seen.items():
             texts.setdefault(name, {}).update(values)
     nodes, edges = _place_arrows(diagram.arrows, columns, texts)
 
     def draw(lane: Lane) -> dict[str, Any]:
         drawn = _wave(
-            lane.name, [GAP if cycle is GAP else texts[lane.name][cycle] for cycle in columns], bool(lane.text)
+            lane.name, [None if cycle is None else texts[lane.name][cycle] for cycle in columns], bool(lane.text)
         )
         return drawn | ({"node": nodes[lane.name]} if lane.name in nodes else {})
 
-    clock = "".join("|" if cycle is GAP else "." for cycle in columns)
+    clock = "".join("|" if cycle is None else "." for cycle in columns)
     signals = [{"name": "clk", "wave": "p" + clock[1:]}, _count(columns), {}]
     lines = [*map(json.dumps, signals)]
     for name, group in diagram.groups.items():
@@ -310,7 +309,7 @@ def _wave(name: str, texts: Sequence[str | None], has_data: bool) -> dict[str, A
     wave, data = "", []
     before = None
     for text in texts:
-        if text is GAP:
+        if text is None:
             wave += "|"
             continue
         if text == before:
@@ -327,7 +326,7 @@ def _wave(name: str, texts: Sequence[str | None], has_data: bool) -> dict[str, A
 def _count(columns: Sequence[int | None]) -> dict[str, Any]:
     """The lane that says which cycle the first one is, and the first after each gap."""
     wave = "".join(
-        "|" if cycle is GAP else "2" if i == 0 or columns[i - 1] is GAP else "." for i, cycle in enumerate(columns)
+        "|" if cycle is None else "2" if i == 0 or columns[i - 1] is None else "." for i, cycle in enumerate(columns)
     )
     data = [str(columns[i]) for i, symbol in enumerate(wave) if symbol == "2"]
     return {"name": "cycle", "wave": wave, "data": data}
@@ -339,9 +338,10 @@ def _place_arrows(
     """The lanes' lines of nodes, and the arrows between them, in WaveDrom's words."""
     letters: dict[tuple[str, int], str] = {}
     edges = []
+    cycles = {i: cycle for i, cycle in enumerate(columns) if cycle is not None}
 
     def column(name: str, number: int) -> int:
-        drawn = [(i, texts[name][cycle]) for i, cycle in enumerate(columns) if cycle is not GAP]
+        drawn = [(i, texts[name][cycle]) for i, cycle in cycles.items()]
         rising = [i for (_, before), (i, text) in pairwise(drawn) if (before, text) == ("0", "1")]
         if number >= len(rising):
             raise UserError(f"{name} rises {len(rising)} times in what is drawn, not {number + 1}")
@@ -354,14 +354,15 @@ def _place_arrows(
         for end in ends:
             letters.setdefault(end, ascii_uppercase[len(letters)])
         start, end = (letters[end] for end in ends)
-        edges.append(f"{start}~>{end} {columns[ends[1][1]] - columns[ends[0][1]]}")
+        edges.append(f"{start}~>{end} {cycles[ends[1][1]] - cycles[ends[0][1]]}")
     nodes = {name: "".join(letters.get((name, i), ".") for i in range(len(columns))).rstrip(".") for name, _ in letters}
     return nodes, edges
 
 
 def render(source: str, path: Path) -> None:
     """Draw WaveJSON as an SVG."""
-    wavedrom.render(source).saveas(str(path))
+    drawing: Any = wavedrom.render(source)
+    drawing.saveas(str(path))
 
 
 def kept(name: str) -> str:

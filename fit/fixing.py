@@ -138,7 +138,7 @@ def fix(path: Path, options: Mapping[str, Any], scope: str) -> Fixing:
     kept = {name: getattr(general.configuration, name) for name in ("engine", "rows", "turn", "materials", "patterns")}
     given = {**options, **kept, "reflections": reflections, "fixed": fixed}
     design = Design(path, scene, configure(**given), reflections)
-    return Fixing(design, general, tuple(_omissions(design, general, reasons)))
+    return Fixing(design, general, tuple(_omissions(design, general, fixed, reasons)))
 
 
 def _reasons(general: Design, scope: str) -> list[dict[int, str]]:
@@ -187,13 +187,15 @@ def general_design(path: Path, options: Mapping[str, Any]) -> Design:
     return design_for(path, {**options, **underrun, "rectangles": MOST_RECTANGLES})
 
 
-def _omissions(design: Design, general: Design, reasons: Sequence[Mapping[int, str]]) -> Iterator[Omission]:
+def _omissions(
+    design: Design, general: Design, fixed: FixedScene, reasons: Sequence[Mapping[int, str]]
+) -> Iterator[Omission]:
     """In the order in which a picture is made: what is stored, what is compared, what it is multiplied with."""
     scene, small, large = design.scene, design.configuration, general.configuration
     words = (4 if large.patterns else 3) * large.rectangles
     yield Omission(f"rectangle memory: {words} words, each three times", "rectangles are constants")
     yield Omission("sorter of corners", "constants are in order")
-    if small.fixed.camera:
+    if fixed.camera:
         yield Omission("memory of camera and background", "they are constants")
     yield from _rectangles(scene, reasons)
     if spare := large.rectangles - len(scene.rect):
@@ -202,7 +204,7 @@ def _omissions(design: Design, general: Design, reasons: Sequence[Mapping[int, s
         yield Omission("reflection", "the scene has none" if not small.reflections else "the scene has fewer")
     if small.divider_bits != large.divider_bits or small.units != large.units:
         yield Omission(*_work(small, large))
-    yield from _constant_fields(small)
+    yield from _constant_fields(small, fixed)
 
 
 def _rectangles(scene: Scene, reasons: Sequence[Mapping[int, str]]) -> Iterator[Omission]:
@@ -223,9 +225,8 @@ def _work(small: Configuration, large: Configuration) -> tuple[str, str]:
     return fewer, reason
 
 
-def _constant_fields(config: Configuration) -> Iterator[Omission]:
+def _constant_fields(config: Configuration, fixed: FixedScene) -> Iterator[Omission]:
     """What the rectangles have in common, so that nothing looks it up or carries it."""
-    fixed = config.fixed
     axes = set(fixed.column("axis"))
     for axis in sorted({0, 1, 2} - axes):
         yield Omission(f"rays against planes on {'xyz'[axis]}", "no rectangle is on that axis")

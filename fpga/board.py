@@ -225,7 +225,10 @@ def find_board(name: str, kind: type[Kind]) -> Kind:
     known = board_names(kind)
     if name not in known:
         raise BoardError(f"board: {', '.join(known[:-1])} or {known[-1]}, not {name}")
-    return load_board(HERE / name)
+    board = load_board(HERE / name)
+    if not isinstance(board, kind):
+        raise BoardError(f"board: {name} is none of {', '.join(known)}")
+    return board
 
 
 def top_ports(verilog: str) -> dict[str, str]:

@@ -213,6 +213,8 @@ def search(
     best = smallest(found, areas, scope)
     show_all(found, areas, best, console)
     chosen = found[best]
+    if chosen.fixing is None:
+        raise ValueError(f"{chosen.scope} has nothing of the scene built in")
     show(chosen.fixing, console)
     kept = keep_choice(path, chosen.options, scope, output)
     console.print(f"{chosen.configuration.name}, kept in {kept}", soft_wrap=True)

@@ -58,14 +58,14 @@ _Entry = tuple[str, str, Corner | Camera, Sequence[Corners | tuple[Corners, _Loo
 def _case(
     name: str, strain: str, camera: Corner | Camera, rectangles: Sequence[Corners | tuple[Corners, _Look]]
 ) -> Case:
-    looked = [one if isinstance(one[1], Mapping) else (one, {}) for one in rectangles]
+    looked: list[tuple[Any, Any]] = [one if isinstance(one[1], Mapping) else (one, {}) for one in rectangles]
     coloured = [
-        Rectangle(corners=corners, colour="#{:02x}{:02x}{:02x}".format(*_PALETTE[index % len(_PALETTE)]), **look)
+        Rectangle(corners=corners, colour=_PALETTE[index % len(_PALETTE)], **look)
         for index, (corners, look) in enumerate(looked)
     ]
     if not isinstance(camera, Camera):
         camera = Camera(position=camera)
-    return Case(name, strain, Scene(title=f"{name}: {strain}", reflections=2, camera=camera, rect=coloured))
+    return Case(name, strain, Scene(title=f"{name}: {strain}", reflections=2, camera=camera, rect=tuple(coloured)))
 
 
 def _plane(axis: int, position: int, low: tuple[int, int] = (0, 0), high: tuple[int, int] = (LAST, LAST)) -> Corners:
@@ -154,7 +154,8 @@ def _boxes() -> Iterator[_Entry]:
     """Closed, so that every ray is reflected as often as it may."""
     middle = (MIDDLE, MIDDLE, MIDDLE)
     for half in (1, 2, 10, 100):
-        sides = _box((MIDDLE - half,) * 3, (MIDDLE + half,) * 3)
+        low, high = MIDDLE - half, MIDDLE + half
+        sides = _box((low, low, low), (high, high, high))
         yield f"box_{2 * half}", f"inside a box of mirrors of {2 * half} units", middle, sides
     yield "box_world", "inside the whole world", middle, _WORLD
     yield (
@@ -265,14 +266,15 @@ def _thin() -> Iterator[_Entry]:
     """No extent."""
     camera = (0, MIDDLE, 100)
     yield "points", "rectangles of one point, some of them on a ray", camera, [
-        ((100 * step, MIDDLE + offset * step, 100 + rise * step),) * 2
+        (point, point)
         for step in (1, 2, 3) for offset, rise in ((0, 0), (10, 20), (-33, 7), (40, -15))
+        for point in [(100 * step, MIDDLE + offset * step, 100 + rise * step)]
     ]  # fmt: skip
     for axis, name in enumerate("xyz"):
         starts = ((100, MIDDLE - 60, 60), (200, MIDDLE + 40, 130), (400, MIDDLE, 100), (500, MIDDLE + 1, 101))
         yield f"lines_{name}", f"lines along {name}, one of them on a ray", camera, [
-            (start, tuple(min(LAST, value + 200) if axis == other else value for other, value in enumerate(start)))
-            for start in starts
+            (start, (x, y, z)) for start in starts
+            for x, y, z in [[min(LAST, value + 200) if axis == other else value for other, value in enumerate(start)]]
         ]  # fmt: skip
 
 
@@ -301,11 +303,11 @@ def _facing() -> Iterator[_Entry]:
     ends = [_plane(0, 0), _plane(0, LAST)]
     yield "facing_ends", "mirrors at the ends of the world, from one of them", (0, MIDDLE, MIDDLE), ends
     for axis, name, angles in ((0, "x", {"yaw": 180}), (1, "y", {"yaw": 90}), (2, "z", {"pitch": 90})):
-        position = [MIDDLE] * 3
-        position[axis] = LAST if angles.get("yaw") == 180 else 0
+        end = LAST if angles.get("yaw") == 180 else 0
+        x, y, z = (end if axis == other else MIDDLE for other in range(3))
         yield (
             f"facing_ends_{name}", f"mirrors at the ends of the world, along {name}",
-            Camera(position=position, **angles), [_plane(axis, 0), _plane(axis, LAST)],
+            Camera(position=(x, y, z), **angles), [_plane(axis, 0), _plane(axis, LAST)],
         )  # fmt: skip
     yield "corner_reflector", "three mirrors that send every ray back", (0, 300, 200), [
         _plane(0, 400), _plane(1, 400), _plane(2, 100), _plane(0, 0),
@@ -354,7 +356,7 @@ def _turned() -> Iterator[_Entry]:
         (0, "x", (90, 30, 0)),
         (1, "y", (0, 30, 0)),
         (2, "z", (30, 0, 90)),
-        (0, "x_up", (0, 90)),
+        (0, "x_up", (0, 90, 0)),
     ):
         yield (
             f"turned_along_{name}", "the camera on a plane along which it looks: e = 0 and n = 0",

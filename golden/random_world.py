@@ -115,4 +115,5 @@ def random_basis(rng: np.random.Generator) -> Basis:
     else:
         extremes = rng.choice([low, -1, 0, 1, high - 1], (3, 3))
         vectors = np.where(rng.random((3, 3)) < 0.5, extremes, rng.integers(low, high, (3, 3)))
-    return tuple(tuple(vector) for vector in vectors.tolist())
+    forward, right, up = (tuple(vector) for vector in vectors.tolist())
+    return forward, right, up

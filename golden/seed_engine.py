@@ -147,7 +147,7 @@ def intersect(
         world; it is 0 where not valid.
     """
     b, e = np.asarray(b, dtype=np.int64), np.asarray(e, dtype=np.int64)
-    n = np.asarray(c, dtype=np.int64) - d
+    n = np.asarray(c, dtype=np.int64) - np.asarray(d, dtype=np.int64)
     quotient, overflow = divide(np.abs(b) * np.abs(n), np.abs(e), fraction_bits, rounding)
     valid = (np.sign(n) * np.sign(e) > 0) & ~overflow
     return np.where(valid, a + np.sign(b) * quotient, 0), valid

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -27,29 +27,22 @@ class Rectangles:
     enabled: np.ndarray
     """bool (rectangles,)."""
 
-    mirrors: np.ndarray = None
+    mirrors: np.ndarray = field(default_factory=lambda: np.array(2))
     """int64 (rectangles,): how much each mirrors, in quarters 0..4; 2 everywhere where it is not given."""
 
-    kinds: np.ndarray = None
+    kinds: np.ndarray = field(default_factory=lambda: np.array(0))
     """int64 (rectangles,): the patterns, 0 plain, 1 checker, 2 rows, 3 columns; plain where it is not given."""
 
-    cells: np.ndarray = None
+    cells: np.ndarray = field(default_factory=lambda: np.array(32))
     """int64 (rectangles,): sizes of the patterns' cells, in world units, powers of two; 32 where it is not given."""
 
-    colours_2: np.ndarray = None
+    colours_2: np.ndarray = field(default_factory=lambda: np.zeros(3, dtype=np.uint8))
     """uint8 (rectangles, 3): colours of every other cell; black where it is not given."""
 
     def __post_init__(self):
-        count = len(self.enabled)
-        defaults = {
-            "mirrors": np.full(count, 2),
-            "kinds": np.zeros(count, dtype=np.int64),
-            "cells": np.full(count, 32),
-            "colours_2": np.zeros((count, 3), dtype=np.uint8),
-        }
-        for name, default in defaults.items():
-            if getattr(self, name) is None:
-                object.__setattr__(self, name, default)
+        for name, shape in (("mirrors", ()), ("kinds", ()), ("cells", ()), ("colours_2", (3,))):
+            if (value := getattr(self, name)).shape == shape:  # a default, which is of every rectangle
+                object.__setattr__(self, name, np.full((len(self), *shape), value))
 
     @classmethod
     def of_scene(cls, scene: Scene) -> Rectangles:

@@ -75,7 +75,7 @@ def look_around(design: Design, frames: int, build: Path, output: Path, console:
         How many pixels of all frames are unlike exact arithmetic.
 
     Raises:
-        SimulationError: the design could not be compiled.
+        SimulationError: the design could not be compiled, or shows no scene.
     """
     config, scene, wrong = design.configuration, design.shown, 0
     walker = Walker(scene, config)
@@ -88,6 +88,8 @@ def look_around(design: Design, frames: int, build: Path, output: Path, console:
             walker.turn(yaws[number + 1] - yaws[number])
             frame = machine.frame(writes=walker.writes())
             live = frame.scene
+            if live is None:
+                raise SimulationError("the design shows no scene")
             perfect = exact.picture(
                 config.screen_geometry, live.rectangles, live.camera, live.background, live.reflections,
                 basis=live.basis,

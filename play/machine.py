@@ -64,15 +64,17 @@ class Machine:
         self._process = subprocess.Popen(
             command, cwd=self._directory.name, stdin=subprocess.PIPE, stdout=subprocess.PIPE
         )
+        assert self._process.stdin and self._process.stdout  # they are pipes
+        self._input, self._output = self._process.stdin, self._process.stdout
         self.frame(0)  # that in which it comes up, of which the monitor sees a part
 
     def __enter__(self) -> Machine:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._process.stdin.close()
+        self._input.close()
         self._process.wait()
-        self._process.stdout.close()
+        self._output.close()
         self._directory.cleanup()
 
     def frame(self, buttons: int = 0, writes: Sequence[tuple[int, int]] = ()) -> Frame:
@@ -87,8 +89,8 @@ class Machine:
         """
         words = [buttons, len(writes), *(word for write in writes for word in write)]
         try:
-            self._process.stdin.write(struct.pack(f"<{len(words)}I", *words))
-            self._process.stdin.flush()
+            self._input.write(struct.pack(f"<{len(words)}I", *words))
+            self._input.flush()
         except BrokenPipeError:
             raise SimulationError("the simulated system ended") from None
         clocks, busy, count, events, characters = struct.unpack("<5I", self._read(20))
@@ -108,7 +110,7 @@ class Machine:
         return Frame(picture.reshape(height, width, 3), clocks, busy, self._scenes.live, text)
 
     def _read(self, size: int) -> bytes:
-        data = self._process.stdout.read(size)
+        data = self._output.read(size)
         if len(data) != size:
             raise SimulationError("the simulated system ended")
         return data

@@ -88,7 +88,7 @@ def read_buttons(text: str) -> list[int]:
 
 def main() -> int:
     """The command; returns its exit code."""
-    parser = argparse.ArgumentParser(prog="python -m raycaster.play.system", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(prog="python -m raycaster.play.system", description=__doc__)
     parser.add_argument("program", type=Path, help="file of 32-bit words in hexadecimal, from address 0 on")
     parser.add_argument("--buttons", default="none*4", help="of each frame, like none*5,left+fire*20 (default: none*4)")
     add_simulator_option(parser)

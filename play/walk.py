@@ -46,8 +46,8 @@ class Walker:
     @property
     def camera(self) -> Camera:
         """The present one, as a scene file has it."""
-        position = tuple(map(round, self._place))
-        return Camera(position=position, yaw=self._yaw, pitch=self._pitch, roll=self._scene.camera.roll)
+        x, y, z = map(round, self._place)
+        return Camera(position=(x, y, z), yaw=self._yaw, pitch=self._pitch, roll=self._scene.camera.roll)
 
     def move(self, held: Collection[str], drag: tuple[int, int] = (0, 0)) -> None:
         """A frame's time passes.

@@ -32,6 +32,7 @@ from raycaster.output import Console
 from raycaster.play.machine import Frame, Machine, build_machine
 from raycaster.play.system import FASTEST
 from raycaster.play.walk import TURNS, WALKS, Walker
+from raycaster.sim.register_model import LiveScene
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware
 
@@ -70,7 +71,7 @@ class Judge:
             return
         self.finish()
         if frame.scene is not None and frame.scene.run:
-            self._asked = self._pool.submit(self._count, frame)
+            self._asked = self._pool.submit(self._count, frame.picture, frame.scene)
 
     def finish(self) -> None:
         """Wait for the picture that is being looked at."""
@@ -79,13 +80,12 @@ class Judge:
             self.pictures += 1
             self.all_wrong += self.wrong
 
-    def _count(self, frame: Frame) -> int:
-        scene = frame.scene
+    def _count(self, picture: np.ndarray, scene: LiveScene) -> int:
         perfect = exact.picture(
             self._config.screen_geometry, scene.rectangles, scene.camera, scene.background, scene.reflections,
             basis=scene.basis,
         )  # fmt: skip
-        return count_wrong(frame.picture, shown(perfect, self._config))
+        return count_wrong(picture, shown(perfect, self._config))
 
 
 class Window:

@@ -37,6 +37,10 @@ else:
     EngineName = Literal[*ENGINES]
 
 
+Rounding = Literal["truncate", "nearest"]
+"""Of quotients: towards zero, or to the nearest."""
+
+
 class ConfigurationError(UserError):
     """A configuration that cannot be built, with one line that says what, where and what to do."""
 
@@ -66,7 +70,7 @@ class Options:
     )
     pixels: int = Field(1, ge=1, le=2, description="pixels a clock: 1, or 2 (beam) where each has a column of its own")
     fraction_bits: int = Field(0, ge=0, le=8, description="fraction bits of origins, planes and quotients")
-    rounding: Literal["truncate", "nearest"] = Field("truncate", description="of quotients")
+    rounding: Rounding = Field("truncate", description="of quotients")
     divider_bits: int | Literal["auto"] = Field("auto", description="quotient bits a cycle: auto, 1, 2 or 3")
     colour_bits: int = Field(8, ge=1, le=CHANNEL_BITS, description="bits a colour channel on the VGA output")
     screen: Literal["vga", "tiny", "play"] = Field(
@@ -127,7 +131,7 @@ class Configuration:
     scale: int
     pixels: int
     fraction_bits: int
-    rounding: str
+    rounding: Rounding
     divider_bits: int
     colour_bits: int
     screen: str

@@ -170,7 +170,8 @@ def kept_outcome(path: Path) -> Outcome:
     except OSError as error:
         raise UserError(f"{path}: cannot be read: {error.strerror}; a command with --keep {path} writes it") from None
     kept = {"provenance": {}} | {name: kept[name] for name in kept if name != "tools"}
-    return Outcome(path.stem, **kept | {"command": WHERE.sub("", kept["command"])})
+    kept["command"] = WHERE.sub("", kept["command"])
+    return Outcome(path.stem, **kept)
 
 
 def commit_of(directory: Path) -> str:

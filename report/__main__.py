@@ -16,6 +16,7 @@ from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
 from raycaster.fpga.cells import DECIDES, TOOLS
+from raycaster.golden.seed_engine import Rounding
 from raycaster.jobs import add_job_options, executors
 from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, Check, Outcome, Published, add_keep_option, keep, kept_outcome, table
@@ -64,7 +65,9 @@ def write_report(directory: Path, what: Extent, sweep: Sweep, command_line: str)
     pictures = find_pictures(what, scenes, sweep)
     errors, said_of_errors = error_sections(what, pictures, directory)
     designs = find_designs(what, mean_errors(what, pictures), sweep)
-    spreads = {(f, r): Spread.of(pictures.shares(f, r)) for f in what.fractions for r in ROUNDINGS}
+    spreads: dict[tuple[int, Rounding], Spread] = {
+        (f, r): Spread.of(pictures.shares(f, r)) for f in what.fractions for r in ROUNDINGS
+    }
     first, alarms, said_of_designs = design_sections(designs, spreads, directory)
     stability, more, said_of_cases, of_cases = stability_sections(what, directory, sweep)
     omissions, others, said_of_omissions = omission_sections(what, scenes, directory, sweep)

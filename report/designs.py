@@ -136,7 +136,7 @@ def find_designs(what: Extent, errors: Errors, sweep: Sweep) -> Designs:
         now = dict(zip(missing, _find(missing, sweep), strict=True))
         seeds = [now.get(one, one) for one in seeds]
     checked = [one for one in seeds if one.counted]
-    off = [one.foretold / one.counted["cells"] - 1 for one in checked]
+    off = [one.foretold / one.counted["cells"] - 1 for one in seeds if one.counted and one.foretold]
     said = [
         f"{len(checked)} designs of the seed engine are on a frontier; each of them, and each of the "
         f"{len(exacts)} of the other engines, was simulated with {WORST_SCENE.stem} and counted as a whole. The cells "
@@ -244,11 +244,11 @@ def design_sections(
 
 
 def _row(one: Candidate, spreads: Mapping[tuple[int, Rounding], Spread]) -> list:
-    config = one.config
+    config, counted, timing = one.config, one.counted or {}, one.timing or {}
     spread = spreads[config.fraction_bits, config.rounding] if config.facts.divides else Spread(0, 0, 0, 0)
     row = [describe(config), *(round(100 * share, 4) for share in (spread.mean, spread.median, spread.most))]
-    row += [one.cells, one.counted["multipliers"], one.pixel_ns, one.frame_ms]
-    return [*row, hardware.clock_words(config), one.timing["seconds"]]
+    row += [one.cells, counted["multipliers"], one.pixel_ns, one.frame_ms]
+    return [*row, hardware.clock_words(config), timing["seconds"]]
 
 
 def _whole_row(one: Candidate, is_best: bool) -> list:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from raycaster.golden.seed_engine import Rounding
 from raycaster.report import plots
 from raycaster.report.extent import Extent
 from raycaster.report.page import Plot, Section, Table, write_csv
@@ -17,7 +18,7 @@ from raycaster.report.points import GRID, SEED, PicturePoint, View, command
 from raycaster.report.statistics import Slope, Spread, slope
 from raycaster.report.sweep import Sweep
 
-ROUNDINGS = ("truncate", "nearest")
+ROUNDINGS: tuple[Rounding, ...] = ("truncate", "nearest")
 REFLECTIONS = 1
 """Of the pictures that designs are compared by."""
 
@@ -41,11 +42,13 @@ class Pictures:
     scenes: Sequence[View]
     results: Results
 
-    def of(self, views: Sequence[View], fraction: int, rounding: str, reflections: int = REFLECTIONS) -> list[Mapping]:
+    def of(
+        self, views: Sequence[View], fraction: int, rounding: Rounding, reflections: int = REFLECTIONS
+    ) -> list[Mapping]:
         """One arithmetic's, a picture a view."""
         return [self.results[PicturePoint(view, fraction, rounding, reflections)] for view in views]
 
-    def shares(self, fraction: int, rounding: str) -> list[float]:
+    def shares(self, fraction: int, rounding: Rounding) -> list[float]:
         """Of wrong pixels, of all worlds and scenes."""
         return [one["wrong_share"] for one in self.of([*self.worlds, *self.scenes], fraction, rounding)]
 
@@ -76,7 +79,7 @@ def find_pictures(what: Extent, scenes: Sequence[View], sweep: Sweep) -> Picture
     return Pictures(worlds, shown, sweep("pictures", points))
 
 
-def mean_errors(what: Extent, pictures: Pictures) -> dict[tuple[int, str], float]:
+def mean_errors(what: Extent, pictures: Pictures) -> dict[tuple[int, Rounding], float]:
     """By fraction bits and rounding, the mean share of wrong pixels."""
     return {(f, r): float(np.mean(pictures.shares(f, r))) for f in what.fractions for r in ROUNDINGS}
 

@@ -58,7 +58,11 @@ class Candidate:
     @property
     def cells(self) -> int:
         """LUT4, counted where they were."""
-        return self.counted["cells"] if self.counted else self.foretold
+        if self.counted:
+            return self.counted["cells"]
+        if self.foretold is None:
+            raise ValueError(f"{self.config.name}: its cells are neither counted nor foretold")
+        return self.foretold
 
     @property
     def frame_cycles(self) -> int:
@@ -127,13 +131,13 @@ def exact_designs(units: Iterable[int], screen: str) -> list[Configuration]:
 
 def beam_designs(screen: str) -> list[Configuration]:
     """The same of the beam engine; of a screen other than VGA, the one that it has."""
-    return _possible({"engine": "beam", "screen": screen} | one for one in (BEAMS if screen == "vga" else [{}]))
+    return _possible({"engine": "beam", "screen": screen, **one} for one in (BEAMS if screen == "vga" else [{}]))
 
 
 def culled_designs(fractions: Iterable[int], screen: str) -> list[Configuration]:
     """Designs with culling, of those fraction bits."""
     return _possible(
-        {"screen": screen, "culling": True} | one for one in CULLED if one.get("fraction_bits", 0) in set(fractions)
+        {"screen": screen, "culling": True, **one} for one in CULLED if one.get("fraction_bits", 0) in set(fractions)
     )
 
 
@@ -174,7 +178,7 @@ def frontier(candidates: Sequence[Candidate], *measures: Measure) -> list[Candid
             theirs != mine and all(a <= b for a, b in zip(theirs, mine, strict=True)) for theirs in values.values()
         )
 
-    return sorted((one for one in candidates if not dominated(one)), key=values.get)
+    return sorted((one for one in candidates if not dominated(one)), key=lambda one: values[one])
 
 
 def time(one: Candidate) -> float:

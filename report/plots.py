@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations, pairwise
 from pathlib import Path
 from textwrap import fill
+from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
 import numpy as np
@@ -16,7 +17,7 @@ from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from raycaster.golden import exact, seed_engine
 from raycaster.golden.errors import DepthErrors
@@ -25,10 +26,13 @@ from raycaster.report.hardware import Candidate
 from raycaster.report.points import PicturePoint, View
 from raycaster.screens import SCREENS
 
+if TYPE_CHECKING:
+    from matplotlib.typing import RcKeyType
+
 WIDTH = 4.6
 """Inches: a printed page's column. A phone shows that at three quarters of its size, which 9 points survive."""
 
-STYLE = {
+STYLE: dict[RcKeyType, Any] = {
     "font.size": 9,
     "axes.titlesize": 9,
     "legend.fontsize": 8,
@@ -74,6 +78,7 @@ def save(figure: Figure, path: Path) -> None:
 def crowded(figure: Figure) -> Iterator[str]:
     """What makes labels of a figure illegible: those that touch one another, or the figure's edge."""
     figure.draw_without_rendering()
+    assert isinstance(figure.canvas, FigureCanvasAgg), "a figure of new_figure"
     renderer = figure.canvas.get_renderer()
     boxes = [
         (text.get_text(), Text.get_window_extent(text, renderer))
@@ -307,7 +312,7 @@ def _pictures(rows: Sequence[Sequence[tuple[str, np.ndarray]]], height: float) -
     return figure
 
 
-def wrong_by_scene(scenes: Sequence[View], rounding: str) -> Figure:
+def wrong_by_scene(scenes: Sequence[View], rounding: seed_engine.Rounding) -> Figure:
     """Of each scene, where the seed engine is wrong without fraction bits."""
     columns, shown = 3, []
     for scene in scenes:
@@ -418,7 +423,7 @@ def waterfall(title: str, steps: Sequence[tuple[str, int]]) -> Figure:
         axes.invert_yaxis()
         axes.set(xlabel="LUT4", title=title, xlim=(0, 1.25 * max(ends)))
         axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
-        axes.xaxis.set_major_locator(mpl.ticker.MaxNLocator(4))
+        axes.xaxis.set_major_locator(MaxNLocator(4))
         axes.grid(visible=False, axis="y")
     return figure
 

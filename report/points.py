@@ -83,13 +83,16 @@ class Point(Protocol):
     @property
     def arguments(self) -> str:
         """What this module's command repeats it with."""
+        ...
 
     @property
     def scene(self) -> Scene | None:
         """That it looks at, if it does."""
+        ...
 
     def compute(self) -> dict[str, Any]:
         """The result, of values that JSON has."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -157,7 +160,8 @@ class PicturePoint:
     def compute(self) -> dict[str, Any]:
         """Wrong pixels, and in which blocks they are; PSNR in dB, None where no pixel is wrong; SSIM; and by depth of
         reflection, as `raycaster.golden.errors.DepthErrors`."""
-        slopes, perfect = _perfect(self.scene, self.screen, self.reflections)
+        # Frozen models have a hash, which pydantic's types do not say.
+        slopes, perfect = _perfect(self.scene, self.screen, self.reflections)  # pyright: ignore[reportArgumentType]
         rectangles = Rectangles.of_scene(self.scene)
         rays = slopes.reshape(-1, 3)
         rounded = seed_engine.trace(
@@ -170,13 +174,14 @@ class PicturePoint:
         picture, right = (traced.colours.reshape(slopes.shape) for traced in (rounded, perfect))
         wrong = wrong_pixels(picture, right)
         count = int(wrong.sum())
+        likeness = structural_similarity(right, picture, data_range=255, channel_axis=2)
         where, *_ = np.histogram2d(*np.nonzero(wrong), bins=GRID, range=[(0, side) for side in wrong.shape])
         return {
             "pixels": wrong.size,
             "wrong": count,
             "wrong_share": count / wrong.size,
             "psnr": float(peak_signal_noise_ratio(right, picture, data_range=255)) if count else None,
-            "ssim": float(structural_similarity(right, picture, data_range=255, channel_axis=2)),
+            "ssim": float(likeness),  # pyright: ignore[reportArgumentType] a tuple only where more is asked for
             "where": where.astype(int).ravel().tolist(),
             "depths": [asdict(depth) for depth in depths],
         }
@@ -219,7 +224,8 @@ class ConditionPoint:
     def compute(self) -> dict[str, Any]:
         """Median and greatest over the hits of all depths, in world units a pixel; None where nothing is hit."""
         camera = self.scene.camera
-        slopes, perfect = _perfect(self.scene, self.screen, self.reflections)
+        # Frozen models have a hash, which pydantic's types do not say.
+        slopes, perfect = _perfect(self.scene, self.screen, self.reflections)  # pyright: ignore[reportArgumentType]
         rays = slopes.reshape(-1, 3)
         found = conditions(Rectangles.of_scene(self.scene), camera.position, rays, perfect)
         # The slopes of a camera that is turned are in fractions of a pixel.
@@ -236,7 +242,7 @@ class CellsPoint:
 
     config: Configuration
     top: str = TOP
-    scene: ClassVar[None] = None
+    scene = None
     sources: ClassVar[Sequence[str]] = _OF_CELLS
 
     @property
@@ -359,7 +365,7 @@ class CasesPoint:
     """Place of the first one among those that the design can show."""
 
     count: int
-    scene: ClassVar[None] = None
+    scene = None
     sources: ClassVar[Sequence[str]] = (
         *_OF_SIMULATIONS, "verif/soak", "verif/campaign.py", "verif/random_scenes.py"
     )  # fmt: skip
@@ -465,7 +471,7 @@ def _parse(arguments: argparse.Namespace, options: Mapping[str, Any]) -> Point:
 
 def main() -> None:
     """The command."""
-    parser = argparse.ArgumentParser(prog="python -m raycaster.report.points", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(prog="python -m raycaster.report.points", description=__doc__)
     parser.add_argument("kind", choices=("picture", "condition", "cells", "left", "time", "cases", "hits"))
     parser.add_argument(
         "what",

@@ -114,7 +114,7 @@ def stability_sections(
     return sections, alarms, summary, kept
 
 
-def _shown(what: Extent, sweep: Sweep) -> dict[CasesPoint, Mapping[str, Any]]:
+def _shown(what: Extent, sweep: Sweep) -> dict[CasesPoint, dict[str, Any]]:
     """Of the designs without rounding, every case that they can show."""
     points = []
     for config in what.shown:
@@ -164,7 +164,7 @@ def _judged(
     for point, one in shown.items():
         by_engine[point.config.engine] = by_engine.get(point.config.engine, 0) + len(one)
     engines = " and ".join(f"the {engine} engine {count}" for engine, count in by_engine.items())
-    stiffest = max((name for name in conditions if conditions[name]), key=conditions.get)
+    stiffest = max((name for name in conditions if conditions[name]), key=lambda name: conditions[name] or 0)
     alarms = [
         f"A bound is exceeded: {point.view.name}, F = {point.fraction_bits}, {point.rounding}. {command(point)}"
         for point in over
@@ -219,10 +219,10 @@ def _plot(what: Extent, pictures: Results, conditions: Mapping[str, float | None
         [[name, *values] for name, values in stiff.items()],
         directory / "stiffness.csv",
     )
-    worst: dict[str, PicturePoint] = {}
+    by_case: dict[str, PicturePoint] = {}
     for point in sorted(pictures, key=lambda point: -pictures[point]["wrong"]):
-        worst.setdefault(point.view.name, point)
-    flipped = list(worst.values())[: plots.FLIPPED]
+        by_case.setdefault(point.view.name, point)
+    flipped = list(by_case.values())[: plots.FLIPPED]
     plots.save(plots.flips(flipped), directory / "flips.svg")
     write_csv(
         ("case", "F", "rounding", "wrong", "command"),

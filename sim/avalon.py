@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import NextTimeStep, ReadOnly, RisingEdge, Timer
@@ -21,9 +22,9 @@ class AvalonBus(RegisterBus):
 
     def __init__(self, bench: HierarchyObject, configuration: Configuration):
         super().__init__(configuration)
-        self._clock = bench.clk
+        self._clock: Any = bench.clk
         self._master = AvalonMaster(bench, "avs_s0", bench.clk)
-        self._signals = self._master.bus
+        self._signals: Any = self._master.bus
 
     async def write_word(self, address: int, word: int, byteenable: int = 0b1111) -> None:
         """Write the enabled bytes of a word; `address` counts words."""

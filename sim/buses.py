@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import Any
 
 from cocotb.handle import HierarchyObject
 from cocotbext.axi import (
@@ -45,7 +46,7 @@ class Axi4LiteBus(RegisterBus):
     def __init__(self, bench: HierarchyObject, configuration: Configuration):
         super().__init__(configuration)
 
-        def channel(kind: type, bus: type) -> object:
+        def channel(kind: type, bus: type) -> Any:
             return kind(bus.from_prefix(bench, "s_axi"), bench.bus_clk, bench.reset)
 
         self.write_address = channel(AxiLiteAWSource, AxiLiteAWBus)
@@ -105,7 +106,7 @@ class ApbRegisterBus(RegisterBus):
 
     def __init__(self, bench: HierarchyObject, configuration: Configuration):
         super().__init__(configuration)
-        self._master = ApbMaster(ApbBus.from_prefix(bench, "s_apb"), bench.bus_clk, bench.reset)
+        self._master: Any = ApbMaster(ApbBus.from_prefix(bench, "s_apb"), bench.bus_clk, bench.reset)
 
     async def write_word(self, address: int, word: int, byteenable: int = 0b1111) -> None:
         """As declared; the master's writes are of neighbouring bytes, so that others are two of them."""
@@ -131,7 +132,7 @@ class ApbRegisterBus(RegisterBus):
         self._master.set_pause_generator(generator)
 
 
-BUSES: dict[str, type[RegisterBus]] = {
+BUSES: dict[str, Callable[[HierarchyObject, Configuration], RegisterBus]] = {
     "avalon": AvalonBus,
     "axi4lite": Axi4LiteBus,
     "wishbone": WishboneBus,

@@ -29,7 +29,7 @@ async def one_frame(bench: HierarchyObject) -> None:
     await bus.load_scene(scene)
     await bus.commit(reflections=reflections)
     frame = await harness.monitor.frame(on_row=harness.write_progress)
-    frame_cycles = int(bench.busy_cycles.value)
+    frame_cycles = int(harness.bench.busy_cycles.value)
     cycles = await bus.read("cycles")
     status = await bus.read("status")
     seconds = time.perf_counter() - started

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from cocotb.handle import HierarchyObject
@@ -30,7 +31,7 @@ class Viewer:
     """A monitor that watches a bench, and what it must show there."""
 
     def __init__(self, bench: HierarchyObject):
-        self.bench = bench
+        self.bench: Any = bench
         self.job = Job.from_environment()
         self.configuration = self.job.configuration
         self.screen = self.configuration.screen_geometry

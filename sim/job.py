@@ -52,4 +52,5 @@ class Job:
     def from_environment(cls) -> Job:
         """The job that this simulation was started with."""
         values: dict[str, Any] = json.loads(os.environ[JOB_VARIABLE])
-        return cls(**values | {"configuration": configure(**values["configuration"])})
+        values["configuration"] = configure(**values["configuration"])
+        return cls(**values)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import cocotb
 import numpy as np
@@ -52,7 +53,7 @@ class Monitor:
             configuration: the design in it.
             blanking: whether its pins tell of blanking; see `decode_frame`.
         """
-        self._sink = bench.sink
+        self._sink: Any = bench.sink
         self._blanking = blanking
         self._screen = configuration.screen_geometry
         self._colour_bits = configuration.colour_bits
@@ -204,7 +205,7 @@ def _visible(position: np.ndarray, span: Span) -> np.ndarray:
     return (position >= start) & (position < start + span.visible)
 
 
-def _check(what: str, seen: np.ndarray, expected: np.ndarray) -> None:
+def _check(what: str, seen: np.ndarray, expected: np.ndarray | np.bool) -> None:
     """Compare lines x samples with what the standard expects of them."""
     wrong = seen != expected
     if not wrong.any():

@@ -118,7 +118,7 @@ class CameraWords(dict[str, Word]):
         return {self._registers[name].address: word for name, word in self.items()}
 
     @property
-    def position(self) -> tuple[int, ...]:
+    def position(self) -> tuple[int, int, int]:
         """The live one."""
         return self._vector("camera")
 
@@ -127,11 +127,13 @@ class CameraWords(dict[str, Word]):
         """The live one: forward, right and up."""
         if len(self) == 1:
             return UNTURNED
-        return tuple(tuple((part ^ 1 << 9) - (1 << 9) for part in self._vector(name)) for name in VECTORS)
+        forward, right, up = (self._vector(name, 1 << 9) for name in VECTORS)
+        return forward, right, up
 
-    def _vector(self, name: str) -> tuple[int, ...]:
+    def _vector(self, name: str, sign_bit: int = 0) -> tuple[int, int, int]:
         fields = self._registers[name].unpack(self[name].live)
-        return tuple(fields[axis] for axis in AXES)
+        x, y, z = ((fields[axis] ^ sign_bit) - sign_bit for axis in AXES)
+        return x, y, z
 
 
 class Agent:
@@ -426,9 +428,8 @@ class RegisterFile:
             AssertionError: it is another; says which register was read.
         """
         expected, name = self.agent.answer[1], self._answered
-        register = self.agent.registers.get(name)
         if name == "cycles":
-            cycles = register.unpack(word)
+            cycles = self.agent.registers[name].unpack(word)
             most = (self.config.screen_geometry.row_cycles, self.config.group_cycles)
             seen = (cycles["row"], cycles["group"])
             for least, value, bound in zip(self._least_cycles, seen, most, strict=True):
@@ -436,5 +437,5 @@ class RegisterFile:
             self._least_cycles = seen
             return
         if name == "status":
-            word &= ~register.fields["busy"].mask
+            word &= ~self.agent.registers[name].fields["busy"].mask
         assert word == expected, f"{name} reads {word:#010x}, expected {expected:#010x}"

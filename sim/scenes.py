@@ -100,11 +100,11 @@ def plan_runs(
     shared = {} if scope or len(special) < 2 else {"reflections": max(special.values())}
     runs = [
         design_of(
-            path, options, scope, console or Console(quiet=True), **(shared if path in special else {}) | defaults
+            path, options, scope, console or Console(quiet=True), **{**(shared if path in special else {}), **defaults}
         )
         for path in paths
     ]
-    seen: dict[Path, Path] = {}
+    seen: dict[str, Path] = {}
     for run in runs:
         if (other := seen.setdefault(run.name, run.path)) != run.path:
             raise UserError(f"{run.path}: has the same file name as {other}, so their pictures would share a directory")

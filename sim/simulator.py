@@ -18,6 +18,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import cocotb
@@ -577,10 +578,11 @@ def run_bench(
     directory = directory.resolve()
     log, results = directory / "sim.log", directory / "results.xml"
     waves = directory / model.wave_file if model.waves else None
-    dump_options = {
+    dump_options: dict[str, dict[str, Any]] = {
         "verilator": {"test_args": ["--trace-file", str(waves)]},
         "icarus": {"plusargs": [f"+dumpfile_path={waves}", *plusargs]},
     }
+    options: dict[str, Any] = {"plusargs": plusargs, **(dump_options[model.simulator] if waves else {})}
     with contextlib.suppress(RuntimeError, SystemExit):  # what went wrong stands in the log and the results
         get_runner(model.simulator).test(
             test_module=test_module,
@@ -594,7 +596,7 @@ def run_bench(
             # Icarus must be told what kind of waveform its bench writes, and Verilator would begin one of its own.
             waves=model.waves or (model.bench.window and model.simulator == "icarus"),
             extra_env=job.environment() | _BENCH_ENVIRONMENT,
-            **{"plusargs": plusargs} | (dump_options[model.simulator] if waves else {}),
+            **options,
         )
     try:
         tests, failures = get_results(results)

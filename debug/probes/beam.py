@@ -84,26 +84,26 @@ def distance(ray: Ray, rectangle: int) -> int:
 
 def setup_facet(ray: Ray, place: Place) -> Sequence[Value]:
     """What all columns of the row have in common."""
-    _, way_q, _ = products(ray, place.rectangle, ray.of_ray(0, "slopes"))
-    axis = int(ray.rectangles.axes[place.rectangle])
-    return 1, axis, distance(ray, place.rectangle), way_q, ray.colour(place.rectangle)
+    _, way_q, _ = products(ray, place.index, ray.of_ray(0, "slopes"))
+    axis = int(ray.rectangles.axes[place.index])
+    return 1, axis, distance(ray, place.index), way_q, ray.colour(place.index)
 
 
 def setup_start(ray: Ray, place: Place) -> Sequence[Value]:
     """The products of the row's first column."""
     first = primary_slopes(ray.config.screen_geometry)[ray.row, 0].tolist()
-    way_p, _, ends = products(ray, place.rectangle, first)
+    way_p, _, ends = products(ray, place.index, first)
     return way_p, *ends
 
 
 def way_p(ray: Ray, place: Place) -> Sequence[Value]:
     """The way along p of the column; that of the ray from the camera is read a cycle later, with the bounds."""
-    return products(ray, place.rectangle, ray.of_ray(0, "slopes"))[:1]
+    return products(ray, place.index, ray.of_ray(0, "slopes"))[:1]
 
 
 def walked(ray: Ray, place: Place) -> Sequence[Value]:
     """The ways to the bounds of the column."""
-    return products(ray, place.rectangle, ray.of_ray(0, "slopes"))[2]
+    return products(ray, place.index, ray.of_ray(0, "slopes"))[2]
 
 
 def mirrored(ray: Ray, place: Place) -> Sequence[Value] | None:
@@ -132,6 +132,12 @@ def met(ray: Ray, place: Place) -> Sequence[Value] | None:
 def numbered(module: str, number: int, count: int) -> str:
     """The name of an instance that is one of several."""
     return f"{module}_i" if count == 1 else f"{module}_{number}_i"
+
+
+def seen_channels(ray: Ray, place: Place) -> Sequence[Value] | None:
+    """What a ray sees, by channel; nothing where `seen_colour` says nothing."""
+    seen = seen_colour(ray, place)
+    return channels_of(*seen, CHANNEL_BITS) if seen else None
 
 
 def nearest_of(size: int) -> Read:
@@ -308,7 +314,7 @@ class BeamProbes(Description):
             Probe("found", ("{look}.found",), "blend", found),
             Probe("its colour", fields("{look}", "look", ("colour",), Look()), "blend", found_colour, colour=True),
             Probe("colour seen", fields("{seen}", "shade", COLOURS, shade_of(config)), "blend",
-                lambda ray, place: channels_of(seen_colour(ray, place)[0], CHANNEL_BITS), late=1),
+                seen_channels, late=1),
             *([self._means()] if passes > 1 else []),
             Probe("pixel", fields(BLEND, "pixel", COLOURS, Pixel(config.colour_bits)), "done", pixel_channels),
             *monitor_probes(RENDERER, "shown", VIDEO, config),

@@ -30,7 +30,7 @@ def hit(ray: Ray, place: Place) -> Sequence[Value]:
 
 def fraction(ray: Ray, place: Place) -> Sequence[Value] | None:
     """t of a hit, as numerator and denominator."""
-    if place.rectangle < 0 or not ray.of_rectangle(place, "hits"):
+    if place.index < 0 or not ray.of_rectangle(place, "hits"):
         return None
     return ray.of_rectangle(place, "numerators"), ray.of_rectangle(place, "denominators")
 
@@ -67,7 +67,7 @@ class ExactProbes(UnitProbes):
             Probe("mirror", fields(memory, "mirror", ("active", "axis", "distance"), mirror_of(self.config)), "ray",
                 mirror, late=1, shown=False),
             Probe("offered", fields(self.control, "offered", SURFACE, surface_of(self.config)), "write",
-                lambda ray, place: surface(ray, place.rectangle), shown=False),
+                lambda ray, place: surface(ray, place.index), shown=False),
             Probe("inside", (f"{tester}.hit",), "write", hit),
             Probe("t", t, "write", fraction),
             Probe("nearest t", nearest_t, "write",

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import Any, SupportsInt
 
 import numpy as np
 
@@ -39,7 +39,10 @@ ENDS = ("blend", "done")
 OF_LOST_RAYS = (*ENDS, "shown")
 """Events at which a ray counts that came after one which hit nothing."""
 
-Value = int | Fraction | str | None
+Number = int | Fraction | None
+"""A value without rounding; None where there is none."""
+
+Value = Number | str
 """What is held against what; None means nothing, and is like everything."""
 
 
@@ -51,6 +54,13 @@ class Place:
     """0 for the primary ray, then one more for each reflection."""
 
     rectangle: int | None = None
+
+    @property
+    def index(self) -> int:
+        """The rectangle's, of a place that has one."""
+        if self.rectangle is None:
+            raise ValueError("the place is of no rectangle")
+        return self.rectangle
 
 
 @dataclass(frozen=True)
@@ -87,7 +97,7 @@ class Probe:
     signed: bool | tuple[int, ...] = False
     """Whether the signals are in two's complement, or the numbers of those that are."""
 
-    true: Read | None = None
+    true: Callable[[Ray, Place], Sequence[Number]] | None = None
     """The value without any rounding, where that may be another."""
 
     scale: bool = False
@@ -242,7 +252,7 @@ class Ray:
 
     def of_rectangle(self, place: Place, name: str) -> Any:
         """One of golden's arrays by rectangle, at a place; int, bool, or a tuple of them."""
-        value = getattr(self.golden.bounces[place.bounce], name)[place.rectangle, 0]
+        value = getattr(self.golden.bounces[place.bounce], name)[place.index, 0]
         return tuple(value.tolist()) if value.ndim else value.item()
 
     def of_ray(self, bounce: int, name: str) -> tuple[int, ...]:
@@ -255,7 +265,7 @@ class Ray:
 
     def nearest(self, place: Place) -> int:
         """The nearest rectangle of those up to the place's, -1 for none."""
-        return self.nearest_of(place.bounce, range(place.rectangle + 1))
+        return self.nearest_of(place.bounce, range(place.index + 1))
 
     def nearest_of(self, number: int, candidates: Iterable[int]) -> int:
         """The nearest rectangle of some, at a bounce; -1 for none."""
@@ -279,8 +289,8 @@ class Ray:
 
     def plane(self, place: Place) -> tuple[int, int, tuple[int, ...]]:
         """A rectangle's axis, its plane's coordinate, and its bounds as the hardware sorts them."""
-        axis = int(self.rectangles.axes[place.rectangle])
-        low, high = self.rectangles.low[place.rectangle], self.rectangles.high[place.rectangle]
+        axis = int(self.rectangles.axes[place.index])
+        low, high = self.rectangles.low[place.index], self.rectangles.high[place.index]
         u, v = OTHER_AXES[axis]
         return axis, int(low[axis]), tuple(int(value) for value in (low[u], high[u], low[v], high[v]))
 
@@ -296,10 +306,10 @@ class Ray:
         ahead = (position - self.true_origin(place.bounce)[axis]) * int(bounce.slopes[0, axis])
         if not bounce.alive[0] or ahead <= 0:
             return None
-        return self._true_point(bounce.points[place.rectangle, 0], bounce.denominators[place.rectangle, 0])
+        return self._true_point(bounce.points[place.index, 0], bounce.denominators[place.index, 0])
 
     @staticmethod
-    def _true_point(scaled: np.ndarray, divisor: int) -> tuple[Fraction, ...]:
+    def _true_point(scaled: np.ndarray, divisor: SupportsInt) -> tuple[Fraction, ...]:
         return tuple(Fraction(int(coordinate), int(divisor) or 1) for coordinate in scaled)
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
-from raycaster.debug.probes.ray import AXES, Event, Place, Probe, Ray, Read, Value, fields, packed
+from raycaster.debug.probes.ray import AXES, Event, Number, Place, Probe, Ray, Read, Value, fields, packed
 from raycaster.debug.probes.units import RECT_FIELDS, SIGNS, UnitProbes, slope_signs, sorted_rect
 from raycaster.debug.waves import Samples
 from raycaster.golden.colour import hit_colours
@@ -41,7 +41,7 @@ def of_nearest(name: str) -> Read:
 
 def colour_there(ray: Ray, place: Place) -> Sequence[Value]:
     """A rectangle's colour where it is hit."""
-    winner, point = np.array([place.rectangle]), np.array([ray.of_rectangle(place, "points")])
+    winner, point = np.array([place.index]), np.array([ray.of_rectangle(place, "points")])
     colours = hit_colours(ray.rectangles, ray.scene.background, winner, point, 1 << ray.config.fraction_bits)
     return (packed(colours[0], CHANNEL_BITS),)
 
@@ -55,7 +55,7 @@ def found_colour(ray: Ray, place: Place) -> Sequence[Value] | None:
 def nearest_surface(ray: Ray, place: Place) -> Sequence[Value] | None:
     """Axis and colour of the nearest rectangle up to this one; nothing where there is none."""
     nearest = Place(place.bounce, ray.nearest(place))
-    return (ray.plane(nearest)[0], *colour_there(ray, nearest)) if nearest.rectangle >= 0 else None
+    return (ray.plane(nearest)[0], *colour_there(ray, nearest)) if nearest.index >= 0 else None
 
 
 def of_reflected(read: Read) -> Read:
@@ -85,22 +85,22 @@ def coordinates(ray: Ray, place: Place) -> Sequence[Value]:
     return [points[u] if fits else None for u, fits in zip(OTHER_AXES[ray.plane(place)[0]], valid, strict=True)]
 
 
-def true_coordinates(ray: Ray, place: Place) -> Sequence[Value]:
+def true_coordinates(ray: Ray, place: Place) -> Sequence[Number]:
     """The same without rounding."""
     point, (axis, _, _) = ray.true_hit(place), ray.plane(place)
     return [point[u] for u in OTHER_AXES[axis]] if point else (None, None)
 
 
-def true_depth(ray: Ray, place: Place) -> Sequence[Value]:
+def true_depth(ray: Ray, place: Place) -> Sequence[Number]:
     """The depth, without rounding."""
     point = ray.true_hit(place)
     return (abs(point[0] - ray.true_origin(place.bounce)[0]) if point else None,)
 
 
-def true_inside(ray: Ray, place: Place) -> Sequence[Value]:
+def true_inside(ray: Ray, place: Place) -> Sequence[Number]:
     """Whether the rectangle is hit, without rounding."""
     bounce = ray.true.bounces[place.bounce]
-    return (int(bounce.hits[place.rectangle, 0]) if bounce.alive[0] else None,)
+    return (int(bounce.hits[place.index, 0]) if bounce.alive[0] else None,)
 
 
 class SeedProbes(UnitProbes):

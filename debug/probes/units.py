@@ -34,7 +34,7 @@ VIDEO = f"{RENDERER}.video_generator_i"
 def sorted_rect(ray: Ray, place: Place) -> Sequence[Value]:
     """A rectangle's fields as the hardware sorts them."""
     axis, position, bounds = ray.plane(place)
-    return axis, position, *bounds, ray.colour(place.rectangle)
+    return axis, position, *bounds, ray.colour(place.index)
 
 
 def surface(ray: Ray, rectangle: int) -> Sequence[Value] | None:
@@ -66,7 +66,7 @@ def found_colour(ray: Ray, place: Place) -> Sequence[Value] | None:
     return (ray.colour(winner),) if winner >= 0 else None
 
 
-def seen_colour(ray: Ray, place: Place) -> Sequence[Value]:
+def seen_colour(ray: Ray, place: Place) -> tuple[int] | None:
     """What a ray sees, background included; nothing of a ray after a surface that does not mirror."""
     if ray.config.materials and not ray.alive(place.bounce):
         return None

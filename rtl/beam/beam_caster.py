@@ -53,12 +53,25 @@ def fixing(record: Record, known: Mapping[str, int]) -> dict[str, Tied]:
 
 @block
 def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture, rects, pixel, config: Configuration):
-    """The pixels of a row, those of a clock at each next_column, beam_latency cycles later.
+    """Compute a row's pixels: those of a clock at each next_column, `beam_latency` cycles later.
 
-    A clock's columns have a lane each: a column of lane i is i columns further than lane 0's, and both go on by as many
-    columns as there are lanes. start_line: strobe; the first next_column is no sooner than `start_cycles`, and the last
-    column of the line before has left. row_slope: rows above the horizon, constant from the third cycle after
-    start_line on. pixel: as `Vga` has it.
+    Each column of a clock has its own lane. Lane i is i columns further along the row than lane 0, and every lane
+    advances by as many columns as there are lanes.
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        start_line: strobe; begins a line. The last column of the line before has left by then.
+        next_column: strobe; begins the columns of a clock. The first one comes at least `start_cycles` cycles after
+            start_line.
+        row_slope: signed, `factor_bits` bits; rows above the horizon. Constant from the third cycle after start_line
+            on.
+        camera: `Camera`; the live one.
+        picture: `Picture`; the live one. run is not read.
+        rects: `Rects`; drives index and fetch, reads usable and rect.
+        pixel: `Pixel`; output, laid out as in `Vga`: with two pixels per clock, the low half of each channel is the
+            left pixel.
+        config: the design.
     """
     lanes = range(config.pixels)
     centre_column, view_distance = config.screen_geometry.centre_column, config.screen_geometry.view_distance

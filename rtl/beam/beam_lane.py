@@ -32,11 +32,27 @@ def beam_lane(
     clk, start_line, next_column, enter, load, start, aim, facets, growths, camera, picture, pixel,
     config: Configuration,
 ):  # fmt: skip
-    """A column at each next_column; its pixel follows beam_latency cycles later.
+    """Compute a column at each next_column; its pixel follows `beam_latency` cycles later.
 
-    Each pass runs as much later than the one before it as the latencies that the blocks declare add up to. enter: where
-    the camera turns, a strobe in the cycle before what walks along the row takes its start; then next_column is low,
-    and growths and aim are the start. load, start, aim, facets, growths: as in `beam_pass`.
+    Each pass runs later than the one before it by the sum of the latencies that the blocks declare.
+
+    Args:
+        clk: the clock.
+        start_line: strobe; begins a line.
+        next_column: strobe; begins a column.
+        enter: strobe where the camera turns, otherwise None. In the cycle after it, growths and aim are the start, and
+            all that walks along the row takes it; next_column is low in both cycles.
+        load: `config.rectangles` bits, high for the rectangle that start belongs to; None where the camera turns, and
+            start_line loads all of them.
+        start: `Walk`; the start of the rectangle that load names, for the first column of this lane. 0 where the camera
+            turns.
+        aim: `Direction`; D of the first column of this lane or, where the camera turns, what a step adds to D.
+        facets: `Facet` of each rectangle, side by side, the first in the lowest bits.
+        growths: what a step adds to the `Walk` of each rectangle, side by side, the first in the lowest bits.
+        camera: `Camera`; the live one.
+        picture: `Picture`; the live one. run is not read.
+        pixel: `Pixel`; output, `beam_latency` cycles after next_column.
+        config: the design.
     """
     numbers = tested(config)
     passes, reflections = len(numbers), len(numbers) - 1

@@ -25,14 +25,28 @@ def beam_pass(
     clk, start_line, load, step, step_way, step_bounds, step_slope, start, aim, facets, growths, fold, nearest,
     winner, tested: Sequence[int], config: Configuration,
 ):  # fmt: skip
-    """A column at each step; winner follows winner_latency cycles later, and nearest, the Candidate, or None for none.
+    """Test a column's ray, primary or reflected, against all rectangles at once: a column at each step.
 
-    facets, growths: each rectangle's `Facet`, and what a step adds to its `Walk`, side by side, the first in the lowest
-    bits; load: a bit for each, high where start is its own, or None where the camera turns and start_line loads all.
-    step_bounds, step_slope: step one and two cycles later, for what is read and done then; step_way: step, or for rays
-    from the camera, which read their ways with the bounds, step_bounds. fold: the ray's, `fold_lead` cycles before its
-    step, or None for rays from the camera; tested: numbers of the rectangles that it may meet. start_line, aim: as in
-    `slope_walker`.
+    winner and nearest follow `winner_latency` cycles after step.
+
+    Args:
+        clk: the clock.
+        start_line: strobe; begins a line, as in slope_walker. With a camera that turns it loads the start of all
+            rectangles.
+        load: `config.rectangles` bits, high for the rectangle that start belongs to; None where the camera turns.
+        step: strobe; a column's ray begins.
+        step_way: strobe; step or, for rays from the camera, which read their ways with the bounds, step_bounds.
+        step_bounds: strobe; step one cycle later, for what is read and done then.
+        step_slope: strobe; step two cycles later, for what is read and done then.
+        start: `Walk`; the start of the rectangle that load names.
+        aim: `Direction`; as in slope_walker.
+        facets: `Facet` of each rectangle, side by side, the first in the lowest bits.
+        growths: what a step adds to the `Walk` of each rectangle, side by side, the first in the lowest bits.
+        fold: `Fold` of the ray, `fold_lead` cycles before its step; None for rays from the camera.
+        nearest: `Candidate`; output, the nearest hit. None where nothing reads it.
+        winner: `Winner`; output, the rectangle of the nearest hit.
+        tested: numbers of the rectangles that the ray may meet.
+        config: the design.
     """
     slope_bits = exact_slope_bits(config)
     straight, signs = ray_slope(aim, config), Signs()

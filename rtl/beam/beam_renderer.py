@@ -14,11 +14,21 @@ from raycaster.rtl.video.video_generator import video_generator
 
 @block
 def beam_renderer(clk, reset, picture, camera, rects, progress, vga, config: Configuration):
-    """Show the live scene; clk is the monitor's.
+    """Show the live scene, each pixel computed just as the monitor takes it.
 
     Every line is computed while it is shown, again for each line of a doubled row, so nothing can be late: underrun
-    stays low. The video generator announces each column beam_latency cycles before its pixel is due. row_cycles: cycles
-    since the line's first column, with the present one; group_cycles: a pixel's, or a pair's, which is 1.
+    stays low. The video generator announces each column `beam_latency` cycles before its pixel is due.
+
+    Args:
+        clk: the monitor's clock.
+        reset: synchronous, active high.
+        picture: `Picture`; the live one.
+        camera: `Camera`; the live one.
+        rects: `Rects`; drives index and fetch, reads usable and rect.
+        progress: `Progress`; output. row_cycles: cycles since the line's first column, including the present one; it
+            saturates. group_cycles: cycles of a pixel or a pair of pixels, which is 1. underrun: low.
+        vga: `Vga`; output.
+        config: the design.
     """
     screen = config.screen_geometry
     rows, horizon_row, hs_active = screen.rows, screen.horizon_row, screen.horizontal.active_high

@@ -9,9 +9,16 @@ from raycaster.rtl.common.widths import bit, signed, unsigned
 
 @block
 def cell_step(clk, before, after, place: int):
-    """The bit of worth 1 << place of the quotient of before's rest and divisor (restoring division), a cycle later.
+    """Find one bit of the quotient of before.rest and before.divisor: a step of restoring division.
 
-    before, after: a `CellDivision` of place + 1 and of place; its odd becomes that bit where a cell is that large.
+    The bit is worth 1 << place. If nothing is hit the quotient may be too large, and is don't care.
+
+    Args:
+        clk: the clock.
+        before: `CellDivision` of place + 1; a new one each cycle.
+        after: `CellDivision` of place; output, a cycle after before. odd becomes the quotient's bit where a cell is as
+            large as that bit is worth, and is before.odd otherwise.
+        place: the number of the quotient's bit.
     """
     divisor_bits = len(before.divisor)
     size = place - SMALLEST_CELL_BITS

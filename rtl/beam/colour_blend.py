@@ -16,10 +16,16 @@ from raycaster.rtl.common.widths import bit, unsigned
 
 @block
 def colour_blend(clk, seen, picture, pixel, config: Configuration):
-    """A pixel a clock, blend_latency cycles later; the background from the first ray that found nothing on.
+    """Blend the colours that a ray and its reflections saw into a pixel, one per clock, `blend_latency` cycles later.
 
-    seen: a `Seen` of the ray and of each of its reflections, side by side, the ray's in the lowest bits; pixel: a
-    `Pixel`.
+    From the first ray that found nothing onwards, the background is shown.
+
+    Args:
+        clk: the clock.
+        seen: `Seen` of the ray and of each of its reflections, side by side, the ray in the lowest bits.
+        picture: `Picture`; the live one. run is not read.
+        pixel: `Pixel`; output, `blend_latency` cycles after seen.
+        config: the design.
     """
     colour_bits, mirrors = config.colour_bits, config.reflections
     rays = range(mirrors + 1)

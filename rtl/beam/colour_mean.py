@@ -8,10 +8,17 @@ from raycaster.rtl.common.widths import unsigned
 
 @block
 def colour_mean(own, behind, reflections, mean, number: int):
-    """mean = own + behind, of worth a half: no bit is lost. Combinational.
+    """Add the two halves of one channel in a mirror that shows half: mean = own + behind, in units of a half.
 
-    own: the mirror's colour, 8 bits; behind: own's width and a bit of fraction for each mirror behind this one; number:
-    of mirrors before this one. Where a scene asks for no more reflections than these, own counts twice.
+    No bit is lost. Combinational.
+
+    Args:
+        own: unsigned, 8 bits; the mirror's colour.
+        behind: unsigned, the width of own and a fraction bit for each mirror behind this one; what the mirror shows.
+        reflections: unsigned, `REFLECTION_BITS` bits; the number of reflections that the scene asks for. If it equals
+            number, own counts twice, as nothing is behind; if it is less, mean is don't care.
+        mean: unsigned, one bit wider than behind; output.
+        number: the number of mirrors before this one.
     """
     mean_bits = len(mean)
     fraction_bits = len(behind) - len(own)

@@ -8,10 +8,16 @@ from raycaster.rtl.common.widths import signed, unsigned
 
 @block
 def colour_mix(clk, near, mirror, far, mixed):
-    """mixed = (4 - mirror) * near + mirror * far, of worth a quarter, MIX_LATENCY cycles later: no bit is lost.
+    """Mix one channel of a mirror: mixed = (4 - mirror) * near + mirror * far, in units of a quarter.
 
-    near: the mirror's own, 8 bits; mirror: 0 to 4; far: near's width and two bits of fraction for each mirror behind
-    this one; mixed: two bits more.
+    The result follows `MIX_LATENCY` cycles later. No bit is lost.
+
+    Args:
+        clk: the clock.
+        near: unsigned, 8 bits; the mirror's own colour.
+        mirror: unsigned, `MIRROR_BITS` bits, 0 to 4; how much it mirrors, in quarters.
+        far: unsigned, the width of near and two fraction bits for each mirror behind this one; what the mirror shows.
+        mixed: unsigned, two bits wider than far; output, `MIX_LATENCY` cycles after the other ports.
     """
     near_bits, far_bits, mixed_bits = len(near), len(far), len(mixed)
     fraction_bits = far_bits - near_bits

@@ -8,10 +8,19 @@ from raycaster.rtl.common.widths import MIRROR_BITS, RGB_BITS, bit, unsigned
 
 @block
 def colour_seen(clk, reached, seen, picture, found, shade, number: int):
-    """The colour that a ray saw, or the background from the first ray that found nothing on, SEEN_LATENCY cycles later.
+    """Choose the colour that a ray adds to its pixel, `SEEN_LATENCY` cycles later.
 
-    reached: all rays before it have found something; seen: a `Seen`; found: it has too, combinational; shade: a
-    `Shade`; number: of reflections before it. Of the last hit that a scene asks for, nothing is behind.
+    It is the colour that the ray saw, or, from the first ray that found nothing onwards, the background. Nothing is
+    behind the last hit that a scene asks for.
+
+    Args:
+        clk: the clock.
+        reached: flag; all rays before this one have found something.
+        seen: `Seen` of this ray.
+        picture: `Picture`; the live one. run is not read.
+        found: flag; output, combinational: this ray and all before it have found something.
+        shade: `Shade`; output, `SEEN_LATENCY` cycles after seen.
+        number: the number of reflections before this ray.
     """
     colour, here = unsigned(RGB_BITS), bit()
 

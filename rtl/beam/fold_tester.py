@@ -8,17 +8,31 @@ from raycaster.rtl.common.widths import bit, signed, unsigned
 
 @block
 def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope, fold, index, hit, staged: bool):
-    """A ray a clock, as ray_fold folds it; hit, of the rectangle index, follows TESTER_LATENCY cycles later.
+    """Test whether a ray that ray_fold folds hits a rectangle: a ray per clock, the hit `TESTER_LATENCY` cycles later.
 
-    Along p the folded ray meets the plane at W = +-n D[p] + fold.p, over D[a]: between the two bounds it hits, which
-    are compared as in `ray_tester`. It must be beyond its last mirror, on the side that it runs
-    to: on another axis W is compared with the mirror's border, on the same axis the planes' distances are. Right at the
-    mirror it hits what is on an axis that it has met no mirror on in that point.
+    Along p the folded ray meets the plane at W = +-n D[p] + fold.p, over D[a]: it hits if that is between the two
+    bounds, which are compared as in ray_tester. It must be beyond its last mirror, on the side that it runs to: on
+    another axis W is compared with the mirror's border, on the same axis the planes' distances are compared. Right at
+    the mirror it hits rectangles on an axis on which it has met no mirror in that point.
 
-    In the ray's cycle, in which step_way is high, are read walk's ways, and signs, which are those of D; fold_lead
-    cycles earlier the fold; in the next cycle, that of step_bounds, the bounds; and slope_at cycles later slope, the
-    magnitudes of D. step_slope is high in the third cycle. Otherwise a stage keeps what it has. Widths are the ports'.
-    staged: `is_staged`.
+    The ray's cycle is the one in which step_way is high. A stage without its strobe keeps its contents. The block takes
+    its widths from its ports.
+
+    Args:
+        clk: the clock.
+        step_way: strobe; high in the ray's cycle.
+        step_bounds: strobe; high in the cycle after the ray's cycle.
+        step_slope: strobe; high in the third cycle, two after the ray's cycle.
+        facet: `Facet` of the rectangle, which serves all rays of a row.
+        walk: `Walk` of the rectangle; the ways are read with step_way, the bounds with step_bounds.
+        signs: `Signs` of D; read with step_way.
+        slope: `Slope`, the magnitudes of D; read with step_bounds if staged, otherwise with step_slope: slope_at cycles
+            after the ray's cycle.
+        fold: `Fold` of the ray; read a cycle before the ray's cycle if staged, otherwise in the ray's cycle: fold_lead
+            cycles before it.
+        index: unsigned, as wide as hit.index; the rectangle's number, constant.
+        hit: `Candidate`; output, `TESTER_LATENCY` cycles after the ray's cycle.
+        staged: registers the fields that the block chooses from fold and slope; see is_staged.
     """
     along_q = walk.way_q if "way_q" in walk.layout else facet.way_q
     numerator_bits, slope_bits = len(hit.numerator), len(slope.dy)

@@ -25,13 +25,21 @@ from raycaster.rtl.common.widths import (
 
 @block
 def hit_cells(clk, turn, nearest, winner, slope, camera, sight, config: Configuration):
-    """A hit a clock; sight, which is the winner with odd_u and odd_v, follows CELL_LATENCY cycles later.
+    """Find in which cells of its pattern a rectangle is hit: a hit per clock, the cells `CELL_LATENCY` cycles later.
 
-    With the mirrored eye E' and slope D', the ray is at E' + D' t, and t is the hit's numerator / denominator: so the
+    With the mirrored eye E' and slope D', the ray is at E' + D' t, and t is the hit's numerator / denominator. So the
     quotient of E' * denominator + D' * numerator and the denominator is a world coordinate (Heckbert and Hanrahan
-    1984), whose bit of a cell's worth a restoring division finds. Only the nearest rectangle's are formed.
+    1984). A restoring division finds its bit that is worth a cell. Only the nearest rectangle's cells are found.
 
-    nearest: a Candidate; turn: the ray's `Turn`, a cycle after nearest; slope: D, CELL_SLOPE_AT cycles after it.
+    Args:
+        clk: the clock.
+        turn: `Turn` of the ray; read a cycle after nearest.
+        nearest: `Candidate`; the nearest hit.
+        winner: `Winner`; the rectangle of nearest, in the same cycle.
+        slope: `Direction`; D, read `CELL_SLOPE_AT` cycles after nearest.
+        camera: `Camera`; the live one.
+        sight: `Sight`; output, winner with odd_u and odd_v, `CELL_LATENCY` cycles after it.
+        config: the design.
     """
     slope_bits, numerator_bits, base_bits = exact_slope_bits(config), eye_bits(config) - 1, turn_bits(config) + 1
     way_bits, base_way_bits = slope_bits + 1 + numerator_bits, base_bits + slope_bits

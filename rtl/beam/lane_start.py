@@ -8,9 +8,19 @@ from raycaster.rtl.common.widths import signed
 
 @block
 def lane_start(clk, load, start, growth, late_load, first_start, second_start):
-    """first_start is start, second_start is start and a column's growth, and late_load is load, a cycle later.
+    """Form the starts of two lanes: the second lane is a column further along the row than the first.
 
-    The first lane could do without, but its start goes all over the chip, from the multipliers' own registers.
+    The outputs follow load and start a cycle later. The first lane could do without a register, but its start goes all
+    over the chip, from the multipliers' own registers.
+
+    Args:
+        clk: the clock.
+        load: a bit for each rectangle, high for the rectangle that start and growth belong to.
+        start: `Walk`; the start of the row's first column.
+        growth: `Walk`; what a column adds to start.
+        late_load: a bit for each rectangle; output, load a cycle later.
+        first_start: `Walk`; output, start a cycle later.
+        second_start: `Walk`; output, the sum of start and growth a cycle later.
     """
     product_bits = len(start.way_p)
     way_p, low_p, high_p, low_q, high_q = (signed(product_bits) for _ in range(5))

@@ -12,13 +12,24 @@ from raycaster.rtl.common.widths import BASIS_BITS, bit, exact_slope_bits, facto
 def line_starter(clk, reset, start_line, camera, row_slope, loaded, aim, start_sweep, enter, config: Configuration):
     """Let rect_setup go through the rectangles twice: with the first ray's slope, and with what a column adds to it.
 
-    aim: D = view distance * forward - centre column * right + row_slope * up of the line's first ray, and from the
-    second cycle after enter on right. start_sweep: strobe, rect_setup starts; loaded: its last load; enter: strobe with
-    the first sweep's, so that in the cycle after it all that walks along the row may take its start. row_slope: rows
-    above the horizon, constant from the third cycle after start_line on.
+    With two pixels per clock there are three sweeps: with the first ray's slope, the second one's, and what two columns
+    add.
 
-    Where a clock has two pixels there are three sweeps: with the first ray's slope, the second one's, and what two
-    columns add. enter then has a bit for each of the first two, and aim goes on with each.
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        start_line: strobe; begins a line.
+        camera: `Camera`, with its basis; the live one.
+        row_slope: signed, `factor_bits` bits; rows above the horizon. Constant from the third cycle after start_line
+            on.
+        loaded: strobe; rect_setup's last load of a sweep.
+        aim: `Direction`; output, D = view distance * forward - centre column * right + row_slope * up of the line's
+            first ray, and from the second cycle after enter on right. With two pixels per clock, aim goes on with each
+            bit of enter: to D of the second ray, and then to twice right.
+        start_sweep: strobe; output, rect_setup starts.
+        enter: strobe; output, high with loaded of the first sweep, so that in the cycle after it all that walks along
+            the row may take its start. With two pixels per clock, 2 bits, one for each of the first two sweeps.
+        config: the design.
     """
     slope_bits = exact_slope_bits(config) + 1
     view_distance, first_column = config.screen_geometry.view_distance, -config.screen_geometry.centre_column

@@ -12,10 +12,15 @@ from raycaster.rtl.engine.pattern_colour import pattern_colour
 
 @block
 def look_up(clk, step, facets, sight, seen, config: Configuration):
-    """seen, a `Seen`: of the rectangle that sight tells, LOOK_UP_LATENCY cycles after a step.
+    """Look up what a ray sees: the look of the rectangle that sight names, `LOOK_UP_LATENCY` cycles after a step.
 
-    facets: each rectangle's `Facet`, side by side, the first in the lowest bits; sight: a `Winner`, with patterns a
-    `Sight`.
+    Args:
+        clk: the clock.
+        step: strobe; takes sight.
+        facets: `Facet` of each rectangle, side by side, the first in the lowest bits; read with step.
+        sight: `Winner` or, with patterns, `Sight`; read with step.
+        seen: `Seen`; output, valid from `LOOK_UP_LATENCY` cycles after a step until the next one.
+        config: the design.
     """
     words = [unsigned(len(facet_of(config).word)) for _ in range(config.rectangles)]
     takers = [word_of(facet_of(config).cut(facets, i), word) for i, word in enumerate(words)]

@@ -11,9 +11,14 @@ from raycaster.rtl.common.widths import unsigned
 
 @block
 def mirror_look_up(clk, facets, winner, last, config: Configuration):
-    """last, a `Reflector`: the rectangle that a `Winner` tells, LOOK_UP_LATENCY cycles later.
+    """Look up the mirror that a ray meets: the rectangle that winner names, `LOOK_UP_LATENCY` cycles later.
 
-    facets: each rectangle's `Facet`, side by side, the first in the lowest bits.
+    Args:
+        clk: the clock.
+        facets: `Facet` of each rectangle, side by side, the first in the lowest bits.
+        winner: `Winner`; a new one each cycle.
+        last: `Reflector`; output, `LOOK_UP_LATENCY` cycles after winner.
+        config: the design.
     """
     facet = facet_of(config)
     words = [unsigned(len(facet.word)) for _ in range(config.rectangles)]

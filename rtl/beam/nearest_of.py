@@ -10,10 +10,17 @@ from raycaster.rtl.common.widths import side_by_side
 
 @block
 def nearest_of(clk, candidates, nearest, rounds: int, latency: int):
-    """The nearest of candidates, or the first of the nearest, rounds * latency cycles later.
+    """Find the nearest of several candidates, or the first of the nearest ones, rounds * latency cycles later.
 
-    candidates: at most 2^rounds, side by side, the first in the lowest bits. Neighbours meet in the first round, and
-    their winners in the others; the last of an odd number is unopposed, and so is a single one.
+    Neighbours meet in the first round, and their winners in the later ones; the last of an odd number is unopposed, and
+    so is a single one.
+
+    Args:
+        clk: the clock.
+        candidates: at most 2^rounds words of `Candidate`, side by side, the first in the lowest bits.
+        nearest: `Candidate`; output, rounds * latency cycles after candidates.
+        rounds: the number of rounds.
+        latency: cycles of a round, as in nearest_of_two.
     """
     ones = [nearest.twin().cut(candidates, i) for i in range(len(candidates) // len(nearest.word))]
     winners = [nearest] if rounds == 1 else [nearest.twin() for _ in ones[::2]]

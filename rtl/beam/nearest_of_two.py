@@ -11,10 +11,17 @@ MULTIPLIER_BITS = 18
 
 @block
 def nearest_of_two(clk, first, second, nearest, latency: int):
-    """Two candidates a clock; the nearer of them follows latency cycles later, the first where both are at one t.
+    """Find the nearer of two candidates, a pair per clock, latency cycles later; the first where both are at one t.
 
     t = numerator / denominator is nearer than another where numerator * other denominator < other numerator *
-    denominator. latency: 2, or 3, where products are registered twice.
+    denominator. A candidate that is not valid loses; where neither is valid, nearest is not valid either.
+
+    Args:
+        clk: the clock.
+        first: `Candidate`.
+        second: `Candidate`.
+        nearest: `Candidate`; output, latency cycles after first and second.
+        latency: 2, or 3 where products are registered twice.
     """
     numerator_bits, denominator_bits = len(first.numerator), len(first.denominator)
     product_bits = numerator_bits + denominator_bits

@@ -8,16 +8,22 @@ from raycaster.rtl.common.widths import AXIS_BITS, bit, signed, unsigned
 
 @block
 def ray_fold(clk, before, last, slope, fold):
-    """A ray a clock; the fold follows FOLD_LATENCY cycles later.
+    """Fold a straight ray back into the room at one more mirror, a ray per clock, `FOLD_LATENCY` cycles later.
 
     A mirror leaves the ray straight and turns the room behind it (Heckbert and Hanrahan 1984 mirror the eye in the same
     way): to a point X on the straight ray from the eye E belongs the point x - E = +-(X - E) + T in the room, component
     by component. A mirror at the distance n on its axis makes that 2 n - (x - E). A plane at the distance n on axis a
-    is then met where X[a] - E[a] = +-(n - T[a]), and there the ray's component p, times D[a], is +-n D[p] + C, with
-    C = T[p] D[a] -+ T[a] D[p]: the same for all rectangles on the axis, so no rectangle needs a multiplier.
+    is then met where X[a] - E[a] = +-(n - T[a]), and there the ray's component p, times D[a], is +-n D[p] + C, with C =
+    T[p] D[a] -+ T[a] D[p]: the same for all rectangles on the axis, so no rectangle needs a multiplier.
 
-    before: the `Turn` of the fold at the mirror before, all 0 where there was none; last: a Reflector; slope: D, a
-    `Direction`. Widths are the ports'.
+    The block takes its widths from its ports.
+
+    Args:
+        clk: the clock.
+        before: `Turn` of the fold at the mirror before, all 0 where there was none.
+        last: `Reflector`; the mirror, read in the same cycle as before.
+        slope: `Direction`; D, read a cycle after before and last.
+        fold: `Fold`; output, `FOLD_LATENCY` cycles after before and last.
     """
     part_bits, product_bits = len(fold.p_x), len(fold.border_x)
     distance_bits, turn_bits = len(last.distance), len(fold.turn_x)

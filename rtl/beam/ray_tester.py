@@ -8,14 +8,27 @@ from raycaster.rtl.common.widths import bit, signed, unsigned
 
 @block
 def ray_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope, index, hit, staged: bool):
-    """A ray a clock; hit, of the rectangle index, follows TESTER_LATENCY cycles later, never at a mirror.
+    """Test whether a ray from the camera hits a rectangle: a ray per clock, the hit `TESTER_LATENCY` cycles later.
 
-    Along p the ray meets the plane at W = n D[p], over D[a]: between the two bounds it hits. Where D[a] is negative
-    they have changed places, and W <= low is 2 W < 2 low + 1: one comparison a bound, with the sign as its lowest bit.
+    Along p the ray meets the plane at W = n D[p], over D[a]: it hits if that is between the two bounds. If D[a] is
+    negative the bounds have changed places, and W <= low is 2 W < 2 low + 1: one comparison per bound, with the sign as
+    its lowest bit.
 
-    In the ray's cycle, in which step_way is high, are read signs, which are those of D; in the next one, that of
-    step_bounds, walk; and `slope_at` cycles later slope, the magnitudes of D. step_slope is high in the third cycle.
-    Widths are the ports'. staged: `is_staged`.
+    The ray's cycle is the one in which step_way is high. The block takes its widths from its ports.
+
+    Args:
+        clk: the clock.
+        step_way: strobe; high in the ray's cycle.
+        step_bounds: strobe; high in the cycle after the ray's cycle.
+        step_slope: strobe; high in the third cycle, two after the ray's cycle.
+        facet: `Facet` of the rectangle, which serves all rays of a row.
+        walk: `Walk` of the rectangle; read with step_bounds.
+        signs: `Signs` of D; read with step_way.
+        slope: `Slope`, the magnitudes of D; read with step_bounds if staged, otherwise with step_slope: slope_at cycles
+            after the ray's cycle.
+        index: unsigned, as wide as hit.index; the rectangle's number, constant.
+        hit: `Candidate`; output, `TESTER_LATENCY` cycles after the ray's cycle, and never at a mirror.
+        staged: registers the component that the block chooses from slope; see is_staged.
     """
     along_q = walk.way_q if "way_q" in walk.layout else facet.way_q
     distance_bits, numerator_bits, slope_bits = len(facet.distance), len(hit.numerator), len(slope.dy)

@@ -8,9 +8,17 @@ from raycaster.rtl.common.widths import unsigned
 
 @block
 def row_register(clk, load, given, live, known, word):
-    """Keep a record's word from load to load; of a fixed scene, synthesis removes the registers of what is known.
+    """Keep the word of a record from load to load.
 
-    live: a mask of the bits that load takes from given; known: the other bits' values, 0 where live is 1. Constants.
+    Synthesis removes the registers of what a fixed scene makes known.
+
+    Args:
+        clk: the clock.
+        load: strobe; takes given.
+        given: unsigned, as wide as word; read with load.
+        live: constant, as wide as word; a mask of the bits that load takes from given.
+        known: constant, as wide as word; the values of the other bits, 0 where live is 1.
+        word: unsigned; output, valid from the cycle after load on.
     """
     loaded, kept = unsigned(len(given)), unsigned(len(given))
 

@@ -18,10 +18,19 @@ def ray_slope(aim: Direction, config: Configuration) -> Direction:
 
 @block
 def slope_walker(clk, start_line, step, aim, slope, config: Configuration):
-    """slope: D, of the first column after start_line; step: of the next.
+    """Walk a ray's slope D from column to column.
 
-    aim: D of the first column, where the camera does not turn; only D[y] changes. Otherwise what a step adds to what is
-    0 after start_line. A step is as many columns as a clock has pixels.
+    A step is as many columns as a clock has pixels.
+
+    Args:
+        clk: the clock.
+        start_line: strobe; begins a line.
+        step: strobe; goes on to the next column.
+        aim: `Direction`; D of the first column where the camera does not turn, and only D[y] changes. Otherwise what a
+            step adds to D, which is 0 after start_line.
+        slope: `Direction`; output, D. Valid from the cycle after start_line, for the first column, and from the cycle
+            after each step, for the next one. Where the camera does not turn, x and z are those of aim.
+        config: the design.
     """
     columns = config.pixels
     if config.turn:

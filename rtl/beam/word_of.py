@@ -6,7 +6,12 @@ from myhdl import always_comb, block, instances
 
 @block
 def word_of(record, word):
-    """word is record's, in the same cycle."""
+    """Connect a record's word to a signal, combinational.
+
+    Args:
+        record: a record.
+        word: unsigned; output, the record's word in the same cycle.
+    """
 
     @always_comb
     def take():

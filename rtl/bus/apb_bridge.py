@@ -8,11 +8,17 @@ from raycaster.rtl.common.widths import bit
 
 @block
 def apb_bridge(clk, reset, s_apb, avm_m0):
-    """APB4 completer, Avalon-MM host: each access is one transfer, and never an error.
+    """Bridge APB4 to an Avalon-MM agent: each access is one transfer, and never an error.
 
     A write goes to the agent in its access phase, and is ready when the agent takes it: without a wait state where
-    waitrequest is low. A read goes there in its setup phase already, and is ready as the agent answers it: one wait
+    waitrequest is low. A read goes there in its setup phase already, and is ready when the agent answers it: one wait
     state with an agent that takes two cycles. The agent ignores byteenable for reads.
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        s_apb: `ApbPort`, this block as the completer: drives pready, prdata and pslverr, reads the rest.
+        avm_m0: `AvalonPort`, this block as the host: reads readdata, readdatavalid and waitrequest, drives the rest.
     """
     reading = bit()
 

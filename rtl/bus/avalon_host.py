@@ -8,11 +8,19 @@ from raycaster.rtl.common.widths import LANES, bit
 
 @block
 def avalon_host(clk, reset, access, strobe, address, data, avm_m0):
-    """Avalon-MM host: each access of the processor is one transfer, of a word, and one read at a time is outstanding.
+    """Pass the processor's accesses to an Avalon-MM agent, each as one transfer of a word.
 
-    access: Access; strobe, address, data: as `interfaces.ProcessorBus` has them, but address counts words; they hold
-    still as long as access.select is high. The agent answers a read with readdatavalid in a later cycle than it took it
-    in.
+    One read at a time is outstanding. The agent answers a read with readdatavalid in a later cycle than the one in
+    which it took it.
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        access: `Access`; reads select, drives ready and word.
+        strobe: unsigned, 4 bits; which bytes of data to write, or 0 for a read. Still while access.select is high.
+        address: unsigned, as wide as avm_m0.address; word address. Still while access.select is high.
+        data: unsigned, 32 bits; the word to write. Still while access.select is high.
+        avm_m0: `AvalonPort`, this block as the host: reads readdata, readdatavalid and waitrequest, drives the rest.
     """
     every_lane = (1 << LANES) - 1
     reading, writing, waiting = bit(), bit(), bit()

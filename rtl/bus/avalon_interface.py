@@ -40,13 +40,27 @@ def avalon_interface(
     clk, reset, avs_s0, irq, bus, camera_readback, rect_readback, bad_rectangle, picture, progress,
     config: Configuration,
 ):  # fmt: skip
-    """Avalon-MM agent: 32-bit words, a transfer a cycle, two cycles from an accepted read to its readdatavalid.
+    """Hold the registers and give access to the scene memories, as an Avalon-MM agent.
 
-    waitrequest follows the synchronous reset a cycle late, and is never high else: in the first cycle of a reset it is
-    still low, and what it accepts there is lost. Every other accepted read is answered once, in order. Writes pass
-    through a register: they take effect in the cycle after they were accepted, before any read that is accepted later
-    is answered. camera_readback, rect_readback: the scene memories' words at bus.address, 32 bits, 0 where there is
-    none. picture: driven, but only its run where the camera is fixed.
+    Words have 32 bits. A transfer takes a cycle, and an accepted read is answered with readdatavalid two cycles later.
+    waitrequest follows the synchronous reset a cycle late, and is never high otherwise: in the first cycle of a reset
+    it is still low, and what it accepts there is lost. Every other accepted read is answered once, in order. Writes
+    pass through a register: they take effect in the cycle after they were accepted, before any read that is accepted
+    later is answered.
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        avs_s0: `AvalonPort`, this block as the agent: drives readdata, readdatavalid and waitrequest, reads the rest.
+        irq: level; output, high while the StartScreen interrupt is pending and enabled.
+        bus: `SceneBus`; output.
+        camera_readback: unsigned, 32 bits; the camera memory's word at bus.address, read at the camera's addresses
+            only. 0 where the camera is fixed.
+        rect_readback: unsigned, 32 bits; the rectangle memory's word at bus.address, 0 where there is none.
+        bad_rectangle: flag; the shadow holds an enabled rectangle without a plane. Read with bus.commit.
+        picture: `Picture`; output. With a fixed camera only run is driven.
+        progress: `Progress`; input.
+        config: the design.
     """
     live = not (config.fixed and config.fixed.camera)
     registers = register_map(config.table)

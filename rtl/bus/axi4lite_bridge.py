@@ -8,13 +8,20 @@ from raycaster.rtl.common.widths import bit
 
 @block
 def axi4lite_bridge(clk, reset, s_axi, avm_m0):
-    """AXI4-Lite subordinate, Avalon-MM host: a write and a read at a time, in either order, each answered with OKAY.
+    """Bridge AXI4-Lite to an Avalon-MM agent: a write and a read at a time, in either order, each answered with OKAY.
 
     A write reaches the agent once its address and its data are there, and before a read that comes with it; its
     response comes two cycles later. A read's data comes with the agent's answer, two cycles after its address with an
     agent of that latency; a write may go between. A cycle of waitrequest takes one more. No output depends on an input
     of the same cycle. The agent answers after two cycles or more, and keeps readdata until it answers again; it ignores
     byteenable for reads, where that is don't care.
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        s_axi: `Axi4LitePort`, this block as the subordinate: drives awready, wready, bresp, bvalid, arready, rdata,
+            rresp and rvalid, reads the rest.
+        avm_m0: `AvalonPort`, this block as the host: reads readdata, readdatavalid and waitrequest, drives the rest.
     """
     writing, write_taken, responding = bit(), bit(), bit()
     asking, read_taken, reading, read_waits, answered, answer_kept = (bit() for _ in range(6))

@@ -8,12 +8,18 @@ from raycaster.rtl.common.widths import bit
 
 @block
 def wishbone_bridge(clk, reset, wb, avm_m0):
-    """Wishbone B4 slave for classic cycles, Avalon-MM host: each access is one transfer, and acknowledged once.
+    """Bridge Wishbone B4 classic cycles to an Avalon-MM agent: each access is one transfer, and acknowledged once.
 
-    A write is acknowledged in the cycle in which the agent takes it, its first where waitrequest is low; a read as the
-    agent answers it, two cycles after its first with an agent of that latency. Only an access that is there is
+    A write is acknowledged in the cycle in which the agent takes it, its first where waitrequest is low; a read when
+    the agent answers it, two cycles after its first with an agent of that latency. Only an access that is there is
     acknowledged, so a master may give up a read: its answer goes to nobody, and the next access waits for it. The agent
     ignores byteenable for reads.
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        wb: `WishbonePort`, this block as the slave: drives ack and dat_r, reads the rest.
+        avm_m0: `AvalonPort`, this block as the host: reads readdata, readdatavalid and waitrequest, drives the rest.
     """
     selected, reading, still_wanted = bit(), bit(), bit()
 

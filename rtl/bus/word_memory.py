@@ -18,10 +18,18 @@ def first_words(program: str, count: int) -> list[int]:
 
 @block
 def word_memory(clk, reset, access, strobe, address, data, words: int, program: str):
-    """An access takes two cycles: access.ready is high in its second, with the word that was read.
+    """Hold the processor's program and data; an access takes two cycles.
 
-    address counts words, below `words`; strobe: which bytes of data to write, 0 for a read. program: the file whose
-    words it holds from power-up on; reset does not bring them back.
+    Args:
+        clk: the clock.
+        reset: synchronous, active high; does not restore the words that the memory had at power-up.
+        access: `Access`; reads select, drives ready and word. ready is high in the second cycle of an access, with the
+            word that was read.
+        strobe: unsigned, 4 bits; which bytes of data to write, or 0 for a read.
+        address: unsigned; word address, below words.
+        data: unsigned, 32 bits; the word to write.
+        words: the number of words.
+        program: the file whose words the memory holds from power-up on.
     """
     memory = [Signal(intbv(value)[WORD_BITS:]) for value in first_words(program, words)]
     writing, reading, done = bit(), bit(), bit()

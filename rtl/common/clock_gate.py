@@ -11,10 +11,15 @@ from raycaster.rtl.common.given import given_verilog
 @given_verilog(lambda: Path(__file__).with_suffix(".v"), outputs=("gated_clk",))
 @block
 def clock_gate(clk, awake, gated_clk):
-    """gated_clk: clk without the cycles at whose end awake is low, and for `rests_on` only.
+    """Gate a clock: gated_clk is clk without the cycles at whose end awake is low.
 
-    awake: from registers of clk. It counts only where the Verilog macro CLOCK_GATING is defined; elsewhere gated_clk is
-    clk, so what rests must not depend on whether it does.
+    awake counts only where the Verilog macro CLOCK_GATING is defined; elsewhere gated_clk is clk, so the gated blocks
+    must not depend on whether the clock rests. MyHDL does not simulate the gate.
+
+    Args:
+        clk: the clock.
+        awake: flag, from registers of clk; low where the clock may rest.
+        gated_clk: output clock, for rests_on only.
     """
     return ()
 

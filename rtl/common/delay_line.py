@@ -8,7 +8,14 @@ from raycaster.rtl.common.widths import unsigned
 
 @block
 def delay_line(clk, word, late_word, cycles: int):
-    """late_word is word `cycles` cycles later, at least one."""
+    """Delay a word by a fixed number of cycles.
+
+    Args:
+        clk: the clock.
+        word: unsigned.
+        late_word: unsigned output, as wide as word; the delayed word.
+        cycles: the delay in cycles, at least one.
+    """
     kept_bits = (cycles - 1) * len(word)
 
     if cycles == 1:

@@ -8,9 +8,11 @@ from raycaster.rtl.common.widths import signed
 
 @block
 def magnitude(value, result):
-    """result = |value|, combinational. value: signed, above its least number; result: unsigned, one bit less.
+    """Find the magnitude of a signed number. Combinational.
 
-    A value may be wider than that, if its magnitude fits the result.
+    Args:
+        value: signed, above its least number; one bit wider than result, or more if its magnitude fits the result.
+        result: unsigned output; |value|.
     """
     bits = len(result)
     opposite = signed(len(value))

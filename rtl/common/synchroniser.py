@@ -8,8 +8,15 @@ from raycaster.rtl.common.ties import initial
 
 @block
 def synchroniser(clk, reset, value, held):
-    """Two registers in a row, as the first may be metastable: held is value, which may change at any time, two cycles
-    later. reset: both to 0; None for registers without one.
+    """Bring a value that may change at any time to this clock.
+
+    There are two registers in a row, as the first may be metastable.
+
+    Args:
+        clk: the clock.
+        reset: synchronous reset, which sets both registers to 0. None for registers without reset.
+        value: flag or unsigned; may change at any time.
+        held: output, as wide as value; value, two cycles later.
     """
     arriving = Signal(initial(0, held))
 

@@ -15,18 +15,29 @@ from raycaster.rtl.engine.rect_setup import rect_setup
 
 @block
 def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects, may_hit, config: Configuration):
-    """From start_group on, test all rectangles against the next group of the frame, until reset_ray_caster comes.
+    """Predict the rectangles that the next group's primary rays may hit, from start_group to reset_ray_caster.
 
-    may_hit: a bit for each rectangle, 0 where no primary ray of the group at place hits it. It is loaded in each cycle
-    of reset_ray_caster and in no other one, so it is constant while a group is traced. What is loaded is the prediction
-    if the predicted group is the one at place in that cycle and all its rectangles were tested, and otherwise all ones,
-    which is correct for any group. Only a prediction of the same scene is correct, so there is none before rect_copy
-    has all its rectangles, at done of a frame's first group: a frame's first two groups have none. Neither has a group
-    after one that ended SETUP_LATENCY cycles and one for each rectangle after its start_group, or earlier, and after
-    one that it does not follow in the frame.
+    From start_group on, all rectangles are tested against the next group of the frame. may_hit is loaded in each cycle
+    of reset_ray_caster and in no other one, so it is constant while a group is traced. The prediction is loaded if the
+    predicted group is the one at place in that cycle and all its rectangles were tested, and otherwise all ones, which
+    is correct for any group.
 
-    rects: only listened to, as in rect_copy. start_group, done: of the group at place, which changes at the end of the
-    first cycle of reset_ray_caster; that lasts two cycles at least.
+    Only a prediction of the same scene is correct, so there is none before rect_copy has all its rectangles, at done of
+    a frame's first group: a frame's first two groups have none. Nor has a group before which reset_ray_caster ends at
+    most `SETUP_LATENCY` + `config.rectangles` cycles after the previous group's start_group, or which does not follow
+    that group in the frame.
+
+    Args:
+        clk: the clock.
+        reset_ray_caster: flag; synchronous reset between two groups, of at least two cycles.
+        start_group: strobe; the group at place starts.
+        done: flag; the group at place has been traced.
+        place: `Place` of the group; changes at the end of the first cycle of reset_ray_caster.
+        camera: `Camera`; only its position is read.
+        rects: `Rects` of the engine; all inputs here, as in rect_copy.
+        may_hit: unsigned output, `config.rectangles` bits, one for each rectangle; 0 where no primary ray of the group
+            at place hits it.
+        config: the design.
     """
     units, rectangles = config.units, config.rectangles
     slope_bits = exact_slope_bits(config) + 1

@@ -11,10 +11,23 @@ from raycaster.rtl.common.widths import bit, signed, unsigned
 def group_tester(clk, load, facet, growth, start, column_slope, row_slope, may_hit, config: Configuration):
     """Test the rays at a group's ends against one rectangle after another, as rect_setup presents them.
 
-    Along a row both sides of each condition of the hit are linear in the column. What fails at both ends, for a ray
-    that runs the same way along the rectangle's axis at both, fails between them too: then no ray of the group hits.
-    Otherwise one may. The ends are the first column and the one after the last, as that many columns on are a shift
-    where units are a power of two. may_hit: a bit for each rectangle, valid from two cycles after its bit of load on.
+    Along a row both sides of each condition of the hit are linear in the column. A condition that fails at both ends,
+    for a ray that runs the same way along the rectangle's axis at both, fails between them too: then no ray of the
+    group hits. Otherwise one may. The ends are the first column and the one after the last, as that many columns on are
+    a shift where `config.units` is a power of two.
+
+    Args:
+        clk: the clock.
+        load: unsigned, `config.rectangles` bits, one for each rectangle; high where facet, growth and start are that
+            rectangle's.
+        facet: `Facet` of the rectangle; read with load.
+        growth: `Walk`; the change of start from one column to the next, read with load.
+        start: `Walk` of the group's first column; read with load.
+        column_slope: signed; the y slope of the group's first column, read with load.
+        row_slope: signed; the z slope of the group's row, read with load.
+        may_hit: unsigned output, `config.rectangles` bits, one for each rectangle; a ray of the group may hit it. Valid
+            from two cycles after the rectangle's bit of load on.
+        config: the design.
     """
     walk_bits, units = len(start.way_p), config.units
 

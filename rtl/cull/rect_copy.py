@@ -12,8 +12,13 @@ from raycaster.rtl.common.widths import AXIS_BITS, WIDE_BITS, bit, index_bits, s
 def rect_copy(clk, rects, copy, margin: int, config: Configuration):
     """Keep each rectangle that the engine fetches from rects, and give it to a second reader through copy.
 
-    rects: a `Rects` that is only listened to, whose rectangle comes a cycle after fetch. copy: a `Rects` whose
-    `WideRect`, with bounds margin further out, comes two cycles after fetch; don't care where rects has not fetched it.
+    Args:
+        clk: the clock.
+        rects: `Rects` of the engine; all inputs here, and rect comes a cycle after fetch.
+        copy: `Rects` of the second reader; index and fetch are read. rect is an output, a `WideRect` with bounds margin
+            further out, and comes two cycles after fetch; don't care where the engine has not fetched it.
+        margin: how much further out the bounds are, in world units.
+        config: the design.
     """
     rect, bounds = rects.rect, ("u_low", "u_high", "v_low", "v_high")
     kept = Record({"axis": AXIS_BITS} | dict.fromkeys(("position", *bounds), COORDINATE_BITS))

@@ -10,11 +10,22 @@ from raycaster.rtl.dvi.tmds_encoder import tmds_encoder
 
 @block
 def dvi_encoder(clk, ready, pixel_end, vga, blue, green, red, pixel):
-    """Channel 0 carries blue and the syncs, 1 green, 2 red, as DVI 1.0 has it, section 2.2.3.
+    """Encode a VGA output for a DVI link.
 
-    vga: as ray_caster_module has it, 8 bits a colour, one or two cycles of clk a pixel; pixel_end: high in the last of
-    them; blue, green, red: symbols, 10 bits, each stable for a pixel, from the second end of a pixel after their own
-    on; pixel: changes with them, and is low while ready is, which may change at any time.
+    Channel 0 carries blue and the syncs, 1 green, 2 red, as in DVI 1.0, section 2.2.3.
+
+    The pixel_end of a pixel takes its colours and syncs. Their symbols are on the outputs from the cycle after the next
+    pixel_end on, for a pixel.
+
+    Args:
+        clk: the clock.
+        ready: flag; low holds pixel low. May change at any time.
+        pixel_end: flag; high in the last cycle of a pixel, which takes one or two cycles of clk.
+        vga: `Vga` as ray_caster_module has it, 8 bits per colour; r, g, b, hs, vs and blank_n are read.
+        blue: unsigned output, 10 bits; the symbol of channel 0, stable for a pixel.
+        green: unsigned output, 10 bits; the symbol of channel 1, stable for a pixel.
+        red: unsigned output, 10 bits; the symbol of channel 2, stable for a pixel.
+        pixel: output flag; changes with the symbols, once per pixel. Low from the cycle after ready is low.
     """
     syncs, none = unsigned(2), tied(0, 2)
     marked = bit()

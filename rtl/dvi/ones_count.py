@@ -8,7 +8,12 @@ from raycaster.rtl.common.widths import unsigned
 
 @block
 def ones_count(bits, count):
-    """count = the number of ones in bits, 8 bits wide; 0 to 8. Combinational."""
+    """Count the ones in eight bits. Combinational.
+
+    Args:
+        bits: unsigned, 8 bits.
+        count: unsigned output, 4 bits; the number of ones in bits, 0 to 8.
+    """
     pair_0, pair_1, pair_2, pair_3 = (unsigned(2) for _ in range(4))
     half_0, half_1 = unsigned(3), unsigned(3)
 

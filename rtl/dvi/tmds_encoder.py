@@ -16,10 +16,18 @@ CONTROL_SYMBOLS = (0b1101010100, 0b0010101011, 0b0101010100, 0b1010101011)
 
 @block
 def tmds_encoder(clk, enable, data, control, visible, symbol):
-    """TMDS as DVI 1.0 has it, section 3.2: few transitions, and as many ones as zeros in the long run.
+    """Encode a channel in TMDS (DVI 1.0, section 3.2): few transitions, as many ones as zeros in the long run.
 
-    enable: strobe, once a pixel, at which the inputs are taken; data: 8 bits, in the picture; control: c1 c0, in
-    blanking; visible: which of the two; symbol: 10 bits, bit 0 is sent first, two strobes later. Blanking resets it.
+    Blanking resets the balance of ones and zeros.
+
+    Args:
+        clk: the clock.
+        enable: strobe, once per pixel, at which the inputs are taken.
+        data: unsigned, 8 bits; encoded in the picture, and read with enable.
+        control: unsigned, 2 bits, c1 above c0; encoded in blanking, and read with enable.
+        visible: flag; high in the picture, low in blanking. Read with enable.
+        symbol: unsigned output, 10 bits, bit 0 to be sent first; changes at the strobe after the one that took its
+            inputs, so a reader takes it two strobes after them.
     """
     controls = CONTROL_SYMBOLS
     ones, word_ones = unsigned(4), unsigned(4)

@@ -10,9 +10,13 @@ from raycaster.rtl.engine.multiplier_step import multiplier_step
 
 @block
 def array_multiplier(multiplicand, multiplier, product):
-    """product = multiplicand * multiplier, all signed, by an adder for each of the multiplier's bits. Combinational.
+    """Multiply two signed numbers, by an adder for each of the multiplier's bits. Combinational.
 
-    product: its low bits, if it is narrower than both factors together.
+    Args:
+        multiplicand: signed.
+        multiplier: signed.
+        product: signed output; multiplicand * multiplier, or its low bits where product is narrower than both factors
+            together.
     """
     width, count = len(multiplicand), len(multiplier)
     totals = [tied(0, Signed(width)), *(signed(width) for _ in range(count))]

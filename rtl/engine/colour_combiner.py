@@ -12,11 +12,22 @@ from raycaster.rtl.engine.colour_sum import colour_sum
 
 @block
 def colour_combiner(clk, steps, found, found_colour, found_mirror, picture, missed, pixel, config: Configuration):
-    """At steps.add_colour, add the colour of the hit that was found; the background from the first ray without one on.
+    """Add up a pixel's colour from the hits of its ray and of the ray's reflections, one at each steps.add_colour.
 
-    found_colour: 24 bits; found_mirror: how much it mirrors, 0 to 4 quarters, or None without config.materials; pixel:
-    a `Pixel`, valid from the cycle after the last steps.add_colour; missed: a ray has found none, or nothing that
-    mirrors, so that what follows does not count, from the cycle after its steps.add_colour.
+    From the first ray without a hit on, the background is added.
+
+    Args:
+        clk: the clock.
+        steps: `Steps`; reset_colour, add_colour and store_ray are read.
+        found: flag; the ray has a hit. Read with steps.add_colour.
+        found_colour: unsigned, 24 bits; the colour of the hit, read with steps.add_colour.
+        found_mirror: unsigned, 3 bits; how much the hit mirrors, 0 to 4 quarters, read with steps.add_colour. None
+            without `config.materials`.
+        picture: `Picture`; only background is read, with steps.add_colour.
+        missed: output flag; a ray has found nothing, or nothing that mirrors, so that later hits do not count. Valid
+            from the cycle after that ray's steps.add_colour.
+        pixel: output `Pixel`; valid from the cycle after the last steps.add_colour.
+        config: the design.
     """
     seen = Colour()
     red, green, blue = (unsigned(config.colour_bits) for _ in range(3))

@@ -9,13 +9,24 @@ from raycaster.rtl.common.widths import share_bits, unsigned
 
 @block
 def colour_share(clk, steps, found, found_mirror, share, missed, config: Configuration):
-    """share: of what was found, or of the background where nothing was; valid where steps.add_colour is high.
+    """Weigh each ray's colour in its pixel.
 
-    All shares of a pixel add up to one, which is the highest of their `share_bits`. The last ray keeps all the weight
-    that is left. Before it a mirror passes found_mirror quarters of its weight on, 0 to 4, and a miss nothing; or all
-    pass half on, where found_mirror is None, without config.materials.
-    missed: a ray has found nothing, or nothing that mirrors, so that what follows does not count; from the cycle after
-    its steps.add_colour.
+    All shares of a pixel add up to one, which is the highest of their `share_bits` bits. The last ray keeps all the
+    weight that is left; it stores no reflected ray. Before it a mirror passes found_mirror quarters of its weight on,
+    and a miss nothing; or, without `config.materials`, all pass half on.
+
+    Args:
+        clk: the clock.
+        steps: `Steps`; reset_colour, add_colour and store_ray are read. With steps.add_colour, store_ray is low for the
+            last ray.
+        found: flag; the ray has a hit. Read with steps.add_colour.
+        found_mirror: unsigned, 3 bits; how much the hit mirrors, 0 to 4 quarters, read with steps.add_colour. None
+            without `config.materials`.
+        share: unsigned output, `share_bits` bits; the share of the hit, or of the background where there is none. Valid
+            where steps.add_colour is high.
+        missed: output flag; a ray has found nothing, or nothing that mirrors, so that later hits do not count. Valid
+            from the cycle after that ray's steps.add_colour.
+        config: the design.
     """
     bits = share_bits(config)
     whole = 1 << (bits - 1)

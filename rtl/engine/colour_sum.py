@@ -9,14 +9,20 @@ from raycaster.rtl.common.widths import share_bits, unsigned
 
 @block
 def colour_sum(clk, steps, seen, share, blended, config: Configuration):
-    """The sum of share times seen, each added at steps.add_colour.
+    """Sum up one channel of a pixel: share times seen, added at each steps.add_colour.
 
-    seen: what the ray saw, unsigned, 8 bits; share: a `colour_share`; blended: the top colour_bits of the sum, from the
-    cycle after the last addition.
+    Without `config.materials` a share has one bit set. With them and at most two reflections a share is a product of at
+    most two numbers 0 to 4, a mirror's quarters or what they leave, so at most one of its bits at even places is set,
+    and at most one at odd places: two summands make the product.
 
-    Without config.materials a share has one bit. With them and at most two reflections it is a product of at most two
-    numbers 0 to 4, a mirror's quarters or what they leave, so of its bits at even places at most one is set, and of
-    those at odd places too: two summands make the product.
+    Args:
+        clk: the clock.
+        steps: `Steps`; only reset_colour, which clears the sum, and add_colour are read.
+        seen: unsigned, 8 bits; the channel that the ray saw, read with steps.add_colour.
+        share: unsigned, `share_bits` bits, from colour_share; read with steps.add_colour.
+        blended: unsigned output, `config.colour_bits` bits; the top bits of the sum. Valid from the cycle after the
+            last addition.
+        config: the design.
     """
     places = share_bits(config)
     sum_bits = CHANNEL_BITS + places - 1  # all shares make one, which is 1 << (places - 1)

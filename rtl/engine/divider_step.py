@@ -8,11 +8,16 @@ from raycaster.rtl.common.widths import unsigned
 
 @block
 def divider_step(remainder, digits, divisor, next_remainder, next_digits):
-    """Shift remainder and digits left as one, and subtract the divisor from the remainder where it fits. Combinational.
+    """Shift remainder and digits left as one, and subtract the divisor where it fits. Combinational.
 
-    remainder, divisor, next_remainder: unsigned, of one width, remainder < divisor; digits, next_digits: unsigned, of
-    another: the dividend's digits leave on the left, and the quotient's bit, 1 where the divisor fitted, enters on the
-    right.
+    The dividend's digits leave on the left, and the quotient's bit, 1 where the divisor fitted, enters on the right.
+
+    Args:
+        remainder: unsigned, as wide as divisor and less than it.
+        digits: unsigned; the remaining digits of the dividend, above the quotient's so far.
+        divisor: unsigned.
+        next_remainder: unsigned output, as wide as divisor; remainder after the step.
+        next_digits: unsigned output, as wide as digits; digits after the step.
     """
     width, count = len(divisor), len(digits)
     dividend = unsigned(width + 1)

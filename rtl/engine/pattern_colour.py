@@ -8,10 +8,16 @@ from raycaster.rtl.common.widths import bit
 
 @block
 def pattern_colour(look, odd_u, odd_v, colour):
-    """colour: look's colour or its second one, 24 bits. Combinational.
+    """Choose between a look's colour and its second colour. Combinational.
 
-    look: a record with the fields of a `Look` with patterns; odd_u, odd_v: the lowest bit of floor(P[u] / cell) and
-    of floor(P[v] / cell). A checker takes the second colour where one of them is odd, rows where v is, columns where u.
+    A checker takes the second colour where just one of odd_u and odd_v is high, rows where odd_v is, columns where
+    odd_u is.
+
+    Args:
+        look: record with the fields of a `Look` with patterns.
+        odd_u: flag; the lowest bit of floor(P[u] / cell), P the hit point.
+        odd_v: flag; the lowest bit of floor(P[v] / cell).
+        colour: unsigned output, 24 bits; the colour of the point.
     """
     second = bit()
 

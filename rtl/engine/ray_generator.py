@@ -10,11 +10,21 @@ from raycaster.rtl.common.widths import bit, row_bits, signed, unsigned
 
 @block
 def ray_generator(clk, steps, place, column_base, initial_signs, slope, config: Configuration):
-    """Slope of the ray through a pixel: (100, column - centre, horizon - row), in sign and magnitude.
+    """Generate the slope of the primary ray through a pixel: (view distance, column - centre, horizon - row).
 
-    The column is place.column_offset * units + column_base: neighbours in one group share their fate. Loaded at
-    steps.screen_to_ray. Every primary ray starts at the camera, which needs no register here. slope: wide enough for
-    the screen's steepest.
+    The slope is in sign and magnitude, and is loaded at steps.screen_to_ray. The column is place.column_offset *
+    `config.units` + column_base: neighbouring columns are in one group, and share their fate. Every primary ray starts
+    at the camera, which needs no register here.
+
+    Args:
+        clk: the clock.
+        steps: `Steps`; only screen_to_ray is read.
+        place: `Place` of the group; read with steps.screen_to_ray.
+        column_base: unsigned, `unit_bits` bits; the unit's column within its group.
+        initial_signs: output `Signs`, dx always 0; valid from the cycle after steps.screen_to_ray.
+        slope: output `Slope`, the magnitudes, wide enough for the steepest slope on the screen; valid from the cycle
+            after steps.screen_to_ray.
+        config: the design.
     """
     slope_bits = len(slope.dx)
     units = config.units

@@ -23,24 +23,44 @@ def ray_sequencer(
     clk, reset_ray_caster, enable, picture, rects, steps, in_flight, fate, early_out, done, slot_cycles,
     config: Configuration,
 ):  # fmt: skip
-    """Cycle through the usable rectangles once a ray, for the primary ray and each reflection, then raise done.
+    """Cycle through the usable rectangles once per ray, for the primary ray and each reflection, then raise done.
 
-    A new rectangle starts every slot_cycles: steps.find_intersection. Bit i of in_flight is set i + 1 cycles later; its
-    last bit goes with the last that a rectangle needs. When nothing is in flight after the last rectangle, BLEND
-    follows, and then the next ray. enable is read while idle; done stays until reset_ray_caster, which is synchronous.
-    picture.reflections: 0 to config.reflections, still while rendering; rects.usable: from the cycle that reads enable.
+    A new rectangle starts every slot_cycles: steps.find_intersection. When nothing is in flight after the last
+    rectangle, BLEND follows, and then the next ray. In a fixed scene each ray has the rectangles of its mask in
+    `config.passes` instead of the usable ones.
 
-    Culling leaves out what cannot change a pixel, and is correct where its signals are valid in time:
+    Culling leaves out rectangles and rays that cannot change a pixel, and is correct where its signals are valid in
+    time:
 
     - fate.may_hit is read in the cycle that reads enable, and the primary ray passes by the rectangles that are 0 in
       it. Ones are always safe, so a mask that is not known in time is all ones.
-    - fate.any_alive is read in BLEND alone, which is the cycle after the last write_z_buf, the first in which the units
-      know whether it was a hit. So no register fits between: a cycle later, the last rectangle would not count. Where
-      it is low, BLEND follows BLEND until done, so none may be alive again before the next group.
-    - fate.any_towards is valid in the cycle after find_intersection, from the units' registers, and belongs to that
-      rectangle until its early_out, EARLY_OUT_AT cycles after find_intersection. One register fits between, in the
-      control. early_out ends the slot of a rectangle that no ray runs towards, and clears it from in_flight; a cycle
-      later the rectangle would be past the bit that is cleared, and its division would be stored.
+    - fate.any_alive is read in BLEND alone, which is the cycle after the last steps.write_z_buf, the first in which the
+      units know of a hit (later where exact_control waits for a pattern's cells). So no register fits between: a cycle
+      later, the last rectangle would not count. Where it is low, BLEND follows BLEND until done, so none may be alive
+      again before the next group.
+    - fate.any_towards is valid in the cycle after steps.find_intersection, from the units' registers, and belongs to
+      that rectangle until its early_out, `EARLY_OUT_AT` cycles after steps.find_intersection. One register fits
+      between, in the control. early_out ends the slot of a rectangle that no ray runs towards, and clears it from
+      in_flight; a cycle later the rectangle would be past the bit that is cleared, and its division would be stored.
+
+    Args:
+        clk: the clock.
+        reset_ray_caster: flag; synchronous reset to idle.
+        enable: flag, read while idle; starts a group of rays.
+        picture: `Picture`; only reflections is read: 0 to `config.reflections`, still while rendering.
+        rects: `Rects`; index and fetch are outputs. usable holds still from the cycle that reads enable; rect is not
+            read.
+        steps: output `Steps`, except load_divider, store_quotient and write_z_buf, which the control derives from
+            in_flight.
+        in_flight: unsigned output; bit i is set i + 1 cycles after a rectangle's steps.find_intersection, and the last
+            bit is that of the last cycle that a rectangle needs.
+        fate: `GroupFate`; may_hit and any_alive are read. any_towards is left to the control, which derives early_out
+            from it.
+        early_out: flag, `EARLY_OUT_AT` cycles after steps.find_intersection; no ray runs towards that rectangle. Tied
+            to 0 where rectangles are not ended early.
+        done: output flag; all rays have been traced. High until reset_ray_caster.
+        slot_cycles: cycles from one rectangle to the next.
+        config: the design.
     """
     write_at, dropped = len(in_flight) - 1, EARLY_OUT_AT
 

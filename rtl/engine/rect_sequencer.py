@@ -14,9 +14,19 @@ def rect_sequencer(
 ):  # fmt: skip
     """Give each wanted rectangle a time slot of slot_cycles, in ascending order, from the cycle after start_ray on.
 
-    wanted: a bit for each, read in the cycle before start_ray; early_out: this cycle is the last of the slot. index,
-    fetch: to the memory; fetched: what the memory holds is a rectangle whose slot it is; starting: in the first cycle
-    of the slot. After a reset_ray_caster nothing is fetched.
+    Args:
+        clk: the clock.
+        reset_ray_caster: flag; synchronous reset, after which nothing is fetched.
+        start_ray: strobe; the next cycle begins the first slot.
+        wanted: unsigned, `config.rectangles` bits, one for each rectangle; read in the cycle before start_ray.
+        early_out: flag; this cycle is the last of the slot.
+        index: unsigned output, `index_bits` bits; the rectangle that the memory is to fetch, valid with fetch.
+        fetch: output strobe, in the cycle before a slot; the memory is to fetch. It comes after the last slot too, and
+            index is then don't care.
+        fetched: output flag; a slot is under way, and the memory holds its rectangle.
+        starting: output flag; first cycle of a slot.
+        slot_cycles: cycles of a slot that does not end early.
+        config: the design.
     """
     rectangles = config.rectangles
     last_slot = slot_cycles - 1

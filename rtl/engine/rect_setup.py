@@ -21,14 +21,33 @@ from raycaster.rtl.engine.array_multiplier import array_multiplier
 def rect_setup(
     clk, reset, start_line, rects, camera, slope, load, facet, growth, start, config: Configuration, in_adders=False
 ):  # fmt: skip
-    """From start_line on, fetch a rectangle a cycle; SETUP_LATENCY cycles later the outputs are its own.
+    """Fetch a rectangle per cycle, from start_line on, and compute the products from which a row starts.
 
-    Six products of a distance and a component of the ray through the first column (Kensler and Shirley 2006); along the
-    row they grow linearly, so no later column needs one (forward differences). load: a bit for each rectangle, high
-    where the outputs are its own; growth: what a column adds to start. Where the camera turns there is no growth: it is
-    the products with what a column adds to the slope, in its place. rects: the rectangle, with or without a look, comes
-    two cycles after fetch. slope: a `Direction`, constant from the third cycle after start_line on. reset: synchronous.
-    Distances to bounds have growth's width, their products start's. in_adders: products take no multipliers.
+    The outputs follow `SETUP_LATENCY` cycles after start_line for the first rectangle, and then in each cycle for the
+    next one.
+
+    A rectangle has six products of a distance and a component of the ray through the first column (Kensler and Shirley
+    2006); along the row they grow linearly, so no later column needs one (forward differences). Distances to bounds
+    have the width of growth's fields, their products that of start's.
+
+    Where the camera turns there is no growth: it is the start of a sweep whose slope is the change of the slope from
+    one column to the next.
+
+    Args:
+        clk: the clock.
+        reset: flag; synchronous reset, which ends the sweep.
+        start_line: strobe; starts a sweep through all rectangles.
+        rects: `Rects`; index and fetch are outputs, and rect, with or without a look, comes two cycles after fetch.
+        camera: `Camera`; only its position is read.
+        slope: `Direction` of the ray through the first column; constant from the third cycle after start_line on.
+        load: unsigned output, `config.rectangles` bits, one for each rectangle; high for a cycle, in which the other
+            outputs are that rectangle's.
+        facet: output `Facet` of the rectangle; valid with its bit of load.
+        growth: output `Walk`; the change of start from one column to the next, valid with load. None with
+            `config.turn`.
+        start: output `Walk` of the first column; valid with load.
+        config: the design.
+        in_adders: the products are made of adders, and take none of the chip's multipliers.
     """
     slope_bits = exact_slope_bits(config) + 1
     bound_bits = DISTANCE_BITS if config.turn else len(growth.low_p)

@@ -11,14 +11,27 @@ from raycaster.rtl.engine.divider_step import divider_step
 
 @block
 def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, found_slope, odd_u, odd_v):
-    """odd_u, odd_v: the lowest bits of floor(P[u] / cell) and floor(P[v] / cell), three cycles after store_quotient.
+    """Find the lowest bits of floor(P[u] / cell) and floor(P[v] / cell), P the hit point, by a short division.
 
-    P = (E e + D n) / e is within the world, and a mirrored eye's is the point itself. So of the quotient's bits the
-    highest few decide, which a restoring division finds two a cycle; and a remainder less than e is left above them.
+    P = (E e + D n) / e is within the world, and for a mirrored eye it is the point itself. So only the highest few of
+    the quotient's bits decide, which a restoring division finds two per cycle; and a remainder less than e is left
+    above them.
 
-    At steps.load_divider, P[u] is begun; at steps.store_quotient, three cycles later, its bit is kept and P[v] begun.
-    Until the end all else holds still. found_surface: a `Surface` with patterns; found_distance, found_slope: n and e,
-    unsigned. What is no hit has any cells, and so has a cell as large as the world or larger, which is even.
+    At steps.load_divider the division for P[u] begins; at steps.store_quotient, three cycles later, its bit is kept and
+    that for P[v] begins, which takes three more cycles. Until then all other inputs hold still. Without a hit the
+    outputs are don't care. A cell as large as the world, or larger, is even.
+
+    Args:
+        clk: the clock.
+        steps: `Steps`; only load_divider and store_quotient are read.
+        eye: `Eye`, E.
+        signs: `Signs` of the slope D.
+        slope: `Slope`, the magnitudes of D.
+        found_surface: `Surface`, with patterns, of the rectangle that was hit.
+        found_distance: unsigned; n, the distance from the eye to the plane of found_surface.
+        found_slope: unsigned; e, the magnitude of the slope on that plane's axis.
+        odd_u: output flag; the lowest bit of floor(P[u] / cell). Valid from the cycle after steps.store_quotient.
+        odd_v: output flag; the lowest bit of floor(P[v] / cell). Valid in the third cycle after steps.store_quotient.
     """
     slope_bits, eye_bits = len(found_slope), len(eye.x)
     point_bits = slope_bits + COORDINATE_BITS

@@ -13,11 +13,27 @@ from raycaster.rtl.engine.ray_sequencer import ray_sequencer
 
 @block
 def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offered, done, config: Configuration):
-    """A ray_sequencer that takes a rectangle a clock, with done and the other ports as it has them.
+    """Operate all units of the exact engine in step: a ray_sequencer that takes a rectangle per clock.
 
-    write_z_buf follows find_intersection by three cycles, the latency of rect_tester; offered: the `Surface` of the
-    rectangle that find_intersection then started on. With config.patterns a pass goes on until the cells of the
-    nearest hit are known: load_divider in the cycle after a write_z_buf, and store_quotient three after the last one.
+    steps.write_z_buf follows steps.find_intersection by three cycles, the latency of rect_tester. With
+    `config.patterns` a pass goes on until the cells of the nearest hit are known: steps.load_divider is in the cycle
+    after a steps.write_z_buf, and steps.store_quotient three cycles after the last steps.load_divider.
+
+    Ports that ray_sequencer has too work as they do there.
+
+    Args:
+        clk: the clock.
+        reset_ray_caster: flag; synchronous reset to idle.
+        enable: flag, read while idle; starts a group of rays.
+        picture: `Picture`; only reflections is read: 0 to `config.reflections`, still while rendering.
+        rects: `Rects`; index and fetch are outputs. usable holds still from the cycle that reads enable; the surface of
+            rect is read.
+        steps: output `Steps`, for all units; load_divider and store_quotient are driven with `config.patterns`.
+        fate: `GroupFate`; may_hit and any_alive as in ray_sequencer, and any_towards is not read.
+        offered: output `Surface`; in the cycle of steps.write_z_buf, that of the rectangle whose
+            steps.find_intersection came three cycles before.
+        done: output flag; all rays have been traced. High until reset_ray_caster.
+        config: the design.
     """
     in_flight = unsigned(WRITE_AT + 1 + (PATTERN_LATENCY if config.patterns else 0))
     first, second = surface_of(config), surface_of(config)

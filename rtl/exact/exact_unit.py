@@ -20,11 +20,24 @@ from raycaster.rtl.exact.turned_generator import turned_generator
 
 @block
 def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, pixel, fate, config: Configuration):
-    """Trace the pixel at (place.row, place.column_offset * units + column_base) as the steps say.
+    """Trace the pixel at (place.row, place.column_offset * `config.units` + column_base) as the steps say.
 
-    It holds no control of its own: one exact_control operates all units in step. camera: a `Camera`; rect: the
-    rectangle at hand, a new one each clock; offered: the `Surface` of the one whose verdict is due; pixel: valid after
-    the last step; fate: with config.culling or config.materials.
+    The unit has no control: one exact_control operates all units in step. A hit after the ray has ended does not count.
+
+    Args:
+        clk: the clock.
+        steps: `Steps`, common to all units; initial_ray is not read.
+        place: `Place`; the group of columns, read with steps.screen_to_ray. With `config.turn` it holds still from the
+            cycle before that on.
+        column_base: unsigned, `unit_bits` bits; the unit's column within its group, constant.
+        camera: `Camera`; its position is read with steps.screen_to_ray. With `config.turn` its basis holds still from
+            the cycle before that on.
+        rect: `Rect` to test, a new one each clock; read with steps.find_intersection.
+        offered: `Surface` of the rectangle whose verdict is due; read with steps.write_z_buf.
+        picture: `Picture`; only background is read, with steps.add_colour.
+        pixel: output `Pixel`; valid after the last step.
+        fate: output `RayFate`; only alive is driven, with `config.culling` or `config.materials`.
+        config: the design.
     """
     initial_signs, signs = Signs(), Signs()
     slope, eye = Slope(exact_slope_bits(config)), Eye(eye_bits(config))

@@ -11,13 +11,26 @@ from raycaster.rtl.common.widths import bit, signed, unsigned
 def eye_register(
     clk, steps, camera, initial_signs, found_surface, found_distance, found_at_mirror, eye, signs, mirror
 ):  # fmt: skip
-    """Where a ray seems to come from: the camera at steps.screen_to_ray, and its image in the mirror at store_ray.
+    """Keep the eye that a ray seems to come from: the camera at steps.screen_to_ray, its image at steps.store_ray.
 
-    A ray reflected at plane k on axis a is the ray from E'[a] = 2k - E[a] with D'[a] = -D[a] and the same parameter
-    (Heckbert and Hanrahan 1984), so no hit point is computed. initial_signs: the primary ray's, from the cycle after
-    steps.screen_to_ray; signs: the ray's at hand, whose slope's magnitudes do not change; mirror: what it left last.
-    found_distance: from the eye to the plane of found_surface, unsigned, and so from its image; found_at_mirror, with
-    corners in the `Mirror`: the hit is in the point where the ray left its last mirror.
+    The image is the eye's reflection in the mirror. A ray reflected at plane k on axis a is the ray from E'[a] = 2k -
+    E[a] with D'[a] = -D[a] and the same parameter (Heckbert and Hanrahan 1984), so no hit point is computed. After the
+    last mirror the image may not fit, and is don't care.
+
+    Args:
+        clk: the clock.
+        steps: `Steps`; only screen_to_ray and store_ray are read.
+        camera: `Camera`; its position is read with steps.screen_to_ray.
+        initial_signs: `Signs` of the primary ray; valid from the cycle after steps.screen_to_ray.
+        found_surface: `Surface` of the mirror; read with steps.store_ray.
+        found_distance: unsigned, as wide as mirror's distance; the distance from the eye to the plane of found_surface,
+            and so from its image. Read with steps.store_ray.
+        found_at_mirror: flag, where the `Mirror` has corners; the hit is in the point where the ray left its last
+            mirror. Read with steps.store_ray. None without corners.
+        eye: output `Eye`; valid from the cycle after steps.screen_to_ray or steps.store_ray.
+        signs: output `Signs` of the current ray, whose slope's magnitudes do not change.
+        mirror: output `Mirror` that the ray left last, not active for the primary ray; valid from the cycle after
+            steps.screen_to_ray or steps.store_ray.
     """
     eye_bits = len(eye.x)
     corners = "met_x" in mirror.layout

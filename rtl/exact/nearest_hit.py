@@ -21,13 +21,26 @@ def nearest_hit(
     found_slope,
     found_at_mirror,
 ):
-    """Keep what is offered at steps.write_z_buf if it is a hit, and nearer than what is kept.
+    """Keep the nearest hit: at steps.write_z_buf, take what is offered if it is a hit, and nearer than the one kept.
 
     t = numerator / denominator is nearer than another where numerator * other denominator < other numerator *
-    denominator. Of two hits at one t the first stays, which is the lower rectangle: rectangles come in order. offered,
-    found_surface: `Surface`s; found: anything was hit since steps.reset_z_buf; found_surface, found_distance,
-    found_slope, found_at_mirror: of the nearest, from the cycle after its write: its numerator, its denominator and,
-    where that is not None, its at_mirror.
+    denominator. Of two hits at one t the first stays, which is the lower rectangle: rectangles come in order. The
+    found_ outputs describe the nearest hit, from the cycle after its write.
+
+    Args:
+        clk: the clock.
+        steps: `Steps`; only reset_z_buf and write_z_buf are read.
+        offered: `Surface` that is offered; read with steps.write_z_buf.
+        hit: flag; the ray hits the rectangle of offered. Read with steps.write_z_buf.
+        at_mirror: flag; the hit is in the plane of the mirror that the ray left last. Read with steps.write_z_buf. None
+            without corners in the `Mirror`, in designs with one reflection at most.
+        numerator: unsigned; the numerator of t, read with steps.write_z_buf.
+        denominator: unsigned; the denominator of t, read with steps.write_z_buf.
+        found: output flag; anything was hit since steps.reset_z_buf.
+        found_surface: output `Surface` of the nearest hit.
+        found_distance: unsigned output, as wide as numerator; the nearest hit's numerator.
+        found_slope: unsigned output, as wide as denominator; the nearest hit's denominator.
+        found_at_mirror: output flag; the nearest hit's at_mirror. None where that is None.
     """
     numerator_bits, denominator_bits = len(numerator), len(denominator)
     offered_product, nearest_product = (unsigned(numerator_bits + denominator_bits) for _ in range(2))

@@ -10,22 +10,38 @@ from raycaster.rtl.common.widths import bit, signed, unsigned
 
 @block
 def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, numerator, denominator):
-    """A rectangle and ray a clock, at steps.find_intersection; hit, numerator, denominator follow three cycles later.
+    """Test a ray against a rectangle per clock, by cross-multiplication: no quotient, no rounding.
+
+    steps.find_intersection takes a rectangle and a ray; hit, at_mirror, numerator and denominator follow three cycles
+    later.
 
     The ray runs from the eye E with the slope D. Where D is negative the axis is turned around: coordinates are
     complemented, which negates each difference of two, and the bounds change places. So with D its magnitude the plane
     k on axis a is at t = n / e, where n = k - E[a] and e = D[a], and where both are positive, near <= E[u] + D[u] n / e
     <= far becomes (near - E[u]) e <= D[u] n <= (far - E[u]) e (Kensler and Shirley 2006 test triangles so).
 
-    A reflected ray must hit beyond its last mirror: on another axis the mirror's distance from the eye takes the place
-    of a nearer bound's; on the same axis distances are compared. In the mirror's plane itself it hits what is on
-    another axis, for it reflects off all planes of a corner. With corners in the `Mirror`, at_mirror: the hit is there;
-    it is none where a mirror on the rectangle's axis was met in that very point. Without, at_mirror is None: a ray has
-    left one mirror.
+    A reflected ray must hit beyond its last mirror: on another axis the mirror's distance from the eye replaces the
+    distance of a bound that is nearer; on the mirror's axis distances are compared. In the mirror's plane itself the
+    ray hits a rectangle on another axis, for it reflects off all planes of a corner. With corners in the `Mirror`,
+    at_mirror marks such a hit, and there is no hit where a mirror on the rectangle's axis was met in that very point.
 
-    rect: a `Rect`; mirror.distance is read a cycle after all else; numerator, denominator: n and e, unsigned, as
-    at_mirror don't care unless hit is high. Widths are the ports': coordinates' from rect, slopes' from slope, and the
-    eye's, which any distance in the world fits, from eye.
+    Widths are taken from the ports: those of coordinates from rect, of slopes from slope, and of the eye from eye,
+    whose width fits any distance in the world.
+
+    Args:
+        clk: the clock.
+        steps: `Steps`; only find_intersection is read.
+        rect: `Rect`; read with steps.find_intersection.
+        eye: `Eye`, E; read with steps.find_intersection.
+        signs: `Signs` of the slope; read with steps.find_intersection.
+        slope: `Slope`, the magnitudes; read with steps.find_intersection.
+        mirror: `Mirror` that the ray left last; read with steps.find_intersection, except distance, which is read a
+            cycle later.
+        hit: output flag; the ray hits the rectangle. Valid in the third cycle after steps.find_intersection.
+        at_mirror: output flag, where the `Mirror` has corners; the hit is in the plane of the mirror that the ray left
+            last. Valid with hit, don't care unless hit is high. None without corners, where a ray has left one mirror.
+        numerator: unsigned output; n. Valid with hit, don't care unless hit is high.
+        denominator: unsigned output; e. Valid with hit, don't care unless hit is high.
     """
     coordinate_bits, slope_bits, eye_bits = len(rect.position), len(slope.dx), len(eye.x)
     distance_bits = eye_bits - 1

@@ -12,11 +12,24 @@ from raycaster.rtl.common.widths import bit, signed, unsigned
 def slope_component(
     clk, steps, forward, right, up, column, row, column_base, size, negative, config: Configuration
 ):  # fmt: skip
-    """view distance * forward + (column + column_base) * right + row * up, in sign and magnitude.
+    """Compute view distance * forward + (column + column_base) * right + row * up, in sign and magnitude.
 
-    Loaded at steps.screen_to_ray; all but column_base, which never changes, hold still from the cycle before on.
-    forward, right, up: components of the camera's basis; column: from the screen's centre to the first unit's, to the
-    right; row: from the horizon up, both signed; size: wide enough for the screen's steepest.
+    It is loaded at steps.screen_to_ray. All inputs except column_base, which never changes, hold still from the cycle
+    before that on.
+
+    Args:
+        clk: the clock.
+        steps: `Steps`; only screen_to_ray is read.
+        forward: signed, 10 bits; a component of the camera's forward vector, times 256.
+        right: signed, 10 bits; that component of the camera's right vector, times 256.
+        up: signed, 10 bits; that component of the camera's up vector, times 256.
+        column: signed; columns from the screen's centre to the first unit's column, to the right.
+        row: signed; rows from the horizon up.
+        column_base: unsigned, `unit_bits` bits; the unit's column within its group, constant.
+        size: unsigned output, wide enough for the steepest slope on the screen; the magnitude. Valid from the cycle
+            after steps.screen_to_ray.
+        negative: output flag, the sign; valid from the cycle after steps.screen_to_ray.
+        config: the design.
     """
     view_distance = config.screen_geometry.view_distance
     # A group past the last one is legal, where none is loaded: twice the steepest slope is more than enough.

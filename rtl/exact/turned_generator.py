@@ -12,10 +12,22 @@ from raycaster.rtl.exact.slope_component import slope_component
 def turned_generator(
     clk, steps, place, column_base, camera, initial_signs, slope, config: Configuration
 ):  # fmt: skip
-    """In place of `ray_generator`, with its ports and a `Camera`: the slope, in sign and magnitude, is view distance *
-    forward + (column - centre) * right + (horizon - row) * up, and 256 times as long as that of a camera not turned.
+    """Generate the primary ray of a unit's column, for a camera that turns.
 
-    place and camera hold still from the cycle before steps.screen_to_ray on.
+    The block replaces ray_generator, and has its ports and a camera. The slope, in sign and magnitude, is view distance
+    * forward + (column - centre) * right + (horizon - row) * up, and 256 times as long as with a camera that does not
+    turn. The column is place.column_offset * `config.units` + column_base.
+
+    Args:
+        clk: the clock.
+        steps: `Steps`; only screen_to_ray is read, at which the ray is loaded.
+        place: `Place` of the group; holds still from the cycle before steps.screen_to_ray on.
+        column_base: unsigned, `unit_bits` bits; the unit's column within its group, constant.
+        camera: `Camera`; only its basis is read, which holds still from the cycle before steps.screen_to_ray on.
+        initial_signs: output `Signs`; valid from the cycle after steps.screen_to_ray.
+        slope: output `Slope`, the magnitudes, wide enough for the steepest slope on the screen; valid from the cycle
+            after steps.screen_to_ray.
+        config: the design.
     """
     units = config.units
     screen = config.screen_geometry

@@ -14,9 +14,16 @@ REGISTERS = register_map(1)
 
 @block
 def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
-    """A scene_word for the position and, where the camera turns, one for each vector of its basis.
+    """Hold the camera: a scene_word for the position and, where the camera turns, one for each vector of its basis.
 
-    camera: the live one. readback: the shadow's word at bus.address, 32 bits; don't care at other addresses.
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        bus: `SceneBus`; input.
+        readback: unsigned, 32 bits; output, combinational: the shadow's word at bus.address, don't care at other
+            addresses.
+        camera: `Camera`; output, the live one.
+        config: the design.
     """
     vectors = ("forward", "right", "up") if config.turn else ()
     registers = [REGISTERS[name] for name in ("camera", *vectors)]

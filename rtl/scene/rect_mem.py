@@ -14,16 +14,23 @@ from raycaster.rtl.scene.written_rect import CORNER, PLACE_BITS, PLACES, Copies,
 
 @block
 def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configuration):
-    """config.rectangles slots, and the live rectangle that the engine asks for; rects: Rects.
+    """Hold `config.rectangles` slots of rectangles, and present the live rectangle that the engine asks for.
 
-    A memory holds the shadow as it was written. Another has three places for each slot, for rectangles as the engine
+    One memory holds the shadow as it was written. Another has three places for each slot, for rectangles as the engine
     wants them, which is as many as shadow, pending and live copy may need: a cycle after a write the rectangle is
-    sorted into a place that neither of the two others keeps, and a commit and StartScreen change which place is whose.
-    Reset clears neither memory: a slot that was not written since reads 0, and is not usable. rects.rect: don't care
-    where the rectangle is not usable.
+    sorted into a place that neither the pending nor the live copy keeps, and a commit and StartScreen change which
+    place is whose. Reset clears neither memory: a slot that has not been written since reads 0, and is not usable.
 
-    readback: the shadow's word at bus.address, 32 bits, combinational, 0 where there is none. bad_rectangle: the shadow
-    holds an enabled rectangle without a plane; from the second cycle after a write on.
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        bus: `SceneBus`; input.
+        readback: unsigned, 32 bits; output, combinational: the shadow's word at bus.address, 0 where there is none.
+        bad_rectangle: flag; output, the shadow holds an enabled rectangle without a plane. Valid from the second cycle
+            after a write on.
+        rects: `Rects`; reads index and fetch, drives usable and rect. rect: don't care where the rectangle is not
+            usable.
+        config: the design.
     """
     count = config.rectangles
     table_slot = CORNER.address // 4

@@ -11,10 +11,15 @@ from raycaster.rtl.common.widths import index_bits, unsigned
 
 @block
 def rect_rom(clk, rects, config: Configuration):
-    """The rectangles of config.fixed, each config.facts.rect_latency cycles after its fetch.
+    """Present the rectangles of a fixed scene, each `config.facts.rect_latency` cycles after its fetch.
 
-    rects.usable is a constant, and not driven here, as not every engine reads it. Bits in which all rectangles agree
-    are constants in Verilog, so that synthesis keeps no register for them.
+    Bits in which all rectangles agree are constants in Verilog, so that synthesis keeps no register for them.
+
+    Args:
+        clk: the clock.
+        rects: `Rects`; reads index and fetch, drives rect. usable is a constant, and not driven here, as not every
+            engine reads it.
+        config: the design. config.fixed has the rectangles.
     """
     table = tuple(rects.rect.pack(vars(rectangle)) for rectangle in config.fixed.rectangles)
     width = len(rects.rect.word)

@@ -10,10 +10,13 @@ from raycaster.scene import CELLS
 
 @block
 def rect_sorter(written, rect, config: Configuration):
-    """Find the axis (the first coordinate that both corners share) and put the bounds in order. Combinational.
+    """Find a rectangle's axis (the first coordinate that both corners share) and order its bounds. Combinational.
 
-    written: WrittenRect; the corners may come in any order, and more mirror than there is counts as all. rect: Rect;
-    don't care without a plane.
+    Args:
+        written: `WrittenRect`; the corners may come in any order, a mirror of more than 4 quarters counts as 4, and a
+            pattern whose cell is at least as large as the world counts as plain.
+        rect: `Rect`; output, don't care where the rectangle has no plane.
+        config: the design.
     """
     looks, cells = [], len(CELLS)
     axis = unsigned(AXIS_BITS)

@@ -8,11 +8,21 @@ from raycaster.rtl.common.widths import WORD_BITS, unsigned
 
 @block
 def scene_word(clk, reset, bus, selected, implemented, shadow, live, first: int = 0):
-    """shadow takes bus.data under bus.mask when selected and written; bus.commit copies it to a pending word, and
-    bus.go_live that to live.
+    """Keep a word of the scene three times: the shadow that software writes, a pending copy, and the live one.
 
-    implemented: constant, the bits that exist; the others read 0. first: what reset gives to all three; the caller's
-    shadow and live start with it. go_live without a commit changes nothing, as live already is what was committed last.
+    shadow takes bus.data under bus.mask when the word is selected and bus.write is high, bus.commit copies shadow to
+    the pending word, and bus.go_live copies the pending word to live. go_live without a commit changes nothing, as live
+    is already what was committed last.
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high; sets all three to first.
+        bus: `SceneBus`; input.
+        selected: flag; bus.address is the address of this word.
+        implemented: unsigned, 32 bits, constant; the bits that exist. The others read 0.
+        shadow: unsigned, 32 bits; output, with first as its initial value.
+        live: unsigned, 32 bits; output, with first as its initial value.
+        first: the value that reset gives.
     """
     merged, pending = unsigned(WORD_BITS), Signal(intbv(first)[WORD_BITS:])
 

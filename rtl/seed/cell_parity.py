@@ -9,10 +9,15 @@ from raycaster.engines.engine import SMALLEST_CELL_BITS
 
 @block
 def cell_parity(value, size, odd, config: Configuration):
-    """odd: the lowest bit of floor(value / a cell), of which size is log2 less three. Combinational.
+    """Find the lowest bit of floor(value / cell), which chooses a pattern's colour. Combinational.
 
-    value: a coordinate within the world, with the configuration's fraction bits. A cell as large as the world, or
-    larger, is even.
+    A cell as large as the world, or larger, is even.
+
+    Args:
+        value: signed; a coordinate within the world, with `config.fraction_bits` fraction bits.
+        size: unsigned, 3 bits; log2 of a cell's size in world units, less three.
+        odd: output flag; the lowest bit of floor(value / cell).
+        config: the design.
     """
     lowest = config.fraction_bits + SMALLEST_CELL_BITS
     sizes = COORDINATE_BITS - SMALLEST_CELL_BITS

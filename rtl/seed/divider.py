@@ -10,12 +10,22 @@ from raycaster.rtl.engine.divider_step import divider_step
 
 @block
 def divider(clk, load_divider, store_quotient, dividend, divisor, quotient, overflow, config: Configuration):
-    """quotient = dividend / divisor, truncated or rounded to nearest with halves upward, as configured.
+    """Divide two unsigned numbers, `config.divider_bits` quotient bits per cycle.
 
-    dividend: unsigned, product_bits; divisor: unsigned, 9 bits; quotient: unsigned, position_bits; overflow: the
-    quotient needs more bits than that, or the divisor is 0; the quotient is then don't care.
-    load_divider takes the operands. store_quotient comes `config.divider_steps` cycles later, and the quotient is valid
-    from the cycle after it until the next store_quotient. The next load_divider may coincide with it.
+    The quotient is truncated, or rounded to nearest with halves upward. A division takes `config.divider_steps` cycles
+    from load_divider to store_quotient; the next load_divider may coincide with that store_quotient.
+
+    Args:
+        clk: the clock.
+        load_divider: strobe; takes the operands.
+        store_quotient: strobe, `config.divider_steps` cycles after load_divider; takes the result.
+        dividend: unsigned, `product_bits` bits; read with load_divider.
+        divisor: unsigned, 9 bits; read with load_divider.
+        quotient: unsigned output, `position_bits` bits; valid from the cycle after store_quotient to the next
+            store_quotient.
+        overflow: output flag; the quotient needs more than `position_bits` bits, or the divisor is 0, and the quotient
+            is then don't care. Valid as long as quotient.
+        config: the design.
     """
     width = config.divider_bits * config.divider_steps
     bits_a_cycle = config.divider_bits

@@ -14,13 +14,32 @@ from raycaster.rtl.seed.intersection_helper import intersection_helper
 def intersection_finder(
     clk, steps, rect, offered, ray, slope, hit, depth, point, odd_u, odd_v, towards, config: Configuration
 ):
-    """Two a + b * (c - d) / e units, one for each axis other than the plane's, and the test against the bounds.
+    """Find where a ray meets a rectangle's plane, and test that point against the rectangle's bounds.
 
-    The plane of rect is taken at steps.find_intersection; offered is the same rectangle from the cycle after its
-    store_quotient on. ray and slope hold still while a ray is traced. hit, depth (|distance| along x, with the
-    configured fraction) and point (the hit point, an `Origin`) are valid in the second cycle after store_quotient,
-    which is steps.write_z_buf; odd_u and odd_v too, the `cell_parity` of its u and v, which are None without
-    config.patterns. towards: the ray runs towards the plane, from the cycle after find_intersection.
+    There are two a + b * (c - d) / e units (intersection_helper), one for each axis other than the plane's: u and v, in
+    the order x, y, z.
+
+    steps.find_intersection takes the plane of rect. hit, depth, point, odd_u and odd_v are valid in the second cycle
+    after its steps.store_quotient, which is the cycle of steps.write_z_buf.
+
+    Args:
+        clk: the clock.
+        steps: `Steps`; find_intersection, load_divider and store_quotient are read.
+        rect: `Rect` to start on; its axis and position are read with steps.find_intersection.
+        offered: the same `Rect`, from the cycle after its steps.store_quotient on.
+        ray: `Ray`; holds still while the ray is traced.
+        slope: `Slope`, the magnitudes; holds still while the ray is traced.
+        hit: output flag; the ray runs towards the plane, and meets it within offered's bounds. Valid with
+            steps.write_z_buf.
+        depth: unsigned output, `position_bits` bits, `config.fraction_bits` of them fraction bits; |distance| along x
+            from the ray's start to the hit point. Valid with steps.write_z_buf.
+        point: output `Origin`; the hit point. Valid with steps.write_z_buf.
+        odd_u: output flag; the cell_parity of the point's u, valid with steps.write_z_buf. None without
+            `config.patterns`.
+        odd_v: output flag; the cell_parity of the point's v, valid with steps.write_z_buf. None without
+            `config.patterns`.
+        towards: output flag; the ray runs towards the plane. Valid from the cycle after steps.find_intersection.
+        config: the design.
     """
     fraction_bits, position_width = config.fraction_bits, position_bits(config)
 

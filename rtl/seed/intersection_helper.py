@@ -14,15 +14,35 @@ from raycaster.rtl.seed.divider import divider
 def intersection_helper(
     clk, steps, a, b, b_negative, c, d, e, e_negative, value, quotient, distance, valid, towards, config: Configuration
 ):
-    """value = a + b * (c - d) / e where (c - d) / e is positive, by one multiplication and one division of magnitudes.
+    """Compute value = a + b * (c - d) / e where (c - d) / e is positive: where a ray meets a plane, on one axis.
 
-    a, c, d: unsigned, position_bits; b, e: magnitudes of 9 bits, each with its sign; value: signed, position_bits + 2;
-    quotient: |b * (c - d) / e|; distance: |c - d|; both unsigned, position_bits.
-    valid: towards, and the quotient did not overflow; towards, from the cycle after find_intersection: e is not 0 and
-    the ray runs towards the plane (c - d is not 0 and has e's sign).
-    Operands but `a` are taken at steps.find_intersection, load_divider follows two cycles later and store_quotient
-    `config.divider_steps` after that; quotient, distance and valid are valid from the next cycle, `a` is taken in it,
-    and value is valid from the cycle after. The next find_intersection may follow config.divider_steps after the first.
+    It takes one multiplication and one division of magnitudes.
+
+    steps.find_intersection takes all operands except a. steps.load_divider follows two cycles later, and
+    steps.store_quotient `config.divider_steps` cycles after that. quotient, distance and valid are valid from the next
+    cycle, in which a is taken; value is valid from the cycle after that. The next steps.find_intersection may follow
+    `config.divider_steps` cycles after the first.
+
+    Args:
+        clk: the clock.
+        steps: `Steps`; find_intersection, load_divider and store_quotient are read.
+        a: unsigned, `position_bits` bits; taken in the cycle after steps.store_quotient.
+        b: unsigned, 9 bits, magnitude of b; read with steps.find_intersection.
+        b_negative: flag, the sign of b; read with steps.find_intersection.
+        c: unsigned, `position_bits` bits; read with steps.find_intersection.
+        d: unsigned, `position_bits` bits; read with steps.find_intersection.
+        e: unsigned, 9 bits, magnitude of e; read with steps.find_intersection.
+        e_negative: flag, the sign of e; read with steps.find_intersection.
+        value: signed output, `position_bits` + 2 bits; a + b * (c - d) / e. Valid from the second cycle after
+            steps.store_quotient.
+        quotient: unsigned output, `position_bits` bits; |b * (c - d) / e|. Valid from the cycle after
+            steps.store_quotient.
+        distance: unsigned output, `position_bits` bits; |c - d|. Valid from the cycle after steps.store_quotient.
+        valid: output flag; the operands had towards, and the quotient did not overflow. Valid from the cycle after
+            steps.store_quotient.
+        towards: output flag; e is not 0 and the ray runs towards the plane (c - d is not 0 and has e's sign). Valid
+            from the cycle after steps.find_intersection.
+        config: the design.
     """
     position_width = position_bits(config)
     product_width = product_bits(config)

@@ -12,12 +12,28 @@ from raycaster.rtl.engine.ray_sequencer import ends_early, ray_sequencer
 
 @block
 def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offered, done, config: Configuration):
-    """A ray_sequencer around the dividers, with done and the other ports as it has them.
+    """Operate all units of the seed engine in step: a ray_sequencer around the dividers.
 
-    A new rectangle starts every config.divider_steps cycles: with find_intersection in cycle t, load_divider is in
-    t + 2, store_quotient in t + 2 + divider_steps (together with the next rectangle's load_divider) and write_z_buf two
-    cycles later. offered: the `Rect` whose quotients were stored last. early_out is in t + 2, from the fate.any_towards
-    of t + 1.
+    A new rectangle starts every `config.divider_steps` cycles: with steps.find_intersection in cycle t,
+    steps.load_divider is in t + 2, steps.store_quotient in t + 2 + `config.divider_steps` (together with the next
+    rectangle's steps.load_divider) and steps.write_z_buf two cycles later. The early_out of ray_sequencer is in t + 2,
+    from the fate.any_towards of t + 1.
+
+    Ports that ray_sequencer has too work as they do there.
+
+    Args:
+        clk: the clock.
+        reset_ray_caster: flag; synchronous reset to idle.
+        enable: flag, read while idle; starts a group of rays.
+        picture: `Picture`; only reflections is read: 0 to `config.reflections`, still while rendering.
+        rects: `Rects`; index and fetch are outputs. usable holds still from the cycle that reads enable; rect is copied
+            with steps.load_divider.
+        steps: output `Steps`, for all units.
+        fate: `GroupFate`; may_hit and any_alive as in ray_sequencer. any_towards is valid in the cycle after
+            steps.find_intersection.
+        offered: output `Rect`; the rectangle whose quotients were stored last.
+        done: output flag; all rays have been traced. High until reset_ray_caster.
+        config: the design.
     """
     load_at = 1
     store_at = load_at + config.divider_steps

@@ -8,9 +8,17 @@ from raycaster.rtl.common.widths import bit
 
 @block
 def ray_mem(clk, steps, found_axis, found_point, ray, reflected):
-    """At steps.store_ray, keep the ray that leaves the hit point: the slope on the mirror's axis changes its sign.
+    """Keep the reflected ray, which leaves the hit point, at steps.store_ray.
 
-    ray: the `Ray` that hit; reflected: the `Ray` that is kept. The slope's magnitudes do not change.
+    The slope on the mirror's axis changes its sign; the slope's magnitudes do not change.
+
+    Args:
+        clk: the clock.
+        steps: `Steps`; only store_ray is read.
+        found_axis: unsigned, 2 bits; the axis of the mirror's plane, 0, 1, 2 for x, y, z, read with steps.store_ray.
+        found_point: `Origin`; the hit point, read with steps.store_ray.
+        ray: `Ray` that hit; read with steps.store_ray.
+        reflected: output `Ray`, which is kept; valid from the cycle after steps.store_ray to the next one.
     """
     dx, dy, dz = bit(), bit(), bit()
 

@@ -19,11 +19,23 @@ from raycaster.rtl.seed.z_buffer import z_buffer
 
 @block
 def ray_unit(clk, steps, place, column_base, camera, rect, offered, picture, pixel, fate, config: Configuration):
-    """Trace the pixel at (place.row, place.column_offset * units + column_base) as the steps say.
+    """Trace the pixel at (place.row, place.column_offset * `config.units` + column_base) as the steps say.
 
-    It holds no control of its own: one ray_control operates all units in step. camera: a `Point`; rect: what
-    find_intersection starts on; offered: the `Rect` whose quotients were stored last; pixel: valid after the last
-    step; fate: with config.culling or config.materials.
+    The unit has no control: one ray_control operates all units in step. A hit after the ray has ended does not count.
+
+    Args:
+        clk: the clock.
+        steps: `Steps`, common to all units.
+        place: `Place`; the group of columns, read with steps.screen_to_ray.
+        column_base: unsigned, `unit_bits` bits; the unit's column within its group, constant.
+        camera: `Point`; the start of all primary rays.
+        rect: `Rect` on which steps.find_intersection starts.
+        offered: `Rect` whose quotients were stored last.
+        picture: `Picture`; only background is read, with steps.add_colour.
+        pixel: output `Pixel`; valid after the last step.
+        fate: output `RayFate`; alive is driven with `config.culling` or `config.materials`, and towards where the
+            control ends rectangles early.
+        config: the design.
     """
     fraction_bits = config.fraction_bits
 

@@ -10,9 +10,15 @@ from raycaster.rtl.common.widths import unsigned
 
 @block
 def button_port(clk, reset, buttons, irq, word):
-    """word: the buttons in its lowest bits, the interrupt's level beside them, 32 bits.
+    """Join the buttons and the ray tracer's interrupt to the word that the processor reads.
 
-    buttons: as `memory_map.BUTTON_NAMES`, active high; may change at any time, and are seen two cycles later.
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        buttons: unsigned, 5 bits, active high; from bit 0 on left, right, up, down, fire, as memory_map.BUTTON_NAMES
+            has them. They may change at any time, and are seen two cycles later.
+        irq: level; the ray tracer's interrupt.
+        word: unsigned, 32 bits; output, the buttons in its lowest bits, and irq at bit `INTERRUPT_BIT`.
     """
     count = len(BUTTON_NAMES)
     held = unsigned(count)

@@ -12,10 +12,16 @@ STEP = 3
 
 @block
 def camera_axis(clk, reset, move, more, less, start, position):
-    """A coordinate that a strobe moves by `STEP` towards where a button points, and never out of the world.
+    """Move a camera's coordinate by `STEP` towards where a button points, and never out of the world.
 
-    move: strobe, once a frame; more, less: buttons, active high, of which both at once count as none; start: where the
-    coordinate is after reset; position: the coordinate, 9 bits, a cycle after the strobe.
+    Args:
+        clk: the clock.
+        reset: synchronous, active high; sets position to start.
+        move: strobe, once per frame.
+        more: flag; the button that raises the coordinate, read with move. Both buttons at once count as none.
+        less: flag; the button that lowers the coordinate, read with move.
+        start: unsigned, 9 bits; the coordinate after reset.
+        position: unsigned, 9 bits; output, the coordinate. It has moved in the cycle after move.
     """
     most = WORLD_SIZE - 1 - STEP
     can_rise, can_fall = bit(), bit()

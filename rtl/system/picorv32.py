@@ -45,10 +45,28 @@ def picorv32(
     ENABLE_FAST_MUL: int,
     ENABLE_DIV: int,
 ):
-    """RV32I with what the parameters add; all others keep their defaults.
+    """Run RV32I with what the parameters add; all other parameters keep their defaults.
 
     Reset starts the program at address 0, and leaves the stack pointer to it. An illegal instruction, or an access that
-    is not aligned, halts the processor until reset. mem_*: as `interfaces.ProcessorBus`; pcpi_*: no coprocessor; irq:
-    not enabled.
+    is not aligned, halts the processor until reset.
+
+    Args:
+        clk: the clock.
+        resetn: reset, synchronous, active low.
+        mem_valid: flag; output, valid of `ProcessorBus`.
+        mem_ready: flag; ready of `ProcessorBus`.
+        mem_addr: unsigned, 32 bits; output, address of `ProcessorBus`.
+        mem_wdata: unsigned, 32 bits; output, data of `ProcessorBus`.
+        mem_wstrb: unsigned, 4 bits; output, strobe of `ProcessorBus`.
+        mem_rdata: unsigned, 32 bits; word of `ProcessorBus`.
+        pcpi_wr: 0, as there is no coprocessor.
+        pcpi_rd: 0, 32 bits, as there is no coprocessor.
+        pcpi_wait: 0, as there is no coprocessor.
+        pcpi_ready: 0, as there is no coprocessor.
+        irq: 32 bits; not enabled.
+        ENABLE_COUNTERS64: 1 for counters of 64 bits.
+        BARREL_SHIFTER: 1 for a barrel shifter.
+        ENABLE_FAST_MUL: 1 for a multiplier that takes one cycle.
+        ENABLE_DIV: 1 for division.
     """
     return ()

@@ -18,10 +18,18 @@ from raycaster.rtl.system.uart_transmitter import DATA_BITS, uart_transmitter
 
 @block
 def processor_host(clk, reset, buttons, irq, uart_tx, avm_m0, config: Configuration, program: str):
-    """Run a program that finds by `memory_map` what it drives.
+    """Run a program that finds by memory_map what it drives.
 
-    buttons: as `button_port`; irq: the ray tracer's, which the program polls; avm_m0: AvalonPort, to the ray tracer's
-    registers; program: as `word_memory`.
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        buttons: unsigned, 5 bits, active high, as in button_port; they may change at any time.
+        irq: level; the ray tracer's interrupt, which the program polls.
+        uart_tx: output of the serial port; high while nothing is sent.
+        avm_m0: `AvalonPort` to the ray tracer's registers, this block as the host: reads readdata, readdatavalid and
+            waitrequest, drives the rest.
+        config: the design.
+        program: the file with the program, as in word_memory.
     """
     bus = ProcessorBus()
     memory, tracer, uart = Access(), Access(), Access()

@@ -14,11 +14,18 @@ from raycaster.rtl.system.reset_release import reset_release
 
 @block
 def processor_system(clk, ready, buttons, uart_tx, vga, config: Configuration, program: str):
-    """A program that finds the ray tracer, five buttons and a serial port by `memory_map`.
+    """Run a program that finds the ray tracer, five buttons and a serial port by memory_map.
 
-    clk: screen.clock_hz; ready: low for at least three cycles resets everything (a PLL's lock, a button), may change at
-    any time; buttons: as `memory_map.BUTTON_NAMES`, active high, may change at any time; uart_tx: 8 data bits, no
-    parity, a stop bit, at `memory_map.BAUD_RATE`; vga: as ray_caster_module has it; program: as `word_memory`.
+    Args:
+        clk: the clock, `config.screen_geometry.clock_hz` Hz.
+        ready: flag, such as a PLL's lock or a button; low for at least three cycles resets everything. It may change at
+            any time.
+        buttons: unsigned, 5 bits, active high; from bit 0 on left, right, up, down, fire, as memory_map.BUTTON_NAMES
+            has them. They may change at any time.
+        uart_tx: output of the serial port: 8 data bits, no parity, a stop bit, at `memory_map.BAUD_RATE`.
+        vga: `Vga`; output, as in ray_caster_module.
+        config: the design.
+        program: the file with the program, as in word_memory.
     """
     reset = ResetSignal(0, active=1, isasync=False)
     bus = AvalonPort(address_bits(config.table))

@@ -25,10 +25,22 @@ UNITS = {SEED.name: ray_unit, EXACT.name: exact_unit}
 
 @block
 def ray_caster(clk, reset_ray_caster, enable, place, camera, picture, rects, done, pixels, config: Configuration):
-    """Compute the pixels of config.units neighbouring columns at once.
+    """Compute the pixels of `config.units` neighbouring columns at once.
 
-    Starts where enable is high and reset_ray_caster low; place and the scene then hold still until done, which stays
-    high, as pixels do, until reset_ray_caster. pixels: all units' `Pixel` words, unit 0's in the lowest bits.
+    It starts where enable is high and reset_ray_caster low. place and the scene then hold still until done.
+
+    Args:
+        clk: the clock.
+        reset_ray_caster: synchronous, active high.
+        enable: flag; starts a group.
+        place: `Place` of the group.
+        camera: `Camera`; the live one.
+        picture: `Picture`; the live one. run is not read.
+        rects: `Rects`; drives index and fetch, reads usable and rect.
+        done: flag; output, the group is complete. It stays high until reset_ray_caster.
+        pixels: unsigned, a `Pixel` word of `pixel_bits` bits for each of the `config.units` units, unit 0 in the lowest
+            bits; output, valid from done to reset_ray_caster.
+        config: the design.
     """
     control, unit = CONTROLS[config.engine], UNITS[config.engine]
     steps = Steps()

@@ -25,11 +25,21 @@ RENDERERS = {SEED.name: ray_caster_renderer, EXACT.name: ray_caster_renderer, BE
 
 @block
 def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi=None, wb=None, s_apb=None):
-    """Registers, scene memories and renderer in one clock domain, screen.clock_hz; reset is synchronous, active high.
+    """Join registers, scene memories and renderer, in one clock domain.
 
-    The bus is avs_s0, s_axi, wb or s_apb, by config.bus; the others are None. avs_s0 and wb count 32-bit words, s_axi
-    and s_apb bytes. The interrupt is a level. Video data changes at the falling edge of vga_clk, a pixel's.
-    What config.fixed holds is built in: it has no memory, and writes to its registers do nothing.
+    Parts of the scene that config.fixed holds are built in: they have no memory, and writes to their registers do
+    nothing. The bus is avs_s0, s_axi, wb or s_apb, by config.bus; the others are None.
+
+    Args:
+        clk: the clock, `config.screen_geometry.clock_hz` Hz.
+        reset: synchronous, active high.
+        avs_s0: `AvalonPort`, this block as the agent; its addresses count 32-bit words.
+        irq: level; output, the interrupt.
+        vga: `Vga`; output. Data changes at the falling edge of vga.clk, which is the pixel clock.
+        config: the design.
+        s_axi: `Axi4LitePort`, this block as the subordinate; its addresses count bytes.
+        wb: `WishbonePort`, this block as the slave; its addresses count 32-bit words.
+        s_apb: `ApbPort`, this block as the completer; its addresses count bytes.
     """
     fixed = config.fixed
     bus = SceneBus(address_bits(config.table))

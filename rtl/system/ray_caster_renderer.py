@@ -17,10 +17,20 @@ from raycaster.rtl.video.video_generator import video_generator
 def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, config: Configuration):
     """Render the live scene into the double line buffer, and show it.
 
-    While a row is shown the next one is rendered, in config.groups groups of config.units columns. The live scene may
-    change in the cycle after progress.start_screen only. progress.underrun comes at the end of a row's time when the
-    row is not complete; it is abandoned, and columns that were not written keep what that half of the buffer held.
-    progress.row_cycles and group_cycles saturate.
+    While a row is shown the next one is rendered, in `config.groups` groups of `config.units` columns. The live scene
+    may change only in the cycle after progress.start_screen. A row that is not complete at the end of its time is
+    abandoned, and columns that were not written keep what that half of the buffer held.
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        picture: `Picture`; the live one.
+        camera: `Camera`; the live one.
+        rects: `Rects`; drives index and fetch, reads usable and rect.
+        progress: `Progress`; output. underrun comes at the end of a row's time when the row is not complete; row_cycles
+            and group_cycles saturate.
+        vga: `Vga`; output.
+        config: the design.
     """
     units, groups, rows = config.units, config.groups, config.screen_geometry.rows
     width = pixel_bits(config)

@@ -16,10 +16,17 @@ from raycaster.scene import Scene
 
 @block
 def ray_caster_system(clk, ready, buttons, vga, config: Configuration, scene: Scene):
-    """One scene on a monitor, its camera moved by buttons.
+    """Show one scene on a monitor, its camera moved by buttons.
 
-    clk: screen.clock_hz; ready: low for at least three cycles resets everything (a PLL's lock, a button), may change at
-    any time; buttons: as `scene_player.BUTTONS`, active high, may change at any time; vga: as ray_caster_module has it.
+    Args:
+        clk: the clock, `config.screen_geometry.clock_hz` Hz.
+        ready: flag, such as a PLL's lock or a button; low for at least three cycles resets everything. It may change at
+            any time.
+        buttons: unsigned, 6 bits, active high; from bit 0 on forward, back, left, right, up, down, as
+            scene_player.BUTTONS has them. They may change at any time.
+        vga: `Vga`; output, as in ray_caster_module.
+        config: the design.
+        scene: the scene.
     """
     reset = ResetSignal(0, active=1, isasync=False)
     bus = AvalonPort(address_bits(config.table))

@@ -12,10 +12,15 @@ HOLD_CYCLES = 16
 
 @block
 def reset_release(clk, ready, reset):
-    """Hold reset until `ready`, which may change at any time, has been high for `HOLD_CYCLES`.
+    """Hold reset until ready has been high for `HOLD_CYCLES` cycles.
 
-    The registers here have no reset of their own: chips power up with them at 0, and simulators set them by a low
-    `ready` of three cycles. reset: high again three cycles after ready fell.
+    The registers here have no reset: chips power up with them at 0, and simulators set them by a low ready of three
+    cycles.
+
+    Args:
+        clk: the clock.
+        ready: flag; the clock is good. It may change at any time.
+        reset: output, active high; high again three cycles after ready fell.
     """
     last = HOLD_CYCLES - 1
     steady = bit()

@@ -30,10 +30,20 @@ def player_program(scene: Scene, config: Configuration) -> tuple[list[tuple[int,
 
 @block
 def scene_player(clk, reset, buttons, irq, avm_m0, config: Configuration, scene: Scene):
-    """Avalon-MM host that only writes: a scene after reset, then a camera at each StartScreen interrupt.
+    """Load a scene after reset, then a camera at each StartScreen interrupt, as an Avalon-MM host that only writes.
 
-    buttons: as `BUTTONS`, active high; they may change at any time, and count where they are held at StartScreen.
     A camera written at one StartScreen is shown from the next on.
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        buttons: unsigned, 6 bits, active high; from bit 0 on forward, back, left, right, up, down, as BUTTONS has them.
+            They may change at any time, and count where they are held at StartScreen.
+        irq: level; the StartScreen interrupt.
+        avm_m0: `AvalonPort`, this block as the host: drives address, write, writedata and byteenable, reads
+            waitrequest.
+        config: the design.
+        scene: the scene.
     """
     program, first_of_frame = player_program(scene, config)
     addresses, words = (tuple(column) for column in zip(*program, strict=True))

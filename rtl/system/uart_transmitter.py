@@ -12,10 +12,19 @@ FRAME_BITS = 1 + DATA_BITS + 1
 
 @block
 def uart_transmitter(clk, reset, access, strobe, data, uart_tx, clocks_per_bit: int):
-    """Send each byte that is written; the next one waits until the last one's stop bit is over.
+    """Send each byte that is written; the next one waits until the stop bit of the last one is over.
 
-    strobe: of a write that enables its first byte, data is sent, other writes do nothing, and 0 reads. access.word: bit
-    0 is 1 while a byte is being sent. data: 8 bits; uart_tx: high while nothing is sent.
+    A write that enables its first byte sends data. Other writes do nothing.
+
+    Args:
+        clk: the clock.
+        reset: synchronous, active high.
+        access: `Access`; reads select, drives ready and word. ready is high with select, except while a byte has to
+            wait. Bit 0 of word is 1 while a byte is being sent.
+        strobe: unsigned, 4 bits; which bytes are written, or 0 for a read.
+        data: unsigned, 8 bits; the byte to send.
+        uart_tx: output; high while nothing is sent.
+        clocks_per_bit: the number of clocks that a bit lasts.
     """
     last_clock = clocks_per_bit - 1
     line = Signal(bool(1))

@@ -9,10 +9,19 @@ from raycaster.rtl.common.widths import bits_for, pixel_bits, unsigned
 
 @block
 def line_buffer(clk, write, line_buf_sel, write_offset, pixel_in, read_offset, pixel_out, config: Configuration):
-    """A row is written to one half while the row before it is read from the other.
+    """Hold two rows of a ray unit's pixels: one half is written while the row before it is read from the other half.
 
-    line_buf_sel: the half to write; write: strobe; write_offset, read_offset: which of the unit's pixels, below
-    config.groups; pixel_out: a cycle after read_offset. As the halves differ, no address is read while it is written.
+    As the halves differ, no address is read while it is written.
+
+    Args:
+        clk: the clock.
+        write: strobe; stores pixel_in.
+        line_buf_sel: flag; the half to write. The other half is read.
+        write_offset: unsigned, below `config.groups`; which of the unit's pixels to write, read with write.
+        pixel_in: unsigned, `pixel_bits` bits; read with write.
+        read_offset: unsigned, below `config.groups`; which of the unit's pixels to read.
+        pixel_out: unsigned, `pixel_bits` bits; output, a cycle after read_offset.
+        config: the design.
     """
     groups = config.groups
     address_width = bits_for(2 * groups)

@@ -11,19 +11,27 @@ from raycaster.screens import Screen
 
 @block
 def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0, at_start: bool = False):
-    """Free-running sync, whatever the inputs; a pixel takes screen.clocks_per_pixel, 1 or 2, and reaches the outputs a
-    pixel after its turn. Where a clock has two pixels, a pixel means both of them here, and a column too.
+    """Generate the monitor's timing, which runs freely whatever the inputs, and send it the pixels.
+
+    A pixel takes screen.clocks_per_pixel clocks, 1 or 2, and reaches the outputs a pixel after its turn. With two
+    pixels per clock, a pixel means both of them here, and so does a column.
 
     Screen coordinates are signed: negative in the blanking, which comes first, so that visible means >= 0. Lines and
-    frames are front porch, sync, back porch, picture. VS changes together with HS. Reset restarts at the first pixel
-    of the first line of the vertical front porch.
+    frames are front porch, sync, back porch, picture. VS changes together with HS.
 
-    scan.start_screen: strobe, a row of rays (screen.doubling lines) before the first visible line, time to render row
-    0. start_row: strobe at the beginning of the first line of each row, which is then handed over.
-    visible_line: high in the visible part of a line, blanked ones included; next_column: strobe in the last clock of
-    each column there, or at_start in its first. With a lead, where a pixel takes a clock, both are that many pixels
-    early, at most the horizontal blanking.
-    pixel: the column's colour, sampled at the end of each of its pixels. vga changes at the falling edge of vga.clk.
+    Args:
+        clk: the clock.
+        reset: synchronous, active high; restarts at the first pixel of the first line of the vertical front porch.
+        scan: `Scan`; output. start_screen: strobe, a row of rays (screen.doubling lines) before the first visible line,
+            time to render row 0. start_row: strobe at the beginning of the first line of each row, which is then handed
+            over. visible_line: high in the visible part of a line, blanked lines included. next_column: strobe in the
+            last clock of each column there or, with at_start, of the column's first pixel.
+        pixel: `Pixel`; the column's colour, sampled at the end of each of its pixels.
+        vga: `Vga`; output. Changes at the falling edge of vga.clk.
+        screen: the screen and its timing.
+        lead: the number of pixels by which visible_line and next_column are early where a pixel takes a clock; at most
+            the horizontal blanking.
+        at_start: next_column comes in the first pixel of a column, and not in the last.
     """
     horizontal, vertical, doubling = screen.beats, screen.vertical, screen.doubling
     first_pixel, first_line = -horizontal.blank, -vertical.blank

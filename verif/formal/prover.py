@@ -17,6 +17,7 @@ from raycaster.configuration import Configuration
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.convert.write import write_verilog
+from raycaster.digests import uncommented
 from raycaster.output import emptied
 from raycaster.registers import address_bits
 from raycaster.rtl.beam.fold_tester import fold_tester
@@ -186,7 +187,7 @@ def inputs_of(proof: Property, depth: int) -> str:
     """All that decides whether a property holds, except the tools: Verilog, wrapper, parameters, method."""
     with elaboration():
         verilog = verilog_of(proof.design)
-    sources = [verilog[f"{module}.v"] for module in proof.modules]
+    sources = [uncommented(verilog[f"{module}.v"]) for module in proof.modules]
     sources += [(WRAPPERS / f"{proof.wrapper}.v").read_text(), Path(__file__).read_text()]
     settings = dict(proof.parameters), depth, proof.cut, proof.any_product, proof.as_registers, proof.reach
     return "\n".join([*sources, repr(settings)])

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+"""Comments of ports in Verilog, from the `Args:` of a block's docstring."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import textwrap
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from myhdl._block import _Block
+
+from raycaster.engines import beam, engine, exact
+from raycaster.rtl.common import widths
+
+_SHARED = {name: value for module in (engine, beam, exact, widths) for name, value in vars(module).items()}
+"""Latencies and widths, which a docstring may name without need of them in its code."""
+
+
+def split(purpose: str) -> tuple[str, Mapping[str, str]]:
+    """Take the arguments out of a docstring.
+
+    Args:
+        purpose: the docstring as Verilog comments, a line each.
+
+    Returns:
+        The comments without the arguments, and the text of each argument by its name.
+    """
+    head, found, listed = purpose.partition("// Args:\n")
+    if not found:
+        return purpose, {}
+    texts: dict[str, str] = {}
+    name = ""
+    for line in listed.splitlines():
+        entry = re.match(r"//     (\w+): (.*)", line)
+        if entry:
+            name = entry[1]
+        texts[name] = entry[2] if entry else f"{texts[name]} {line.removeprefix('//').strip()}"
+    return re.sub(r"(?://\n)+\Z", "", head), texts
+
+
+def commented(ports: Sequence[str], texts: Mapping[str, str], width: int) -> Mapping[str, str]:
+    """Find the comment that stands above each port.
+
+    A record's or an interface's text stands above the first of its ports.
+
+    Args:
+        ports: names, in order; those of a record or an interface begin with the argument's name.
+        texts: of the arguments, by name.
+        width: of a line, at most.
+    """
+    comments = {}
+    for argument, text in texts.items():
+        port = next((port for port in ports if port == argument or port.startswith(f"{argument}_")), None)
+        if port and port != "clk":
+            lines = textwrap.wrap(text, width - len("    // "), break_long_words=False, break_on_hyphens=False)
+            comments[port] = "".join(f"    // {line}\n" for line in lines)
+    return comments
+
+
+def with_numbers(text: str, block: _Block) -> str:
+    """Replace the names that stand in backticks by their numbers, where a block's configuration or module has them.
+
+    Args:
+        text: the docstring, of which `config.units`, `unit_bits` and `SETUP_LATENCY` become numbers.
+        block: whose docstring it is.
+    """
+    known: Mapping[str, Any] = _SHARED | block.func.__globals__
+    given = inspect.signature(block.func).bind(*block.args, **block.kwargs).arguments
+    config = given.get("config")
+
+    def number(match: re.Match[str]) -> str:
+        name = match[1]
+        value = getattr(config, name.removeprefix("config."), None) if name.startswith("config.") else known.get(name)
+        if callable(value) and config is not None and list(inspect.signature(value).parameters) == ["config"]:
+            value = value(config)
+        return str(value) if isinstance(value, int) and not isinstance(value, bool) else name
+
+    return re.sub(r"`([\w.]+)`", number, text)
