@@ -37,7 +37,7 @@ def split(purpose: str) -> tuple[str, Mapping[str, str]]:
         if entry:
             name = entry[1]
         texts[name] = entry[2] if entry else f"{texts[name]} {line.removeprefix('//').strip()}"
-    return re.sub(r"(?://\n)+\Z", "", head), texts
+    return re.sub(r"(?://\s*\n)+\Z", "", head), texts
 
 
 def commented(ports: Sequence[str], texts: Mapping[str, str], width: int) -> Mapping[str, str]:
@@ -66,15 +66,16 @@ def with_numbers(text: str, block: _Block) -> str:
         text: the docstring, of which `config.units`, `unit_bits` and `SETUP_LATENCY` become numbers.
         block: whose docstring it is.
     """
-    known: Mapping[str, Any] = _SHARED | block.func.__globals__
     given = inspect.signature(block.func).bind(*block.args, **block.kwargs).arguments
-    config = given.get("config")
+    known: Mapping[str, Any] = _SHARED | block.func.__globals__ | {"config": given.get("config")}
 
     def number(match: re.Match[str]) -> str:
-        name = match[1]
-        value = getattr(config, name.removeprefix("config."), None) if name.startswith("config.") else known.get(name)
-        if callable(value) and config is not None and list(inspect.signature(value).parameters) == ["config"]:
-            value = value(config)
-        return str(value) if isinstance(value, int) and not isinstance(value, bool) else name
+        name, *attributes = match[1].split(".")
+        value = known.get(name)
+        for attribute in attributes:
+            value = getattr(value, attribute, None)
+        if inspect.isfunction(value) and known["config"] and [*inspect.signature(value).parameters] == ["config"]:
+            value = value(known["config"])
+        return str(value) if isinstance(value, int) and not isinstance(value, bool) else match[1]
 
     return re.sub(r"`([\w.]+)`", number, text)

@@ -15,6 +15,8 @@ from myhdl._block import _Block
 from myhdl._enum import EnumItemType
 from myhdl._instance import _Instantiator
 
+from raycaster.convert.port_comments import commented, split, with_numbers
+
 LINE_LENGTH = 120
 
 _OPERATORS = {
@@ -53,7 +55,7 @@ def restyle(text: str, block: _Block, ports: Sequence[str]) -> str:
     text = _size_words(text)
     text = "\n".join(map(_drop_parentheses, text.splitlines()))
     text = _declare_fields(text)
-    text = _declare_ports(text, ports)
+    text = _declare_ports(text, ports, block)
     text = _declare_constants(text)
     lines = (wrapped for line in text.splitlines() for wrapped in _wrap(line.rstrip()))
     text = re.sub(r"\n+endmodule\n*", "\n\nendmodule\n", "\n".join(lines).strip("\n") + "\n")
@@ -177,8 +179,8 @@ def _is_one_group(text: str) -> bool:
     return False
 
 
-def _declare_ports(text: str, ports: Sequence[str]) -> str:
-    """Declare each port once, in the module's head, and put the text about the module above that."""
+def _declare_ports(text: str, ports: Sequence[str], block: _Block) -> str:
+    """Declare each port once, in the module's head, below its comment, and put the text about the module above that."""
     head = re.search(r"^module (\w+) \(\n[^)]*\);\n((?://[^\n]*\n)*)", text, re.M)
     if not head:
         raise ValueError("no module begins as MyHDL writes it")
@@ -191,7 +193,9 @@ def _declare_ports(text: str, ports: Sequence[str]) -> str:
         direction, (_, sign, width) = words[0], kinds[0]
         rows.append((f"{direction:<6} {'reg' if 'reg' in words else 'wire':<4}{sign}{width}", port))
     pad = max(len(left) for left, _ in rows)
-    declarations = ",\n".join(f"    {left:<{pad}} {port}" for left, port in rows)
+    purpose, texts = split(with_numbers(purpose, block))
+    comments = commented(ports, texts, LINE_LENGTH)
+    declarations = ",\n".join(f"{comments.get(port, '')}    {left:<{pad}} {port}" for left, port in rows)
     return f"{before}{purpose}module {name} (\n{declarations}\n);\n{body}"
 
 

@@ -40,5 +40,9 @@ def load_words(memory, file: str):
     """Verilog's $readmemh: a memory, a list of signals, holds a file's words from the start, as its block must, too.
 
     The file is looked for where the simulation or synthesis runs, and not when the block is converted.
+
+    Args:
+        memory: list of signals, the words.
+        file: name of the file, with a word in hexadecimal on each line.
     """
     return ()

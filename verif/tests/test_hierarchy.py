@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The contract of the conversion with its hierarchy kept, which rests on MyHDL's internals."""
 
+import ast
 import filecmp
 import importlib.metadata
 import inspect
@@ -27,7 +28,7 @@ from raycaster.convert.write import write_verilog
 from raycaster.output import emptied
 from raycaster.rtl.common.clock_gate import clock_gate, rests_on
 from raycaster.rtl.common.given import given_verilog, load_words
-from raycaster.rtl.common.interfaces import Interface
+from raycaster.rtl.common.interfaces import Interface, Place
 from raycaster.rtl.common.records import Record
 from raycaster.rtl.common.ties import Signed, tied, unconnected
 from raycaster.rtl.common.widths import bit, signed, unsigned
@@ -188,6 +189,58 @@ def few_words(clk, value, kept, both, either, stepped):
     stepping = step(clk, value, kept, stepped, unconnected(1))
 
     return keep, join, choose, stepping
+
+
+@block
+def with_documented_ports(clk, value, pair, cycles: int, config=None):
+    """Do nothing, `config.units` times in `SETUP_LATENCY` cycles.
+
+    Args:
+        clk: the clock.
+        value: flag; read for `unit_bits` units,
+            or not at all.
+        pair: Place; output.
+        cycles: no port.
+        config: the design.
+    """
+
+    @always(clk.posedge)
+    def copy():
+        pair.row.next = value
+        pair.column_offset.next = value
+
+    return copy
+
+
+def test_ports_have_their_comments(tmp_path):
+    """Each argument's stands above its first port, with numbers in place of what the configuration decides."""
+    config = configure(units=32)
+    modules = converted(with_documented_ports(bit(), bit(), Place(config), 3, config), tmp_path)
+    head, _, _ = modules["with_documented_ports"].path.read_text().partition(");\n\n")
+    assert (
+        head[head.index("// Do") :]
+        == """// Do nothing, 32 times in 5 cycles.
+module with_documented_ports (
+    input  wire       clk,
+    // flag; read for 5 units, or not at all.
+    input  wire       value,
+    // Place; output.
+    output reg  [7:0] pair_row,
+    output reg  [3:0] pair_column_offset
+"""
+    )
+
+
+@pytest.mark.parametrize(
+    "path", [path for path in Path(rtl.__file__).parent.glob("*/*.py")], ids=lambda path: path.stem
+)
+def test_each_port_of_the_hardware_is_documented(path):
+    """Each argument of each block, in the order of its definition."""
+    for node in ast.parse(path.read_text()).body:
+        if isinstance(node, ast.FunctionDef) and any(ast.unparse(one) == "block" for one in node.decorator_list):
+            _, _, listed = (ast.get_docstring(node) or "").partition("Args:\n")
+            given = [argument.arg for argument in [*node.args.args, *node.args.kwonlyargs]]
+            assert re.findall(r"^    (\w+): ", listed, re.M) == given, f"{path}:{node.lineno}"
 
 
 def test_a_process_needs_no_comment(tmp_path):
