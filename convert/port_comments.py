@@ -9,10 +9,9 @@ import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from myhdl._block import _Block
-
 from raycaster.engines import beam, engine, exact
 from raycaster.rtl.common import widths
+from raycaster.rtl.common.interfaces import Interface
 
 _SHARED = {name: value for module in (engine, beam, exact, widths) for name, value in vars(module).items()}
 """Latencies and widths, which a docstring may name without need of them in its code."""
@@ -40,34 +39,53 @@ def split(purpose: str) -> tuple[str, Mapping[str, str]]:
     return re.sub(r"(?://\s*\n)+\Z", "", head), texts
 
 
-def commented(ports: Sequence[str], texts: Mapping[str, str], width: int) -> Mapping[str, str]:
+def commented(ports: Sequence[str], texts: Mapping[str, str], block: Any, width: int) -> Mapping[str, str]:
     """Find the comment that stands above each port.
 
-    A record's or an interface's text stands above the first of its ports.
+    A record's or an interface's text stands above the first of its ports, and above each port of an interface what its
+    class says of the attribute.
 
     Args:
         ports: names, in order; those of a record or an interface begin with the argument's name.
         texts: of the arguments, by name.
+        block: whose ports they are.
         width: of a line, at most.
     """
-    comments = {}
+    comments = dict.fromkeys(ports, "")
+
+    def add(port: str, text: str) -> None:
+        lines = textwrap.wrap(text, width - len("    // "), break_long_words=False, break_on_hyphens=False)
+        comments[port] += "".join(f"    // {line}\n" for line in lines)
+
     for argument, text in texts.items():
-        port = next((port for port in ports if port == argument or port.startswith(f"{argument}_")), None)
-        if port and port != "clk":
-            lines = textwrap.wrap(text, width - len("    // "), break_long_words=False, break_on_hyphens=False)
-            comments[port] = "".join(f"    // {line}\n" for line in lines)
+        first = next((port for port in ports if port == argument or port.startswith(f"{argument}_")), None)
+        if first and first != "clk":
+            add(first, text)
+        for attribute, meaning in _attributes(_given(block).get(argument)).items():
+            if f"{argument}_{attribute}" in comments:
+                add(f"{argument}_{attribute}", meaning)
     return comments
 
 
-def with_numbers(text: str, block: _Block) -> str:
+def _attributes(value: object) -> Mapping[str, str]:
+    """What the docstring of an interface's class says of each attribute."""
+    _, _, listed = (inspect.getdoc(type(value)) or "").partition("Attributes:\n")
+    entries = re.findall(r"^    (\w+): (.*(?:\n        .*)*)", listed if isinstance(value, Interface) else "", re.M)
+    return {name: " ".join(text.split()) for name, text in entries}
+
+
+def _given(block: Any) -> Mapping[str, Any]:
+    return inspect.signature(block.func).bind(*block.args, **block.kwargs).arguments
+
+
+def with_numbers(text: str, block: Any) -> str:
     """Replace the names that stand in backticks by their numbers, where a block's configuration or module has them.
 
     Args:
         text: the docstring, of which `config.units`, `unit_bits` and `SETUP_LATENCY` become numbers.
         block: whose docstring it is.
     """
-    given = inspect.signature(block.func).bind(*block.args, **block.kwargs).arguments
-    known: Mapping[str, Any] = _SHARED | block.func.__globals__ | {"config": given.get("config")}
+    known: Mapping[str, Any] = _SHARED | block.func.__globals__ | {"config": _given(block).get("config")}
 
     def number(match: re.Match[str]) -> str:
         name, *attributes = match[1].split(".")

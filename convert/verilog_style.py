@@ -194,8 +194,8 @@ def _declare_ports(text: str, ports: Sequence[str], block: _Block) -> str:
         rows.append((f"{direction:<6} {'reg' if 'reg' in words else 'wire':<4}{sign}{width}", port))
     pad = max(len(left) for left, _ in rows)
     purpose, texts = split(with_numbers(purpose, block))
-    comments = commented(ports, texts, LINE_LENGTH)
-    declarations = ",\n".join(f"{comments.get(port, '')}    {left:<{pad}} {port}" for left, port in rows)
+    comments = commented(ports, texts, block, LINE_LENGTH)
+    declarations = ",\n".join(f"{comments[port]}    {left:<{pad}} {port}" for left, port in rows)
     return f"{before}{purpose}module {name} (\n{declarations}\n);\n{body}"
 
 

@@ -40,15 +40,16 @@ from raycaster.debug.waves import Samples, signed
 from raycaster.engines import beam
 from raycaster.golden.rays import primary_slopes
 from raycaster.rtl.common.records import (
-    Facet,
     Look,
     Pixel,
-    Rect,
     Reflector,
+    Sight,
     Walk,
     Winner,
     candidate_of,
+    facet_of,
     fold_of,
+    rect_of,
     shade_of,
 )
 from raycaster.rtl.common.widths import factor_bits, index_bits, walk_bits
@@ -183,7 +184,8 @@ class BeamProbes(Description):
             walker=f"{one}.{numbered('rect_walker', rectangle, count)}",
             tester=f"{one}.{numbered('fold_tester' if bounce else 'ray_tester', rectangle, count)}",
             fold=f"{LANE}.{numbered('ray_fold', max(0, bounce - 1), passes - 1)}",
-            kept=f"{LANE}.{numbered('delay_line', late, len(delays))}",
+            # With patterns the rays' images are delayed too.
+            kept=f"{LANE}.{numbered('delay_line', late, len(delays) + (passes - 1) * config.patterns)}",
             look=f"{LANE}.{numbered('look_up', bounce, passes)}",
             seen=f"{BLEND}.{numbered('colour_seen', bounce, passes)}",
             mirror=f"{LANE}.{numbered('mirror_look_up', min(bounce, passes - 2), passes - 1)}",
@@ -198,15 +200,16 @@ class BeamProbes(Description):
         )
         return ".".join([*["nearest_of_i"] * (turn + 1), one])
 
-    def _means(self) -> Probe:
-        """Of the three channels, those of the first mirror, which come after all others'."""
-        mirrors = self.config.reflections
-        low = CHANNEL_BITS + mirrors - self.config.colour_bits
-        names = [numbered("colour_mean", 3 * (mirrors - 1) + channel, 3 * mirrors) for channel in range(3)]
+    def _joined(self) -> Probe:
+        """The first mirror's channels with all that is behind it: mixed in registers, or a mean before them."""
+        mirrors, mixes = self.config.reflections, beam.mixes(self.config)
+        block, port, low = ("colour_mix", "mixed", 2 * mirrors) if mixes else ("colour_mean", "mean", mirrors)
+        low += CHANNEL_BITS - self.config.colour_bits
+        names = [numbered(block, 3 * (mirrors - 1) + channel, 3 * mirrors) for channel in range(3)]
         return Probe(
-            "means of the channels", tuple(f"{BLEND}.{name}.mean" for name in names), "blend",
-            lambda ray, place: None if place.bounce else pixel_channels(ray, place), late=1,
-            decode=lambda ray, place, *sums: [one >> low for one in sums],
+            "channels, joined", tuple(f"{BLEND}.{name}.{port}" for name in names), "done" if mixes else "blend",
+            lambda ray, place: pixel_channels(ray, place) if mixes or not place.bounce else None,
+            late=0 if mixes else 1, decode=lambda ray, place, *sums: [one >> low for one in sums],
         )  # fmt: skip
 
     def controls(self) -> Iterable[str]:
@@ -246,7 +249,7 @@ class BeamProbes(Description):
             if values[f"{RENDERER}.rects_fetch"][cycle] and index in range(count):
                 events.append(Event("fetch", cycle, Place(0, index)))
             events += [Event("load", cycle, Place(0, i)) for i in range(count) if load >> i & 1]
-        end = column + self.starts[-1] + beam.winner_latency(self.config)
+        end = column + self.starts[-1] + beam.winner_latency(self.config) + beam.cell_latency(self.config)
         for bounce, start in enumerate(self.starts[: ray.reflections + 1]):
             entered = column + start
             events.append(Event("ray", entered, Place(bounce)))
@@ -264,7 +267,9 @@ class BeamProbes(Description):
     def probes(self) -> list[Probe]:
         """In the order in which values depend on each other."""
         config = self.config
-        facet, walk, winner = Facet(walk_bits(config)), Walk(walk_bits(config)), Winner(index_bits(config))
+        facet, walk = facet_of(config), Walk(walk_bits(config))
+        sight = (Sight if config.patterns else Winner)(index_bits(config))
+        plain = [name for name in facet.layout if name not in ("mirror", "kind", "cell", "colour_2")]
         last, passes = beam.rounds(config) - 1, len(self.starts)
         candidate, fold, reflector = candidate_of(config), fold_of(config), Reflector()
         rounds = [
@@ -282,14 +287,14 @@ class BeamProbes(Description):
         kept = [
             Probe("mirror", fields("{mirror}", "last", ("axis", "distance"), reflector), "winner",
                 of_mirrors(passes, met), late=1, signed=(1,), shown=False),
-            Probe("kept", fields("{kept}", "late", ("valid", "index"), winner), "kept",
+            Probe("kept", fields("{kept}", "late", ("valid", "index"), sight), "kept",
                 of_mirrors(passes, nearest_of(0)), shown=False),
         ]  # fmt: skip
         return [
             *scene_probes("column", self.config),
-            Probe("rectangle", fields(f"{DUT}.rect_mem_i", "rects_rect", RECT_FIELDS, Rect()), "fetch", sorted_rect,
-                late=2, shown=False),
-            Probe("set up", fields(SETUP, "facet", facet.layout, facet), "load", setup_facet, signed=(2, 3),
+            Probe("rectangle", fields(f"{DUT}.rect_mem_i", "rects_rect", RECT_FIELDS, rect_of(config)), "fetch",
+                sorted_rect, late=2, shown=False),
+            Probe("set up", fields(SETUP, "facet", plain, facet), "load", setup_facet, signed=(2, 3),
                 shown=False),
             Probe("products of the first column", fields(SETUP, "start", walk.layout, walk), "load", setup_start,
                 signed=True, shown=False),
@@ -312,10 +317,11 @@ class BeamProbes(Description):
                 nearest_of(0)),
             *(kept if passes > 1 else []),
             Probe("found", ("{look}.found",), "blend", found),
-            Probe("its colour", fields("{look}", "look", ("colour",), Look()), "blend", found_colour, colour=True),
+            Probe("its colour", fields("{look}", "look", ("colour",), Look(config.materials, config.patterns)), "blend",
+                found_colour, colour=True),
             Probe("colour seen", fields("{seen}", "shade", COLOURS, shade_of(config)), "blend",
                 seen_channels, late=1),
-            *([self._means()] if passes > 1 else []),
+            *([self._joined()] if passes > 1 else []),
             Probe("pixel", fields(BLEND, "pixel", COLOURS, Pixel(config.colour_bits)), "done", pixel_channels),
             *monitor_probes(RENDERER, "shown", VIDEO, config),
         ]  # fmt: skip

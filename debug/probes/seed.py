@@ -13,7 +13,7 @@ from raycaster.debug.probes.units import RECT_FIELDS, SIGNS, UnitProbes, slope_s
 from raycaster.debug.waves import Samples
 from raycaster.golden.colour import hit_colours
 from raycaster.golden.world import OTHER_AXES
-from raycaster.rtl.common.records import Origin, Rect
+from raycaster.rtl.common.records import Origin, rect_of
 from raycaster.rtl.common.records import Ray as RayRecord
 
 
@@ -165,8 +165,8 @@ class SeedProbes(UnitProbes):
             Probe("signs", fields(self.unit, "ray", SIGNS, ray), "ray", slope_signs, late=1),
             Probe("towards the plane", of_helpers("towards"), "find", towards, late=1, shown=False),
             Probe("product", of_helpers("product"), "load", products, shown=False),
-            Probe("rectangle at the end", fields(self.control, "offered", RECT_FIELDS, Rect()), "store", sorted_rect,
-                late=1, shown=False),
+            Probe("rectangle at the end", fields(self.control, "offered", RECT_FIELDS, rect_of(self.config)), "store",
+                sorted_rect, late=1, shown=False),
             Probe("quotient u, v", of_helpers("divider_i.quotient"), "store", of_rectangle("quotients", "valid"),
                 late=1, scale=True),
             Probe("valid", of_helpers("valid"), "store", lambda ray, place: ray.of_rectangle(place, "valid"), late=1,

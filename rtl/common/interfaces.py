@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Ports that belong together. As a port `vga`, the attribute `hs` becomes the Verilog port `vga_hs`."""
+"""Ports that belong together. As a port `vga`, the attribute `hs` becomes the Verilog port `vga_hs`.
+
+What a class says of its attributes stands above those ports in Verilog.
+"""
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.records import rect_of
@@ -26,10 +29,19 @@ class Interface:
 
 
 class Vga(Interface):
-    """To a monitor or its converter: colours, syncs, blanking (low), composite sync (unused, low), the pixel clock.
+    """A video output, for a DAC or a digital encoder. Data changes at the falling edge of clk.
 
-    Data changes at the falling edge of clk. Where a clock has two pixels, each colour is two channels, of which the low
-    half is the left pixel's, of an even column.
+    With two pixels per clock each colour is two channels; the low half belongs to the left pixel, in an even column.
+
+    Attributes:
+        r: red.
+        g: green.
+        b: blue.
+        hs: horizontal sync.
+        vs: vertical sync.
+        blank_n: low while nothing is shown.
+        sync_n: composite sync, unused and low.
+        clk: pixel clock.
     """
 
     def __init__(self, colour_bits: int):
@@ -43,7 +55,18 @@ def vga_of(config: Configuration) -> Vga:
 
 
 class AvalonPort(Interface):
-    """Avalon-MM with word addresses, 32-bit data and pipelined reads, as a host or an agent has it."""
+    """Avalon-MM with word addresses, 32-bit data and pipelined reads, as a host or an agent has it.
+
+    Attributes:
+        address: of a word.
+        read: request to read, held while waitrequest is high.
+        write: request to write, held while waitrequest is high.
+        writedata: word to write.
+        byteenable: which bytes of it to write.
+        readdata: word that was read, valid with readdatavalid.
+        readdatavalid: high for a cycle with each word that was read, in the order of the requests.
+        waitrequest: the request of this cycle is not taken yet.
+    """
 
     def __init__(self, address_bits: int):
         self.address = unsigned(address_bits)
@@ -89,9 +112,12 @@ class ApbPort(Interface):
 
 
 class Picture(Interface):
-    """What is shown beside rectangles and camera; live, so it changes in the cycle after start_screen only.
+    """What is shown beside rectangles and camera. It is live, so it changes only in the cycle after start_screen.
 
-    run: 0 renders nothing and shows black; reflections: those of the scene; background: 24 bits.
+    Attributes:
+        run: 0 renders nothing and shows black.
+        reflections: of the scene.
+        background: colour of the background, 24 bits.
     """
 
     def __init__(self):
@@ -103,9 +129,12 @@ class Picture(Interface):
 class Progress(Interface):
     """How far a renderer is.
 
-    start_screen: strobe, before the first visible line; busy: a row is being rendered; underrun: strobe, a row was not
-    complete in time; row_cycles, group_cycles: cycles since the row's, and the group's, start, with the present one,
-    don't care unless busy.
+    Attributes:
+        start_screen: strobe before the first visible line.
+        busy: a row is being rendered.
+        underrun: strobe; a row was not complete in time.
+        row_cycles: cycles since the row's start, counting the present one; don't care unless busy.
+        group_cycles: cycles since the group's start, counting the present one; don't care unless busy.
     """
 
     def __init__(self):
@@ -114,9 +143,13 @@ class Progress(Interface):
 
 
 class Scan(Interface):
-    """Where the monitor is; see `video_generator`.
+    """Where the monitor is; `video_generator` has the timing.
 
-    start_screen, start_row, next_column: strobes; visible_line: high in the visible part of a line.
+    Attributes:
+        start_screen: strobe before the first row.
+        start_row: strobe before each row.
+        visible_line: high in the visible part of a line.
+        next_column: strobe before each column.
     """
 
     def __init__(self):
@@ -124,7 +157,12 @@ class Scan(Interface):
 
 
 class Place(Interface):
-    """A group of columns on the screen: column = column_offset * units + unit."""
+    """A group of columns on the screen: column = column_offset * units + unit.
+
+    Attributes:
+        row: row of rays, 0 at the top.
+        column_offset: number of the group in its row.
+    """
 
     def __init__(self, config: Configuration):
         self.row = unsigned(row_bits(config))
@@ -132,26 +170,45 @@ class Place(Interface):
 
 
 class Slope(Interface):
-    """Magnitudes of a ray's slope; they are the same before and after a reflection."""
+    """Magnitudes of a ray's slope, which a reflection does not change.
+
+    Attributes:
+        dx: along x.
+        dy: along y.
+        dz: along z.
+    """
 
     def __init__(self, bits: int = SLOPE_BITS):
         self.dx, self.dy, self.dz = (unsigned(bits) for _ in range(3))
 
 
 class Direction(Interface):
-    """A slope, or what is added to one, in two's complement."""
+    """A slope, or what is added to one, in two's complement.
+
+    Attributes:
+        x: component along x.
+        y: component along y.
+        z: component along z.
+    """
 
     def __init__(self, bits: int):
         self.x, self.y, self.z = (signed(bits) for _ in range(3))
 
 
 class Steps(Interface):
-    """The control signals that operate all ray units in step.
+    """The control signals that operate all ray units in step. All but initial_ray are strobes.
 
-    screen_to_ray: load the primary ray; initial_ray: trace it, and not a reflected one; find_intersection: start on the
-    rectangle at hand; load_divider, store_quotient: where there is a divider, move what was started through it;
-    reset_z_buf, write_z_buf: forget, and offer, a hit; reset_colour, add_colour: forget, and add, what the ray saw;
-    store_ray: keep the reflected ray. All but initial_ray are strobes of a cycle.
+    Attributes:
+        screen_to_ray: load the primary ray.
+        initial_ray: trace the primary ray, not a reflected one.
+        find_intersection: start on the rectangle at hand.
+        load_divider: load the divider, where there is one, with what was started.
+        store_quotient: store what the divider found.
+        reset_z_buf: forget the nearest hit.
+        write_z_buf: keep the hit at hand if it is nearer.
+        reset_colour: begin a new pixel.
+        add_colour: add the colour that the ray saw.
+        store_ray: keep the reflected ray.
     """
 
     def __init__(self):
@@ -161,10 +218,12 @@ class Steps(Interface):
 
 
 class RayFate(Interface):
-    """What a unit's ray may still meet. alive: what it has hit since reset_z_buf, and at every bounce before, mirrors.
+    """What a unit's ray may still meet.
 
-    towards, where a control ends rectangles early: it has at every bounce before, and runs towards the plane that
-    find_intersection started on in the cycle before.
+    Attributes:
+        towards: it has hit mirrors at every bounce before, and runs towards the plane that find_intersection started on
+            in the cycle before; where a control ends rectangles early.
+        alive: what it has hit since reset_z_buf, and at every bounce before, are mirrors.
     """
 
     def __init__(self):
@@ -172,7 +231,13 @@ class RayFate(Interface):
 
 
 class GroupFate(Interface):
-    """The same of any ray of a group; may_hit: a bit for each rectangle, 1 where a primary ray may hit it."""
+    """What any ray of a group may still meet.
+
+    Attributes:
+        any_towards: `RayFate.towards` of at least one unit.
+        any_alive: `RayFate.alive` of at least one unit.
+        may_hit: a bit for each rectangle, 1 where a primary ray may hit it.
+    """
 
     def __init__(self, config: Configuration):
         self.any_towards, self.any_alive = bit(), bit()
@@ -180,7 +245,13 @@ class GroupFate(Interface):
 
 
 class Eye(Interface):
-    """The camera, mirrored in all mirrors so far: two's complement, in whole world units."""
+    """The camera, mirrored in all mirrors so far, in two's complement and whole world units.
+
+    Attributes:
+        x: coordinate along x.
+        y: coordinate along y.
+        z: coordinate along z.
+    """
 
     def __init__(self, bits: int):
         self.x, self.y, self.z = (signed(bits) for _ in range(3))
@@ -189,9 +260,14 @@ class Eye(Interface):
 class SceneBus(Interface):
     """What the registers tell the scene memories: a write, or where to read, and when the shadow moves on.
 
-    write: strobe; address: word address, for write and for reading back; data, mask: the word and which of its bits to
-    write; commit: shadow to pending; go_live: pending to live. Both copy at the end of the cycle. commit comes in the
-    cycle after the write that asks for it, so never in the one after a write to a scene memory.
+    Attributes:
+        write: strobe; write data at address.
+        commit: strobe; copy the shadow to the pending scene at the end of the cycle. It comes in the cycle after the
+            write that asks for it, so never in the one after a write to a scene memory.
+        go_live: strobe; copy the pending scene to the live one at the end of the cycle.
+        address: of a word, to write and to read back.
+        data: word to write.
+        mask: which of its bits to write.
     """
 
     def __init__(self, address_bits: int):
@@ -201,10 +277,13 @@ class SceneBus(Interface):
 
 
 class Rects(Interface):
-    """One live rectangle at a time: sorted, the engine's `rect_latency` cycles after `fetch` with its `index`.
+    """One live rectangle at a time: sorted, the engine's rect_latency cycles after fetch, held until the next fetch.
 
-    It is held until the next fetch. usable: a bit for each rectangle, 1 where it is enabled and has a plane; the others
-    are don't care.
+    Attributes:
+        usable: a bit for each rectangle, 1 where it is enabled and has a plane; the others are don't care.
+        index: number of the rectangle to fetch.
+        fetch: strobe; read the rectangle of this index.
+        rect: the rectangle that was fetched.
     """
 
     def __init__(self, config: Configuration):
@@ -215,10 +294,15 @@ class Rects(Interface):
 
 
 class ProcessorBus(Interface):
-    """PicoRV32's native memory interface: one access at a time, each held still from `valid` to `ready`.
+    """PicoRV32's native memory interface: one access at a time, each held still from valid to ready.
 
-    address: of a byte, a multiple of four; data: what is written, and strobe which of its bytes, or 0 for a read; word:
-    what was read, while ready.
+    Attributes:
+        valid: an access waits.
+        ready: it is done in this cycle.
+        address: of a byte, a multiple of four.
+        data: word to write.
+        word: word that was read, valid with ready.
+        strobe: which bytes to write; 0 to read.
     """
 
     def __init__(self):
@@ -228,9 +312,12 @@ class ProcessorBus(Interface):
 
 
 class Access(Interface):
-    """A processor's access to what it selects, held still from `select` to `ready`.
+    """A processor's access to what it selects, held still from select to ready.
 
-    select: high from the access's first cycle to the one in which ready is; word: what was read, 32 bits, while ready.
+    Attributes:
+        select: high from the access's first cycle to the one in which ready is high.
+        ready: the access is done in this cycle.
+        word: word that was read, valid with ready.
     """
 
     def __init__(self):

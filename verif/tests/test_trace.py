@@ -28,6 +28,17 @@ OPTIONS = {
     "seed": {"units": "8"},
     "exact": {"engine": "exact", "units": "4"},
     "beam": {"engine": "beam", "scale": "1"},
+    **{
+        f"{engine}-looks": {
+            "engine": engine,
+            "units": units,
+            "scale": "1",
+            "materials": "1",
+            "patterns": "1",
+            "allow_underrun": "1",
+        }
+        for engine, units in (("seed", "8"), ("exact", "4"), ("beam", "1"))
+    },
 }
 PIXEL = (48, 2)
 """Column and row: the post hides the wall there, and mirrors it."""
