@@ -53,9 +53,10 @@ WIDE, TALL = replace(_VGA, rows=24, horizon_row=12), replace(_VGA, columns=32)
 of_each_engine = pytest.mark.parametrize("options", ENGINES, ids=lambda options: "-".join(map(str, options.values())))
 
 
-def design(**options: object) -> Configuration:
+def design(rectangles: int = 12, **options: object) -> Configuration:
     """What is drawn need not be fast enough for its screen."""
-    return replace(configure(screen="tiny", reflections=0, allow_underrun=True, **options), reflections=2)
+    small = configure(screen="tiny", rectangles=1, reflections=0, allow_underrun=True, **options)
+    return replace(small, rectangles=rectangles, reflections=2)
 
 
 class Golden:
