@@ -225,7 +225,9 @@ module with_documented_ports (
     // flag; read for 5 units, or not at all.
     input  wire       value,
     // Place; output.
+    // row of rays, 0 at the top.
     output reg  [7:0] pair_row,
+    // number of the group in its row.
     output reg  [3:0] pair_column_offset
 """
     )
