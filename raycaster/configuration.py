@@ -52,7 +52,7 @@ class Options:
     Raises pydantic's `ValidationError`.
     """
 
-    engine: EngineName = Field(SEED.name, description=f"what computes the rays: {' or '.join(ENGINES)}")
+    engine: EngineName = Field(SEED.name, description="what computes the rays: seed, exact or beam")
     units: int | None = Field(
         None, ge=1, description="ray units in parallel, a divisor of the columns: 32; the fewest of the exact engine; 1"
     )
