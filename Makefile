@@ -29,8 +29,7 @@ coverage: EXTRAS := coverage
 prove: EXTRAS := formal
 sim: EXTRAS := $(if $(filter-out 0,$(value GATES)),formal)
 mutate: EXTRAS := formal,test
-lint: EXTRAS := test
-test verify-all: EXTRAS := formal,fpga,report,coverage,play,docs,test
+lint test verify-all: EXTRAS := formal,fpga,report,coverage,play,docs,test
 
 .PHONY: help $(COMMANDS) $(CHECKS) flash test lint clean
 .NOTPARALLEL:
