@@ -42,8 +42,8 @@ def split(purpose: str) -> tuple[str, Mapping[str, str]]:
 def commented(ports: Sequence[str], texts: Mapping[str, str], block: Any, width: int) -> Mapping[str, str]:
     """Find the comment that stands above each port.
 
-    A record's or an interface's text stands above the first of its ports, and above each port of an interface what its
-    class says of the attribute.
+    The text of a record or an interface goes above the first of its ports. Above each port of an interface goes what
+    the class says about that attribute.
 
     Args:
         ports: names, in order; those of a record or an interface begin with the argument's name.
@@ -57,18 +57,19 @@ def commented(ports: Sequence[str], texts: Mapping[str, str], block: Any, width:
         lines = textwrap.wrap(text, width - len("    // "), break_long_words=False, break_on_hyphens=False)
         comments[port] += "".join(f"    // {line}\n" for line in lines)
 
+    given = _given(block)
     for argument, text in texts.items():
         first = next((port for port in ports if port == argument or port.startswith(f"{argument}_")), None)
         if first and first != "clk":
             add(first, text)
-        for attribute, meaning in _attributes(_given(block).get(argument)).items():
+        for attribute, meaning in _attributes(given.get(argument)).items():
             if f"{argument}_{attribute}" in comments:
-                add(f"{argument}_{attribute}", meaning)
+                add(f"{argument}_{attribute}", with_numbers(meaning, block))
     return comments
 
 
 def _attributes(value: object) -> Mapping[str, str]:
-    """What the docstring of an interface's class says of each attribute."""
+    """Read the text about each attribute from the docstring of an interface's class."""
     _, _, listed = (inspect.getdoc(type(value)) or "").partition("Attributes:\n")
     entries = re.findall(r"^    (\w+): (.*(?:\n        .*)*)", listed if isinstance(value, Interface) else "", re.M)
     return {name: " ".join(text.split()) for name, text in entries}
@@ -82,7 +83,7 @@ def with_numbers(text: str, block: Any) -> str:
     """Replace the names that stand in backticks by their numbers, where a block's configuration or module has them.
 
     Args:
-        text: the docstring, of which `config.units`, `unit_bits` and `SETUP_LATENCY` become numbers.
+        text: a docstring or a part of one, with names such as `config.units`, `unit_bits` and `SETUP_LATENCY`.
         block: whose docstring it is.
     """
     known: Mapping[str, Any] = _SHARED | block.func.__globals__ | {"config": _given(block).get("config")}

@@ -13,19 +13,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from raycaster.configuration import COORDINATE_BITS
+from raycaster.configuration import COORDINATE_BITS, Rounding
 from raycaster.golden.colour import blend, hit_colours
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.scene import Scene
 from raycaster.screens import Screen
-
-Rounding = Literal["truncate", "nearest"]
 
 
 @dataclass(frozen=True)

@@ -38,7 +38,7 @@ else:
 
 
 Rounding = Literal["truncate", "nearest"]
-"""Of quotients: towards zero, or to the nearest."""
+"""How quotients are rounded: towards zero, or to the nearest."""
 
 
 class ConfigurationError(UserError):
@@ -47,7 +47,7 @@ class ConfigurationError(UserError):
 
 @validated_dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid"))
 class Options:
-    """What a user chooses of a design. What is None, or "auto", is decided from the rest, as `configure` does.
+    """The choices that a user makes for a design. `configure` decides what is None or "auto".
 
     Raises pydantic's `ValidationError`.
     """
@@ -145,7 +145,7 @@ class Configuration:
 
     @property
     def facts(self) -> Engine:
-        """Its engine."""
+        """The engine of this name."""
         return ENGINES[self.engine]
 
     @property
@@ -175,7 +175,7 @@ class Configuration:
 
     @cached_property
     def screen_geometry(self) -> Screen:
-        """The same screen with so many pixels a clock."""
+        """The screen as the hardware counts it, in steps of `pixels` pixels."""
         return self.whole_screen if self.pixels == 1 else self.whole_screen.paired()
 
     @property
@@ -248,7 +248,7 @@ def need_avalon(config: Configuration, what: str) -> None:
 OPTIONS: Mapping[str, FieldInfo] = {
     name: field for name, field in vars(Options)["__pydantic_fields__"].items() if name != "fixed"
 }
-"""What users choose one by one, with its bounds, default and help, by name; what is fixed comes from a scene."""
+"""Every option by its name, with its bounds, default and help. `fixed` is not among them: it comes from a scene."""
 
 
 def decided(options: Options) -> Configuration:

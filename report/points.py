@@ -35,6 +35,7 @@ from raycaster.golden.rays import primary_slopes
 from raycaster.golden.seed_engine import Rounding
 from raycaster.golden.world import Rectangles
 from raycaster.options import BUILD, add_configuration_options, as_options, given_options, run_command
+from raycaster.rtl.system import ray_caster
 from raycaster.scene import BASIS_SCALE, Scene, dump_scene, load_scene
 from raycaster.screens import SCREENS, Screen
 from raycaster.sim.job import Job
@@ -60,7 +61,7 @@ GRID = 30, 40
 """Blocks, from top to bottom and from left to right, in which the wrong pixels of a picture are counted."""
 
 FAMILY = FAMILIES["ecp5"]
-UNITS = {"seed": "ray_unit", "exact": "exact_unit"}
+UNITS = {engine: unit.__name__ for engine, unit in ray_caster.UNITS.items()}
 """By engine, the module of which there are as many as the configuration's units."""
 
 GENERAL_REFLECTIONS = 2

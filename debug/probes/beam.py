@@ -136,7 +136,7 @@ def numbered(module: str, number: int, count: int) -> str:
 
 
 def seen_channels(ray: Ray, place: Place) -> Sequence[Value] | None:
-    """What a ray sees, by channel; nothing where `seen_colour` says nothing."""
+    """What a ray sees, channel by channel; None where golden has no expectation."""
     seen = seen_colour(ray, place)
     return channels_of(*seen, CHANNEL_BITS) if seen else None
 

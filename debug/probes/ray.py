@@ -57,7 +57,7 @@ class Place:
 
     @property
     def index(self) -> int:
-        """The rectangle's, of a place that has one."""
+        """The index of the place's rectangle, which must have one."""
         if self.rectangle is None:
             raise ValueError("the place is of no rectangle")
         return self.rectangle

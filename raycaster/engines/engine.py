@@ -33,7 +33,6 @@ class Engine(ABC):
         turns: whether its camera turns.
         divides: whether it forms quotients, which have a fraction and are rounded.
         line_buffered: whether units fill a line buffer ahead of the monitor, group after group.
-        scaled: whether it draws a pixel of the picture as several of the monitor's, or the other way round.
     """
 
     name: ClassVar[str]

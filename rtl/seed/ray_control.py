@@ -4,6 +4,7 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.engines.seed import LOAD_AT, WRITE_AFTER
 from raycaster.rtl.common.records import rect_of
 from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import bit, unsigned
@@ -35,9 +36,9 @@ def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offe
         done: output flag; all rays have been traced. High until reset_ray_caster.
         config: the design.
     """
-    load_at = 1
+    load_at = LOAD_AT - 1  # bit i of in_flight comes i + 1 cycles after find_intersection
     store_at = load_at + config.divider_steps
-    write_at = store_at + 2
+    write_at = store_at + WRITE_AFTER
 
     in_flight = unsigned(write_at + 1)
     none_towards = bit()

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What fills a line buffer, whichever engine it is of: one control, and units that it operates in step."""
 
+from typing import Any
+
 from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
@@ -19,7 +21,7 @@ from raycaster.rtl.seed.ray_unit import ray_unit
 CONTROLS = {SEED.name: ray_control, EXACT.name: exact_control}
 """By engine, the block that operates all units."""
 
-UNITS = {SEED.name: ray_unit, EXACT.name: exact_unit}
+UNITS: dict[str, Any] = {SEED.name: ray_unit, EXACT.name: exact_unit}
 """By engine, the block of one unit."""
 
 
