@@ -148,7 +148,7 @@ def make_with(directory: Path, script: str, *words: str) -> subprocess.Completed
     for name in ("Makefile", "pyproject.toml", "constraints.txt"):
         shutil.copy(ROOT / name, directory)
     (directory / ".venv").mkdir(exist_ok=True)
-    for name in ("base", "fpga,play", "test"):
+    for name in ("base", *re.findall(r": EXTRAS := ([\w,]+)$", (ROOT / "Makefile").read_text(), re.MULTILINE)):
         (directory / ".venv" / name).touch()
     python = directory / "python"
     python.write_text(script)
