@@ -103,6 +103,7 @@ def _printed(connection: Any) -> str:
 class _RecordingConvertor(_ToVerilogConvertor):
     """MyHDL's convertor, but that a module has only those of an interface's signals as ports that it uses.
 
+    The same holds for a port that is tied or left open: so a design that lacks a feature lacks its ports.
     Fields of records that are read become wires, and ties that are read become localparams.
     """
 
@@ -121,7 +122,7 @@ class _RecordingConvertor(_ToVerilogConvertor):
         intf.argnames = [
             name
             for name in intf.argnames
-            if name in arguments
+            if (name in arguments and not isinstance(intf.argdict[name], (Tied, Unconnected)))
             or (not isinstance(intf.argdict[name], Field) and (intf.argdict[name]._driven or intf.argdict[name]._read))
         ]
         self.ports = tuple(
@@ -131,6 +132,7 @@ class _RecordingConvertor(_ToVerilogConvertor):
             for name in intf.argnames
         )
         self._declare_fields(siglist, intf)
+        siglist.sort(key=lambda signal: isinstance(signal, ConcatSignal))  # after what they are made of
         _check_names(intf, {id(intf.argdict[name]): name for name in intf.argnames}, memlist)
         _check_values(intf, siglist, memlist)
         self.constants = [s for s in siglist if isinstance(s, Tied) and s._used and s._name not in intf.argnames]
@@ -374,6 +376,11 @@ def _fields_read(block: _Block, children: list[Any]) -> dict[int, Field]:
     """The fields of records that a block's processes and instances read, by identity."""
     read = [sub.symdict[name] for sub in block.subs if isinstance(sub, _Instantiator) for name in sorted(sub.inputs)]
     read += [signal for child in children for signal in child.verilog_code.connections.values()]
+    for signal in read:
+        if isinstance(signal, ConcatSignal):
+            read += signal._sigargs
+        elif isinstance(signal, _SliceSignal) and isinstance(signal._sig, Field):
+            read.append(signal._sig)
     return {id(signal): signal for signal in read if isinstance(signal, Field)}
 
 
@@ -456,7 +463,8 @@ def _name_signals(
     for sub in block.subs:
         scope |= {name: value for name, value in sub.callinfo.symdict.items() if not name.startswith("_")}
     candidates = {id(signal): port for port, signal in ports.items()}
-    for name, value in scope.items():
+    # A variable of its own names a signal better than its place in a list does.
+    for name, value in sorted(scope.items(), key=lambda item: not isinstance(item[1], _Signal)):
         for path, signal in signals_in(name, value):
             candidates.setdefault(id(signal), path)
 

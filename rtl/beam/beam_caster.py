@@ -3,7 +3,7 @@
 
 from collections.abc import Mapping
 
-from myhdl import always_comb, block, concat, instances
+from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.beam.beam_lane import beam_lane
@@ -87,7 +87,7 @@ def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture,
 
     if config.turn:
         # All that walks along a row starts from 0, by a step that is as long as the start; its steps are growth then.
-        start_sweep, enter = bit(), unsigned(config.pixels) if config.pixels > 1 else bit()
+        start_sweep, enter = bit(), unsigned(config.pixels)
         grown = new_start
         starter = line_starter(
             clk, reset, start_line=start_line, camera=camera, row_slope=row_slope, loaded=load(last_rectangle), aim=aim,
@@ -95,11 +95,11 @@ def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture,
         )  # fmt: skip
         setup = rect_setup(
             clk, reset, start_line=start_sweep, rects=rects, camera=camera, slope=aim, load=load, facet=new_facet,
-            growth=None, start=new_start, config=config,
+            growth=new_growth, start=new_start, config=config,
         )  # fmt: skip
         aims = [aim for _ in lanes]
-        enters = [enter] if config.pixels == 1 else [enter(lane) for lane in lanes]
-        loads, lane_starts = [None for _ in lanes], [walk_of(config).tie({}) for _ in lanes]
+        enters = [enter(lane) for lane in lanes]
+        loads, lane_starts = [tied(0, load) for _ in lanes], [walk_of(config).tie({}) for _ in lanes]
     else:
         for lane, lane_aim in enumerate(aims):
             lane_aim.x, lane_aim.z = tied(view_distance, lane_aim.x), row_slope
@@ -109,7 +109,7 @@ def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture,
             clk, reset, start_line=start_line, rects=rects, camera=camera, slope=aim, load=load, facet=new_facet,
             growth=new_growth, start=new_start, config=config,
         )  # fmt: skip
-        enters, loads, lane_starts = [None for _ in lanes], [load], [new_start]
+        enters, loads, lane_starts = [tied(0, 1) for _ in lanes], [load], [new_start]
         if config.pixels > 1:
             late_load, first_start, second_start = unsigned(config.rectangles), walk_of(config), walk_of(config)
             late_starts = lane_start(
@@ -147,8 +147,13 @@ def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture,
     if config.pixels > 1:
         left, right = pixels
 
+        both = pixel.joined(
+            red=side_by_side([left.red, right.red]), green=side_by_side([left.green, right.green]),
+            blue=side_by_side([left.blue, right.blue]),
+        )  # fmt: skip
+
         @always_comb
         def join():
-            pixel.word.next = concat(right.red, left.red, right.green, left.green, right.blue, left.blue)
+            pixel.word.next = both
 
     return instances()

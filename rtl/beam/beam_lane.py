@@ -40,10 +40,10 @@ def beam_lane(
         clk: the clock.
         start_line: strobe; begins a line.
         next_column: strobe; begins a column.
-        enter: strobe where the camera turns, otherwise None. In the cycle after it, growths and aim are the start, and
-            all that walks along the row takes it; next_column is low in both cycles.
-        load: `config.rectangles` bits, high for the rectangle that start belongs to; None where the camera turns, and
-            start_line loads all of them.
+        enter: strobe, read where the camera turns. In the cycle after it, growths and aim are the start, and all that
+            walks along the row takes it; next_column is low in both cycles.
+        load: `config.rectangles` bits, high for the rectangle that start belongs to; not read where the camera turns,
+            and start_line loads all of them.
         start: `Walk`; the start of the rectangle that load names, for the first column of this lane. 0 where the camera
             turns.
         aim: `Direction`; D of the first column of this lane or, where the camera turns, what a step adds to D.
@@ -90,15 +90,17 @@ def beam_lane(
     def step_after(cycles: int):
         return steps(cycles, cycles - 1)
 
-    folds = [None, *(fold_of(config) for _ in range(reflections))]
+    folds = [fold_of(config).tie({}), *(fold_of(config) for _ in range(reflections))]
     winners = [winner_of(config) for _ in numbers]
-    hits = [candidate_of(config) if config.patterns else None for _ in numbers]
+    hits = [candidate_of(config) if config.patterns else candidate_of(config).left_open() for _ in numbers]
     beams = [
         beam_pass(clk, start_line=restart, load=load, step=step_after(first),
-            step_way=step_after(first + (fold is None)), step_bounds=step_after(first + 1),
+            step_way=step_after(first + (not reflected)), step_bounds=step_after(first + 1),
             step_slope=step_after(first + 2), start=start, aim=aim, facets=facets, growths=growths, fold=fold,
-            nearest=hit, winner=winner, tested=some, config=config)
-        for first, fold, hit, winner, some in zip(starts, folds, hits, winners, numbers, strict=True)
+            nearest=hit, winner=winner, tested=some, reflected=reflected, config=config)
+        for first, fold, hit, winner, some, reflected in zip(
+            starts, folds, hits, winners, numbers, [False] + [True] * reflections, strict=True
+        )
     ]  # fmt: skip
 
     # The slope of a ray that has just got its winner: for its fold at the mirror, and for the pattern that it sees.

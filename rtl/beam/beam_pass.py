@@ -4,7 +4,7 @@
 from collections.abc import Sequence
 from functools import partial
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.engines.beam import contest_latency, is_staged, rounds
@@ -23,7 +23,7 @@ from raycaster.rtl.common.widths import exact_slope_bits, index_bits, side_by_si
 @block
 def beam_pass(
     clk, start_line, load, step, step_way, step_bounds, step_slope, start, aim, facets, growths, fold, nearest,
-    winner, tested: Sequence[int], config: Configuration,
+    winner, tested: Sequence[int], reflected: bool, config: Configuration,
 ):  # fmt: skip
     """Test a column's ray, primary or reflected, against all rectangles at once: a column at each step.
 
@@ -33,7 +33,7 @@ def beam_pass(
         clk: the clock.
         start_line: strobe; begins a line, as in slope_walker. With a camera that turns it loads the start of all
             rectangles.
-        load: `config.rectangles` bits, high for the rectangle that start belongs to; None where the camera turns.
+        load: `config.rectangles` bits, high for the rectangle that start belongs to; not read where the camera turns.
         step: strobe; a column's ray begins.
         step_way: strobe; step or, for rays from the camera, which read their ways with the bounds, step_bounds.
         step_bounds: strobe; step one cycle later, for what is read and done then.
@@ -42,10 +42,11 @@ def beam_pass(
         aim: `Direction`; as in slope_walker.
         facets: `Facet` of each rectangle, side by side, the first in the lowest bits.
         growths: what a step adds to the `Walk` of each rectangle, side by side, the first in the lowest bits.
-        fold: `Fold` of the ray, `fold_lead` cycles before its step; None for rays from the camera.
-        nearest: `Candidate`; output, the nearest hit. None where nothing reads it.
+        fold: `Fold` of the ray, `fold_lead` cycles before its step; read only if reflected.
+        nearest: `Candidate`; output, the nearest hit.
         winner: `Winner`; output, the rectangle of the nearest hit.
         tested: numbers of the rectangles that the ray may meet.
+        reflected: the ray comes from a mirror, not from the camera.
         config: the design.
     """
     slope_bits = exact_slope_bits(config)
@@ -66,9 +67,11 @@ def beam_pass(
         for value, result in ((straight.x, size.dx), (straight.y, size.dy), (straight.z, size.dz))
     ]
 
+    all_signs = signs.joined(dx=straight.x(slope_bits), dy=straight.y(slope_bits), dz=straight.z(slope_bits))
+
     @always_comb
     def look_ahead():
-        signs.word.next = concat(straight.x[slope_bits], straight.y[slope_bits], straight.z[slope_bits])
+        signs.word.next = all_signs
 
     @always(clk.posedge)
     def follow():
@@ -89,18 +92,19 @@ def beam_pass(
                 tested_size.dy.next = size_1.dy
                 tested_size.dz.next = size_1.dz
 
-    tests = ray_tester if fold is None else partial(fold_tester, fold=fold)
+    tests = partial(fold_tester, fold=fold) if reflected else ray_tester
     testers = [
         tests(clk, step_way=step, step_bounds=step_bounds, step_slope=step_slope, facet=facet, walk=walk, signs=signs,
             slope=tested_size, index=tied(i, index_bits(config)), hit=hit, staged=is_staged(config))
         for i, facet, walk, hit in zip(tested, seen, walks, hits, strict=True)
     ]  # fmt: skip
     all_hits = side_by_side([hit.word for hit in hits])
-    best = candidate_of(config) if nearest is None else nearest
-    contests = nearest_of(clk, all_hits, best, rounds(config), contest_latency(config))
+    contests = nearest_of(clk, all_hits, nearest, rounds(config), contest_latency(config))
+
+    named = winner.joined(valid=nearest.valid, at_mirror=nearest.at_mirror, index=nearest.index)
 
     @always_comb
     def announce():
-        winner.word.next = concat(best.valid, best.at_mirror, best.index)
+        winner.word.next = named
 
     return instances()

@@ -25,7 +25,7 @@ def cell_step(clk, before, after, place: int):
 
     high = unsigned(divisor_bits + 1)
     difference = signed(divisor_bits + 2)
-    rest = unsigned(divisor_bits)
+    rest, remaining = unsigned(divisor_bits), unsigned(divisor_bits + place)
     fits, odd = bit(), bit()
 
     @always_comb
@@ -40,6 +40,10 @@ def cell_step(clk, before, after, place: int):
     def compare():
         fits.next = difference >= 0
 
+    @always_comb
+    def bring_down():
+        remaining.next = concat(rest, before.rest[place:])
+
     # Where nothing is hit the quotient may be too large, and is don't care.
     @always_comb
     def choose():
@@ -50,8 +54,10 @@ def cell_step(clk, before, after, place: int):
         if before.cell == size:
             odd.next = fits
 
+    divided = after.joined(rest=remaining, divisor=before.divisor, cell=before.cell, odd=odd)
+
     @always(clk.posedge)
     def keep():
-        after.word.next = concat(rest, before.rest[place:], before.divisor, before.cell, odd)
+        after.word.next = divided
 
     return instances()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The colour of a pixel: what its ray and the reflections of it saw, all at once."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.engines.beam import MIX_LATENCY, mixes
@@ -45,7 +45,12 @@ def colour_blend(clk, seen, picture, pixel, config: Configuration):
         behind.append([unsigned(len(channel) + (2 if mixes(config) else 1)) for channel in behind[-1]])
     joints = [(mirrors - 1 - turn, behind[turn], behind[turn + 1]) for turn in range(mirrors)]
     red, green, blue = behind[-1]
-    bits, low = len(red), len(red) - colour_bits
+    top = pixel.joined(
+        **{
+            name: channel(len(channel), len(channel) - colour_bits)
+            for name, channel in (("red", red), ("green", green), ("blue", blue))
+        }
+    )
 
     if mixes(config):
         # A mirror's own colour waits until it is known what is behind.
@@ -64,7 +69,7 @@ def colour_blend(clk, seen, picture, pixel, config: Configuration):
 
         @always_comb
         def round_down():
-            pixel.word.next = concat(red[bits:low], green[bits:low], blue[bits:low])
+            pixel.word.next = top
 
     else:
         means = [
@@ -77,6 +82,6 @@ def colour_blend(clk, seen, picture, pixel, config: Configuration):
 
         @always(clk.posedge)
         def round_down():
-            pixel.word.next = concat(red[bits:low], green[bits:low], blue[bits:low])
+            pixel.word.next = top
 
     return instances()

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """What a ray adds to its pixel."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
-from raycaster.rtl.common.widths import MIRROR_BITS, RGB_BITS, bit, unsigned
+from raycaster.rtl.common.records import Colour
+from raycaster.rtl.common.widths import MIRROR_BITS, bit, unsigned
 
 
 @block
@@ -22,7 +23,7 @@ def colour_seen(clk, reached, seen, picture, found, shade, number: int):
         shade: `Shade`; output, `SEEN_LATENCY` cycles after seen.
         number: the number of reflections before this ray.
     """
-    colour, here = unsigned(RGB_BITS), bit()
+    colour, mirror, here = Colour(), unsigned(MIRROR_BITS), bit()
 
     @always_comb
     def look():
@@ -34,12 +35,11 @@ def colour_seen(clk, reached, seen, picture, found, shade, number: int):
 
     @always_comb
     def choose():
-        colour.next = picture.background
+        colour.word.next = picture.background
         if here:
-            colour.next = seen.colour
+            colour.word.next = seen.colour
 
-    if "mirror" in shade.layout:
-        mirror = unsigned(MIRROR_BITS)
+    if shade.has("mirror"):
 
         @always_comb
         def look_at_mirror():
@@ -47,14 +47,10 @@ def colour_seen(clk, reached, seen, picture, found, shade, number: int):
             if picture.reflections > number:
                 mirror.next = seen.mirror
 
-        @always(clk.posedge)
-        def keep():
-            shade.word.next = concat(mirror, colour)
+    added = shade.joined(mirror=mirror, red=colour.red, green=colour.green, blue=colour.blue)
 
-    else:
-
-        @always(clk.posedge)
-        def keep():
-            shade.word.next = colour
+    @always(clk.posedge)
+    def keep():
+        shade.word.next = added
 
     return instances()

@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Whether a folded ray hits a rectangle."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
+from raycaster.rtl.beam.bound_tester import bound_tester
+from raycaster.rtl.common.by_axis import along_a, along_p, along_q, by_axis
+from raycaster.rtl.common.magnitude import magnitude
+from raycaster.rtl.common.records import Record
+from raycaster.rtl.common.ties import Signed
 from raycaster.rtl.common.widths import bit, signed, unsigned
 
 
@@ -11,7 +16,7 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
     """Test whether a ray that ray_fold folds hits a rectangle: a ray per clock, the hit `TESTER_LATENCY` cycles later.
 
     Along p the folded ray meets the plane at W = +-n D[p] + fold.p, over D[a]: it hits if that is between the two
-    bounds, which are compared as in ray_tester. It must be beyond its last mirror, on the side that it runs to: on
+    bounds. It must be beyond its last mirror, on the side that it runs to: on
     another axis W is compared with the mirror's border, on the same axis the planes' distances are compared. Right at
     the mirror it hits rectangles on an axis on which it has met no mirror in that point.
 
@@ -34,113 +39,112 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
         hit: `Candidate`; output, `TESTER_LATENCY` cycles after the ray's cycle.
         staged: registers the fields that the block chooses from fold and slope; see is_staged.
     """
-    along_q = walk.way_q if "way_q" in walk.layout else facet.way_q
+    way_q = walk.way_q if walk.has("way_q") else facet.way_q
     numerator_bits, slope_bits = len(hit.numerator), len(slope.dy)
     sum_bits, product_bits, turn_bits = len(fold.p_x), len(walk.way_p), len(fold.turn_x)
 
-    back, turned, flip_p, flip_q = bit(), bit(), bit(), bit()
-    mirror_on_p, mirror_on_q, mirror_back, met = bit(), bit(), bit(), bit()
-    offset_p, offset_q = signed(sum_bits), signed(sum_bits)
-    border = signed(product_bits)
-    turn = signed(turn_bits)
-    mirror_distance = signed(len(fold.distance))
-    way_p, way_q = signed(product_bits), signed(product_bits)
+    back, turned, turned_p, turned_q, on_p, on_q, met = (bit() for _ in range(7))
+    offset_p, offset_q, border, turn = signed(sum_bits), signed(sum_bits), signed(product_bits), signed(turn_bits)
+    on_x, on_y, on_z, flip_p, flip_q = (bit() for _ in range(5))
+    # What belongs to the plane's axis of the fold; mirror_on_p: the last mirror is across p.
+    seen = Record({
+        "turned": 1, "flip_p": 1, "flip_q": 1, "mirror_on_p": 1, "mirror_on_q": 1, "mirror_back": 1, "met": 1,
+        "offset_p": Signed(sum_bits), "offset_q": Signed(sum_bits), "border": Signed(product_bits),
+        "turn": Signed(turn_bits), "distance": Signed(len(fold.distance)),
+    })  # fmt: skip
+    turned_way_p, turned_way_q = signed(product_bits), signed(product_bits)
     folded_p, folded_q = signed(sum_bits), signed(sum_bits)
     distance = signed(turn_bits + 1)
-    opposite_distance = signed(turn_bits + 1)
     beyond_plane = bit()
 
     back_1, folded_p_1, folded_q_1 = bit(), signed(sum_bits), signed(sum_bits)
-    distance_1 = signed(turn_bits + 1)
-    border_1 = signed(product_bits)
-    beyond_plane_1, clip_p_1, clip_q_1, rising_1, met_1 = bit(), bit(), bit(), bit(), bit()
+    distance_1, border_1 = signed(turn_bits + 1), signed(product_bits)
+    beyond_plane_1, clip_p_1, clip_q_1, rising_1, met_1 = (bit() for _ in range(5))
     clipped, folded_clip = signed(sum_bits), signed(sum_bits)
     numerator = unsigned(turn_bits)
-    twice_p, twice_q, edge_p, edge_q = (signed(sum_bits + 1) for _ in range(4))
-    twice_low_p, twice_low_q, twice_high_p, twice_high_q = (signed(product_bits + 1) for _ in range(4))
-    low_edge_p, low_edge_q = (signed(product_bits + 1) for _ in range(2))
 
-    under_low_p, over_high_p, under_low_q, over_high_q = (bit() for _ in range(4))
     before_border, at_border = bit(), bit()
-    back_2, beyond_plane_2, before_border_2, at_border_2, clips_2, rising_2, met_2 = (bit() for _ in range(7))
-    beyond, at_mirror = bit(), bit()
+    beyond_plane_2, before_border_2, at_border_2, clips_2, rising_2, met_2 = (bit() for _ in range(6))
+    beyond, at_mirror, inside_p, inside_q, valid = (bit() for _ in range(5))
     numerator_2 = unsigned(numerator_bits)
-    inside_p, inside_q, valid = bit(), bit(), bit()
-    e, e_2 = unsigned(slope_bits), unsigned(slope_bits)
+    e, size_a = unsigned(slope_bits), unsigned(slope_bits)
 
-    # D[a] is negative.
+    # D[a] is negative; e is |D[a]|; turned: a mirror has turned the ray around.
+    of_back, of_mirror = (fold.back_x, fold.back_y, fold.back_z), (on_x, on_y, on_z)
+    choices = [
+        by_axis(facet.axis, *along(*values), chosen, width=len(chosen))
+        for along, values, chosen in (
+            (along_a, (signs.dx, signs.dy, signs.dz), back),
+            (along_a, (slope.dx, slope.dy, slope.dz), size_a if staged else e),
+            (along_a, of_back, turned), (along_p, of_back, turned_p), (along_q, of_back, turned_q),
+            (along_p, of_mirror, on_p), (along_q, of_mirror, on_q),
+            (along_a, (fold.met_x, fold.met_y, fold.met_z), met),
+            (along_a, (fold.p_x, fold.p_y, fold.p_z), offset_p),
+            (along_a, (fold.q_x, fold.q_y, fold.q_z), offset_q),
+            (along_a, (fold.border_x, fold.border_y, fold.border_z), border),
+            (along_a, (fold.turn_x, fold.turn_y, fold.turn_z), turn),
+        )
+    ]  # fmt: skip
+    bounds = [
+        bound_tester(clk, step_bounds, back_1, way=way, low=low, high=high, between=inside)
+        for way, low, high, inside in (
+            (folded_p_1, walk.low_p, walk.high_p, inside_p), (folded_q_1, walk.low_q, walk.high_q, inside_q),
+        )
+    ]  # fmt: skip
+    # While a row is loaded it may overflow, and is don't care.
+    size = magnitude(distance_1, numerator)
+
     @always_comb
-    def choose_sign():
-        if facet.axis == 0:
-            back.next = signs.dx
-        elif facet.axis == 1:
-            back.next = signs.dy
-        else:
-            back.next = signs.dz
+    def place_mirror():
+        on_x.next = fold.axis == 0
+        on_y.next = fold.axis == 1
+        on_z.next = fold.axis == 2
 
-    # turned: a mirror has turned the ray around.
-    def choose_fold():
-        mirror_back.next = fold.mirror_back
-        mirror_distance.next = fold.distance
-        if facet.axis == 0:
-            turned.next = fold.back_x
-            met.next = fold.met_x
-            flip_p.next = fold.back_x != fold.back_y
-            flip_q.next = fold.back_x != fold.back_z
-            offset_p.next = fold.p_x
-            offset_q.next = fold.q_x
-            border.next = fold.border_x
-            turn.next = fold.turn_x
-            mirror_on_p.next = fold.axis == 1
-            mirror_on_q.next = fold.axis == 2
-        elif facet.axis == 1:
-            turned.next = fold.back_y
-            met.next = fold.met_y
-            flip_p.next = fold.back_y != fold.back_x
-            flip_q.next = fold.back_y != fold.back_z
-            offset_p.next = fold.p_y
-            offset_q.next = fold.q_y
-            border.next = fold.border_y
-            turn.next = fold.turn_y
-            mirror_on_p.next = fold.axis == 0
-            mirror_on_q.next = fold.axis == 2
-        else:
-            turned.next = fold.back_z
-            met.next = fold.met_z
-            flip_p.next = fold.back_z != fold.back_y
-            flip_q.next = fold.back_z != fold.back_x
-            offset_p.next = fold.p_z
-            offset_q.next = fold.q_z
-            border.next = fold.border_z
-            turn.next = fold.turn_z
-            mirror_on_p.next = fold.axis == 1
-            mirror_on_q.next = fold.axis == 0
+    @always_comb
+    def compare_turns():
+        flip_p.next = turned != turned_p
+        flip_q.next = turned != turned_q
 
-    chooser = always(clk.posedge)(choose_fold) if staged else always_comb(choose_fold)
+    chosen = seen.joined(
+        turned=turned, flip_p=flip_p, flip_q=flip_q, mirror_on_p=on_p, mirror_on_q=on_q, mirror_back=fold.mirror_back,
+        met=met, offset_p=offset_p, offset_q=offset_q, border=border, turn=turn, distance=fold.distance,
+    )  # fmt: skip
+
+    if staged:
+
+        @always(clk.posedge)
+        def look():
+            seen.word.next = chosen
+
+    else:
+
+        @always_comb
+        def look():
+            seen.word.next = chosen
 
     # On the same axis, the plane must lie on the side that the folded ray runs to.
     @always_comb
     def compare_planes():
-        if back != turned:
-            beyond_plane.next = facet.distance < mirror_distance
+        if back != seen.turned:
+            beyond_plane.next = facet.distance < seen.distance
         else:
-            beyond_plane.next = facet.distance > mirror_distance
+            beyond_plane.next = facet.distance > seen.distance
 
     # ~way is one less than -way; the fold's offset is one more in return.
     @always_comb
     def turn_ways():
-        way_p.next = walk.way_p
-        way_q.next = along_q
-        if flip_p:
-            way_p.next = ~walk.way_p
-        if flip_q:
-            way_q.next = ~along_q
+        turned_way_p.next = walk.way_p
+        turned_way_q.next = way_q
+        if seen.flip_p:
+            turned_way_p.next = ~walk.way_p
+        if seen.flip_q:
+            turned_way_q.next = ~way_q
 
     @always_comb
     def fold_ways():
-        folded_p.next = offset_p + way_p
-        folded_q.next = offset_q + way_q
-        distance.next = facet.distance - turn
+        folded_p.next = seen.offset_p + turned_way_p
+        folded_q.next = seen.offset_q + turned_way_q
+        distance.next = facet.distance - seen.turn
 
     @always(clk.posedge)
     def stage_1():
@@ -149,25 +153,30 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
             folded_p_1.next = folded_p
             folded_q_1.next = folded_q
             distance_1.next = distance
-            border_1.next = border
+            border_1.next = seen.border
             beyond_plane_1.next = beyond_plane
-            clip_p_1.next = mirror_on_p
-            clip_q_1.next = mirror_on_q
-            rising_1.next = mirror_back == back
-            met_1.next = met
+            clip_p_1.next = seen.mirror_on_p
+            clip_q_1.next = seen.mirror_on_q
+            rising_1.next = seen.mirror_back == back
+            met_1.next = seen.met
 
     if staged:
 
         @always_comb
         def choose_clipped():
             folded_clip.next = folded_p
-            if mirror_on_q:
+            if seen.mirror_on_q:
                 folded_clip.next = folded_q
 
         @always(clk.posedge)
         def hold_clipped():
             if step_way:
                 clipped.next = folded_clip
+
+        @always(clk.posedge)
+        def hold_slope():
+            if step_bounds:
+                e.next = size_a
 
     else:
 
@@ -182,41 +191,9 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
         before_border.next = clipped < border_1
         at_border.next = clipped == border_1
 
-    # |n|. While a row is loaded it may overflow, and is don't care.
-    @always_comb
-    def negate():
-        opposite_distance.next = -distance_1
-
-    @always_comb
-    def take_magnitude():
-        numerator.next = distance_1[turn_bits:]
-        if distance_1 < 0:
-            numerator.next = opposite_distance[turn_bits:]
-
-    @always_comb
-    def double():
-        twice_p.next = folded_p_1 << 1
-        twice_q.next = folded_q_1 << 1
-        twice_high_p.next = walk.high_p << 1
-        twice_high_q.next = walk.high_q << 1
-        twice_low_p.next = walk.low_p << 1
-        twice_low_q.next = walk.low_q << 1
-
-    @always_comb
-    def add_sign():
-        edge_p.next = twice_p | back_1
-        edge_q.next = twice_q | back_1
-        low_edge_p.next = twice_low_p | back_1
-        low_edge_q.next = twice_low_q | back_1
-
     @always(clk.posedge)
     def stage_2():
         if step_bounds:
-            back_2.next = back_1
-            under_low_p.next = twice_p < low_edge_p
-            over_high_p.next = twice_high_p < edge_p
-            under_low_q.next = twice_q < low_edge_q
-            over_high_q.next = twice_high_q < edge_q
             beyond_plane_2.next = beyond_plane_1
             before_border_2.next = before_border
             at_border_2.next = at_border
@@ -237,46 +214,17 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
                 beyond.next = before_border_2 != rising_2
 
     @always_comb
-    def judge():
-        inside_p.next = (under_low_p == back_2) and (over_high_p == back_2)
-        inside_q.next = (under_low_q == back_2) and (over_high_q == back_2)
-
-    # e is |D[a]|.
-    @always_comb
-    def choose_slope():
-        if facet.axis == 0:
-            e.next = slope.dx
-        elif facet.axis == 1:
-            e.next = slope.dy
-        else:
-            e.next = slope.dz
-
-    if staged:
-
-        @always(clk.posedge)
-        def hold_slope():
-            if step_bounds:
-                e_2.next = e
-
-    else:
-        e_2 = e
-
-    @always_comb
     def conclude():
-        valid.next = facet.usable and beyond and inside_p and inside_q and (e_2 != 0)
+        valid.next = facet.usable and beyond and inside_p and inside_q and (e != 0)
 
-    if "cell" in hit.layout:
+    result = hit.joined(
+        valid=valid, at_mirror=at_mirror, numerator=numerator_2, denominator=e, axis=facet.axis, cell=facet.cell,
+        index=index,
+    )  # fmt: skip
 
-        @always(clk.posedge)
-        def stage_3():
-            if step_slope:
-                hit.word.next = concat(valid, at_mirror, numerator_2, e_2, facet.axis, facet.cell, index)
-
-    else:
-
-        @always(clk.posedge)
-        def stage_3():
-            if step_slope:
-                hit.word.next = concat(valid, at_mirror, numerator_2, e_2, index)
+    @always(clk.posedge)
+    def stage_3():
+        if step_slope:
+            hit.word.next = result
 
     return instances()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What the columns of two lanes start from: the second's a column further than the first's."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
 from raycaster.rtl.common.widths import signed
 
@@ -35,8 +35,10 @@ def lane_start(clk, load, start, growth, late_load, first_start, second_start):
         low_q.next = start.low_q + growth.low_q
         high_q.next = start.high_q + growth.high_q
 
+    second = second_start.joined(way_p=way_p, way_q=start.way_q, low_p=low_p, high_p=high_p, low_q=low_q, high_q=high_q)
+
     @always_comb
     def join():
-        second_start.word.next = concat(way_p[product_bits:], low_p, high_p, low_q, high_q)
+        second_start.word.next = second
 
     return instances()

@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.configuration import Configuration
 from raycaster.engines.beam import AIM_LATENCY
-from raycaster.rtl.common.widths import BASIS_BITS, bit, exact_slope_bits, factor_bits, signed, unsigned
+from raycaster.rtl.common.widths import BASIS_BITS, exact_slope_bits, factor_bits, signed, unsigned
 
 
 @block
@@ -27,61 +27,43 @@ def line_starter(clk, reset, start_line, camera, row_slope, loaded, aim, start_s
             first ray, and from the second cycle after enter on right. With two pixels per clock, aim goes on with each
             bit of enter: to D of the second ray, and then to twice right.
         start_sweep: strobe; output, rect_setup starts.
-        enter: strobe; output, high with loaded of the first sweep, so that in the cycle after it all that walks along
-            the row may take its start. With two pixels per clock, 2 bits, one for each of the first two sweeps.
+        enter: `config.pixels` bits, output; bit i is high with loaded of sweep i, so that in the cycle after it all
+            that walks along the row in lane i may take its start.
         config: the design.
     """
     slope_bits = exact_slope_bits(config) + 1
     view_distance, first_column = config.screen_geometry.view_distance, -config.screen_geometry.centre_column
 
+    last, pixels = config.pixels - 1, config.pixels
     ages = unsigned(AIM_LATENCY - 1)
+    sweeps, entered, later = unsigned(pixels), unsigned(pixels), unsigned(pixels + 1)
     factor = signed(factor_bits(config))
     x, y, z = (signed(BASIS_BITS) for _ in range(3))
     x_product, y_product, z_product = (signed(slope_bits) for _ in range(3))
 
-    if config.pixels == 1:
-        first_sweep, entered = bit(), bit()
+    @always_comb
+    def shift():
+        later.next = sweeps << 1
 
-        # Bit i: the line started i + 1 cycles ago.
-        @always(clk.posedge)
-        def follow():
-            ages.next = concat(ages[AIM_LATENCY - 2 :], start_line)
-            entered.next = enter
-            if reset:
-                ages.next = 0
-                first_sweep.next = False
-            elif start_line:
-                first_sweep.next = True
-            elif loaded:
-                first_sweep.next = False
+    # ages, bit i: the line started i + 1 cycles ago; sweeps, bit i: sweep i is next or goes on, which enters lane i.
+    @always(clk.posedge)
+    def follow():
+        ages.next = concat(ages[AIM_LATENCY - 2 :], start_line)
+        entered.next = enter
+        if reset:
+            ages.next = 0
+            sweeps.next = 0
+        elif start_line:
+            sweeps.next = 1
+        elif loaded:
+            sweeps.next = later[pixels:]
 
-        @always_comb
-        def sweep():
-            enter.next = loaded and first_sweep
-            start_sweep.next = ages[AIM_LATENCY - 4] or enter
-
-    else:
-        sweeps, entered = unsigned(2), unsigned(2)
-
-        # Bit 0: the first sweep is not over; bit 1: the second one, while it is next or goes on.
-        @always(clk.posedge)
-        def follow():
-            ages.next = concat(ages[AIM_LATENCY - 2 :], start_line)
-            entered.next = enter
-            if reset:
-                ages.next = 0
-                sweeps.next = 0
-            elif start_line:
-                sweeps.next = 1
-            elif loaded:
-                sweeps.next = concat(sweeps[0], False)
-
-        @always_comb
-        def sweep():
-            enter.next = 0
-            if loaded:
-                enter.next = sweeps
-            start_sweep.next = ages[AIM_LATENCY - 4] or (loaded and sweeps != 0)
+    @always_comb
+    def sweep():
+        enter.next = 0
+        if loaded:
+            enter.next = sweeps
+        start_sweep.next = ages[AIM_LATENCY - 4] or (loaded and sweeps != 0)
 
     @always_comb
     def choose():
@@ -107,42 +89,24 @@ def line_starter(clk, reset, start_line, camera, row_slope, loaded, aim, start_s
         y_product.next = factor * y
         z_product.next = factor * z
 
-    if config.pixels == 1:
-
-        @always(clk.posedge)
-        def accumulate():
-            if ages[0]:
-                aim.x.next = 0
-                aim.y.next = 0
-                aim.z.next = 0
-            elif ages[AIM_LATENCY - 1 : 1] != 0:
-                aim.x.next = aim.x + x_product
-                aim.y.next = aim.y + y_product
-                aim.z.next = aim.z + z_product
-            elif entered:
-                aim.x.next = camera.right_x
-                aim.y.next = camera.right_y
-                aim.z.next = camera.right_z
-
-    else:
-
-        @always(clk.posedge)
-        def accumulate():
-            if ages[0]:
-                aim.x.next = 0
-                aim.y.next = 0
-                aim.z.next = 0
-            elif ages[AIM_LATENCY - 1 : 1] != 0:
-                aim.x.next = aim.x + x_product
-                aim.y.next = aim.y + y_product
-                aim.z.next = aim.z + z_product
-            elif entered[0]:
-                aim.x.next = aim.x + camera.right_x
-                aim.y.next = aim.y + camera.right_y
-                aim.z.next = aim.z + camera.right_z
-            elif entered[1]:
-                aim.x.next = camera.right_x + camera.right_x
-                aim.y.next = camera.right_y + camera.right_y
-                aim.z.next = camera.right_z + camera.right_z
+    # Before the last lane's sweep aim is a column's, and in the end it is what a step of all lanes adds.
+    @always(clk.posedge)
+    def accumulate():
+        if ages[0]:
+            aim.x.next = 0
+            aim.y.next = 0
+            aim.z.next = 0
+        elif ages[AIM_LATENCY - 1 : 1] != 0:
+            aim.x.next = aim.x + x_product
+            aim.y.next = aim.y + y_product
+            aim.z.next = aim.z + z_product
+        elif entered[last]:
+            aim.x.next = camera.right_x << last
+            aim.y.next = camera.right_y << last
+            aim.z.next = camera.right_z << last
+        elif entered != 0:
+            aim.x.next = aim.x + camera.right_x
+            aim.y.next = aim.y + camera.right_y
+            aim.z.next = aim.z + camera.right_z
 
     return instances()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What a ray sees."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.beam.word_of import word_of
@@ -46,16 +46,10 @@ def look_up(clk, step, facets, sight, seen, config: Configuration):
     else:
         colour = look.colour
 
-    if "mirror" in seen.layout:
+    result = seen.joined(found=found, mirror=look.mirror, colour=colour)
 
-        @always_comb
-        def join():
-            seen.word.next = concat(found, look.mirror, colour)
-
-    else:
-
-        @always_comb
-        def join():
-            seen.word.next = concat(found, colour)
+    @always_comb
+    def join():
+        seen.word.next = result
 
     return instances()

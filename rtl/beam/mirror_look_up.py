@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The mirror that a ray meets."""
 
-from myhdl import always, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.beam.word_of import word_of
@@ -23,11 +23,14 @@ def mirror_look_up(clk, facets, winner, last, config: Configuration):
     facet = facet_of(config)
     words = [unsigned(len(facet.word)) for _ in range(config.rectangles)]
     takers = [word_of(facet_of(config).cut(facets, i), word) for i, word in enumerate(words)]
-    # Of a facet, a reflector has the axis and the distance, which are next to each other in both.
-    end, low = facet.slice("axis")[0] + 1, facet.slice("distance")[1]
+    mirror = last.joined(at_mirror=winner.at_mirror, axis=facet.axis, distance=facet.distance)
+
+    @always_comb
+    def find():
+        facet.word.next = words[winner.index]
 
     @always(clk.posedge)
-    def find():
-        last.word.next = concat(winner.at_mirror, words[winner.index][end:low])
+    def keep():
+        last.word.next = mirror
 
     return instances()

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """How a straight ray folds back into the room at one more mirror."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
+from raycaster.rtl.common.by_axis import by_axis
 from raycaster.rtl.common.widths import AXIS_BITS, bit, signed, unsigned
 
 
@@ -32,7 +33,8 @@ def ray_fold(clk, before, last, slope, fold):
     difference = signed(turn_bits + 1)
 
     turn_x, turn_y, turn_z = (signed(turn_bits) for _ in range(3))
-    back_x, back_y, back_z, x_back, y_back, z_back = (bit() for _ in range(6))
+    back_x, back_y, back_z, x_back, y_back, z_back, mirror_back = (bit() for _ in range(7))
+    folds_x, folds_y, folds_z = bit(), bit(), bit()
     met_x, met_y, met_z = (bit() for _ in range(3))
     axis_1 = unsigned(AXIS_BITS)
     distance_1 = signed(distance_bits)
@@ -50,7 +52,7 @@ def ray_fold(clk, before, last, slope, fold):
     p_x, p_y, p_z, q_x, q_y, q_z = (signed(part_bits) for _ in range(6))
     sum_xy_1, sum_xz_1, sum_yz_1 = (signed(part_bits) for _ in range(3))
 
-    sides_3, mirror_back_3 = unsigned(6), bit()
+    met_x_3, met_y_3, met_z_3, back_x_3, back_y_3, back_z_3, mirror_back_3 = (bit() for _ in range(7))
     turn_x_3, turn_y_3, turn_z_3 = (signed(turn_bits) for _ in range(3))
     p_x_3, p_y_3, p_z_3, q_x_3, q_y_3, q_z_3 = (signed(part_bits) for _ in range(6))
     border_x_3, border_y_3, border_z_3 = (signed(product_bits) for _ in range(3))
@@ -58,14 +60,7 @@ def ray_fold(clk, before, last, slope, fold):
     distance_3 = signed(distance_bits)
 
     # Along the mirror's axis T becomes 2 n - T.
-    @always_comb
-    def choose_turn():
-        if last.axis == 0:
-            turn.next = before.turn_x
-        elif last.axis == 1:
-            turn.next = before.turn_y
-        else:
-            turn.next = before.turn_z
+    turn_there = by_axis(last.axis, before.turn_x, before.turn_y, before.turn_z, turn, width=turn_bits)
 
     @always_comb
     def double():
@@ -136,14 +131,18 @@ def ray_fold(clk, before, last, slope, fold):
         y_back.next = slope.y < 0
         z_back.next = slope.z < 0
 
+    # Which components of the folded ray run back; mirror_back: that along the mirror's axis.
+    @always_comb
+    def fold_back():
+        folds_x.next = back_x != x_back
+        folds_y.next = back_y != y_back
+        folds_z.next = back_z != z_back
+
+    back_there = by_axis(axis_1, folds_x, folds_y, folds_z, mirror_back, width=1)
+
     @always(clk.posedge)
     def leave_mirror():
-        if axis_1 == 0:
-            mirror_back_2.next = back_x != x_back
-        elif axis_1 == 1:
-            mirror_back_2.next = back_y != y_back
-        else:
-            mirror_back_2.next = back_z != z_back
+        mirror_back_2.next = mirror_back
 
     # C for planes whose two components run alike.
     @always_comb
@@ -187,7 +186,12 @@ def ray_fold(clk, before, last, slope, fold):
     @always(clk.posedge)
     def stage_3():
         mirror_back_3.next = mirror_back_2
-        sides_3.next = concat(met_x_2, met_y_2, met_z_2, back_x_2, back_y_2, back_z_2)
+        met_x_3.next = met_x_2
+        met_y_3.next = met_y_2
+        met_z_3.next = met_z_2
+        back_x_3.next = back_x_2
+        back_y_3.next = back_y_2
+        back_z_3.next = back_z_2
         turn_x_3.next = turn_x_2
         turn_y_3.next = turn_y_2
         turn_z_3.next = turn_z_2
@@ -203,11 +207,15 @@ def ray_fold(clk, before, last, slope, fold):
         axis_3.next = axis_2
         distance_3.next = distance_2
 
+    result = fold.joined(
+        met_x=met_x_3, met_y=met_y_3, met_z=met_z_3, back_x=back_x_3, back_y=back_y_3, back_z=back_z_3,
+        turn_x=turn_x_3, turn_y=turn_y_3, turn_z=turn_z_3, mirror_back=mirror_back_3,
+        p_x=p_x_3, p_y=p_y_3, p_z=p_z_3, q_x=q_x_3, q_y=q_y_3, q_z=q_z_3,
+        border_x=border_x_3, border_y=border_y_3, border_z=border_z_3, axis=axis_3, distance=distance_3,
+    )  # fmt: skip
+
     @always_comb
     def join():
-        fold.word.next = concat(
-            sides_3, turn_x_3, turn_y_3, turn_z_3, mirror_back_3, p_x_3, p_y_3, p_z_3, q_x_3, q_y_3, q_z_3, border_x_3,
-            border_y_3, border_z_3, axis_3, distance_3,
-        )  # fmt: skip
+        fold.word.next = result
 
     return instances()

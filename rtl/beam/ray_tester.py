@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: MIT
 """Whether a ray from the camera hits a rectangle."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
-from raycaster.rtl.common.widths import bit, signed, unsigned
+from raycaster.rtl.beam.bound_tester import bound_tester
+from raycaster.rtl.common.by_axis import by_axis
+from raycaster.rtl.common.magnitude import magnitude
+from raycaster.rtl.common.widths import bit, unsigned
 
 
 @block
 def ray_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope, index, hit, staged: bool):
     """Test whether a ray from the camera hits a rectangle: a ray per clock, the hit `TESTER_LATENCY` cycles later.
 
-    Along p the ray meets the plane at W = n D[p], over D[a]: it hits if that is between the two bounds. If D[a] is
-    negative the bounds have changed places, and W <= low is 2 W < 2 low + 1: one comparison per bound, with the sign as
-    its lowest bit.
+    Along p the ray meets the plane at W = n D[p], over D[a]: it hits if that is between the two bounds.
 
     The ray's cycle is the one in which step_way is high. The block takes its widths from its ports.
 
@@ -30,113 +31,55 @@ def ray_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope
         hit: `Candidate`; output, `TESTER_LATENCY` cycles after the ray's cycle, and never at a mirror.
         staged: registers the component that the block chooses from slope; see is_staged.
     """
-    along_q = walk.way_q if "way_q" in walk.layout else facet.way_q
-    distance_bits, numerator_bits, slope_bits = len(facet.distance), len(hit.numerator), len(slope.dy)
-    edge_bits = len(walk.way_p) + 1
+    way_q = walk.way_q if walk.has("way_q") else facet.way_q
+    numerator_bits, slope_bits = len(hit.numerator), len(slope.dy)
 
     back, back_1, back_2, ahead = bit(), bit(), bit(), bit()
-    twice_p, twice_q, twice_low_p, twice_low_q, twice_high_p, twice_high_q = (signed(edge_bits) for _ in range(6))
-    edge_p, edge_q, low_edge_p, low_edge_q = (signed(edge_bits) for _ in range(4))
-    under_low_p, over_high_p, under_low_q, over_high_q = (bit() for _ in range(4))
-    opposite_distance = signed(distance_bits + 1)
-    numerator = unsigned(max(distance_bits, numerator_bits))
-    e, e_2 = unsigned(slope_bits), unsigned(slope_bits)
     inside_p, inside_q, valid = bit(), bit(), bit()
+    size, numerator = unsigned(len(facet.distance) - 1), unsigned(numerator_bits)
+    e, size_a = unsigned(slope_bits), unsigned(slope_bits)
 
-    # D[a] is negative.
-    @always_comb
-    def choose_sign():
-        if facet.axis == 0:
-            back.next = signs.dx
-        elif facet.axis == 1:
-            back.next = signs.dy
-        else:
-            back.next = signs.dz
-
-    @always_comb
-    def double():
-        twice_p.next = walk.way_p << 1
-        twice_q.next = along_q << 1
-        twice_high_p.next = walk.high_p << 1
-        twice_high_q.next = walk.high_q << 1
-        twice_low_p.next = walk.low_p << 1
-        twice_low_q.next = walk.low_q << 1
-
-    @always_comb
-    def add_sign():
-        edge_p.next = twice_p | back_1
-        edge_q.next = twice_q | back_1
-        low_edge_p.next = twice_low_p | back_1
-        low_edge_q.next = twice_low_q | back_1
+    # D[a] is negative; e is |D[a]|.
+    sign = by_axis(facet.axis, signs.dx, signs.dy, signs.dz, back, width=len(back))
+    size_chosen = by_axis(facet.axis, slope.dx, slope.dy, slope.dz, size_a if staged else e, width=len(size_a))
+    along_p = bound_tester(clk, step_bounds, back_1, way=walk.way_p, low=walk.low_p, high=walk.high_p, between=inside_p)
+    along_q = bound_tester(clk, step_bounds, back_1, way=way_q, low=walk.low_q, high=walk.high_q, between=inside_q)
+    distance = magnitude(facet.distance, size)
 
     @always(clk.posedge)
-    def hold_sign():
+    def follow_sign():
         if step_way:
             back_1.next = back
-
-    @always(clk.posedge)
-    def compare():
         if step_bounds:
             back_2.next = back_1
-            under_low_p.next = twice_p < low_edge_p
-            over_high_p.next = twice_high_p < edge_p
-            under_low_q.next = twice_q < low_edge_q
-            over_high_q.next = twice_high_q < edge_q
-
-    # |n|
-    @always_comb
-    def negate():
-        opposite_distance.next = -facet.distance
-
-    @always_comb
-    def take_magnitude():
-        numerator.next = facet.distance[distance_bits:]
-        if facet.distance < 0:
-            numerator.next = opposite_distance[distance_bits:]
-
-    # e is |D[a]|.
-    @always_comb
-    def choose_slope():
-        if facet.axis == 0:
-            e.next = slope.dx
-        elif facet.axis == 1:
-            e.next = slope.dy
-        else:
-            e.next = slope.dz
 
     if staged:
 
         @always(clk.posedge)
         def hold_slope():
             if step_bounds:
-                e_2.next = e
+                e.next = size_a
 
-    else:
-        e_2 = e
+    @always_comb
+    def extend():
+        numerator.next = size
 
     # The plane must lie on the side that the ray runs to.
     @always_comb
     def judge():
         ahead.next = (numerator != 0) and ((facet.distance < 0) == back_2)
-        inside_p.next = (under_low_p == back_2) and (over_high_p == back_2)
-        inside_q.next = (under_low_q == back_2) and (over_high_q == back_2)
 
     @always_comb
     def conclude():
-        valid.next = facet.usable and ahead and inside_p and inside_q and (e_2 != 0)
+        valid.next = facet.usable and ahead and inside_p and inside_q and (e != 0)
 
-    if "cell" in hit.layout:
+    result = hit.joined(
+        valid=valid, at_mirror=False, numerator=numerator, denominator=e, axis=facet.axis, cell=facet.cell, index=index
+    )
 
-        @always(clk.posedge)
-        def report():
-            if step_slope:
-                hit.word.next = concat(valid, False, numerator[numerator_bits:], e_2, facet.axis, facet.cell, index)
-
-    else:
-
-        @always(clk.posedge)
-        def report():
-            if step_slope:
-                hit.word.next = concat(valid, False, numerator[numerator_bits:], e_2, index)
+    @always(clk.posedge)
+    def report():
+        if step_slope:
+            hit.word.next = result
 
     return instances()

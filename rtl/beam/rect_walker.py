@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A rectangle's products from column to column, without a multiplier."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
 from raycaster.rtl.common.widths import signed
 
@@ -24,7 +24,7 @@ def rect_walker(clk, load, step_way, step_bounds, start, growth, walk):
         walk: `Walk`; output, start from the cycle after load on, and more by growth after each step.
     """
     product_bits = len(walk.way_p)
-    way_p, low_p, high_p, low_q, high_q = (signed(product_bits) for _ in range(5))
+    way_p, way_q, low_p, high_p, low_q, high_q = (signed(product_bits) for _ in range(6))
 
     @always(clk.posedge)
     def advance_way():
@@ -46,8 +46,7 @@ def rect_walker(clk, load, step_way, step_bounds, start, growth, walk):
             low_q.next = low_q + growth.low_q
             high_q.next = high_q + growth.high_q
 
-    if "way_q" in walk.layout:
-        way_q = signed(product_bits)
+    if walk.has("way_q"):
 
         @always(clk.posedge)
         def advance_way_q():
@@ -56,14 +55,10 @@ def rect_walker(clk, load, step_way, step_bounds, start, growth, walk):
             elif step_way:
                 way_q.next = way_q + growth.way_q
 
-        @always_comb
-        def join():
-            walk.word.next = concat(way_p[product_bits:], way_q, low_p, high_p, low_q, high_q)
+    here = walk.joined(way_p=way_p, way_q=way_q, low_p=low_p, high_p=high_p, low_q=low_q, high_q=high_q)
 
-    else:
-
-        @always_comb
-        def join():
-            walk.word.next = concat(way_p[product_bits:], low_p, high_p, low_q, high_q)
+    @always_comb
+    def join():
+        walk.word.next = here
 
     return instances()

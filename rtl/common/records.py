@@ -2,14 +2,15 @@
 """Records: fields side by side in one word, so that a copy is one assignment, and a memory of them one of words."""
 
 from collections.abc import Mapping
-from typing import Self
+from typing import Any, Self
 
+from myhdl import ConcatSignal
 from myhdl._ShadowSignal import _ShadowSignal, _SliceSignal
 from myhdl._Signal import _Signal
 from myhdl._Waiter import _SignalWaiter
 
 from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, Configuration
-from raycaster.rtl.common.ties import Signed, Tied, initial
+from raycaster.rtl.common.ties import Signed, Tied, Unconnected, initial, tied
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
     BASIS_BITS,
@@ -63,11 +64,49 @@ class Field(Part):
             yield self._sig
 
 
+class Joined(ConcatSignal):
+    """A record's word as its fields are driven; see `Record.joined`. In Verilog each field has its name beside it."""
+
+    def __init__(self, parts: Mapping[str, _Signal | bool]):
+        super().__init__(*parts.values())
+        self.parts = dict(parts)
+
+    def _markRead(self):
+        """MyHDL's, but that a slice of a field reads the field's word too."""
+        self._read = True
+        for part in self._sigargs:
+            while isinstance(part, _SliceSignal):
+                part._markRead()
+                part = part._sig
+            part._markRead()
+
+    def toVerilog(self) -> str:
+        """Assign the fields, each in a line of its own."""
+        values = [_text(part) for part in self.parts.values()]
+        longest = max(map(len, values)) + 1
+        lines = [
+            f"    {value + ',' * (after < len(values)):{longest}}  // {name}"
+            for after, (name, value) in enumerate(zip(self.parts, values, strict=True), 1)
+        ]
+        return f"assign {self._name} = {{\n" + "\n".join(lines) + "\n};"
+
+
+def _text(part: Any) -> str:
+    """A field's value in Verilog."""
+    if isinstance(part, ConcatSignal):
+        return f"{{{', '.join(map(_text, part._args))}}}"
+    if isinstance(part, _SliceSignal) and isinstance(part._sig, Field) and not isinstance(part, Field):
+        return f"{part._sig._name}[{part._left}-1:{part._right}]"
+    return f"1'b{int(part)}" if isinstance(part, bool) else part._name
+
+
 class Record:
     """A word, and an attribute for each of its fields, the first in the highest bits.
 
     As a port `rect`, the word becomes the Verilog port `rect_word`, and a field that is read there the wire
-    `rect_axis`. What drives a record drives `word`, with `concat` of all fields in their order.
+    `rect_axis`. What drives a record drives `word`, with what `joined` makes of the fields' values.
+
+    A field that a design lacks has no bits: it reads as 0, and what drives it is left out.
     """
 
     is_interface = True
@@ -76,21 +115,48 @@ class Record:
         """Lay out fields.
 
         Args:
-            fields: widths in bits by name, `Signed` for two's complement.
+            fields: widths in bits by name, `Signed` for two's complement, 0 for a field that the design lacks.
             word: of all fields together, where it is there already.
         """
         width = sum(fields.values())
         self.word = unsigned(width) if word is None else word
-        self.layout = dict(fields)
-        for name, bits in fields.items():
+        self.layout = {name: bits for name, bits in fields.items() if bits}
+        self.lacking = [name for name, bits in fields.items() if not bits]
+        for name, bits in self.layout.items():
             width -= bits
             setattr(self, name, Field(self.word, name, width, bits))
+        for name in self.lacking:
+            setattr(self, name, tied(0, 1))
 
     def twin(self) -> Self:
         """Another of its kind."""
         other = object.__new__(type(self))
-        Record.__init__(other, self.layout)
+        Record.__init__(other, self._fields())
         return other
+
+    def _fields(self) -> dict[str, int]:
+        return self.layout | dict.fromkeys(self.lacking, 0)
+
+    def has(self, name: str) -> bool:
+        """Whether a field has bits: what computes one that has none is left out."""
+        return name in self.layout
+
+    def joined(self, **parts: _Signal | bool) -> Joined:
+        """The fields side by side, to assign to a record's word.
+
+        Args:
+            parts: a signal or a bit for each field.
+
+        Raises:
+            ValueError: a field is missing, unknown, or of another width.
+        """
+        if strange := (set(self.layout) ^ set(parts)) - set(self.lacking):
+            raise ValueError(f"{type(self).__name__}: {', '.join(sorted(strange))}: missing, or no field")
+        for name, bits in self.layout.items():
+            given = parts[name]
+            if (width := 1 if isinstance(given, bool) else len(given) or 1) != bits:
+                raise ValueError(f"{type(self).__name__}: {name} has {bits} bits, not {width}")
+        return Joined({name: parts[name] for name in self.layout})
 
     def pack(self, values: Mapping[str, int]) -> int:
         """The word in which fields have these values, those that are not named 0; each is cut to its width."""
@@ -98,6 +164,11 @@ class Record:
         for name, bits in self.layout.items():
             word = word << bits | int(values.get(name, 0)) % (1 << bits)
         return word
+
+    def left_open(self) -> Self:
+        """Make it one that nothing reads."""
+        Record.__init__(self, self._fields(), Unconnected(initial(0, self.word)))
+        return self
 
     def slice(self, name: str) -> tuple[int, int]:
         """The highest and the lowest bit of a field."""
@@ -110,12 +181,12 @@ class Record:
         width = len(self.word)
         part = Part(words, (index + 1) * width, index * width)
         words._slicesigs.append(part)
-        Record.__init__(self, self.layout, part)
+        Record.__init__(self, self._fields(), part)
         return self
 
     def tie(self, values: Mapping[str, int]) -> Self:
         """Make it one that never changes, of these values."""
-        Record.__init__(self, self.layout, Tied(initial(self.pack(values), self.word)))
+        Record.__init__(self, self._fields(), Tied(initial(self.pack(values), self.word)))
         return self
 
 
@@ -131,7 +202,7 @@ class Camera(Record):
 
     def __init__(self, turn: bool = False):
         basis = (f"{vector}_{axis}" for vector in ("forward", "right", "up") for axis in "xyz")
-        super().__init__(Point().layout | (dict.fromkeys(basis, Signed(BASIS_BITS)) if turn else {}))
+        super().__init__(Point().layout | dict.fromkeys(basis, Signed(BASIS_BITS * turn)))
 
 
 def camera_of(config: Configuration) -> Camera:
@@ -192,10 +263,11 @@ class Look(Record):
 
 def look_fields(materials: bool, patterns: bool) -> dict[str, int]:
     """The widths of a `Look`."""
+    pattern = {"kind": KIND_BITS, "cell": CELL_BITS, "colour_2": RGB_BITS}
     return (
         {"colour": RGB_BITS}
-        | ({"mirror": MIRROR_BITS} if materials else {})
-        | ({"kind": KIND_BITS, "cell": CELL_BITS, "colour_2": RGB_BITS} if patterns else {})
+        | {"mirror": MIRROR_BITS * materials}
+        | {name: bits * patterns for name, bits in pattern.items()}
     )
 
 
@@ -247,7 +319,7 @@ class Mirror(Record):
     """
 
     def __init__(self, distance_bits: int, corners: bool = False):
-        met = dict.fromkeys(("met_x", "met_y", "met_z"), 1) if corners else {}
+        met = dict.fromkeys(("met_x", "met_y", "met_z"), int(corners))
         super().__init__({"active": 1, "axis": AXIS_BITS, "distance": distance_bits} | met)
 
 
@@ -260,7 +332,7 @@ class Facet(Record):
     """A rectangle as one row's rays from the camera see it, of which q is an axis beside the plane's: see `Walk`.
 
     usable: it may be hit; distance: n = k - E[a] from the camera to its plane. Unless the camera turns, way_q: n D[q],
-    the same for all columns. Then its `Look`, in the lowest bits.
+    the same for all columns. Then, unless it is `bare`, its `Look`, in the lowest bits.
     """
 
     def __init__(
@@ -271,10 +343,11 @@ class Facet(Record):
         turn: bool = False,
         materials: bool = False,
         patterns: bool = False,
+        bare: bool = False,
     ):
+        looks = {name: bits * (not bare) for name, bits in look_fields(materials, patterns).items()}
         seen = {"usable": 1, "axis": AXIS_BITS, "distance": Signed(distance_bits)}
-        way = {} if turn else {"way_q": Signed(way_bits)}
-        super().__init__(seen | way | look_fields(materials, patterns))
+        super().__init__(seen | {"way_q": Signed(way_bits * (not turn))} | looks)
 
 
 def facet_of(config: Configuration) -> Facet:
@@ -290,8 +363,8 @@ class Walk(Record):
     """
 
     def __init__(self, bits: int, turn: bool = False):
-        ways = ("way_p", "way_q") if turn else ("way_p",)
-        super().__init__(dict.fromkeys((*ways, "low_p", "high_p", "low_q", "high_q"), Signed(bits)))
+        fields = dict.fromkeys(("way_p", "way_q", "low_p", "high_p", "low_q", "high_q"), Signed(bits))
+        super().__init__(fields | {"way_q": Signed(bits * turn)})
 
 
 def walk_of(config: Configuration) -> Walk:
@@ -372,7 +445,7 @@ class Candidate(Record):
     """
 
     def __init__(self, numerator_bits: int, denominator_bits: int, index_width: int, patterns: bool = False):
-        cell = {"axis": AXIS_BITS, "cell": CELL_BITS} if patterns else {}
+        cell = {"axis": AXIS_BITS * patterns, "cell": CELL_BITS * patterns}
         hit = {"valid": 1, "at_mirror": 1, "numerator": numerator_bits, "denominator": denominator_bits}
         super().__init__({**hit, **cell, "index": index_width})
 
@@ -398,7 +471,7 @@ class Seen(Record):
     """What a ray sees, if it has `found` something: its colour, and of mirrors that mix how much of it mirrors."""
 
     def __init__(self, mixes: bool = False):
-        super().__init__({"found": 1} | ({"mirror": MIRROR_BITS} if mixes else {}) | {"colour": RGB_BITS})
+        super().__init__({"found": 1, "mirror": MIRROR_BITS * mixes, "colour": RGB_BITS})
 
 
 def seen_of(config: Configuration) -> Seen:
@@ -410,7 +483,7 @@ class Shade(Record):
     """What a ray adds to its pixel: a `Colour`, and of mirrors that mix how much of what is behind it shows."""
 
     def __init__(self, mixes: bool = False):
-        super().__init__(({"mirror": MIRROR_BITS} if mixes else {}) | Colour().layout)
+        super().__init__({"mirror": MIRROR_BITS * mixes} | Colour().layout)
 
 
 def shade_of(config: Configuration) -> Shade:

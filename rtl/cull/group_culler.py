@@ -56,7 +56,7 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
     copy = Rects(config)
     copy.usable, copy.rect = rects.usable, WideRect()
     load, found = unsigned(rectangles), unsigned(rectangles)
-    facet, growth, start = Facet(walk_bits(config)), Walk(WIDE_BITS), Walk(wide_walk_bits(config))
+    facet, growth, start = Facet(walk_bits(config), bare=True), Walk(WIDE_BITS), Walk(wide_walk_bits(config))
 
     copies = rect_copy(clk, rects=rects, copy=copy, margin=config.facts.margin, config=config)
     sweep = rect_setup(

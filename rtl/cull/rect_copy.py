@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The rectangles that an engine has seen, to be looked at again while it works on others."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.rtl.common.records import Record
@@ -32,10 +32,15 @@ def rect_copy(clk, rects, copy, margin: int, config: Configuration):
         at_hand.next = rects.fetch
         number.next = rects.index
 
+    bare = kept.joined(
+        axis=rect.axis, position=rect.position, u_low=rect.u_low, u_high=rect.u_high, v_low=rect.v_low,
+        v_high=rect.v_high,
+    )  # fmt: skip
+
     @always(clk.posedge)
     def write():
         if at_hand:
-            words[number].next = concat(rect.axis, rect.position, rect.u_low, rect.u_high, rect.v_low, rect.v_high)
+            words[number].next = bare
 
     @always(clk.posedge)
     def read():
@@ -56,8 +61,13 @@ def rect_copy(clk, rects, copy, margin: int, config: Configuration):
         wide_v_low.next = v_low - margin
         wide_v_high.next = v_high + margin
 
+    wide = copy.rect.joined(
+        axis=kept.axis, position=kept.position, u_low=wide_u_low, u_high=wide_u_high, v_low=wide_v_low,
+        v_high=wide_v_high,
+    )  # fmt: skip
+
     @always(clk.posedge)
     def present():
-        copy.rect.word.next = concat(kept.axis, kept.position, wide_u_low, wide_u_high, wide_v_low, wide_v_high)
+        copy.rect.word.next = wide
 
     return instances()

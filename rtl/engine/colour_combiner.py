@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The colour of a pixel: what its ray and the reflections of it saw, one after the other."""
 
-from myhdl import always_comb, block, concat, instances
+from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.records import Colour
@@ -21,8 +21,8 @@ def colour_combiner(clk, steps, found, found_colour, found_mirror, picture, miss
         steps: `Steps`; reset_colour, add_colour and store_ray are read.
         found: flag; the ray has a hit. Read with steps.add_colour.
         found_colour: unsigned, 24 bits; the colour of the hit, read with steps.add_colour.
-        found_mirror: unsigned, 3 bits; how much the hit mirrors, 0 to 4 quarters, read with steps.add_colour. None
-            without `config.materials`.
+        found_mirror: unsigned, 3 bits; how much the hit mirrors, 0 to 4 quarters, read with steps.add_colour and
+            `config.materials`.
         picture: `Picture`; only background is read, with steps.add_colour.
         missed: output flag; a ray has found nothing, or nothing that mirrors, so that later hits do not count. Valid
             from the cycle after that ray's steps.add_colour.
@@ -37,8 +37,8 @@ def colour_combiner(clk, steps, found, found_colour, found_mirror, picture, miss
         clk=clk, steps=steps, found=found, found_mirror=found_mirror, share=share, missed=missed, config=config
     )
     channels = [
-        colour_sum(clk=clk, steps=steps, seen=one, share=share, blended=blended, config=config)
-        for one, blended in ((seen.red, red), (seen.green, green), (seen.blue, blue))
+        colour_sum(clk=clk, steps=steps, seen=one, share=share, blended=channel, config=config)
+        for one, channel in ((seen.red, red), (seen.green, green), (seen.blue, blue))
     ]
 
     # Of a ray that hit nothing there is no reflection, whatever the units go on to find.
@@ -49,8 +49,10 @@ def colour_combiner(clk, steps, found, found_colour, found_mirror, picture, miss
         else:
             seen.word.next = picture.background
 
+    blended = pixel.joined(red=red, green=green, blue=blue)
+
     @always_comb
     def join():
-        pixel.word.next = concat(red, green, blue)
+        pixel.word.next = blended
 
     return instances()

@@ -20,8 +20,8 @@ def colour_share(clk, steps, found, found_mirror, share, missed, config: Configu
         steps: `Steps`; reset_colour, add_colour and store_ray are read. With steps.add_colour, store_ray is low for the
             last ray.
         found: flag; the ray has a hit. Read with steps.add_colour.
-        found_mirror: unsigned, 3 bits; how much the hit mirrors, 0 to 4 quarters, read with steps.add_colour. None
-            without `config.materials`.
+        found_mirror: unsigned, 3 bits; how much the hit mirrors, 0 to 4 quarters, read with steps.add_colour and
+            `config.materials`.
         share: unsigned output, `share_bits` bits; the share of the hit, or of the background where there is none. Valid
             where steps.add_colour is high.
         missed: output flag; a ray has found nothing, or nothing that mirrors, so that later hits do not count. Valid

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The primary ray of a unit's column."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.magnitude import magnitude
@@ -61,12 +61,14 @@ def ray_generator(clk, steps, place, column_base, initial_signs, slope, config: 
         dy_negative.next = dy < 0
         dz_negative.next = dz < 0
 
+    all_signs = initial_signs.joined(dx=False, dy=dy_negative, dz=dz_negative)
+
     @always(clk.posedge)
     def load():
         if steps.screen_to_ray:
             slope.dx.next = view_distance
             slope.dy.next = dy_magnitude
             slope.dz.next = dz_magnitude
-            initial_signs.word.next = concat(False, dy_negative, dz_negative)
+            initial_signs.word.next = all_signs
 
     return instances()

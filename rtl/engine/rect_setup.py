@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """What neighbouring columns of a row start from, for one rectangle after another."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
-from raycaster.configuration import Configuration
-from raycaster.rtl.common.ties import tied
+from raycaster.configuration import COORDINATE_BITS, Configuration
+from raycaster.rtl.common.by_axis import along_a, along_p, along_q, by_axis
+from raycaster.rtl.common.records import Look
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
     DISTANCE_BITS,
@@ -43,7 +44,7 @@ def rect_setup(
         load: unsigned output, `config.rectangles` bits, one for each rectangle; high for a cycle, in which the other
             outputs are that rectangle's.
         facet: output `Facet` of the rectangle; valid with its bit of load.
-        growth: output `Walk`; the change of start from one column to the next, valid with load. None with
+        growth: output `Walk`; the change of start from one column to the next, valid with load. Not driven with
             `config.turn`.
         start: output `Walk` of the first column; valid with load.
         config: the design.
@@ -53,22 +54,21 @@ def rect_setup(
     bound_bits = DISTANCE_BITS if config.turn else len(growth.low_p)
     product_bits = len(start.way_p)
     way_q_bits = product_bits if config.turn else len(facet.way_q)
-    look_bits = facet.slice("colour")[0] + 1
     last = config.rectangles - 1
-    look = getattr(rects.rect, "look", tied(0, look_bits))
 
     reading, asked, at_hand = bit(), bit(), bit()
     number = unsigned(index_bits(config))
     usable_0, usable = bit(), bit()
     eye_a, plane, distance = (signed(DISTANCE_BITS) for _ in range(3))
     eye_p, eye_q, low_p, high_p, low_q, high_q = (signed(bound_bits) for _ in range(6))
+    camera_a, camera_p, camera_q = (unsigned(COORDINATE_BITS) for _ in range(3))
     slope_a, slope_p, slope_q = (signed(slope_bits) for _ in range(3))
     to_low_p, to_high_p, to_low_q, to_high_q = (signed(bound_bits) for _ in range(4))
 
     number_0, number_1, number_2 = (unsigned(index_bits(config)) for _ in range(3))
     at_hand_2, usable_2 = bit(), bit()
     axis_2 = unsigned(AXIS_BITS)
-    look_2 = unsigned(look_bits)
+    look_2 = Look(config.materials, config.patterns)
     distance_2 = signed(DISTANCE_BITS)
     to_low_p_2, to_high_p_2, to_low_q_2, to_high_q_2 = (signed(bound_bits) for _ in range(4))
     slope_a_2, slope_p_2, slope_q_2 = (signed(slope_bits) for _ in range(3))
@@ -108,31 +108,21 @@ def rect_setup(
         usable.next = usable_0
         usable_2.next = usable
 
-    # a is the plane's axis; p and q are as in `Walk`.
+    eyes, slopes = (camera.x, camera.y, camera.z), (slope.x, slope.y, slope.z)
+    choices = [
+        by_axis(rects.rect.axis, *along(*values), chosen, width=len(chosen))
+        for along, values, chosen in (
+            (along_a, eyes, camera_a), (along_p, eyes, camera_p), (along_q, eyes, camera_q),
+            (along_a, slopes, slope_a), (along_p, slopes, slope_p), (along_q, slopes, slope_q),
+        )
+    ]  # fmt: skip
+
     @always_comb
-    def choose_axes():
+    def extend():
         plane.next = rects.rect.position
-        if rects.rect.axis == 0:
-            eye_a.next = camera.x
-            eye_p.next = camera.y
-            eye_q.next = camera.z
-            slope_a.next = slope.x
-            slope_p.next = slope.y
-            slope_q.next = slope.z
-        elif rects.rect.axis == 1:
-            eye_a.next = camera.y
-            eye_p.next = camera.x
-            eye_q.next = camera.z
-            slope_a.next = slope.y
-            slope_p.next = slope.x
-            slope_q.next = slope.z
-        else:
-            eye_a.next = camera.z
-            eye_p.next = camera.y
-            eye_q.next = camera.x
-            slope_a.next = slope.z
-            slope_p.next = slope.y
-            slope_q.next = slope.x
+        eye_a.next = camera_a
+        eye_p.next = camera_p
+        eye_q.next = camera_q
         if rects.rect.axis == 2:
             low_p.next = rects.rect.v_low
             high_p.next = rects.rect.v_high
@@ -156,7 +146,6 @@ def rect_setup(
     def hold_distances():
         if at_hand:
             axis_2.next = rects.rect.axis
-            look_2.next = look
             distance_2.next = distance
             to_low_p_2.next = to_low_p
             to_high_p_2.next = to_high_p
@@ -165,6 +154,13 @@ def rect_setup(
             slope_a_2.next = slope_a
             slope_p_2.next = slope_p
             slope_q_2.next = slope_q
+
+    if facet.has("colour"):
+
+        @always(clk.posedge)
+        def hold_look():
+            if at_hand:
+                look_2.word.next = rects.rect.look
 
     if in_adders:
         products = [
@@ -192,15 +188,21 @@ def rect_setup(
         if at_hand_2 and not reset:
             load.next[number_2] = True
 
-    if config.turn:
+    seen = facet.joined(
+        usable=usable_2, axis=axis_2, distance=distance_2, way_q=way_q, colour=look_2.colour, mirror=look_2.mirror,
+        kind=look_2.kind, cell=look_2.cell, colour_2=look_2.colour_2,
+    )  # fmt: skip
+    first = start.joined(
+        way_p=way_p, way_q=way_q, low_p=way_low_p, high_p=way_high_p, low_q=way_low_q, high_q=way_high_q
+    )
 
-        @always(clk.posedge)
-        def present():
-            if at_hand_2:
-                facet.word.next = concat(usable_2, axis_2, distance_2, look_2)
-                start.word.next = concat(way_p[product_bits:], way_q, way_low_p, way_high_p, way_low_q, way_high_q)
+    @always(clk.posedge)
+    def present():
+        if at_hand_2:
+            facet.word.next = seen
+            start.word.next = first
 
-    else:
+    if not config.turn:
         more_way_p, more_low_p, more_high_p, more_low_q, more_high_q = (signed(bound_bits) for _ in range(5))
 
         # A product grows where its component of the slope is the one that the column changes, D[y].
@@ -218,11 +220,13 @@ def rect_setup(
                 more_low_q.next = to_low_q_2
                 more_high_q.next = to_high_q_2
 
+        more = growth.joined(
+            way_p=more_way_p, low_p=more_low_p, high_p=more_high_p, low_q=more_low_q, high_q=more_high_q
+        )
+
         @always(clk.posedge)
-        def present():
+        def present_growth():
             if at_hand_2:
-                facet.word.next = concat(usable_2, axis_2, distance_2, way_q, look_2)
-                start.word.next = concat(way_p[product_bits:], way_low_p, way_high_p, way_low_q, way_high_q)
-                growth.word.next = concat(more_way_p[bound_bits:], more_low_p, more_high_p, more_low_q, more_high_q)
+                growth.word.next = more
 
     return instances()

@@ -42,8 +42,8 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
     initial_signs, signs = Signs(), Signs()
     slope, eye = Slope(exact_slope_bits(config)), Eye(eye_bits(config))
     mirror, found_surface = mirror_of(config), surface_of(config)
-    found_mirror = found_surface.mirror if config.materials else None
-    at_mirror, found_at_mirror = (bit(), bit()) if "met_x" in mirror.layout else (None, None)
+    at_mirror = bit()
+    found_at_mirror = bit() if mirror.has("met_x") else unconnected(1)
     hit, found = bit(), bit()
     missed = bit() if config.culling or config.materials else unconnected(1)
     numerator, found_distance = (unsigned(eye_bits(config) - 1) for _ in range(2))
@@ -75,7 +75,7 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
         found_slope=found_slope, found_at_mirror=found_at_mirror,
     )  # fmt: skip
     combiner = colour_combiner(
-        clk=clk, steps=steps, found=found, found_colour=colour, found_mirror=found_mirror,
+        clk=clk, steps=steps, found=found, found_colour=colour, found_mirror=found_surface.mirror,
         picture=picture, missed=missed, pixel=pixel, config=config,
     )  # fmt: skip
 
@@ -92,7 +92,7 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
 
         @always_comb
         def judge_alive():
-            fate.alive.next = found and (found_mirror != 0) and not missed
+            fate.alive.next = found and (found_surface.mirror != 0) and not missed
 
     elif config.culling:
 

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The mirrored eye."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS
+from raycaster.rtl.common.by_axis import by_axis
 from raycaster.rtl.common.widths import bit, signed, unsigned
 
 
@@ -25,29 +26,21 @@ def eye_register(
         found_surface: `Surface` of the mirror; read with steps.store_ray.
         found_distance: unsigned, as wide as mirror's distance; the distance from the eye to the plane of found_surface,
             and so from its image. Read with steps.store_ray.
-        found_at_mirror: flag, where the `Mirror` has corners; the hit is in the point where the ray left its last
-            mirror. Read with steps.store_ray. None without corners.
+        found_at_mirror: flag, read where the `Mirror` has corners; the hit is in the point where the ray left its last
+            mirror. Read with steps.store_ray.
         eye: output `Eye`; valid from the cycle after steps.screen_to_ray or steps.store_ray.
         signs: output `Signs` of the current ray, whose slope's magnitudes do not change.
         mirror: output `Mirror` that the ray left last, not active for the primary ray; valid from the cycle after
             steps.screen_to_ray or steps.store_ray.
     """
     eye_bits = len(eye.x)
-    corners = "met_x" in mirror.layout
-    flipped_x, flipped_y, flipped_z, dx, dy, dz = (bit() for _ in range(6))
+    flipped_x, flipped_y, flipped_z, dx, dy, dz, met_x, met_y, met_z = (bit() for _ in range(9))
     twice = unsigned(COORDINATE_BITS + 1)
     twice_signed = signed(COORDINATE_BITS + 2)
     mirrored, image = signed(eye_bits), signed(eye_bits)
     difference = signed(eye_bits + 1)
 
-    @always_comb
-    def choose_axis():
-        if found_surface.axis == 0:
-            mirrored.next = eye.x
-        elif found_surface.axis == 1:
-            mirrored.next = eye.y
-        else:
-            mirrored.next = eye.z
+    on_axis = by_axis(found_surface.axis, eye.x, eye.y, eye.z, mirrored, width=len(mirrored))
 
     @always_comb
     def double():
@@ -88,36 +81,24 @@ def eye_register(
                 eye.z.next = image
                 flipped_z.next = not flipped_z
 
-    if corners:
-        met = unsigned(3)
+    if mirror.has("met_x"):
 
         @always_comb
         def meet():
-            met.next = 0
-            if found_at_mirror:
-                met.next = concat(mirror.met_x, mirror.met_y, mirror.met_z)
-            if found_surface.axis == 0:
-                met.next[2] = True
-            elif found_surface.axis == 1:
-                met.next[1] = True
-            else:
-                met.next[0] = True
+            met_x.next = (found_surface.axis == 0) or (found_at_mirror and mirror.met_x)
+            met_y.next = (found_surface.axis == 1) or (found_at_mirror and mirror.met_y)
+            met_z.next = (found_surface.axis == 2) or (found_at_mirror and mirror.met_z)
 
-        @always(clk.posedge)
-        def leave():
-            if steps.screen_to_ray:
-                mirror.word.next = 0
-            elif steps.store_ray:
-                mirror.word.next = concat(True, found_surface.axis, found_distance, met)
+    left = mirror.joined(
+        active=True, axis=found_surface.axis, distance=found_distance, met_x=met_x, met_y=met_y, met_z=met_z
+    )
 
-    else:
-
-        @always(clk.posedge)
-        def leave():
-            if steps.screen_to_ray:
-                mirror.word.next = 0
-            elif steps.store_ray:
-                mirror.word.next = concat(True, found_surface.axis, found_distance)
+    @always(clk.posedge)
+    def leave():
+        if steps.screen_to_ray:
+            mirror.word.next = 0
+        elif steps.store_ray:
+            mirror.word.next = left
 
     @always_comb
     def turn():
@@ -125,8 +106,10 @@ def eye_register(
         dy.next = initial_signs.dy != flipped_y
         dz.next = initial_signs.dz != flipped_z
 
+    all_signs = signs.joined(dx=dx, dy=dy, dz=dz)
+
     @always_comb
     def join_signs():
-        signs.word.next = concat(dx, dy, dz)
+        signs.word.next = all_signs
 
     return instances()

@@ -32,15 +32,14 @@ def nearest_hit(
         steps: `Steps`; only reset_z_buf and write_z_buf are read.
         offered: `Surface` that is offered; read with steps.write_z_buf.
         hit: flag; the ray hits the rectangle of offered. Read with steps.write_z_buf.
-        at_mirror: flag; the hit is in the plane of the mirror that the ray left last. Read with steps.write_z_buf. None
-            without corners in the `Mirror`, in designs with one reflection at most.
+        at_mirror: flag; the hit is in the plane of the mirror that the ray left last. Read with steps.write_z_buf.
         numerator: unsigned; the numerator of t, read with steps.write_z_buf.
         denominator: unsigned; the denominator of t, read with steps.write_z_buf.
         found: output flag; anything was hit since steps.reset_z_buf.
         found_surface: output `Surface` of the nearest hit.
         found_distance: unsigned output, as wide as numerator; the nearest hit's numerator.
         found_slope: unsigned output, as wide as denominator; the nearest hit's denominator.
-        found_at_mirror: output flag; the nearest hit's at_mirror. None where that is None.
+        found_at_mirror: output flag; the nearest hit's at_mirror.
     """
     numerator_bits, denominator_bits = len(numerator), len(denominator)
     offered_product, nearest_product = (unsigned(numerator_bits + denominator_bits) for _ in range(2))
@@ -64,12 +63,6 @@ def nearest_hit(
             found_distance.next = numerator
             found_slope.next = denominator
             found_surface.word.next = offered.word
-
-    if at_mirror is not None:
-
-        @always(clk.posedge)
-        def keep_corner():
-            if steps.write_z_buf and nearer:
-                found_at_mirror.next = at_mirror
+            found_at_mirror.next = at_mirror
 
     return instances()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The primary ray of a unit's column, of a camera that turns."""
 
-from myhdl import always_comb, block, concat, instances
+from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.widths import bit, row_bits, signed, unsigned
@@ -61,8 +61,10 @@ def turned_generator(
         column.next = group_start - centre_column
         row.next = horizon_row - place.row
 
+    all_signs = initial_signs.joined(dx=negative_x, dy=negative_y, dz=negative_z)
+
     @always_comb
     def join_signs():
-        initial_signs.word.next = concat(negative_x, negative_y, negative_z)
+        initial_signs.word.next = all_signs
 
     return instances()

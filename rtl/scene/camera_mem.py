@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The camera's position, and where it looks."""
 
-from myhdl import Signal, always_comb, block, concat, instances, intbv
+from myhdl import Signal, always_comb, block, instances, intbv
 
 from raycaster.configuration import Configuration
 from raycaster.registers import register_map
@@ -29,10 +29,12 @@ def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
     registers = [REGISTERS[name] for name in ("camera", *vectors)]
     selects = [bit() for _ in registers]
     shadows, lives = ([Signal(intbv(register.reset)[WORD_BITS:]) for register in registers] for _ in range(2))
-    x, y, z, *basis = (
-        live(field.lsb + field.width, field.lsb)
-        for register, live in zip(registers, lives, strict=True)
-        for field in map(register.fields.get, "xyz")
+    whole = camera.joined(
+        **{
+            vector + axis: live(register.fields[axis].lsb + register.fields[axis].width, register.fields[axis].lsb)
+            for vector, register, live in zip(("", *(f"{one}_" for one in vectors)), registers, lives, strict=True)
+            for axis in "xyz"
+        }
     )
 
     words = [
@@ -55,7 +57,6 @@ def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
         forward_address, right_address, up_address = (
             tied(register.address, len(bus.address)) for register in registers[1:]
         )
-        forward_x, forward_y, forward_z, right_x, right_y, right_z, up_x, up_y, up_z = basis
 
         @always_comb
         def decode_basis():
@@ -73,20 +74,14 @@ def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
             elif select_up:
                 readback.next = up_word
 
-        @always_comb
-        def take_apart():
-            camera.word.next = concat(
-                x, y, z, forward_x, forward_y, forward_z, right_x, right_y, right_z, up_x, up_y, up_z
-            )
-
     else:
 
         @always_comb
         def read():
             readback.next = position_word
 
-        @always_comb
-        def take_apart():
-            camera.word.next = concat(x, y, z)
+    @always_comb
+    def join():
+        camera.word.next = whole
 
     return instances()

@@ -43,8 +43,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     written = unsigned(count)
     stored, old, mask, data, merged = (written_of(config) for _ in range(5))
     implemented = tied(implemented_bits(config), len(merged.word))
-    mask_0, mask_1, mask_2 = (unsigned(WORD_BITS) for _ in range(3))
-    pattern_word = old.pattern if config.patterns else tied(0, WORD_BITS)
+    mask_0, mask_1, mask_2, mask_3 = (unsigned(WORD_BITS) for _ in range(4))
     shadow_words = [unsigned(len(merged.word)) for _ in range(1 << index_width)]
 
     numbers = [tied(number, index_width) for number in range(count)]
@@ -111,7 +110,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
             elif bus.address[2:] == 2:
                 readback.next = old.surface
             else:
-                readback.next = pattern_word
+                readback.next = old.pattern
 
     @always_comb
     def select_word():
@@ -126,7 +125,6 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
             mask_2.next = bus.mask
 
     if config.patterns:
-        mask_3 = unsigned(WORD_BITS)
 
         @always_comb
         def select_pattern():
@@ -134,17 +132,13 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
             if bus.address[2:] == 3:
                 mask_3.next = bus.mask
 
-        @always_comb
-        def spread():
-            mask.word.next = concat(mask_0, mask_1, mask_2, mask_3)
-            data.word.next = concat(bus.data, bus.data, bus.data, bus.data)
+    whole_mask = mask.joined(corner_0=mask_0, corner_1=mask_1, surface=mask_2, pattern=mask_3)
+    whole_data = data.joined(corner_0=bus.data, corner_1=bus.data, surface=bus.data, pattern=bus.data)
 
-    else:
-
-        @always_comb
-        def spread():
-            mask.word.next = concat(mask_0, mask_1, mask_2)
-            data.word.next = concat(bus.data, bus.data, bus.data)
+    @always_comb
+    def spread():
+        mask.word.next = whole_mask
+        data.word.next = whole_data
 
     @always_comb
     def merge():

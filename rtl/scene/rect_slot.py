@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Where a rectangle's shadow, pending and live copy are, and which of them may be shown."""
 
-from myhdl import always_comb, always_seq, block, concat, instances
+from myhdl import always_comb, always_seq, block, instances
 
 from raycaster.rtl.common.widths import bit, unsigned
 from raycaster.rtl.scene.written_rect import PLACE_BITS
@@ -50,8 +50,10 @@ def rect_slot(clk, reset, bus, storing, index, number, place, enable, flat, copi
             live.next = pending
             usable.next = pending_usable
 
+    whole = copies.joined(shadow=shadow, pending=pending, live=live)
+
     @always_comb
     def join():
-        copies.word.next = concat(shadow, pending, live)
+        copies.word.next = whole
 
     return instances()

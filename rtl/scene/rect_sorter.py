@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """A rectangle as it was written becomes a rectangle as the engine wants it."""
 
-from myhdl import always_comb, block, concat, instances
+from myhdl import always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
-from raycaster.rtl.common.widths import AXIS_BITS, CELL_BITS, KIND_BITS, MIRROR_BITS, RGB_BITS, side_by_side, unsigned
+from raycaster.rtl.common.widths import AXIS_BITS, KIND_BITS, MIRROR_BITS, unsigned
 from raycaster.scene import CELLS
 
 
@@ -18,8 +18,8 @@ def rect_sorter(written, rect, config: Configuration):
         rect: `Rect`; output, don't care where the rectangle has no plane.
         config: the design.
     """
-    looks, cells = [], len(CELLS)
-    axis = unsigned(AXIS_BITS)
+    cells = len(CELLS)
+    axis, mirror, kind = unsigned(AXIS_BITS), unsigned(MIRROR_BITS), unsigned(KIND_BITS)
     position, x_low, x_high, y_low, y_high, z_low, z_high = (unsigned(COORDINATE_BITS) for _ in range(7))
     u_low, u_high, v_low, v_high = (unsigned(COORDINATE_BITS) for _ in range(4))
 
@@ -68,8 +68,6 @@ def rect_sorter(written, rect, config: Configuration):
             v_high.next = y_high
 
     if config.materials:
-        mirror = unsigned(MIRROR_BITS)
-        looks.append(mirror)
 
         @always_comb
         def limit_mirror():
@@ -78,10 +76,6 @@ def rect_sorter(written, rect, config: Configuration):
                 mirror.next = 4
 
     if config.patterns:
-        kind = unsigned(KIND_BITS)
-        pattern = unsigned(KIND_BITS + CELL_BITS + RGB_BITS)
-        looks.append(pattern)
-
         # A cell as large as the world leaves nothing odd.
         @always_comb
         def drop_large_cells():
@@ -89,21 +83,13 @@ def rect_sorter(written, rect, config: Configuration):
             if written.cell >= cells:
                 kind.next = 0
 
-        @always_comb
-        def take_pattern():
-            pattern.next = concat(kind, written.cell, written.colour_2)
+    whole = rect.joined(
+        axis=axis, position=position, colour=written.colour, mirror=mirror, kind=kind, cell=written.cell,
+        colour_2=written.colour_2, u_low=u_low, u_high=u_high, v_low=v_low, v_high=v_high,
+    )  # fmt: skip
 
-    if looks:
-        look = side_by_side(looks[::-1])
-
-        @always_comb
-        def join():
-            rect.word.next = concat(axis, position, written.colour, look, u_low, u_high, v_low, v_high)
-
-    else:
-
-        @always_comb
-        def join():
-            rect.word.next = concat(axis, position, written.colour, u_low, u_high, v_low, v_high)
+    @always_comb
+    def join():
+        rect.word.next = whole
 
     return instances()

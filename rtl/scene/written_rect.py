@@ -4,6 +4,7 @@
 from raycaster.configuration import Configuration
 from raycaster.registers import register_map
 from raycaster.rtl.common.records import Field, Record
+from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import RGB_BITS, WORD_BITS, bits_for
 
 REGISTERS = register_map(1)
@@ -25,23 +26,22 @@ class WrittenRect(Record):
     """
 
     def __init__(self, materials: bool = False, patterns: bool = False):
-        words = ("corner_0", "corner_1", "surface", *(["pattern"] if patterns else []))
-        super().__init__(dict.fromkeys(words, WORD_BITS))
+        words = dict.fromkeys(("corner_0", "corner_1", "surface"), WORD_BITS)
+        super().__init__(words | {"pattern": WORD_BITS * patterns})
 
         def part(name: str, word: str, low: int, width: int) -> None:
-            setattr(self, name, Field(self.word, name, self.slice(word)[1] + low, width))
+            at = self.slice(word)[1] + low if width else 0
+            setattr(self, name, Field(self.word, name, at, width) if width else tied(0, 1))
 
         for number in range(2):
             for axis, field in CORNER.fields.items():
                 part(f"{axis}_{number}", f"corner_{number}", field.lsb, field.width)
         part("colour", "surface", SURFACE.fields["blue"].lsb, RGB_BITS)
         part("enable", "surface", SURFACE.fields["enable"].lsb, 1)
-        if materials:
-            part("mirror", "surface", SURFACE.fields["mirror"].lsb, SURFACE.fields["mirror"].width)
-        if patterns:
-            part("colour_2", "pattern", PATTERN.fields["blue"].lsb, RGB_BITS)
-            for name in ("kind", "cell"):
-                part(name, "pattern", PATTERN.fields[name].lsb, PATTERN.fields[name].width)
+        part("mirror", "surface", SURFACE.fields["mirror"].lsb, SURFACE.fields["mirror"].width * materials)
+        part("colour_2", "pattern", PATTERN.fields["blue"].lsb, RGB_BITS * patterns)
+        for name in ("kind", "cell"):
+            part(name, "pattern", PATTERN.fields[name].lsb, PATTERN.fields[name].width * patterns)
 
 
 def written_of(config: Configuration) -> WrittenRect:

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Where a ray meets a rectangle's plane, and whether inside the rectangle."""
 
-from myhdl import always_comb, block, concat, instances
+from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.rtl.common.by_axis import along_a, along_u, along_v, by_axis
 from raycaster.rtl.common.ties import unconnected
 from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, signed, unsigned
 from raycaster.rtl.seed.cell_parity import cell_parity
@@ -34,9 +35,9 @@ def intersection_finder(
         depth: unsigned output, `position_bits` bits, `config.fraction_bits` of them fraction bits; |distance| along x
             from the ray's start to the hit point. Valid with steps.write_z_buf.
         point: output `Origin`; the hit point. Valid with steps.write_z_buf.
-        odd_u: output flag; the cell_parity of the point's u, valid with steps.write_z_buf. None without
+        odd_u: output flag; the cell_parity of the point's u, valid with steps.write_z_buf. Driven with
             `config.patterns`.
-        odd_v: output flag; the cell_parity of the point's v, valid with steps.write_z_buf. None without
+        odd_v: output flag; the cell_parity of the point's v, valid with steps.write_z_buf. Driven with
             `config.patterns`.
         towards: output flag; the ray runs towards the plane. Valid from the cycle after steps.find_intersection.
         config: the design.
@@ -76,46 +77,19 @@ def intersection_finder(
         v_low.next = offered.v_low << fraction_bits
         v_high.next = offered.v_high << fraction_bits
 
-    # The plane's axis chooses what divides (e, and d beside it) and what is multiplied (b).
-    @always_comb
-    def choose_start():
-        if rect.axis == 0:
-            start_a.next = ray.x
-            e_slope.next = slope.dx
-            e_negative.next = ray.dx
-            u_slope.next = slope.dy
-            u_negative.next = ray.dy
-            v_slope.next = slope.dz
-            v_negative.next = ray.dz
-        elif rect.axis == 1:
-            start_a.next = ray.y
-            e_slope.next = slope.dy
-            e_negative.next = ray.dy
-            u_slope.next = slope.dx
-            u_negative.next = ray.dx
-            v_slope.next = slope.dz
-            v_negative.next = ray.dz
-        else:
-            start_a.next = ray.z
-            e_slope.next = slope.dz
-            e_negative.next = ray.dz
-            u_slope.next = slope.dx
-            u_negative.next = ray.dx
-            v_slope.next = slope.dy
-            v_negative.next = ray.dy
-
-    # What the quotients are added to, for the rectangle that comes out of the dividers.
-    @always_comb
-    def choose_finish():
-        if offered.axis == 0:
-            u_origin.next = ray.y
-            v_origin.next = ray.z
-        elif offered.axis == 1:
-            u_origin.next = ray.x
-            v_origin.next = ray.z
-        else:
-            u_origin.next = ray.x
-            v_origin.next = ray.y
+    # The plane's axis chooses what divides (e, and d beside it), what is multiplied (b) and, for the rectangle that
+    # comes out of the dividers, what the quotients are added to (a).
+    origin, slopes, negative = (ray.x, ray.y, ray.z), (slope.dx, slope.dy, slope.dz), (ray.dx, ray.dy, ray.dz)
+    choices = [
+        by_axis(axis, *along(*values), chosen, width=len(chosen))
+        for axis, along, values, chosen in (
+            (rect.axis, along_a, origin, start_a), (rect.axis, along_a, slopes, e_slope),
+            (rect.axis, along_a, negative, e_negative),
+            (rect.axis, along_u, slopes, u_slope), (rect.axis, along_u, negative, u_negative),
+            (rect.axis, along_v, slopes, v_slope), (rect.axis, along_v, negative, v_negative),
+            (offered.axis, along_u, origin, u_origin), (offered.axis, along_v, origin, v_origin),
+        )
+    ]  # fmt: skip
 
     @always_comb
     def compare_bounds():
@@ -127,16 +101,11 @@ def intersection_finder(
         hit.next = u_valid and v_valid and inside_u and inside_v
 
     # Depth is measured along x: the plane's distance on that axis, the quotient of u (which is x) on the others.
-    @always_comb
-    def assemble():
-        if offered.axis == 0:
-            depth.next = u_distance
-            point.word.next = concat(plane_finish, u_value[position_width:], v_value[position_width:])
-        elif offered.axis == 1:
-            depth.next = u_quotient
-            point.word.next = concat(u_value[position_width:], plane_finish, v_value[position_width:])
-        else:
-            depth.next = u_quotient
-            point.word.next = concat(u_value[position_width:], v_value[position_width:], plane_finish)
+    at_u, at_v = u_value(position_width, 0), v_value(position_width, 0)
+    point_x = point.joined(x=plane_finish, y=at_u, z=at_v)
+    point_y = point.joined(x=at_u, y=plane_finish, z=at_v)
+    point_z = point.joined(x=at_u, y=at_v, z=plane_finish)
+    points = by_axis(offered.axis, point_x, point_y, point_z, point.word, width=len(point.word))
+    depths = by_axis(offered.axis, u_distance, u_quotient, u_quotient, depth, width=len(depth))
 
     return instances()

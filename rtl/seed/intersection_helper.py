@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """One a + b * (c - d) / e unit: where a ray meets a plane, on one axis."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.magnitude import magnitude
@@ -70,12 +70,14 @@ def intersection_helper(
     def look_towards():
         runs_towards.next = (e != 0) and (difference != 0) and ((difference < 0) == e_negative)
 
+    operands = started.joined(distance=away, negative=b_negative, towards=runs_towards)
+
     @always(clk.posedge)
     def carry():
         if steps.find_intersection:
             started_b.next = b
             started_e.next = e
-            started.word.next = concat(away, b_negative, runs_towards)
+            started.word.next = operands
         if steps.load_divider:
             loaded.word.next = started.word
         if steps.store_quotient:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The reflected ray."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
 from raycaster.rtl.common.widths import bit
 
@@ -28,9 +28,11 @@ def ray_mem(clk, steps, found_axis, found_point, ray, reflected):
         dy.next = ray.dy != (found_axis == 1)
         dz.next = ray.dz != (found_axis == 2)
 
+    left = reflected.joined(x=found_point.x, y=found_point.y, z=found_point.z, dx=dx, dy=dy, dz=dz)
+
     @always(clk.posedge)
     def store():
         if steps.store_ray:
-            reflected.word.next = concat(found_point.word, dx, dy, dz)
+            reflected.word.next = left
 
     return instances()

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """One of the seed engine's units: a ray, its nearest hit, its reflections, and the colour of its pixel."""
 
-from myhdl import always_comb, block, concat, instances
+from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.interfaces import Slope
 from raycaster.rtl.common.records import Origin, Ray, Signs
-from raycaster.rtl.common.ties import unconnected
+from raycaster.rtl.common.ties import tied, unconnected
 from raycaster.rtl.common.widths import AXIS_BITS, MIRROR_BITS, RGB_BITS, bit, position_bits, unsigned
 from raycaster.rtl.engine.colour_combiner import colour_combiner
 from raycaster.rtl.engine.pattern_colour import pattern_colour
@@ -47,9 +47,9 @@ def ray_unit(clk, steps, place, column_base, camera, rect, offered, picture, pix
     missed = bit() if config.culling or config.materials else unconnected(1)
     depth = unsigned(position_bits(config))
     found_axis, found_colour = unsigned(AXIS_BITS), unsigned(RGB_BITS)
-    found_mirror = unsigned(MIRROR_BITS) if config.materials else None
+    found_mirror = unsigned(MIRROR_BITS) if config.materials else tied(0, MIRROR_BITS)
     colour = unsigned(RGB_BITS) if config.patterns else offered.colour
-    odd_u, odd_v = (bit() if config.patterns else None for _ in range(2))
+    odd_u, odd_v = (bit() if config.patterns else tied(0, 1) for _ in range(2))
     start_x, start_y, start_z = (unsigned(position_bits(config)) for _ in range(3))
 
     generator = ray_generator(
@@ -80,10 +80,12 @@ def ray_unit(clk, steps, place, column_base, camera, rect, offered, picture, pix
         start_y.next = camera.y << fraction_bits
         start_z.next = camera.z << fraction_bits
 
+    primary = ray.joined(x=start_x, y=start_y, z=start_z, dx=initial_signs.dx, dy=initial_signs.dy, dz=initial_signs.dz)
+
     @always_comb
     def choose_ray():
         if steps.initial_ray:
-            ray.word.next = concat(start_x, start_y, start_z, initial_signs.word)
+            ray.word.next = primary
         else:
             ray.word.next = reflected.word
 

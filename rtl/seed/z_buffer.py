@@ -28,8 +28,8 @@ def z_buffer(
         found: output flag; anything was hit since steps.reset_z_buf.
         found_axis: unsigned output, 2 bits; the axis of the nearest hit's plane, 0, 1, 2 for x, y, z.
         found_colour: unsigned output, 24 bits; the colour of the nearest hit.
-        found_mirror: unsigned output, 3 bits; how much the rectangle of the nearest hit mirrors, 0 to 4 quarters. None
-            without `config.materials`.
+        found_mirror: unsigned output, 3 bits; how much the rectangle of the nearest hit mirrors, 0 to 4 quarters.
+            Driven with `config.materials`.
         found_point: output `Origin`; the nearest hit point.
         config: the design.
     """

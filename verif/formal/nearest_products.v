@@ -7,7 +7,7 @@
 // offered in the cycle of a reset. All else may change in every cycle.
 
 module nearest_products #(
-    parameter SURFACE_BITS = 35, parameter SLOPE_BITS = 8, parameter DISTANCE_BITS = 10, parameter REFLECTIONS = 1
+    parameter SURFACE_BITS = 35, parameter SLOPE_BITS = 8, parameter DISTANCE_BITS = 10
 ) (
     input clk, input reset, input write, input hit, input corner, input [DISTANCE_BITS-1:0] n,
     input [SLOPE_BITS-1:0] e, input [SURFACE_BITS-1:0] surface, input pick
@@ -18,26 +18,14 @@ wire found, found_corner;
 wire [DISTANCE_BITS-1:0] found_n;
 wire [SLOPE_BITS-1:0] found_e;
 wire [SURFACE_BITS-1:0] found_surface;
-generate
-    if (REFLECTIONS > 1) begin: design
-        nearest_hit dut (
-            .clk(clk), .hit(hit), .at_mirror(corner), .numerator(n), .denominator(e), .found(found),
-            .found_distance(found_n), .found_slope(found_e), .found_at_mirror(found_corner), .steps_reset_z_buf(reset),
-            .steps_write_z_buf(write), .offered_word(surface), .found_surface_word(found_surface)
-        );
-    end
-    else begin: design
-        nearest_hit dut (
-            .clk(clk), .hit(hit), .numerator(n), .denominator(e), .found(found), .found_distance(found_n),
-            .found_slope(found_e), .steps_reset_z_buf(reset), .steps_write_z_buf(write), .offered_word(surface),
-            .found_surface_word(found_surface)
-        );
-        assign found_corner = 0;
-    end
-endgenerate
+nearest_hit dut (
+    .clk(clk), .hit(hit), .at_mirror(corner), .numerator(n), .denominator(e), .found(found), .found_distance(found_n),
+    .found_slope(found_e), .found_at_mirror(found_corner), .steps_reset_z_buf(reset), .steps_write_z_buf(write),
+    .offered_word(surface), .found_surface_word(found_surface)
+);
 
 wire offered = write && hit;
-wire [HIT_BITS-1:0] now = {REFLECTIONS > 1 && corner, n, e, surface};
+wire [HIT_BITS-1:0] now = {corner, n, e, surface};
 wire [HIT_BITS-1:0] kept = {found_corner, found_n, found_e, found_surface};
 always @* begin
     assume (!(reset && write));

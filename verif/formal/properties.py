@@ -98,7 +98,7 @@ def _avalon(config: Configuration, small: bool) -> Property:
         "reads answered once and in order, no write lost, commit atomic, sticky bits and interrupt kept",
         config,
         _label(config),
-        ("avalon_interface", "camera_mem", "rect_mem", "rect_slot", "rect_sorter", "scene_word"),
+        ("avalon_interface",),
         {
             "ADDRESS_BITS": address_bits(config.table),
             "VERSION_WORD": register_map(config.table)["version"].reset,
@@ -162,7 +162,7 @@ def _order(config: Configuration, small: bool) -> Property:
         "budget's cycles",
         config,
         _label(config),
-        (CONTROLS[config.engine].__name__, "ray_sequencer", "rect_sequencer"),
+        (CONTROLS[config.engine].__name__,),
         {
             "RECTANGLES": config.rectangles,
             "INDEX_BITS": index_bits(config),
@@ -206,7 +206,7 @@ def _counters(config: Configuration, small: bool) -> Property:
         "the renderer's counters stay in range, a group is written once and into its row",
         config,
         _label(config),
-        ("ray_caster_renderer", "clock_gate", "ray_caster", "ray_control", "ray_sequencer", "rect_sequencer", *cut),
+        ("ray_caster_renderer",),
         {
             "RECTANGLES": config.rectangles,
             "INDEX_BITS": index_bits(config),
@@ -232,7 +232,7 @@ def _divider(config: Configuration, part: int, small: bool) -> Property:
         "quotient * divisor + remainder = dividend, rounded as configured, or overflow; without fraction bits",
         config,
         f"{_label(config)} {('digits', 'product', 'result')[part]}",
-        ("divider", "divider_step"),
+        ("divider",),
         {
             "WIDTH": position_bits(config),
             "BITS": config.divider_bits,
@@ -247,19 +247,12 @@ def _divider(config: Configuration, part: int, small: bool) -> Property:
 
 
 def _finder(config: Configuration, small: bool) -> Property:
-    magnitude = "magnitude_1" if config.fraction_bits else "magnitude"  # slopes have the first
     return Property(
         "finder-quotients",
         "a rectangle is hit, how far and where, as golden's a + b * (c - d) / e says, at full width",
         config,
         _label(config),
-        (
-            "intersection_finder",
-            "intersection_helper",
-            magnitude,
-            *(("cell_parity",) if config.patterns else ()),
-            "divider",
-        ),
+        ("intersection_finder",),
         {
             "POSITION_BITS": position_bits(config),
             "FRACTION_BITS": config.fraction_bits,
@@ -332,7 +325,6 @@ def _nearest_products(config: Configuration, small: bool) -> Property:
             "SURFACE_BITS": len(surface_of(config).word),
             "SLOPE_BITS": exact_slope_bits(config),
             "DISTANCE_BITS": eye_bits(config) - 1,
-            "REFLECTIONS": config.reflections,
         },
         induction=2,
         any_product=True,
@@ -368,7 +360,7 @@ def _cell(config: Configuration, small: bool) -> Property:
         "the digits that tell a pattern's cell are the quotient's, as long division has them, at full width",
         config,
         _label(config),
-        ("cell_finder", "divider_step"),
+        ("cell_finder",),
         {
             "COORDINATE_BITS": COORDINATE_BITS,
             "LOOK_BITS": _look_bits(config),
@@ -384,13 +376,12 @@ def _cell(config: Configuration, small: bool) -> Property:
 
 def _slope(config: Configuration, small: bool) -> Property:
     screen = config.screen_geometry
-    turned, plain = ("turned_generator", "slope_component", "magnitude"), ("ray_generator", "magnitude", "magnitude_1")
     return Property(
         "slope-exact",
         "a pixel's slope in the exact engine is the definition's, in sign and magnitude, and fits, at full width",
         config,
         _label(config),
-        turned if config.turn else plain,
+        ("turned_generator" if config.turn else "ray_generator",),
         {
             "TURN": int(config.turn),
             "SLOPE_BITS": exact_slope_bits(config),
@@ -543,15 +534,12 @@ def _turned_walks(config: Configuration, small: bool) -> Property:
 
 def _blend(config: Configuration, small: bool) -> Property:
     mirrors = config.reflections
-    joint = "colour_mix" if mixes(config) else "colour_mean"
-    joints = [_numbered(joint, number) for number in range(mirrors)]
-    seen = [_numbered("colour_seen", number) for number in range(mirrors + 1)]
     return Property(
         "blend-exact",
         "a pixel is golden's blend of what rays saw, with mirrors of half or one of any quarters, at full width",
         config,
         _label(config),
-        ("colour_blend", *joints, *seen),
+        ("colour_blend",),
         {
             "MIRRORS": mirrors,
             "MIXES": int(mixes(config)),
@@ -562,11 +550,6 @@ def _blend(config: Configuration, small: bool) -> Property:
         reach=blend_latency(config) + 2,
         small=small,
     )
-
-
-def _numbered(module: str, number: int) -> str:
-    """The name of a block's module of its own for each set of widths."""
-    return f"{module}_{number}" if number else module
 
 
 def _depth(config: Configuration, small: bool) -> Property:
@@ -615,7 +598,7 @@ def _shares(config: Configuration, small: bool) -> Property:
         "a pixel is golden's blend of what its rays saw one after the other, at full width",
         config,
         _label(config),
-        ("colour_combiner", "colour_share", "colour_sum"),
+        ("colour_combiner",),
         {
             "MATERIALS": int(config.materials),
             "REFLECTIONS": config.reflections,
@@ -654,14 +637,12 @@ def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: in
 
 def _unit_wiring(config: Configuration, small: bool) -> Property:
     generator = "turned_generator" if config.turn else "ray_generator"
-    patterns = ("cell_finder", "divider_step", "pattern_colour") if config.patterns else ()
     return Property(
         "unit-wiring",
         "each block of a unit gets what its own proof takes for given, and of the nearest hit, at full width",
         config,
         _label(config),
-        ("exact_unit", "exact_control", "ray_sequencer", "rect_sequencer", "rect_tester", "nearest_hit", "eye_register",
-         "colour_combiner", "colour_share", "colour_sum", generator, *patterns),
+        ("exact_unit", "exact_control"),
         {
             "PATTERNS": int(config.patterns),
             "REFLECTIONS": config.reflections,
@@ -770,7 +751,7 @@ def _fixed(engine: str, alike: bool, small: bool) -> Property:
         "a fixed scene's table gives every rectangle as the memory does that holds the scene's words",
         FixedTable(general, fixed),
         f"{engine}, {'alike' if alike else 'different'}",
-        ("rect_mem", "rect_slot", "rect_sorter", "rect_rom"),
+        ("rect_mem", "rect_rom"),
         {
             "INDEX_BITS": index_bits(fixed),
             "ADDRESS_BITS": address_bits(general.table),

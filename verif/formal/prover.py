@@ -127,8 +127,8 @@ class Property:
         design: the configuration whose Verilog is read; a screen, for the video generator alone; widths, for a
             rectangle test, the processor's host or a bridge alone; or the two places that rectangles may come from.
         label: the design in a few characters.
-        modules: the generated modules that are part of the proof.
-        cut: of these, those whose outputs become arbitrary.
+        modules: the generated modules that are part of the proof, with all that they instantiate.
+        cut: modules whose outputs become arbitrary.
         any_product: multiplication, but by a constant, becomes an arbitrary function, one for each width of products.
         parameters: of the wrapper.
         induction: steps that the induction assumes; the base case is checked for as many from reset.
@@ -183,11 +183,21 @@ class Result:
         return f"induction {self.depth}{reach}"
 
 
+def parts_of(proof: Property, verilog: Mapping[str, str]) -> list[str]:
+    """The modules of a proof, and all that they instantiate except within those that are cut."""
+    parts = list(proof.modules)
+    for module in parts:
+        inside = "" if module in proof.cut else verilog[f"{module}.v"]
+        found = re.findall(r"^(\w+) (?:#\([^;]*?\) )?\w+_i \($", inside, re.MULTILINE)
+        parts += [one for one in dict.fromkeys(found) if one not in parts]
+    return parts
+
+
 def inputs_of(proof: Property, depth: int) -> str:
     """All that decides whether a property holds, except the tools: Verilog, wrapper, parameters, method."""
     with elaboration():
         verilog = verilog_of(proof.design)
-    sources = [uncommented(verilog[f"{module}.v"]) for module in proof.modules]
+    sources = [uncommented(verilog[f"{module}.v"]) for module in parts_of(proof, verilog)]
     sources += [(WRAPPERS / f"{proof.wrapper}.v").read_text(), Path(__file__).read_text()]
     settings = dict(proof.parameters), depth, proof.cut, proof.any_product, proof.as_registers, proof.reach
     return "\n".join([*sources, repr(settings)])
@@ -321,7 +331,7 @@ def _convert_rect_tester(widths: TesterWidths, directory: Path) -> None:
         top = rect_tester(
             clk=bit(), steps=Steps(), rect=Rect(widths.coordinate), eye=Eye(widths.eye), signs=Signs(),
             slope=Slope(widths.slope), mirror=Mirror(widths.eye - 1, widths.corners), hit=bit(),
-            at_mirror=bit() if widths.corners else None, numerator=unsigned(widths.eye - 1),
+            at_mirror=bit(), numerator=unsigned(widths.eye - 1),
             denominator=unsigned(widths.slope),
         )  # fmt: skip
     convert_hierarchy(top, directory, "// {module}")
@@ -377,7 +387,8 @@ def _convert_bridge(widths: BridgeWidths, directory: Path) -> None:
 def _make_model(proof: Property, directory: Path) -> None:
     wrapper = proof.wrapper
     shutil.copy(WRAPPERS / f"{wrapper}.v", directory)
-    sources = " ".join(f"verilog/{module}.v" for module in proof.modules)
+    verilog = {path.name: path.read_text() for path in (directory / "verilog").iterdir()}
+    sources = " ".join(f"verilog/{module}.v" for module in parts_of(proof, verilog))
     values = " ".join(f"-chparam {name} {value}" for name, value in proof.parameters.items())
     cut = [f"blackbox {' '.join(proof.cut)}"] if proof.cut else []
     script = [

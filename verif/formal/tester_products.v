@@ -28,25 +28,14 @@ wire [2 + LOOK_BITS + 5 * COORDINATE_BITS - 1:0] rect = {axis, position, look, u
 wire [2:0] signs = {backward[0], backward[1], backward[2]};
 reg [DISTANCE_BITS-1:0] mirror_1;
 always @(posedge clk) mirror_1 <= mirror;  // it is read a cycle after all else
-generate
-    if (REFLECTIONS > 1) begin: design
-        rect_tester dut (
-            .clk(clk), .steps_find_intersection(started), .rect_word(rect), .eye_x(x), .eye_y(y), .eye_z(z),
-            .signs_word(signs), .slope_dx(dx), .slope_dy(dy), .slope_dz(dz),
-            .mirror_word({mirrored, mirror_axis, mirror_1, met[0], met[1], met[2]}), .hit(hit),
-            .at_mirror(at_mirror), .numerator(numerator), .denominator(denominator)
-        );
-    end
-    else begin: design
-        rect_tester dut (
-            .clk(clk), .steps_find_intersection(started), .rect_word(rect), .eye_x(x), .eye_y(y), .eye_z(z),
-            .signs_word(signs), .slope_dx(dx), .slope_dy(dy), .slope_dz(dz),
-            .mirror_word({mirrored, mirror_axis, mirror_1}), .hit(hit), .numerator(numerator),
-            .denominator(denominator)
-        );
-        assign at_mirror = 0;
-    end
-endgenerate
+wire [DISTANCE_BITS + 2 + (REFLECTIONS > 1 ? 3 : 0):0] mirror_word =
+    {mirrored, mirror_axis, mirror_1, met[0], met[1], met[2]} >> (REFLECTIONS > 1 ? 0 : 3);
+rect_tester dut (
+    .clk(clk), .steps_find_intersection(started), .rect_word(rect), .eye_x(x), .eye_y(y), .eye_z(z),
+    .signs_word(signs), .slope_dx(dx), .slope_dy(dy), .slope_dz(dz),
+    .mirror_word(mirror_word), .hit(hit),
+    .at_mirror(at_mirror), .numerator(numerator), .denominator(denominator)
+);
 
 function in_reach(input signed [WIDE-1:0] place);
     in_reach = place >= -LAST * REFLECTIONS && place <= LAST * (REFLECTIONS + 1);
@@ -115,7 +104,7 @@ end
 always @* if (valid[2]) begin
     assert (hit == hits[2]);
     if (hit) assert (numerator == n_3 && denominator == e_3);
-    if (hit && REFLECTIONS > 1) assert (at_mirror == in_mirrors[2]);
+    if (hit) assert (at_mirror == in_mirrors[2]);
 end
 
 always @* cover (valid[2] && hit);

@@ -232,12 +232,25 @@ class Recording:
         return [
             f"read_verilog {' '.join(self._files)}",
             f"hierarchy -check -top {self.module}",
-            # MyHDL's constants have 32 bits, of which most faults would change nothing.
+            # A module with parameters has a name for each set of their values, and becomes part of this one.
+            *(f"setattr -mod -set keep_hierarchy 1 {name}" for name in self._submodules()),
             f"select {self.module}",
+            "flatten",
+            *(f"setattr -mod -unset keep_hierarchy {name}" for name in self._submodules()),
+            f"select {self.module}",
+            # MyHDL's constants have 32 bits, of which most faults would change nothing.
             "proc -norom",  # a fault in the address of a ROM would make a memory that Yosys cannot write
             "opt",
             "wreduce",
             "opt_clean",
+        ]
+
+    def _submodules(self) -> list[str]:
+        """The modules below this one that have no parameters, by name."""
+        return [
+            Path(name).stem
+            for name in self._files[:-1]
+            if not re.search(r"^module \w+ #\(", (self._work / name).read_text(), re.MULTILINE)
         ]
 
     def plant(self, count: int, seed: int, look_into: Sequence[str] = ()) -> list[Mutant]:
@@ -248,7 +261,7 @@ class Recording:
             seed: chooses them.
             look_into: submodules that are part of what the solver sees.
         """
-        submodules = [Path(name).stem for name in self._files[:-1]]
+        submodules = self._submodules()
         lines = self._choose(count, seed)
         mutants = [self._describe(number, line) for number, line in enumerate(lines, 1)]
         cut = [
@@ -305,7 +318,7 @@ class Recording:
         """
         run_yosys(self._work, "instances", [*self._read(), "write_json -selected instances.json"])
         cells = _netlist(self._work / "instances.json", self.module)["cells"]
-        names = {Path(name).stem for name in self._files[:-1]}
+        names = set(self._submodules())
         instances = {name: cell["type"] for name, cell in cells.items() if cell["type"] in names}
         script = [f"read_verilog {' '.join(self._files)}", f"hierarchy -check -top {self.module}", "design -save all"]
         for name in sorted(set(instances.values())):

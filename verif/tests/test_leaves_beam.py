@@ -44,12 +44,14 @@ from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.beam.beam_caster import beam_caster
 from raycaster.rtl.beam.beam_lane import beam_lane
 from raycaster.rtl.beam.beam_pass import beam_pass
+from raycaster.rtl.beam.bound_tester import bound_tester
 from raycaster.rtl.beam.cell_step import cell_step
 from raycaster.rtl.beam.colour_blend import colour_blend
 from raycaster.rtl.beam.colour_mean import colour_mean
 from raycaster.rtl.beam.colour_mix import colour_mix
 from raycaster.rtl.beam.colour_seen import colour_seen
 from raycaster.rtl.beam.fold_tester import fold_tester
+from raycaster.rtl.beam.hit_cell import hit_cell
 from raycaster.rtl.beam.hit_cells import hit_cells
 from raycaster.rtl.beam.lane_start import lane_start
 from raycaster.rtl.beam.line_starter import line_starter
@@ -86,6 +88,7 @@ from raycaster.rtl.common.records import (
     walk_of,
     winner_of,
 )
+from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import (
     BASIS_BITS,
     DISTANCE_BITS,
@@ -93,6 +96,7 @@ from raycaster.rtl.common.widths import (
     RGB_BITS,
     bit,
     exact_slope_bits,
+    eye_bits,
     factor_bits,
     fold_bits,
     index_bits,
@@ -374,7 +378,7 @@ def test_rect_setup(config, tmp_path, in_adders=False):
             "slope": Direction(exact_slope_bits(config) + 1),
             "load": unsigned(count),
             "facet": facet_of(config),
-            "growth": None if config.turn else growth_of(config),
+            "growth": growth_of(config),
             "start": walk_of(config),
             "config": config,
             "in_adders": in_adders,
@@ -624,7 +628,7 @@ def test_line_starter(config, tmp_path):
             "loaded": bit(),
             "aim": Direction(slope_bits),
             "start_sweep": bit(),
-            "enter": unsigned(2) if config.pixels == 2 else bit(),
+            "enter": unsigned(config.pixels),
             "config": config,
         },
         tmp_path,
@@ -1278,6 +1282,35 @@ def test_mirror_look_up(tmp_path):
 # The cells of patterns ------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("spare", [0, 2])
+def test_bound_tester(spare, tmp_path):
+    """Ways right at a bound and beside it, of rays that run either way; a way may be wider than the bounds."""
+    bits = 12
+    leaf = Leaf(
+        bound_tester,
+        lambda: {
+            "clk": bit(), "step": bit(), "back": bit(), "way": signed(bits + spare), "low": signed(bits),
+            "high": signed(bits), "between": bit(),
+        },
+        tmp_path,
+    )  # fmt: skip
+    random = np.random.default_rng(seed())
+    most, stimulus, expected = (1 << bits - 1) - 1, [], [None]
+    for number in range(3000):
+        low, high = (int(random.choice([-most - 1, -1, 0, most, random.integers(-most, most)])) for _ in range(2))
+        way = int(random.choice([low, high])) + int(random.integers(-1, 2))
+        way = int(random.choice([way, random.integers(-most << spare, most << spare)]))
+        way = int(np.clip(way, -(most + 1) << spare, most << spare))
+        step, back = int(number == 0 or random.random() < 0.8), int(random.integers(2))
+        words = {"way": way % (1 << bits + spare), "low": low % (1 << bits), "high": high % (1 << bits)}
+        stimulus.append({"step": step, "back": back} | words)
+        between = high <= way <= low if back else low <= way <= high
+        expected.append(between if step else expected[-1])
+    outputs = leaf.run_both([*stimulus, {}], settled=1)
+    for cycle, wanted in enumerate(expected):
+        assert wanted is None or bool(outputs[cycle]["between"]) == wanted, (stimulus[cycle - 1], repeat())
+
+
 @pytest.mark.parametrize("place", [8, 5, 3])
 def test_cell_step(place, tmp_path):
     """A quotient's bit, and what is left below it."""
@@ -1304,6 +1337,43 @@ def test_cell_step(place, tmp_path):
         fits = rest // (divisor << place)
         expected = rest % (divisor << place), divisor, cell, fits if 8 << cell == 1 << place else odd
         assert tuple(output[f"after_{name}"] for name in ("rest", "divisor", "cell", "odd")) == expected, repeat()
+
+
+@pytest.mark.parametrize("config", [beam_config(screen="tiny", patterns=True, turn=True, reflections=2)], ids=config_id)
+def test_hit_cell(config, tmp_path):
+    """The cell of a coordinate (E + T) +- D n / e within the world, many of them at a cell's edge."""
+    slope_bits, numerator_bits, turn_width = exact_slope_bits(config), eye_bits(config) - 1, turn_bits(config)
+    leaf = Leaf(
+        hit_cell,
+        lambda: {
+            "clk": bit(), "turn": signed(turn_width), "eye": unsigned(9), "back": bit(),
+            "slope": signed(slope_bits + 1), "numerator": unsigned(numerator_bits),
+            "denominator": unsigned(slope_bits), "cell_size": unsigned(3), "odd": bit(),
+        },
+        tmp_path,
+    )  # fmt: skip
+    random = np.random.default_rng(seed())
+    far, steepest = (1 << turn_width - 1) - 1, steepest_slope(config)
+    stimulus, expected = [{}], {}
+    while len(stimulus) < 8000:
+        turn, eye, back = int(random.integers(-far, far + 1)), any_place(random), int(random.integers(2))
+        goal = 8 * int(random.integers(64)) + int(random.choice([-1, 0, 0, 1]))
+        e = int(random.choice([1, 3, steepest, random.integers(1, steepest + 1)]))
+        way = (goal - eye - turn) * (-1 if back else 1) * e + int(random.integers(-1, 2))
+        slope = int(random.choice([1, way, random.integers(1, steepest + 1)])) * (1 if way > 0 else -1) or 1
+        slope = int(np.clip(slope, -steepest, steepest))
+        n = min(abs(way // slope), (1 << numerator_bits) - 1)
+        place = eye + turn + Fraction((-1 if back else 1) * slope * n, e)
+        if not 0 <= place <= LAST or not n:
+            continue
+        cell = int(random.integers(8))
+        stimulus[-1] |= {"turn": turn % (1 << turn_width), "eye": eye, "back": back, "numerator": n, "denominator": e,
+                         "cell_size": cell}  # fmt: skip
+        expected[len(stimulus) - 1 + CELL_LATENCY - 1] = int(place // (8 << cell)) % 2
+        stimulus.append({"slope": slope % (1 << slope_bits + 1)})
+    outputs = leaf.run_both([*stimulus, *[{}] * CELL_LATENCY], settled=min(expected))
+    for cycle, odd in expected.items():
+        assert outputs[cycle]["odd"] == odd, (stimulus[cycle - CELL_LATENCY + 1 :][:2], repeat())
 
 
 def to_edge(random: np.random.Generator, config: Configuration, axis: int, plane: int, eye, turned, slope):
@@ -1600,10 +1670,11 @@ def test_beam_pass(mirrors, tmp_path):
             "clk": bit(),
             **row_signals(config),
             **{strobe: bit() for strobe in strobes},
-            "fold": fold_of(config) if mirrors else None,
+            "fold": fold_of(config),
             "nearest": candidate_of(config),
             "winner": winner_of(config),
             "tested": range(config.rectangles),
+            "reflected": mirrors > 0,
             "config": config,
         },
         tmp_path,
@@ -1671,7 +1742,7 @@ def test_beam_lane(config, first, lines, tmp_path):
         lambda: {
             "clk": bit(),
             "next_column": bit(),
-            "enter": None,
+            "enter": tied(0, 1),
             **row_signals(config),
             "camera": camera_of(config),
             "picture": Picture(),

@@ -28,6 +28,7 @@ from raycaster.rtl.common.records import (
     rect_of,
     surface_of,
 )
+from raycaster.rtl.common.ties import unconnected
 from raycaster.rtl.common.widths import (
     RGB_BITS,
     bit,
@@ -44,6 +45,7 @@ from raycaster.rtl.engine.rect_sequencer import rect_sequencer
 from raycaster.rtl.exact.cell_finder import cell_finder
 from raycaster.rtl.exact.exact_control import exact_control
 from raycaster.rtl.exact.exact_unit import exact_unit
+from raycaster.rtl.exact.extent_tester import extent_tester
 from raycaster.rtl.exact.eye_register import eye_register
 from raycaster.rtl.exact.nearest_hit import nearest_hit
 from raycaster.rtl.exact.rect_tester import rect_tester
@@ -222,6 +224,62 @@ def test_turned_generator(config, tmp_path):
         assert wanted is None or outputs[cycle] == slope_inputs(wanted, "initial_"), (stimulus[cycle - 1], repeat())
 
 
+# extent_tester --------------------------------------------------------------------------------------------------------
+
+
+@by_reflections
+def test_extent_tester(reflections, tmp_path):
+    """Where the ray is when it meets the plane, as a fraction: before, at and beyond the bounds and the mirror."""
+    config = exact_config(reflections=reflections)
+    eye_width, slope_bits = eye_bits(config), exact_slope_bits(config)
+    leaf = Leaf(
+        extent_tester,
+        lambda: {
+            "clk": bit(), "step": bit(), "low": unsigned(9), "high": unsigned(9), "eye": signed(eye_width),
+            "back": bit(), "slope": unsigned(slope_bits), "on_mirror": bit(),
+            "mirror_distance": unsigned(eye_width - 1), "n": unsigned(eye_width - 1), "e": unsigned(slope_bits),
+            "ahead": bit(), "between": bit(), "in_mirror": bit(),
+        },
+        tmp_path,
+    )  # fmt: skip
+    random = np.random.default_rng(seed())
+    far, steepest = LAST * (reflections + 1), (1 << slope_bits) - 1
+    stimulus, aheads, expected, late = [], {}, {}, {}
+    for cycle in range(6000):
+        low, high = sorted(int(random.choice([0, 1, LAST, random.integers(WORLD_SIZE)])) for _ in range(2))
+        eye = int(random.choice([0, LAST, far, far - LAST, LAST - far, random.integers(LAST - far, far + 1)]))
+        eye = int(np.clip(eye, LAST - far, far))
+        back, on_mirror = (int(value) for value in random.integers(2, size=2))
+        slope, e = (int(random.choice([1, 2, steepest, random.integers(1, steepest + 1)])) for _ in range(2))
+        near, beyond = (eye - high, eye - low) if back else (low - eye, high - eye)
+        mirror = max(0, int(random.choice([near, near - 1, near + 1, beyond, beyond + 1, random.integers(far + 1)])))
+        # Near one of the places that count, where a product can get there.
+        goal = int(random.choice([near, beyond, mirror, random.integers(far + 1)]))
+        n = goal * e // slope + int(random.integers(-1, 2))
+        if goal * e % slope and random.random() < 0.5:
+            e, n = slope, goal
+        n = int(np.clip(n, 1, (1 << eye_width - 1) - 1))
+        step = int(cycle == 0 or random.random() < 0.9)
+        stimulus.append(late | {
+            "step": step, "low": low, "high": high, "eye": eye % (1 << eye_width), "back": back, "slope": slope,
+            "on_mirror": on_mirror,
+        })  # fmt: skip
+        late = {"mirror_distance": min(mirror, (1 << eye_width - 1) - 1), "n": n, "e": e}
+        aheads[cycle] = beyond >= 0
+        if step and beyond >= 0:
+            at, mirror = Fraction(slope * n, e), late["mirror_distance"]
+            behind_mirror = on_mirror and near <= mirror and at < mirror
+            expected[cycle + 2] = near <= at <= beyond and not behind_mirror, bool(on_mirror and near <= mirror == at)
+    outputs = leaf.run_both([*stimulus, late, {}], settled=2)
+    assert {value for pair in expected.values() for value in pair} == {False, True}
+    for cycle, ahead in aheads.items():
+        assert bool(outputs[cycle]["ahead"]) == ahead or cycle < 2, (cycle, repeat())
+    for cycle, wanted in expected.items():
+        assert tuple(bool(outputs[cycle][name]) for name in ("between", "in_mirror")) == wanted, (
+            stimulus[cycle - 2 : cycle], repeat()
+        )  # fmt: skip
+
+
 # rect_tester ----------------------------------------------------------------------------------------------------------
 
 
@@ -237,7 +295,7 @@ def leaf_of_tester(config: Configuration, directory) -> Leaf:
             "slope": Slope(exact_slope_bits(config)),
             "mirror": mirror_of(config),
             "hit": bit(),
-            "at_mirror": bit() if config.reflections > 1 else None,
+            "at_mirror": bit(),
             "numerator": unsigned(eye_bits(config) - 1),
             "denominator": unsigned(exact_slope_bits(config)),
         },
@@ -288,7 +346,7 @@ def test_rect_tester(reflections, turn, tmp_path):
     leaf = leaf_of_tester(config, tmp_path)
     random = np.random.default_rng(seed())
     stimulus, expected, distance = [], [], 0
-    for table, chosen, eye, slope, mirror in mirrored_rays(random, config, 1000):
+    for table, chosen, eye, slope, mirror in mirrored_rays(random, config, 1500):
         met = {mirror[0]} if mirror else set()
         if mirror and reflections > 1 and random.random() < 0.5:
             met |= set(random.choice(3, int(random.integers(3))).tolist())
@@ -319,7 +377,7 @@ def test_rect_tester(reflections, turn, tmp_path):
         assert bool(output["hit"]) == wanted[0], (stimulus[cycle], repeat())
         if wanted[0]:
             assert (output["numerator"], output["denominator"]) == wanted[1:3], (stimulus[cycle], repeat())
-            assert reflections < 2 or bool(output["at_mirror"]) == wanted[3], (stimulus[cycle], repeat())
+            assert bool(output["at_mirror"]) == wanted[3], (stimulus[cycle], repeat())
         corners.add(wanted[3])
         seen.add((wanted[0], stimulus[cycle]["rect_axis"], stimulus[cycle]["mirror_active"]))
     assert len(seen) == (12 if reflections else 6), "hits and misses on each axis, with a mirror and without"
@@ -369,7 +427,6 @@ def test_the_widths_are_just_wide_enough(reflections, turn, tmp_path):
 def test_nearest_hit(reflections, turn, tmp_path):
     config = exact_config(reflections=reflections, turn=turn)
     numerator_bits, denominator_bits = eye_bits(config) - 1, exact_slope_bits(config)
-    corners = reflections > 1
     leaf = Leaf(
         nearest_hit,
         lambda: {
@@ -377,14 +434,14 @@ def test_nearest_hit(reflections, turn, tmp_path):
             "steps": Steps(),
             "offered": Surface(),
             "hit": bit(),
-            "at_mirror": bit() if corners else None,
+            "at_mirror": bit(),
             "numerator": unsigned(numerator_bits),
             "denominator": unsigned(denominator_bits),
             "found": bit(),
             "found_surface": Surface(),
             "found_distance": unsigned(numerator_bits),
             "found_slope": unsigned(denominator_bits),
-            "found_at_mirror": bit() if corners else None,
+            "found_at_mirror": bit(),
         },
         tmp_path,
     )
@@ -417,7 +474,7 @@ def test_nearest_hit(reflections, turn, tmp_path):
             {
                 "steps_reset_z_buf": reset, "steps_write_z_buf": write, "hit": hit, "numerator": n, "denominator": e,
                 **{f"offered_{name}": value for name, value in offered.items()},
-                **({"at_mirror": int(random.integers(2))} if corners else {}),
+                "at_mirror": int(random.integers(2)),
             }
         )  # fmt: skip
         expected.append((best is not None, surface))
@@ -453,7 +510,7 @@ def test_eye_register(reflections, tmp_path):
             "initial_signs": Signs(),
             "found_surface": Surface(),
             "found_distance": unsigned(eye_bits(config) - 1),
-            "found_at_mirror": bit() if reflections > 1 else None,
+            "found_at_mirror": bit() if reflections > 1 else unconnected(1),
             "eye": Eye(eye_bits(config)),
             "signs": Signs(),
             "mirror": mirror_of(config),

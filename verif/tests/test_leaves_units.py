@@ -16,6 +16,7 @@ from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.common.interfaces import Picture, Place, Slope, Steps
 from raycaster.rtl.common.magnitude import magnitude
 from raycaster.rtl.common.records import Origin, Pixel, Ray, Signs, rect_of
+from raycaster.rtl.common.ties import tied, unconnected
 from raycaster.rtl.common.widths import (
     AXIS_BITS,
     CELL_BITS,
@@ -82,8 +83,8 @@ def finder_leaf(config: Configuration, directory) -> Leaf:
             "hit": bit(),
             "depth": unsigned(position_bits(config)),
             "point": Origin(config),
-            "odd_u": bit() if config.patterns else None,
-            "odd_v": bit() if config.patterns else None,
+            "odd_u": bit() if config.patterns else unconnected(1),
+            "odd_v": bit() if config.patterns else unconnected(1),
             "towards": bit(),
             "config": config,
         },
@@ -223,7 +224,7 @@ def test_z_buffer(config, tmp_path):
             "found": bit(),
             "found_axis": unsigned(AXIS_BITS),
             "found_colour": unsigned(RGB_BITS),
-            "found_mirror": unsigned(MIRROR_BITS) if config.materials else None,
+            "found_mirror": unsigned(MIRROR_BITS) if config.materials else unconnected(MIRROR_BITS),
             "found_point": Origin(config),
             "config": config,
         },
@@ -398,7 +399,7 @@ def test_colour_share(reflections, materials, tmp_path):
             "clk": bit(),
             "steps": Steps(),
             "found": bit(),
-            "found_mirror": unsigned(MIRROR_BITS) if materials else None,
+            "found_mirror": unsigned(MIRROR_BITS) if materials else tied(0, MIRROR_BITS),
             "share": unsigned(share_bits(config)),
             "missed": bit(),
             "config": config,
@@ -483,7 +484,7 @@ def test_colour_combiner(colour_bits, reflections, materials, tmp_path):
             "steps": Steps(),
             "found": bit(),
             "found_colour": unsigned(RGB_BITS),
-            "found_mirror": unsigned(MIRROR_BITS) if materials else None,
+            "found_mirror": unsigned(MIRROR_BITS) if materials else tied(0, MIRROR_BITS),
             "picture": Picture(),
             "missed": bit(),
             "pixel": Pixel(colour_bits),

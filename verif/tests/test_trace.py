@@ -113,7 +113,7 @@ FAULTS = {
     ],
     "exact": [
         ("exact_control", "steps_write_z_buf = in_flight[2]", "steps_write_z_buf = 0"),
-        ("rect_tester", "way_u = seen_1_n * slope_u_1", "way_u = seen_1_n + slope_u_1"),
+        ("extent_tester", "way = n * slope_1", "way = n + slope_1"),
         ("nearest_hit", "offered_product < nearest_product", "offered_product > nearest_product"),
         ("eye_register", "difference = twice_signed - mirrored", "difference = twice_signed + mirrored"),
     ],

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: MIT
+"""Whether a ray meets a plane between a rectangle's two bounds on one axis."""
+
+from myhdl import always, always_comb, block, instances
+
+from raycaster.rtl.common.widths import bit, signed, unsigned
+
+
+@block
+def extent_tester(
+    clk, step, low, high, eye, back, slope, on_mirror, mirror_distance, n, e, ahead, between, in_mirror
+):  # fmt: skip
+    """Test whether a ray meets a plane between a rectangle's two bounds on one of the axes beside the plane's.
+
+    The ray meets the plane at t = n / e. `rect_tester` explains the test: (near - E) e <= D n <= (far - E) e, where the
+    axis is turned around for a negative D, and the last mirror's distance replaces that of a bound that is nearer.
+
+    Args:
+        clk: the clock.
+        step: strobe; takes low, high, eye, back, slope and on_mirror.
+        low: unsigned; the lower bound, inclusive.
+        high: unsigned, as wide as low; the upper bound, inclusive.
+        eye: signed, wide enough for any distance in the world; E.
+        back: flag; D is negative.
+        slope: unsigned; |D|.
+        on_mirror: flag; the mirror that the ray left last lies across this axis.
+        mirror_distance: unsigned, a bit narrower than eye; from the eye to that mirror. Read a cycle after step.
+        n: unsigned, as wide as mirror_distance; from the eye to the plane. Read a cycle after step.
+        e: unsigned, as wide as slope; the slope towards the plane. Read a cycle after step.
+        ahead: output flag, combinational, in the cycle of step; the far bound is not behind the eye.
+        between: output flag; the ray meets the plane between the bounds, if ahead was high. Valid two cycles after
+            step.
+        in_mirror: output flag; the ray meets the plane where it meets the mirror. Valid two cycles after step.
+    """
+    distance_bits, coordinate_bits, slope_bits = len(eye) - 1, len(low) + 1, len(slope)
+    way_bits = distance_bits + slope_bits
+
+    lower, upper, near, far = (signed(coordinate_bits) for _ in range(4))
+    turned_eye = signed(len(eye))
+    # One bit more than a distance and its sign take is for operands of two rays, while signals settle.
+    to_near, to_far = signed(len(eye) + 1), signed(len(eye) + 1)
+
+    # The number at a name's end is that of the stage whose registers have it.
+    slope_1, to_near_1, to_far_1 = unsigned(slope_bits), unsigned(distance_bits), unsigned(distance_bits)
+    passed_1, on_mirror_1, clips, behind = bit(), bit(), bit(), bit()
+    first = unsigned(distance_bits)
+    way, way_to_near, way_to_far, way_2, way_to_near_2, way_to_far_2 = (unsigned(way_bits) for _ in range(6))
+    behind_2, clips_2 = bit(), bit()
+
+    @always_comb
+    def extend():
+        lower.next = low
+        upper.next = high
+
+    @always_comb
+    def turn():
+        near.next = lower
+        far.next = upper
+        turned_eye.next = eye
+        if back:
+            near.next = ~upper
+            far.next = ~lower
+            turned_eye.next = ~eye
+
+    @always_comb
+    def measure():
+        to_near.next = near - turned_eye
+        to_far.next = far - turned_eye
+
+    @always_comb
+    def look_ahead():
+        ahead.next = not to_far[distance_bits]
+
+    # A near bound behind the eye is passed.
+    @always(clk.posedge)
+    def stage_1():
+        if step:
+            slope_1.next = slope
+            to_near_1.next = to_near[distance_bits:]
+            to_far_1.next = to_far[distance_bits:]
+            passed_1.next = to_near[distance_bits]
+            on_mirror_1.next = on_mirror
+
+    @always_comb
+    def clip():
+        clips.next = on_mirror_1 and (passed_1 or (to_near_1 <= mirror_distance))
+
+    @always_comb
+    def choose_first():
+        first.next = to_near_1
+        behind.next = passed_1 and not clips
+        if clips:
+            first.next = mirror_distance
+
+    @always_comb
+    def multiply():
+        way.next = n * slope_1
+        way_to_near.next = first * e
+        way_to_far.next = to_far_1 * e
+
+    @always(clk.posedge)
+    def stage_2():
+        way_2.next = way
+        way_to_near_2.next = way_to_near
+        way_to_far_2.next = way_to_far
+        behind_2.next = behind
+        clips_2.next = clips
+
+    @always_comb
+    def compare():
+        between.next = (behind_2 or (way_to_near_2 <= way_2)) and (way_2 <= way_to_far_2)
+        in_mirror.next = clips_2 and (way_to_near_2 == way_2)
+
+    return instances()
