@@ -75,10 +75,11 @@ class Joined(ConcatSignal):
         """MyHDL's, but that a slice of a field reads the field's word too."""
         self._read = True
         for part in self._sigargs:
-            while isinstance(part, _SliceSignal):
-                part._markRead()
-                part = part._sig
-            part._markRead()
+            read = part
+            while isinstance(read, _SliceSignal):
+                read._markRead()
+                read = read._sig
+            read._markRead()
 
     def toVerilog(self) -> str:
         """Assign the fields, each in a line of its own."""
