@@ -20,7 +20,7 @@ from raycaster.configuration import MOST_RECTANGLES, MOST_REFLECTIONS, Configura
 from raycaster.convert.provenance import Provenance
 from raycaster.engines import ENGINES
 from raycaster.fpga.cells import DECIDES, FAMILIES, TOOLS, measure
-from raycaster.golden import engines
+from raycaster.golden.engines import model_of
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.jobs import run_jobs
 from raycaster.outcomes import Outcome, Published, table
@@ -84,7 +84,7 @@ def frame_time(config: Configuration, build: Path) -> float:
             shown_last = [machine.frame().picture for _ in range(frames)][-1]
         after = os.times()
         times.append(after.children_user + after.children_system - before.children_user - before.children_system)
-    wrong = count_wrong(shown_last, shown(engines.render(config, scene, scene.reflections), config))
+    wrong = count_wrong(shown_last, shown(model_of(config).render(scene, config.screen_geometry), config))
     assert not wrong, f"{config.name}: {wrong} wrong pixels"
     return 1000 * (times[1] - times[0]) / (MANY - FEW)
 

@@ -27,6 +27,9 @@ MOST_REFLECTIONS = 4
 CHANNEL_BITS = 8
 """Bits a colour channel has until it leaves for the monitor."""
 
+LOOKS = ("turn", "materials", "patterns")
+"""Options that add to what scenes may show."""
+
 SLOW_HZ = 50_000_000
 """A clock that designs meet on the chips of the boards without registers on long wires."""
 
@@ -150,8 +153,8 @@ class Configuration:
 
     @property
     def looks(self) -> tuple[str, ...]:
-        """Of turn, materials and patterns, those that it has."""
-        return tuple(name for name in ("turn", "materials", "patterns") if getattr(self, name))
+        """Of `LOOKS` those that it has."""
+        return tuple(name for name in LOOKS if getattr(self, name))
 
     @property
     def table(self) -> int:

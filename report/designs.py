@@ -10,8 +10,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from raycaster.configuration import OPTIONS, configure
-from raycaster.golden.seed_engine import Rounding
+from raycaster.configuration import OPTIONS, Rounding, configure
 from raycaster.report import hardware, plots
 from raycaster.report.extent import Extent
 from raycaster.report.hardware import Candidate, cells, describe, error, foretold_cycles, time, unit_of

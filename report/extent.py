@@ -6,13 +6,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from raycaster.configuration import MOST_REFLECTIONS, Configuration, configure
+from raycaster.configuration import LOOKS, MOST_REFLECTIONS, Configuration, configure
 from raycaster.golden.catalogue import Case, catalogue
 
 CASE_REFLECTIONS = 2
 """That the catalogue is looked at with."""
-
-LOOKS = ("turn", "materials", "patterns")
 
 
 @dataclass(frozen=True)

@@ -19,9 +19,11 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
-from raycaster.golden import exact, seed_engine
+from raycaster.configuration import Rounding
 from raycaster.golden.errors import DepthErrors
+from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong, diff_picture
+from raycaster.golden.seed_engine import SeedModel
 from raycaster.report.hardware import Candidate
 from raycaster.report.points import PicturePoint, View
 from raycaster.screens import SCREENS
@@ -312,13 +314,12 @@ def _pictures(rows: Sequence[Sequence[tuple[str, np.ndarray]]], height: float) -
     return figure
 
 
-def wrong_by_scene(scenes: Sequence[View], rounding: seed_engine.Rounding) -> Figure:
+def wrong_by_scene(scenes: Sequence[View], rounding: Rounding) -> Figure:
     """Of each scene, where the seed engine is wrong without fraction bits."""
     columns, shown = 3, []
     for scene in scenes:
         screen = SCREENS["vga", 240]
-        perfect = exact.render(scene.scene, screen)
-        picture = seed_engine.render(scene.scene, screen, rounding=rounding)
+        perfect, picture = (model.render(scene.scene, screen) for model in (ExactModel(), SeedModel(rounding=rounding)))
         share = count_wrong(picture, perfect) / perfect[..., 0].size
         shown.append((f"{scene.name}: {share:.2%}", diff_picture(picture, perfect)))
     return _pictures([shown[at : at + columns] for at in range(0, len(shown), columns)], 1.35)
@@ -332,10 +333,10 @@ def flips(points: Sequence[PicturePoint]) -> Figure:
     rows = []
     for point in points:
         screen = SCREENS["vga", 240]
-        picture = seed_engine.render(
-            point.scene, screen, point.fraction_bits, rounding=point.rounding, reflections=point.reflections
+        picture, perfect = (
+            model.render(point.scene, screen, point.reflections)
+            for model in (SeedModel(point.fraction_bits, point.rounding), ExactModel())
         )
-        perfect = exact.render(point.scene, screen, reflections=point.reflections)
         rows.append(
             [
                 (f"{_two_lines(point.view.name)}\nF = {point.fraction_bits}, {point.rounding}", picture),

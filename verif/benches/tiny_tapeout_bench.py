@@ -11,7 +11,7 @@ from cocotb.handle import HierarchyObject
 from cocotb.triggers import ClockCycles
 
 from raycaster.configuration import Configuration
-from raycaster.golden import engines
+from raycaster.golden.engines import model_of
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.scene import load_scene
 from raycaster.sim import simulator
@@ -56,7 +56,7 @@ async def one_frame(bench: HierarchyObject) -> None:
     monitor.forget()
     bench.rst_n.value = 1
     frame = await monitor.frame()
-    expected = shown(engines.render(config, scene, job.reflections), config)
+    expected = shown(model_of(config).render(scene, config.screen_geometry, job.reflections), config)
     wrong = count_wrong(frame, expected)
     assert wrong == 0, f"{wrong} of {expected[..., 0].size} pixels are wrong"
     assert expected.any(), "the expected picture is black"

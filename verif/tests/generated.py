@@ -23,7 +23,7 @@ def examples(count: int) -> Callable:
 
 
 class World(NamedTuple):
-    """A table, and rays from one camera; as `raycaster.golden.exact.trace` takes them."""
+    """A table, and rays from one camera; as `raycaster.golden.model.Model.trace` takes them."""
 
     rectangles: Rectangles
     camera: np.ndarray

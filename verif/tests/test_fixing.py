@@ -26,7 +26,7 @@ from raycaster.fit.unneeded import covered, seen, unreachable, without_mirrors
 from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
 from raycaster.fpga import fit as search
 from raycaster.fpga.cells import FAMILIES, measure
-from raycaster.golden import engines
+from raycaster.golden.engines import model_of
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.beam.beam_caster import known_facet, known_growth
@@ -107,11 +107,12 @@ def test_what_is_seen_is_enough(engine):
     config = configure(engine=engine, screen="tiny", allow_underrun=True)
     scene = load_scene(BOXES)
     met = set().union(*seen(config, scene, 1))
-    picture = engines.render(config, scene, 1)
+    model = model_of(config)
+    picture = model.render(scene, config.screen_geometry, 1)
 
     def without(indices) -> np.ndarray:
         kept = tuple(rectangle for index, rectangle in enumerate(scene.rect) if index not in indices)
-        return engines.render(config, scene.model_copy(update={"rect": kept}), 1)
+        return model.render(scene.model_copy(update={"rect": kept}), config.screen_geometry, 1)
 
     assert 3 <= len(met) < len(scene.rect)
     assert np.array_equal(without(set(range(len(scene.rect))) - met), picture)

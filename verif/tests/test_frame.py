@@ -14,7 +14,7 @@ from PIL import Image
 
 from raycaster.configuration import configure
 from raycaster.design import packaged_for
-from raycaster.golden import exact
+from raycaster.golden.exact import ExactModel
 from raycaster.scene import load_scene, packaged_scenes
 
 PLAIN = packaged_scenes(plain=True)
@@ -59,7 +59,7 @@ def test_full_size_beam(bench: Bench, rows, scale, pixels, shown):
     assert result["worst_row_cycles"] == configuration.screen_geometry.horizontal.visible // pixels
     assert result["worst_group_cycles"] == 1
     # The same view, sampled finer: what the coarse picture has is in it.
-    coarse = exact.render(load_scene(scene), configure(engine="beam", rows=rows, scale=1).screen_geometry)
+    coarse = ExactModel().render(load_scene(scene), configure(engine="beam", rows=rows, scale=1).screen_geometry)
     step = configuration.screen_geometry.horizontal.visible // 320
     assert np.array_equal(np.asarray(Image.open(directory / "frame.png"))[::step, ::step], coarse)
 

@@ -222,8 +222,7 @@ def assert_told(bounce: dict, ray: Ray, number: int, context: str) -> int:
             assert values["depth"] == [ray.of_rectangle(place, "depths")], context
     if ray.winner(number) >= 0:
         assert bounce["point"] == ray.golden.points[number][0].tolist(), context
-        exact = config.engine == "exact"
-        assert bounce["denominator"] == (ray.golden.denominators[number][0] if exact else 1), context
+        assert bounce["denominator"] == ray.golden.denominators[number][0], context
     return len(tried)
 
 
