@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
@@ -44,6 +44,11 @@ Rounding = Literal["truncate", "nearest"]
 """How quotients are rounded: towards zero, or to the nearest."""
 
 
+def _listed(names: Iterable[str]) -> str:
+    *others, last = names
+    return f"{', '.join(others)} or {last}"
+
+
 class ConfigurationError(UserError):
     """A configuration that cannot be built, with one line that says what, where and what to do."""
 
@@ -55,7 +60,7 @@ class Options:
     Raises pydantic's `ValidationError`.
     """
 
-    engine: EngineName = Field(SEED.name, description="what computes the rays: seed, exact or beam")
+    engine: EngineName = Field(SEED.name, description=f"what computes the rays: {_listed(ENGINES)}")
     units: int | None = Field(
         None, ge=1, description="ray units in parallel, a divisor of the columns: 32; the fewest of the exact engine; 1"
     )

@@ -107,7 +107,7 @@ def find_designs(what: Extent, errors: Errors, sweep: Sweep) -> Designs:
     ]
     base = configure(units=max(what.units), screen=what.screen, culling=False)
     units = {
-        config: CellsPoint(config, UNITS["seed"])
+        config: CellsPoint(config, UNITS[config.engine])
         for config in dict.fromkeys(unit_of(one.config) for one in [*seeds, Candidate(base, 0)])
     }
     found = sweep("cells of units", [CellsPoint(base), *units.values()])

@@ -4,7 +4,7 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.engines import BEAM, EXACT, SEED
+from raycaster.engines import BEAM
 from raycaster.registers import address_bits
 from raycaster.rtl.beam.beam_renderer import beam_renderer
 from raycaster.rtl.bus.avalon_interface import avalon_interface
@@ -19,8 +19,8 @@ from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.rtl.scene.rect_rom import rect_rom
 from raycaster.rtl.system.ray_caster_renderer import ray_caster_renderer
 
-RENDERERS = {SEED.name: ray_caster_renderer, EXACT.name: ray_caster_renderer, BEAM.name: beam_renderer}
-"""By engine, the block that fills the screen."""
+RENDERERS = {BEAM.name: beam_renderer}
+"""By engine, the block that fills the screen; of the others `ray_caster_renderer`."""
 
 
 @block
@@ -83,7 +83,7 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
 
         gate = clock_gate(clk, awake=scene_awake, gated_clk=scene_clk)
         rests_on(scene_clk, rectangles, position)
-    renderer = RENDERERS[config.engine](
+    renderer = RENDERERS.get(config.engine, ray_caster_renderer)(
         clk, reset, picture=picture, camera=camera, rects=rects, progress=progress, vga=vga, config=config
     )
 

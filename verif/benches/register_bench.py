@@ -52,7 +52,7 @@ async def says_what_it_is(bench: HierarchyObject) -> None:
         "id": {"magic": int.from_bytes(b"RAYC", "big")},
         "version": {name: field.reset for name, field in bus.registers["version"].fields.items()},
         "engine": {
-            "engine": {"seed": 0, "exact": 1, "beam": 2}[configuration.engine],
+            "engine": configuration.facts.code,
             "fraction_bits": configuration.fraction_bits,
             "nearest": int(configuration.rounding == "nearest"),
             "divider_bits": configuration.divider_bits,

@@ -29,6 +29,7 @@ from raycaster.rtl.system.camera_axis import STEP
 from raycaster.rtl.system.ports import module_ports, system_ports
 from raycaster.rtl.system.ray_caster import ray_caster
 from raycaster.rtl.system.ray_caster_module import RENDERERS, ray_caster_module
+from raycaster.rtl.system.ray_caster_renderer import ray_caster_renderer
 from raycaster.rtl.system.ray_caster_system import ray_caster_system
 from raycaster.rtl.system.reset_release import HOLD_CYCLES
 from raycaster.rtl.system.scene_player import BUTTONS
@@ -515,7 +516,7 @@ def start_screen_cycle(screen: Screen) -> int:
 
 def renderer_leaf(config: Configuration, directory) -> Leaf:
     return Leaf(
-        RENDERERS[config.engine],
+        RENDERERS.get(config.engine, ray_caster_renderer),
         lambda: {
             "clk": bit(),
             "reset": reset_signal(),
