@@ -12,6 +12,7 @@ from pydantic import ConfigDict, Field, ValidationError
 from pydantic.dataclasses import dataclass as validated_dataclass
 from pydantic.fields import FieldInfo
 
+from raycaster.buses import BUSES, OWN
 from raycaster.engines import ENGINES, SEED, Engine
 from raycaster.errors import UserError
 from raycaster.fixed import FixedScene
@@ -35,9 +36,9 @@ SLOW_HZ = 50_000_000
 
 
 if TYPE_CHECKING:
-    EngineName = str
+    EngineName = BusName = str
 else:
-    EngineName = Literal[*ENGINES]
+    EngineName, BusName = Literal[*ENGINES], Literal[*BUSES]
 
 
 Rounding = Literal["truncate", "nearest"]
@@ -98,9 +99,7 @@ class Options:
     patterns: bool | None = Field(
         None, description="rectangles with a pattern of two colours, 1 or 0: 1 where the scene has them"
     )
-    bus: Literal["avalon", "axi4lite", "wishbone", "apb"] = Field(
-        "avalon", description="what the registers are behind: avalon, axi4lite, wishbone or apb"
-    )
+    bus: BusName = Field(OWN, description=f"what the registers are behind: {_listed(BUSES)}")
     fixed: FixedScene | None = Field(None, description="what of a scene is built in")
 
 
@@ -236,7 +235,7 @@ class Configuration:
         # Only what is not the default is told.
         culling = "" if self.fixed or self.culling == self.facts.divides else f"-k{int(self.culling)}"
         looks = "".join(f"-{name}" for name in self.looks)
-        bus = "" if self.bus == "avalon" else f"-{self.bus}"
+        bus = "" if self.bus == OWN else f"-{self.bus}"
         return (
             f"{self.engine}-{self.screen}{self.rows}{scale}-u{self.units}-r{self.rectangles}-m{self.reflections}"
             f"{quotients}-c{self.colour_bits}{culling}{looks}{bus}{fixed}"
@@ -249,7 +248,7 @@ def need_avalon(config: Configuration, what: str) -> None:
     Raises:
         ConfigurationError: one line that says of what.
     """
-    if config.bus != "avalon":
+    if config.bus != OWN:
         raise ConfigurationError(f"bus: {what} drives the registers itself, by Avalon-MM; leave out {config.bus}")
 
 

@@ -30,6 +30,7 @@ from filelock import FileLock
 import raycaster
 import raycaster.convert
 import raycaster.rtl
+from raycaster.buses import OWN
 from raycaster.configuration import Configuration
 from raycaster.digests import sources_digest, tools_digest
 from raycaster.errors import UserError
@@ -136,7 +137,7 @@ class Bench:
 
     def defines(self, configuration: Configuration) -> dict[str, int]:
         """Macros of its Verilog, for a design."""
-        bus = {} if configuration.bus == "avalon" else {f"BUS_{configuration.bus.upper()}": 1}
+        bus = {} if configuration.bus == OWN else {f"BUS_{configuration.bus.upper()}": 1}
         return bus | ({"WAVE_WINDOW": 1} if self.window else {})
 
     def parameters(self, configuration: Configuration) -> dict[str, int]:

@@ -10,6 +10,7 @@ import hypothesis
 import numpy as np
 from hypothesis import strategies as st
 
+from raycaster.buses import BUSES
 from raycaster.configuration import WORLD_SIZE
 from raycaster.golden.random_world import EXTREMES
 from raycaster.golden.world import Rectangles
@@ -82,7 +83,7 @@ ANY_OPTIONS = {
     "colour_bits": st.integers(1, 8),
     "materials": st.booleans(),
     "patterns": st.booleans(),
-    "bus": st.sampled_from(["avalon", "axi4lite", "wishbone", "apb"]),
+    "bus": st.sampled_from(list(BUSES)),
 }
 ODD = {
     "engine": "none", "units": 7, "rectangles": 33, "reflections": -1, "rows": 100, "scale": 6, "fraction_bits": 9,
