@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
@@ -14,7 +14,7 @@ from pydantic.fields import FieldInfo
 
 from raycaster.buses import BUSES, OWN
 from raycaster.engines import ENGINES, SEED, Engine
-from raycaster.errors import UserError
+from raycaster.errors import UserError, listed
 from raycaster.fixed import FixedScene
 from raycaster.screens import COORDINATE_BITS, Screen
 
@@ -45,11 +45,6 @@ Rounding = Literal["truncate", "nearest"]
 """How quotients are rounded: towards zero, or to the nearest."""
 
 
-def _listed(names: Iterable[str]) -> str:
-    *others, last = names
-    return f"{', '.join(others)} or {last}"
-
-
 class ConfigurationError(UserError):
     """A configuration that cannot be built, with one line that says what, where and what to do."""
 
@@ -61,7 +56,7 @@ class Options:
     Raises pydantic's `ValidationError`.
     """
 
-    engine: EngineName = Field(SEED.name, description=f"what computes the rays: {_listed(ENGINES)}")
+    engine: EngineName = Field(SEED.name, description=f"what computes the rays: {listed(ENGINES)}")
     units: int | None = Field(
         None, ge=1, description="ray units in parallel, a divisor of the columns: 32; the fewest of the exact engine; 1"
     )
@@ -99,7 +94,7 @@ class Options:
     patterns: bool | None = Field(
         None, description="rectangles with a pattern of two colours, 1 or 0: 1 where the scene has them"
     )
-    bus: BusName = Field(OWN, description=f"what the registers are behind: {_listed(BUSES)}")
+    bus: BusName = Field(OWN, description=f"what the registers are behind: {listed(BUSES)}")
     fixed: FixedScene | None = Field(None, description="what of a scene is built in")
 
 

@@ -4,6 +4,7 @@
 from myhdl import ConcatSignal, Signal, intbv
 
 from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, WORLD_SIZE, Configuration
+from raycaster.scene import PATTERNS
 
 SLOPE_BITS = 9
 """Magnitude of a slope; the sign is kept beside it."""
@@ -27,7 +28,7 @@ MIRROR_BITS = 3
 REFLECTION_BITS = 3
 """How many reflections a scene asks for."""
 
-KIND_BITS = 2
+KIND_BITS = (len(PATTERNS) - 1).bit_length()
 CELL_BITS = 3
 """Of a pattern: its kind, and log2 of a cell's size in world units, less three."""
 
