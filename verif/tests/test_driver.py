@@ -30,7 +30,7 @@ from raycaster.convert.take_home import TOP
 from raycaster.golden.world import Rectangles
 from raycaster.program import scene_words
 from raycaster.registers import register_map
-from raycaster.scene import UNTURNED, Camera, load_scene
+from raycaster.scene import PATTERNS, UNTURNED, Camera, load_scene
 from raycaster.verif.seeds import repeat, seed
 
 ERRORS = enumerators(SOFTWARE / "raycaster.h", "raycaster_error")
@@ -244,7 +244,8 @@ def test_mirrors_that_are_none(library, everything, quarters):
 
 
 @pytest.mark.parametrize(
-    ("pattern", "cell"), [(4, 32), (0xFFFFFFFF, 32), (1, 0), (1, 4), (1, 12), (1, 257), (1, 512), (1, 0x80000000)]
+    ("pattern", "cell"),
+    [(len(PATTERNS), 32), (0xFFFFFFFF, 32), (1, 0), (1, 4), (1, 12), (1, 257), (1, 512), (1, 0x80000000)],
 )
 def test_patterns_that_are_none(library, everything, pattern, cell):
     model, handle = everything

@@ -95,8 +95,7 @@ class Hardware:
             errors.append(self.call("set_rectangle", index, *first, *second, code(rect.colour)))
             errors.append(self.call("set_mirror", index, round(4 * rect.mirror)))
             if rect.pattern != "plain":
-                kind = ("plain", "checker", "rows", "columns").index(rect.pattern)
-                errors.append(self.call("set_pattern", index, kind, rect.cell, code(rect.colour2)))
+                errors.append(self.call("set_pattern", index, rect.kind, rect.cell, code(rect.colour2)))
             else:
                 errors.append(self.call("set_pattern", index, 0, 8, 0))
         errors += [self.call("disable_rectangle", n) for n in range(len(scene.rect), self.config.rectangles)]
