@@ -19,6 +19,7 @@ from rich.console import Console
 from raycaster.configuration import Configuration, configure
 from raycaster.convert.write import write_verilog
 from raycaster.design import design_for
+from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.fit.choice import keep_choice, kept_choice
 from raycaster.fit.fixing import FIT, SCOPES, configuration_of, design_of, fix, fixed_rectangle
@@ -39,7 +40,6 @@ from raycaster.tools import run_yosys
 from raycaster.verif.leaf import Leaf
 from raycaster.verif.seeds import repeat, seed
 
-ENGINES = ("seed", "exact", "beam")
 BOXES = ROOT / "scenes" / "boxes.toml"
 
 

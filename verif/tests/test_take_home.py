@@ -19,6 +19,7 @@ from raycaster.buses import BRIDGED
 from raycaster.configuration import Configuration, configure
 from raycaster.convert.take_home import FILE_LIST, TOP, WAIVERS
 from raycaster.convert.write import write_verilog
+from raycaster.engines import ENGINES
 from raycaster.fit.fixing import fix
 from raycaster.sim.simulator import find_tool
 
@@ -43,7 +44,7 @@ CONFIGURATIONS = [
     configure(engine="beam", screen="tiny", reflections=2, rectangles=2, turn=True, materials=True, patterns=True),
     *(configure(engine="exact", screen="tiny", rectangles=2, bus=bus) for bus in BRIDGED),
     fix(SMALL_SCENE, {"screen": "tiny"}, "rects").design.configuration,
-    *(fix(SMALL_SCENE, {"engine": engine}, "all").design.configuration for engine in ("seed", "exact", "beam")),
+    *(fix(SMALL_SCENE, {"engine": engine}, "all").design.configuration for engine in ENGINES),
 ]
 SMALL = configure(screen="tiny", units=2, rectangles=2, allow_underrun=True)
 
