@@ -19,7 +19,7 @@ from multiprocessing import get_context
 
 from filelock import FileLock
 
-from raycaster.buses import BUSES
+from raycaster.buses import BUSES, OWN
 from raycaster.cli.__main__ import loaded
 from raycaster.cli.commands import COMMANDS
 from raycaster.configuration import Configuration
@@ -59,7 +59,7 @@ def _buses(kept: Outcome) -> str:
     areas = {row["bus"]: row for row in kept.figures["bridges"]}
     rows = []
     for name, bus in BUSES.items():
-        cells = [areas[name][kind] if name in areas else 0 for kind in ("tables", "registers")]
+        cells = [0 if name == OWN else areas[name][kind] for kind in ("tables", "registers")]
         rows.append([f"`BUS={name}`", bus.title, f"`{bus.port}_*`", bus.unit, bus.write, bus.read, *cells])
     return table(["", "bus", "ports", "address unit", "cycles per write", "cycles per read", "LUT4", "registers"], rows)
 
