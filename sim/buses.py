@@ -32,15 +32,15 @@ from cocotbext.axi.axil_channels import (
 )
 from cocotbext.wishbone.driver import WBOp, WishboneMaster
 
-from raycaster.buses import OWN
+from raycaster.buses import BUSES, OWN
 from raycaster.configuration import Configuration
 from raycaster.sim.avalon import AvalonBus
 from raycaster.sim.register_bus import RegisterBus
 
 WORD_BYTES = 4
 
-for driver in ("s_axi", "s_apb", "wb"):
-    logging.getLogger(f"cocotb.bench.{driver}").setLevel(logging.WARNING)  # they tell of each access
+for known in BUSES.values():
+    logging.getLogger(f"cocotb.bench.{known.port}").setLevel(logging.WARNING)  # they tell of each access
 
 
 class BridgedBus(RegisterBus):
@@ -169,7 +169,7 @@ class ApbRegisterBus(BridgedBus):
         self._master.set_pause_generator(_odds(random, random.choice((0.0, 0.5))))
 
 
-BUSES: dict[str, Callable[[HierarchyObject, Configuration], RegisterBus]] = {
+DRIVERS: dict[str, Callable[[HierarchyObject, Configuration], RegisterBus]] = {
     OWN: AvalonBus,
     "axi4lite": Axi4LiteBus,
     "wishbone": WishboneBus,

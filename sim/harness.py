@@ -15,7 +15,7 @@ from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.scene import Scene
-from raycaster.sim.buses import BUSES
+from raycaster.sim.buses import DRIVERS
 from raycaster.sim.job import Job
 from raycaster.sim.monitor import CLOCK_NS, Monitor
 from raycaster.sim.register_model import LiveScene
@@ -83,7 +83,7 @@ class Harness(Viewer):
 
     def __init__(self, bench: HierarchyObject):
         super().__init__(bench)
-        self.bus = BUSES[self.configuration.bus](bench, self.configuration)
+        self.bus = DRIVERS[self.configuration.bus](bench, self.configuration)
 
     async def reset(self) -> None:
         """Reset the design; returns at the first clock edge at which reset is low."""

@@ -4,6 +4,8 @@
 What a class says of its attributes stands above those ports in Verilog.
 """
 
+from typing import ClassVar
+
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.records import rect_of
 from raycaster.rtl.common.widths import (
@@ -74,6 +76,15 @@ class AvalonPort(Interface):
         self.writedata, self.byteenable = unsigned(WORD_BITS), unsigned(LANES)
         self.readdata = unsigned(WORD_BITS)
         self.readdatavalid, self.waitrequest = bit(), bit()
+
+
+class BusPort(Interface):
+    """A bus that has a bridge to Avalon-MM, as the bridge has it.
+
+    outputs: names of the signals that the bridge drives.
+    """
+
+    outputs: ClassVar[tuple[str, ...]]
 
 
 class Picture(Interface):
