@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The golden model of whatever engine a design has."""
+"""The golden model of a design."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ from raycaster.golden.world import OTHER_AXES, Rectangles
 
 @dataclass(frozen=True)
 class ExactModel(Model):
-    """What every picture should be, and what the engines draw that do not divide."""
+    """The model of every engine that does not divide, and the true picture for those that do."""
 
     def meetings(
         self, rectangles: Rectangles, origin: np.ndarray, slope: np.ndarray, *, keep: bool

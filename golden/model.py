@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The shape of the golden models: how rays are followed and pictures made, and what is known of each ray."""
+"""The shape of the golden models: rays followed from mirror to mirror, and the pictures that they make."""
 
 from __future__ import annotations
 
@@ -83,18 +83,18 @@ class Bounce:
         )  # fmt: skip
 
     def note(self, rectangle: SupportsIndex, **values: ArrayLike) -> None:
-        """Keep what is known of a rectangle, by the names of the arrays."""
+        """Keep the values of a rectangle, by the names of the arrays."""
         for name, value in values.items():
             getattr(self, name)[rectangle] = value
 
 
 Meeting = tuple[np.ndarray, np.ndarray, np.ndarray, Bounce | None]
-"""What rays met: `winners`, `points` and `denominators` as `Trace` has them, and all else if it is kept."""
+"""Winners, points and denominators of a pass, as in `Trace`, and its `Bounce` if that is kept."""
 
 
 @dataclass(frozen=True)
 class Trace:
-    """What became of rays: their colours; then for the primary ray and each reflection, what they met."""
+    """Ray-tracing results: the pixels, then a tuple with an entry for the primary ray and for each reflection."""
 
     colours: np.ndarray
     """uint8 (rays, 3)."""
@@ -118,16 +118,16 @@ class Trace:
 
 @dataclass(frozen=True)
 class Model(ABC):
-    """A golden model: what rays see in one engine's arithmetic."""
+    """A golden model: the arithmetic of an engine, on whole arrays of rays."""
 
     looks: Collection[str] = field(default=LOOKS, kw_only=True)
-    """Of turn, materials and patterns, those that scenes may need."""
+    """Options that scenes may need, from `LOOKS`."""
 
     @abstractmethod
     def meetings(
         self, rectangles: Rectangles, origin: np.ndarray, slope: np.ndarray, *, keep: bool
     ) -> Iterator[Meeting]:
-        """Follow rays from mirror to mirror without end; the arrays, (3, rays), are the model's own."""
+        """Follow rays from mirror to mirror without end; it may change the arrays, which are (3, rays)."""
 
     def trace(
         self,
@@ -143,11 +143,11 @@ class Model(ABC):
 
         Args:
             rectangles: the table.
-            camera: (3,) or, one a ray, (rays, 3): where the rays start, in world units.
+            camera: (3,), or (rays, 3) for one per ray: where the rays start, in world units.
             background: red, green, blue.
             slopes: int (rays, 3); only their ratios count.
             reflections: 0 or more.
-            keep: also return every intermediate value: some 100 bytes a ray, rectangle and bounce.
+            keep: also return every intermediate value: some 100 bytes per ray, rectangle and bounce.
         """
         slope = np.array(np.asarray(slopes).T, dtype=np.int64, order="C")
         origin = np.array(np.broadcast_to(np.asarray(camera), slope.T.shape).T, dtype=np.int64, order="C")
@@ -167,7 +167,7 @@ class Model(ABC):
         *,
         basis: Basis = UNTURNED,
     ) -> np.ndarray:
-        """The picture of what a scene comes down to; the arguments are those of `trace` and `primary_slopes`.
+        """The picture of a table of rectangles; the arguments are those of `trace` and `primary_slopes`.
 
         Returns:
             uint8 (rows, columns, 3).
@@ -182,13 +182,13 @@ class Model(ABC):
         Args:
             scene: what is seen; its `rows` are not looked at.
             screen: what it is looked at through.
-            reflections: instead of the scene's own.
+            reflections: instead of the scene's reflections.
 
         Returns:
             uint8 (rows, columns, 3).
 
         Raises:
-            ValueError: the scene needs what the model's design has not.
+            ValueError: the scene needs an option that is not among `looks`.
         """
         if lacking := scene.lacks(self.looks):
             raise ValueError(f"a design without {' and '.join(lacking)} does not draw this scene")

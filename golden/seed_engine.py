@@ -24,13 +24,13 @@ from raycaster.golden.world import OTHER_AXES, Rectangles
 
 @dataclass(frozen=True)
 class SeedModel(Model):
-    """What the seed engine draws. It measures depth along x, so the camera cannot turn."""
+    """The model of the seed engine, which measures depth along x, so that its camera cannot turn."""
 
     fraction_bits: int = 0
     """F, 0..8."""
 
     rounding: Rounding = "truncate"
-    """Of quotients."""
+    """Rounding of quotients."""
 
     looks: Collection[str] = field(default=("materials", "patterns"), kw_only=True)
 

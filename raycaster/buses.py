@@ -32,6 +32,6 @@ BUSES: Mapping[str, Bus] = {
     "wishbone": Bus(title="Wishbone B4, classic", port="wb", unit="words", write=1, read=3),
     "apb": Bus(title="APB4", port="s_apb", unit="bytes", write=2, read=3),
 }
-"""By what `Configuration.bus` may be; the registers' own comes first, the others have a bridge to it."""
+"""By the name in `Configuration.bus`; the first is the bus of the registers, the others have a bridge to it."""
 
 OWN, *BRIDGED = BUSES
