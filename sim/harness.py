@@ -95,7 +95,7 @@ class Harness(Viewer):
         self.monitor.forget()
         await RisingEdge(self.bench.clk)
 
-    async def frame_after_reset(self, released_ns: int, on_row: Callable[[int], None] | None = None) -> np.ndarray:
+    async def frame_after_reset(self, released_ns: float, on_row: Callable[[int], None] | None = None) -> np.ndarray:
         """The first frame after a reset, which restarts the video at the first pixel of the vertical front porch.
 
         Args:

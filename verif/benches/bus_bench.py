@@ -8,6 +8,7 @@ registers themselves.
 from __future__ import annotations
 
 from random import Random
+from typing import Any
 
 import cocotb
 from cocotb.handle import HierarchyObject
@@ -32,7 +33,7 @@ def kept_registers(config: Configuration) -> list[Register]:
     return [registers[name] for name in ("irq_enable", "background", "camera", *corners)]
 
 
-async def measure(bench: HierarchyObject, bus: BridgedBus, found: dict[str, set[int]]) -> None:
+async def measure(bench: Any, bus: BridgedBus, found: dict[str, set[int]]) -> None:
     """Count the cycles of each access that the bus has."""
     ages = dict.fromkeys(found, 0)
 
@@ -58,6 +59,7 @@ async def words_and_a_frame(bench: HierarchyObject) -> None:
     scene that is drawn without a wrong pixel."""
     harness = Harness(bench)
     bus, config = harness.bus, harness.configuration
+    assert isinstance(bus, BridgedBus)
     accesses = 0
     for seed in harness.job.seeds:
         random = Random(seed)
@@ -124,10 +126,11 @@ async def cycles(bench: HierarchyObject) -> None:
     """An access that nothing hinders takes as many as it should, and never fewer."""
     harness = Harness(bench)
     bus = harness.bus
+    assert isinstance(bus, BridgedBus)
     await harness.reset()
-    await ClockCycles(bench.clk, 4)
+    await ClockCycles(harness.bench.clk, 4)
     found: dict[str, set[int]] = {"write": set(), "read": set()}
-    cocotb.start_soon(measure(bench, bus, found))
+    cocotb.start_soon(measure(harness.bench, bus, found))
     address = bus.registers["background"].address
     for number in range(20):
         await bus.write_word(address, number)
