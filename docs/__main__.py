@@ -27,6 +27,7 @@ REFERENCE = (
     "raycaster.scene",
     "raycaster.configuration",
     "raycaster.design",
+    "raycaster.golden.model",
     "raycaster.golden.exact",
     "raycaster.golden.engines",
     "raycaster.golden.picture",

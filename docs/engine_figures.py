@@ -12,15 +12,14 @@ from typing import Any
 
 from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
+from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.fpga.cells import DECIDES, FAMILIES, TOOLS, measure
 from raycaster.outcomes import Outcome, Published, table
 from raycaster.scene import packaged_scenes
 
 DESIGNS: tuple[Mapping[str, Any], ...] = (
-    {"engine": "seed"},
-    {"engine": "exact"},
-    {"engine": "beam"},
+    *({"engine": name} for name in ENGINES),
     {"engine": "beam", "rows": 180},
 )
 """Options of the designs that are compared; all else is as by default."""

@@ -20,7 +20,7 @@ from raycaster.configuration import MOST_RECTANGLES, MOST_REFLECTIONS, Configura
 from raycaster.convert.provenance import Provenance
 from raycaster.engines import ENGINES
 from raycaster.fpga.cells import DECIDES, FAMILIES, TOOLS, measure
-from raycaster.golden import engines
+from raycaster.golden.engines import model_of
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.jobs import run_jobs
 from raycaster.outcomes import Outcome, Published, table
@@ -84,7 +84,7 @@ def frame_time(config: Configuration, build: Path) -> float:
             shown_last = [machine.frame().picture for _ in range(frames)][-1]
         after = os.times()
         times.append(after.children_user + after.children_system - before.children_user - before.children_system)
-    wrong = count_wrong(shown_last, shown(engines.render(config, scene, scene.reflections), config))
+    wrong = count_wrong(shown_last, shown(model_of(config).render(scene, config.screen_geometry), config))
     assert not wrong, f"{config.name}: {wrong} wrong pixels"
     return 1000 * (times[1] - times[0]) / (MANY - FEW)
 
@@ -139,7 +139,6 @@ PANELS = (
     ("rectangles", "frame_ms", "a frame in Verilator, ms"),
     ("reflections", "tables", "LUT4"),
 )
-COLOURS = {"seed": "#b5651d", "exact": "#1f6f8b", "beam": "#6a4c93"}
 
 
 def draw_scaling(rows: Sequence[Mapping[str, Any]], measured: str, path: Path) -> None:
@@ -153,14 +152,14 @@ def draw_scaling(rows: Sequence[Mapping[str, Any]], measured: str, path: Path) -
     with mpl.rc_context({"svg.hashsalt": "raycaster", "svg.fonttype": "none", "font.size": 9}):
         figure = Figure(figsize=(8, 8.4), layout="constrained")
         for axes, (option, count, title) in zip(figure.subplots(len(PANELS)), PANELS, strict=True):
-            for engine, colour in COLOURS.items():
+            for name, engine in ENGINES.items():
                 points = [
                     (row["value"], row[count])
                     for row in rows
-                    if (row["engine"], row["option"]) == (engine, option) and count in row
+                    if (row["engine"], row["option"]) == (name, option) and count in row
                 ]
-                axes.plot(*zip(*points, strict=True), color=colour, marker="o", markersize=4)
-                axes.annotate(engine, points[-1], (8, 0), textcoords="offset points", color=colour, va="center")
+                axes.plot(*zip(*points, strict=True), color=engine.colour, marker=engine.marker, markersize=4)
+                axes.annotate(name, points[-1], (8, 0), textcoords="offset points", color=engine.colour, va="center")
             axes.set(xlabel=option, ylabel=title, ylim=(0, None))
             axes.xaxis.get_major_locator().set_params(integer=True)
             axes.spines[["top", "right"]].set_visible(False)

@@ -19,6 +19,7 @@ from multiprocessing import get_context
 
 from filelock import FileLock
 
+from raycaster.buses import BUSES, OWN
 from raycaster.cli.__main__ import loaded
 from raycaster.cli.commands import COMMANDS
 from raycaster.configuration import Configuration
@@ -35,7 +36,6 @@ from raycaster.report import __main__ as report
 from raycaster.report import beside
 from raycaster.sim import scenes
 from raycaster.verif import everything
-from raycaster.verif.benches.bus_bench import CYCLES
 from raycaster.verif.coverage import measure as coverage
 from raycaster.verif.exhaustive import run as exhaustive
 from raycaster.verif.formal import prove
@@ -53,22 +53,14 @@ DECIDING = (
 
 JOBS = 2
 
-BUS_TITLES = {
-    "avalon": ("Avalon-MM", "`avs_s0_*`", "words"),
-    "axi4lite": ("AXI4-Lite", "`s_axi_*`", "bytes"),
-    "wishbone": ("Wishbone B4, classic", "`wb_*`", "words"),
-    "apb": ("APB4", "`s_apb_*`", "bytes"),
-}
-
 
 def _buses(kept: Outcome) -> str:
     """Buses in front of the registers; cycles as their bench measures them."""
     areas = {row["bus"]: row for row in kept.figures["bridges"]}
     rows = []
-    for bus, (title, ports, unit) in BUS_TITLES.items():
-        cycles = CYCLES.get(bus, {"write": 1, "read": 3})
-        cells = [areas[bus][name] if bus in areas else 0 for name in ("tables", "registers")]
-        rows.append([f"`BUS={bus}`", title, ports, unit, cycles["write"], cycles["read"], *cells])
+    for name, bus in BUSES.items():
+        cells = [0 if name == OWN else areas[name][kind] for kind in ("tables", "registers")]
+        rows.append([f"`BUS={name}`", bus.title, f"`{bus.port}_*`", bus.unit, bus.write, bus.read, *cells])
     return table(["", "bus", "ports", "address unit", "cycles per write", "cycles per read", "LUT4", "registers"], rows)
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from raycaster.configuration import Configuration
-from raycaster.golden import engines
+from raycaster.golden.engines import model_of
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.output import printable
@@ -76,8 +76,8 @@ def seen(config: Configuration, scene: Scene, reflections: int) -> list[set[int]
         For the primary ray and each reflection, their indices.
     """
     slopes = primary_slopes(config.screen_geometry, scene.camera.basis).reshape(-1, 3)
-    traced = engines.trace(
-        config, Rectangles.of_scene(scene), scene.camera.position, scene.background, slopes, reflections
+    traced = model_of(config).trace(
+        Rectangles.of_scene(scene), scene.camera.position, scene.background, slopes, reflections
     )
     return [set(np.unique(winners).tolist()) - {-1} for winners in traced.winners]
 

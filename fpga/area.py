@@ -17,6 +17,7 @@ from typing import Any
 
 from rich.table import Table
 
+from raycaster.buses import BRIDGED
 from raycaster.configuration import Configuration, configure
 from raycaster.convert.provenance import Provenance
 from raycaster.convert.take_home import TOP
@@ -154,10 +155,6 @@ def show_features(features: Sequence[Mapping[str, Any]], console: Console) -> No
     console.print(table)
 
 
-BUSES = ("axi4lite", "wishbone", "apb")
-"""That a bridge is for."""
-
-
 def measure_bridges(output: Path, console: Console) -> list[dict[str, Any]]:
     """What the bridge from each bus takes of an ECP5.
 
@@ -165,11 +162,11 @@ def measure_bridges(output: Path, console: Console) -> list[dict[str, Any]]:
         UserError: as `measure`.
     """
     tasks: dict[tuple[str, int], Callable[[Path], Any]] = {}
-    for bus in BUSES:
+    for bus in BRIDGED:
         config = configure(engine="exact", bus=bus)
         tasks[config.name, 0] = lambda path, c=config: measure(c, FAMILIES["ecp5"], path, f"{c.bus}_bridge")
     results = _run(tasks, output, console)
-    return [{"bus": bus, **asdict(results[key])} for bus, key in zip(BUSES, tasks, strict=True)]
+    return [{"bus": bus, **asdict(results[key])} for bus, key in zip(BRIDGED, tasks, strict=True)]
 
 
 def show_bridges(bridges: Sequence[Mapping[str, Any]], console: Console) -> None:
@@ -362,7 +359,7 @@ def command_parser() -> CommandParser:
 def provenance(arguments: argparse.Namespace) -> Provenance:
     """Digest what decides the command's figures."""
     if arguments.bridges:
-        return Provenance([configure(engine="exact", bus=bus) for bus in BUSES], DECIDES, TOOLS)
+        return Provenance([configure(engine="exact", bus=bus) for bus in BRIDGED], DECIDES, TOOLS)
     if arguments.features:
         designs = [configure(engine=engine, **options) for _, engine, options in feature_designs()]
         return Provenance(designs, DECIDES, TOOLS)

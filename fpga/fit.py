@@ -23,7 +23,8 @@ from raycaster.errors import UserError, not_installed
 from raycaster.fit.choice import BUILD, keep_choice
 from raycaster.fit.fixing import SCOPES, Fixing, fix, general_design, show
 from raycaster.fpga.cells import DECIDES, FAMILIES, TOOLS, Area, measure
-from raycaster.golden import engines, exact
+from raycaster.golden.engines import model_of
+from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong
 from raycaster.jobs import add_job_options, executors, run_jobs
 from raycaster.options import (
@@ -73,8 +74,10 @@ def error_of(design: Design) -> float:
     config = design.configuration
     if not config.facts.divides:
         return 0.0
-    seen = engines.render(config, design.scene, design.reflections)
-    perfect = exact.render(design.scene, config.screen_geometry, design.reflections)
+    seen, perfect = (
+        model.render(design.scene, config.screen_geometry, design.reflections)
+        for model in (model_of(config), ExactModel())
+    )
     return count_wrong(seen, perfect) / seen[..., 0].size
 
 

@@ -22,8 +22,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from raycaster.golden import exact, seed_engine
-from raycaster.golden.seed_engine import Rounding
+from raycaster.configuration import Rounding
+from raycaster.golden.exact import ExactModel
+from raycaster.golden.model import Trace
+from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.world import OTHER_AXES, Rectangles
 
 NEAR = 1e-9
@@ -75,9 +77,9 @@ def compare(
         rounding: of quotients.
     """
     dark = (0, 0, 0)
-    perfect = exact.trace(rectangles, camera, dark, slopes, reflections)
-    rounded = seed_engine.trace(
-        rectangles, camera, dark, slopes, reflections, fraction_bits=fraction_bits, rounding=rounding
+    perfect, rounded = (
+        model.trace(rectangles, camera, dark, slopes, reflections)
+        for model in (ExactModel(), SeedModel(fraction_bits, rounding))
     )
     return depth_errors(rectangles, slopes, perfect, rounded.winners, rounded.points, fraction_bits, rounding)
 
@@ -85,7 +87,7 @@ def compare(
 def depth_errors(
     rectangles: Rectangles,
     slopes: np.ndarray,
-    perfect: exact.Trace,
+    perfect: Trace,
     winners: Sequence[np.ndarray],
     points: Sequence[np.ndarray],
     fraction_bits: int,
@@ -97,7 +99,7 @@ def depth_errors(
         rectangles: the table.
         slopes: int (rays, 3), of the primary rays.
         perfect: what they meet.
-        winners: for each depth, int64 (rays,): what they met, as `seed_engine.Trace` has it.
+        winners: for each depth, int64 (rays,): what they met, as `Trace` has it.
         points: for each depth, int64 (rays, 3): where, in units of 2^-F.
         fraction_bits: F.
         rounding: of quotients.
@@ -188,7 +190,7 @@ def _summary(
 
 
 def conditions(
-    rectangles: Rectangles, camera: Sequence[int], slopes: np.ndarray, perfect: exact.Trace
+    rectangles: Rectangles, camera: Sequence[int], slopes: np.ndarray, perfect: Trace
 ) -> tuple[np.ndarray, ...]:
     """How far a hit moves for each unit by which a slope is off: the condition number of the intersection.
 

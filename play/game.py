@@ -20,7 +20,7 @@ from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
-from raycaster.golden import exact
+from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.options import (
     CommandParser,
@@ -90,7 +90,7 @@ def look_around(design: Design, frames: int, build: Path, output: Path, console:
             live = frame.scene
             if live is None:
                 raise SimulationError("the design shows no scene")
-            perfect = exact.picture(
+            perfect = ExactModel().picture(
                 config.screen_geometry, live.rectangles, live.camera, live.background, live.reflections,
                 basis=live.basis,
             )  # fmt: skip

@@ -17,7 +17,7 @@ from raycaster.configuration import Configuration, configure
 from raycaster.design import design_for
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError, not_installed
-from raycaster.golden import exact
+from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.options import (
@@ -81,7 +81,7 @@ class Judge:
             self.all_wrong += self.wrong
 
     def _count(self, picture: np.ndarray, scene: LiveScene) -> int:
-        perfect = exact.picture(
+        perfect = ExactModel().picture(
             self._config.screen_geometry, scene.rectangles, scene.camera, scene.background, scene.reflections,
             basis=scene.basis,
         )  # fmt: skip

@@ -12,8 +12,9 @@ from pydantic import ConfigDict, Field, ValidationError
 from pydantic.dataclasses import dataclass as validated_dataclass
 from pydantic.fields import FieldInfo
 
+from raycaster.buses import BUSES, OWN
 from raycaster.engines import ENGINES, SEED, Engine
-from raycaster.errors import UserError
+from raycaster.errors import UserError, listed
 from raycaster.fixed import FixedScene
 from raycaster.screens import COORDINATE_BITS, Screen
 
@@ -27,14 +28,17 @@ MOST_REFLECTIONS = 4
 CHANNEL_BITS = 8
 """Bits a colour channel has until it leaves for the monitor."""
 
+LOOKS = ("turn", "materials", "patterns")
+"""Options that add to what scenes may show."""
+
 SLOW_HZ = 50_000_000
 """A clock that designs meet on the chips of the boards without registers on long wires."""
 
 
 if TYPE_CHECKING:
-    EngineName = str
+    EngineName = BusName = str
 else:
-    EngineName = Literal[*ENGINES]
+    EngineName, BusName = Literal[*ENGINES], Literal[*BUSES]
 
 
 Rounding = Literal["truncate", "nearest"]
@@ -52,7 +56,7 @@ class Options:
     Raises pydantic's `ValidationError`.
     """
 
-    engine: EngineName = Field(SEED.name, description="what computes the rays: seed, exact or beam")
+    engine: EngineName = Field(SEED.name, description=f"what computes the rays: {listed(ENGINES)}")
     units: int | None = Field(
         None, ge=1, description="ray units in parallel, a divisor of the columns: 32; the fewest of the exact engine; 1"
     )
@@ -90,9 +94,7 @@ class Options:
     patterns: bool | None = Field(
         None, description="rectangles with a pattern of two colours, 1 or 0: 1 where the scene has them"
     )
-    bus: Literal["avalon", "axi4lite", "wishbone", "apb"] = Field(
-        "avalon", description="what the registers are behind: avalon, axi4lite, wishbone or apb"
-    )
+    bus: BusName = Field(OWN, description=f"what the registers are behind: {listed(BUSES)}")
     fixed: FixedScene | None = Field(None, description="what of a scene is built in")
 
 
@@ -150,8 +152,8 @@ class Configuration:
 
     @property
     def looks(self) -> tuple[str, ...]:
-        """Of turn, materials and patterns, those that it has."""
-        return tuple(name for name in ("turn", "materials", "patterns") if getattr(self, name))
+        """Of `LOOKS` those that it has."""
+        return tuple(name for name in LOOKS if getattr(self, name))
 
     @property
     def table(self) -> int:
@@ -228,7 +230,7 @@ class Configuration:
         # Only what is not the default is told.
         culling = "" if self.fixed or self.culling == self.facts.divides else f"-k{int(self.culling)}"
         looks = "".join(f"-{name}" for name in self.looks)
-        bus = "" if self.bus == "avalon" else f"-{self.bus}"
+        bus = "" if self.bus == OWN else f"-{self.bus}"
         return (
             f"{self.engine}-{self.screen}{self.rows}{scale}-u{self.units}-r{self.rectangles}-m{self.reflections}"
             f"{quotients}-c{self.colour_bits}{culling}{looks}{bus}{fixed}"
@@ -241,7 +243,7 @@ def need_avalon(config: Configuration, what: str) -> None:
     Raises:
         ConfigurationError: one line that says of what.
     """
-    if config.bus != "avalon":
+    if config.bus != OWN:
         raise ConfigurationError(f"bus: {what} drives the registers itself, by Avalon-MM; leave out {config.bus}")
 
 

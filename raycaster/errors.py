@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What a user can mend is told in one line."""
 
+from collections.abc import Iterable
+
 
 class UserError(Exception):
     """Something that the user can mend; its text is the one line that they are shown."""
@@ -9,3 +11,9 @@ class UserError(Exception):
 def not_installed(what: str, extra: str) -> str:
     """The line for something that an extra of this package brings; the package itself is on no index."""
     return f"{what} is missing; it comes with the extra {extra}: in a clone of this project, pip install '.[{extra}]'"
+
+
+def listed(choices: Iterable[object]) -> str:
+    """Two or more choices as a sentence has them, such as `a, b or c`."""
+    *others, last = map(str, choices)
+    return f"{', '.join(others)} or {last}"

@@ -12,7 +12,7 @@ import tomllib
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
@@ -28,7 +28,7 @@ from pydantic import (
 from pydantic_core import CoreSchema, ErrorDetails
 
 from raycaster.configuration import MOST_RECTANGLES, MOST_REFLECTIONS, WORLD_SIZE
-from raycaster.errors import UserError
+from raycaster.errors import UserError, listed
 
 BASIS_SCALE = 256
 """A whole vector of a camera's basis."""
@@ -53,7 +53,7 @@ COMPLAINTS = {
     "model_type": "must be a table",
     "string_type": "must be a text in quotes",
     "no_colour2": "a pattern has a second colour; give colour2 beside {pattern}",
-    "no_pattern": 'colour2 is for a pattern; give pattern = "checker", "rows" or "columns"',
+    "no_pattern": f"colour2 is for a pattern; give pattern = {listed(map(json.dumps, PATTERNS[1:]))}",
     "too_many": (
         "rect: {count} rectangles, but the hardware holds {rectangles}; remove some or build it with RECTANGLES={count}"
     ),
@@ -170,10 +170,11 @@ Rows = Annotated[
 ]
 Angle = Annotated[float, _Check(_angle, "must be an angle in degrees, -360..360", {"largest": 360})]
 Mirror = Annotated[float, _Check(_choice, "must be 0, 0.25, 0.5, 0.75 or 1", {"choices": (0, 0.25, 0.5, 0.75, 1)})]
-Pattern = Annotated[
-    Literal["plain", "checker", "rows", "columns"],
-    _Check(_choice, 'must be "plain", "checker", "rows" or "columns"', {"choices": PATTERNS}),
-]
+if TYPE_CHECKING:
+    PatternName = str
+else:
+    PatternName = Literal[*PATTERNS]
+Pattern = Annotated[PatternName, _Check(_choice, f"must be {listed(map(json.dumps, PATTERNS))}", {"choices": PATTERNS})]
 CellSize = Annotated[int, _Check(_choice, "must be 8, 16, 32, 64, 128 or 256", {"choices": CELLS})]
 Basis = tuple[tuple[int, int, int], tuple[int, int, int], tuple[int, int, int]]
 

@@ -12,11 +12,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from raycaster.configuration import configure
+from raycaster.configuration import Rounding, configure
 from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
 from raycaster.fpga.cells import DECIDES, TOOLS
-from raycaster.golden.seed_engine import Rounding
 from raycaster.jobs import add_job_options, executors
 from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, Check, Outcome, Published, add_keep_option, keep, kept_outcome, table

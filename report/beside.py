@@ -31,7 +31,7 @@ from raycaster.errors import UserError
 from raycaster.fit.fixing import fix
 from raycaster.fpga.area import route, route_netlist
 from raycaster.fpga.cells import DECIDES, FAMILIES, TOOLS, Area, measure
-from raycaster.golden import exact
+from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong
 from raycaster.golden.world import Rectangles
 from raycaster.outcomes import Outcome, Published, commit_of, table
@@ -200,7 +200,7 @@ def measure_software(scene: Scene, screen: Screen, directory: Path) -> list[dict
         UserError: the loop draws something else, or cannot be compiled.
     """
     start = time.monotonic()
-    right = exact.render(scene, screen)
+    right = ExactModel().render(scene, screen)
     took = time.monotonic() - start
     program = directory / "software"
     compiled = subprocess.run(

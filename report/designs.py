@@ -10,8 +10,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from raycaster.configuration import OPTIONS, configure
-from raycaster.golden.seed_engine import Rounding
+from raycaster.configuration import OPTIONS, Rounding, configure
 from raycaster.report import hardware, plots
 from raycaster.report.extent import Extent
 from raycaster.report.hardware import Candidate, cells, describe, error, foretold_cycles, time, unit_of
@@ -108,7 +107,7 @@ def find_designs(what: Extent, errors: Errors, sweep: Sweep) -> Designs:
     ]
     base = configure(units=max(what.units), screen=what.screen, culling=False)
     units = {
-        config: CellsPoint(config, UNITS["seed"])
+        config: CellsPoint(config, UNITS[config.engine])
         for config in dict.fromkeys(unit_of(one.config) for one in [*seeds, Candidate(base, 0)])
     }
     found = sweep("cells of units", [CellsPoint(base), *units.values()])

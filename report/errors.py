@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from raycaster.golden.seed_engine import Rounding
+from raycaster.configuration import Rounding
 from raycaster.report import plots
 from raycaster.report.extent import Extent
 from raycaster.report.page import Plot, Section, Table, write_csv

@@ -6,13 +6,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from raycaster.configuration import MOST_REFLECTIONS, Configuration, configure
+from raycaster.configuration import LOOKS, MOST_REFLECTIONS, Configuration, configure
+from raycaster.engines import ENGINES
 from raycaster.golden.catalogue import Case, catalogue
 
 CASE_REFLECTIONS = 2
 """That the catalogue is looked at with."""
-
-LOOKS = ("turn", "materials", "patterns")
 
 
 @dataclass(frozen=True)
@@ -81,5 +80,6 @@ def extent(quick: bool) -> Extent:
         fractions=every, reflections=range(MOST_REFLECTIONS + 1), worlds=200,
         design_fractions=every, units=(20, 32), exact_units=(4, 5, 8, 10, 16, 20, 32),
         cases=cases, case_fractions=(0, 2, 4, 8), case_screen="vga", probed_cases=plain, probed=probed_designs,
-        shown=shown, screen="vga", frontier=100, culled=("seed", "exact"), left_scenes=100,
+        shown=shown, screen="vga", frontier=100, left_scenes=100,
+        culled=[name for name, engine in ENGINES.items() if engine.line_buffered],
     )  # fmt: skip

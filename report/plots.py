@@ -19,9 +19,12 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
-from raycaster.golden import exact, seed_engine
+from raycaster.configuration import Rounding
+from raycaster.engines import ENGINES, EXACT, SEED
 from raycaster.golden.errors import DepthErrors
+from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong, diff_picture
+from raycaster.golden.seed_engine import SeedModel
 from raycaster.report.hardware import Candidate
 from raycaster.report.points import PicturePoint, View
 from raycaster.screens import SCREENS
@@ -44,12 +47,10 @@ STYLE: dict[RcKeyType, Any] = {
 }
 LABEL_POINTS = 7.5
 
-BLUE, VERMILION, GREEN, ORANGE, GREY = "#0072B2", "#D55E00", "#009E73", "#E69F00", "#7f7f7f"
-"""Of Okabe and Ito, who chose them for this, and a grey."""
+VERMILION, BLUE, ORANGE, GREY = SEED.colour, EXACT.colour, "#E69F00", "#7f7f7f"
+"""Of Okabe and Ito, as the engines' colours are, and a grey."""
 
 COLOURS = {"truncate": VERMILION, "nearest": BLUE}
-ENGINES = {"seed": (VERMILION, "o"), "exact": (BLUE, "s"), "beam": (GREEN, "^")}
-"""Colour and marker."""
 
 LEAST_SHARE = 1e-5
 """Shares of wrong pixels of a picture below it, less than a pixel, are drawn as none."""
@@ -114,16 +115,16 @@ def _plain(axis: Axis) -> None:
 
 def _dots(axes: Axes, every: Sequence[Candidate], across: str, up: str) -> None:
     """Each design, filled where it was simulated and counted; small where it has culling."""
-    for engine, (colour, marker) in ENGINES.items():
+    for name, engine in ENGINES.items():
         for found in (False, True):
-            dots = [one for one in every if one.config.engine == engine and one.is_found == found]
+            dots = [one for one in every if one.config.engine == name and one.is_found == found]
             if not dots:
                 continue
             xs, ys = ([_value(one, name) for one in dots] for name in (across, up))
-            label = engine if found else f"{engine}, foretold"
             axes.scatter(
-                xs, ys, marker=marker, s=[10 if one.config.culling else 22 for one in dots], linewidths=0.8, zorder=3,
-                facecolors=colour if found else "none", edgecolors=colour, alpha=1 if found else 0.45, label=label,
+                xs, ys, marker=engine.marker, s=[10 if one.config.culling else 22 for one in dots], linewidths=0.8,
+                zorder=3, facecolors=engine.colour if found else "none", edgecolors=engine.colour,
+                alpha=1 if found else 0.45, label=name if found else f"{name}, foretold",
             )  # fmt: skip
 
 
@@ -171,7 +172,7 @@ def designs(
         _dots(axes, every, across, up)
         for frontier in frontiers:
             xs, ys = ([_value(one, name) for one in frontier] for name in (across, up))
-            axes.step(xs, ys, where="post", color=ENGINES[frontier[0].config.engine][0], linewidth=0.9, alpha=0.7)
+            axes.step(xs, ys, where="post", color=frontier[0].config.facts.colour, linewidth=0.9, alpha=0.7)
         if up == "error":
             _percent(axes, LEAST_MEAN)
         else:
@@ -312,13 +313,12 @@ def _pictures(rows: Sequence[Sequence[tuple[str, np.ndarray]]], height: float) -
     return figure
 
 
-def wrong_by_scene(scenes: Sequence[View], rounding: seed_engine.Rounding) -> Figure:
+def wrong_by_scene(scenes: Sequence[View], rounding: Rounding) -> Figure:
     """Of each scene, where the seed engine is wrong without fraction bits."""
     columns, shown = 3, []
     for scene in scenes:
         screen = SCREENS["vga", 240]
-        perfect = exact.render(scene.scene, screen)
-        picture = seed_engine.render(scene.scene, screen, rounding=rounding)
+        perfect, picture = (model.render(scene.scene, screen) for model in (ExactModel(), SeedModel(rounding=rounding)))
         share = count_wrong(picture, perfect) / perfect[..., 0].size
         shown.append((f"{scene.name}: {share:.2%}", diff_picture(picture, perfect)))
     return _pictures([shown[at : at + columns] for at in range(0, len(shown), columns)], 1.35)
@@ -332,10 +332,10 @@ def flips(points: Sequence[PicturePoint]) -> Figure:
     rows = []
     for point in points:
         screen = SCREENS["vga", 240]
-        picture = seed_engine.render(
-            point.scene, screen, point.fraction_bits, rounding=point.rounding, reflections=point.reflections
+        picture, perfect = (
+            model.render(point.scene, screen, point.reflections)
+            for model in (SeedModel(point.fraction_bits, point.rounding), ExactModel())
         )
-        perfect = exact.render(point.scene, screen, reflections=point.reflections)
         rows.append(
             [
                 (f"{_two_lines(point.view.name)}\nF = {point.fraction_bits}, {point.rounding}", picture),
@@ -437,7 +437,7 @@ def culling(by: Mapping[str, Mapping[str, float]]) -> Figure:
         for place, (engine, of_engine) in enumerate(by.items()):
             offsets = [scenes.index(name) + 0.4 - (place + 0.5) * height for name in of_engine]
             bars = axes.barh(offsets, [100 * share for share in of_engine.values()], height, label=engine,
-                             color=ENGINES[engine][0])  # fmt: skip
+                             color=ENGINES[engine].colour)  # fmt: skip
             axes.bar_label(bars, fmt="%.0f", padding=3, fontsize=LABEL_POINTS)
         axes.axvline(100, color="black", linewidth=1)
         axes.set(xlabel="cycles of a frame with culling, % of those without", xlim=(0, 118))

@@ -18,7 +18,7 @@ import numpy as np
 from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
 import raycaster
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration, Rounding, configure
 from raycaster.convert.provenance import ROOT
 from raycaster.convert.take_home import TOP
 from raycaster.design import design_for
@@ -27,12 +27,14 @@ from raycaster.errors import UserError
 from raycaster.fit.fixing import fix, fixed_rectangle
 from raycaster.fixed import FixedScene
 from raycaster.fpga.cells import FAMILIES, measure
-from raycaster.golden import exact, seed_engine
 from raycaster.golden.catalogue import catalogue
+from raycaster.golden.engines import model_of
 from raycaster.golden.errors import conditions, depth_errors
+from raycaster.golden.exact import ExactModel
+from raycaster.golden.model import Trace
 from raycaster.golden.picture import wrong_pixels
 from raycaster.golden.rays import primary_slopes
-from raycaster.golden.seed_engine import Rounding
+from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.world import Rectangles
 from raycaster.options import BUILD, add_configuration_options, as_options, given_options, run_command
 from raycaster.rtl.system import ray_caster
@@ -165,10 +167,9 @@ class PicturePoint:
         slopes, perfect = _perfect(self.scene, self.screen, self.reflections)  # pyright: ignore[reportArgumentType]
         rectangles = Rectangles.of_scene(self.scene)
         rays = slopes.reshape(-1, 3)
-        rounded = seed_engine.trace(
-            rectangles, self.scene.camera.position, self.scene.background, rays, self.reflections,
-            fraction_bits=self.fraction_bits, rounding=self.rounding,
-        )  # fmt: skip
+        rounded = SeedModel(self.fraction_bits, self.rounding).trace(
+            rectangles, self.scene.camera.position, self.scene.background, rays, self.reflections
+        )
         depths = depth_errors(
             rectangles, rays, perfect, rounded.winners, rounded.points, self.fraction_bits, self.rounding
         )
@@ -189,10 +190,10 @@ class PicturePoint:
 
 
 @lru_cache(maxsize=2)
-def _perfect(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, exact.Trace]:
+def _perfect(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
     """The slopes of a picture, int64 (rows, columns, 3), and the exact trace, which one after the other ask for."""
     slopes = primary_slopes(_screen(screen, scene.rows), scene.camera.basis)
-    perfect = exact.trace(
+    perfect = ExactModel().trace(
         Rectangles.of_scene(scene), scene.camera.position, scene.background, slopes.reshape(-1, 3), reflections
     )
     return slopes, perfect
@@ -414,11 +415,10 @@ class HitsPoint:
         config, rectangles = self.config, Rectangles.of_scene(self.scene)
         camera, background = self.scene.camera.position, self.scene.background
         slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
-        perfect = exact.trace(rectangles, camera, background, slopes, config.reflections)
-        golden = seed_engine.trace(
-            rectangles, camera, background, slopes, config.reflections,
-            fraction_bits=config.fraction_bits, rounding=config.rounding,
-        )  # fmt: skip
+        perfect, golden = (
+            model.trace(rectangles, camera, background, slopes, config.reflections)
+            for model in (ExactModel(), model_of(config))
+        )
         with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
             points = hit_points(build_probed_model(config), self.scene, config.reflections, Path(scratch))
         different = 0

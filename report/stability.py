@@ -80,7 +80,8 @@ def stability_sections(
     )
     said, alarms, summary = _judged(pictures, shown, measured, conditions)
     _plot(what, pictures, conditions, directory)
-    of_page = [row[:-1] for row in rows if row[1].startswith(("exact", "beam", f"seed F = {what.case_fractions[0]} "))]
+    at_first = {point: result for point, result in pictures.items() if point.fraction_bits == what.case_fractions[0]}
+    of_page = [row[:-1] for row in _rows(at_first, shown, conditions)]
     text = (
         "Scenes that strain fixed point: grazed planes, corners, slits, points, mirrors face to face, turned cameras, "
         "patterns on the borders of their cells. The condition number of a case is how far its hits move for a ray "

@@ -23,95 +23,12 @@ module bench #(
     wire irq /*verilator public_flat_rw*/;
 
     // The bus, by the names that its drivers know. Python that waits for an edge of clk runs, in Verilator, when all
-    // registers have changed already. So the drivers of the buses below have a clock that rises in mid-cycle: there they
+    // registers have changed already. So drivers of a bus with a bridge have a clock that rises in mid-cycle: there they
     // sample what has settled, and drive what the design sees from the next edge of clk on.
     wire bus_clk /*verilator public_flat_rw*/;
     assign bus_clk = ~clk;
-`ifdef BUS_AXI4LITE
-    reg [ADDRESS_BITS+1:0] s_axi_awaddr /*verilator public_flat_rw*/;
-    reg s_axi_awvalid /*verilator public_flat_rw*/;
-    reg [31:0] s_axi_wdata /*verilator public_flat_rw*/;
-    reg [3:0] s_axi_wstrb /*verilator public_flat_rw*/;
-    reg s_axi_wvalid /*verilator public_flat_rw*/;
-    reg s_axi_bready /*verilator public_flat_rw*/;
-    reg [ADDRESS_BITS+1:0] s_axi_araddr /*verilator public_flat_rw*/;
-    reg s_axi_arvalid /*verilator public_flat_rw*/;
-    reg s_axi_rready /*verilator public_flat_rw*/;
-    wire s_axi_awready /*verilator public_flat_rw*/;
-    wire s_axi_wready /*verilator public_flat_rw*/;
-    wire [1:0] s_axi_bresp /*verilator public_flat_rw*/;
-    wire s_axi_bvalid /*verilator public_flat_rw*/;
-    wire s_axi_arready /*verilator public_flat_rw*/;
-    wire [31:0] s_axi_rdata /*verilator public_flat_rw*/;
-    wire [1:0] s_axi_rresp /*verilator public_flat_rw*/;
-    wire s_axi_rvalid /*verilator public_flat_rw*/;
-    reg [ADDRESS_BITS+1:0] seen_s_axi_awaddr /*verilator public_flat_rw*/;
-    reg seen_s_axi_awvalid /*verilator public_flat_rw*/;
-    reg [31:0] seen_s_axi_wdata /*verilator public_flat_rw*/;
-    reg [3:0] seen_s_axi_wstrb /*verilator public_flat_rw*/;
-    reg seen_s_axi_wvalid /*verilator public_flat_rw*/;
-    reg seen_s_axi_bready /*verilator public_flat_rw*/;
-    reg [ADDRESS_BITS+1:0] seen_s_axi_araddr /*verilator public_flat_rw*/;
-    reg seen_s_axi_arvalid /*verilator public_flat_rw*/;
-    reg seen_s_axi_rready /*verilator public_flat_rw*/;
-    always @(posedge clk) begin
-        seen_s_axi_awaddr <= s_axi_awaddr;
-        seen_s_axi_awvalid <= s_axi_awvalid;
-        seen_s_axi_wdata <= s_axi_wdata;
-        seen_s_axi_wstrb <= s_axi_wstrb;
-        seen_s_axi_wvalid <= s_axi_wvalid;
-        seen_s_axi_bready <= s_axi_bready;
-        seen_s_axi_araddr <= s_axi_araddr;
-        seen_s_axi_arvalid <= s_axi_arvalid;
-        seen_s_axi_rready <= s_axi_rready;
-    end
-`elsif BUS_WISHBONE
-    reg wb_cyc /*verilator public_flat_rw*/;
-    reg wb_stb /*verilator public_flat_rw*/;
-    reg wb_we /*verilator public_flat_rw*/;
-    reg [ADDRESS_BITS-1:0] wb_adr /*verilator public_flat_rw*/;
-    reg [3:0] wb_sel /*verilator public_flat_rw*/;
-    reg [31:0] wb_dat_w /*verilator public_flat_rw*/;
-    wire wb_ack /*verilator public_flat_rw*/;
-    wire [31:0] wb_dat_r /*verilator public_flat_rw*/;
-    reg seen_wb_cyc /*verilator public_flat_rw*/;
-    reg seen_wb_stb /*verilator public_flat_rw*/;
-    reg seen_wb_we /*verilator public_flat_rw*/;
-    reg [ADDRESS_BITS-1:0] seen_wb_adr /*verilator public_flat_rw*/;
-    reg [3:0] seen_wb_sel /*verilator public_flat_rw*/;
-    reg [31:0] seen_wb_dat_w /*verilator public_flat_rw*/;
-    always @(posedge clk) begin
-        seen_wb_cyc <= wb_cyc;
-        seen_wb_stb <= wb_stb;
-        seen_wb_we <= wb_we;
-        seen_wb_adr <= wb_adr;
-        seen_wb_sel <= wb_sel;
-        seen_wb_dat_w <= wb_dat_w;
-    end
-`elsif BUS_APB
-    reg [ADDRESS_BITS+1:0] s_apb_paddr /*verilator public_flat_rw*/;
-    reg s_apb_psel /*verilator public_flat_rw*/;
-    reg s_apb_penable /*verilator public_flat_rw*/;
-    reg s_apb_pwrite /*verilator public_flat_rw*/;
-    reg [31:0] s_apb_pwdata /*verilator public_flat_rw*/;
-    reg [3:0] s_apb_pstrb /*verilator public_flat_rw*/;
-    wire s_apb_pready /*verilator public_flat_rw*/;
-    wire s_apb_pslverr /*verilator public_flat_rw*/;
-    wire [31:0] s_apb_prdata /*verilator public_flat_rw*/;
-    reg [ADDRESS_BITS+1:0] seen_s_apb_paddr /*verilator public_flat_rw*/;
-    reg seen_s_apb_psel /*verilator public_flat_rw*/;
-    reg seen_s_apb_penable /*verilator public_flat_rw*/;
-    reg seen_s_apb_pwrite /*verilator public_flat_rw*/;
-    reg [31:0] seen_s_apb_pwdata /*verilator public_flat_rw*/;
-    reg [3:0] seen_s_apb_pstrb /*verilator public_flat_rw*/;
-    always @(posedge clk) begin
-        seen_s_apb_paddr <= s_apb_paddr;
-        seen_s_apb_psel <= s_apb_psel;
-        seen_s_apb_penable <= s_apb_penable;
-        seen_s_apb_pwrite <= s_apb_pwrite;
-        seen_s_apb_pwdata <= s_apb_pwdata;
-        seen_s_apb_pstrb <= s_apb_pstrb;
-    end
+`ifdef BRIDGED
+`include "bus_signals.vh"
 `else
     reg [ADDRESS_BITS-1:0] avs_s0_address /*verilator public_flat_rw*/;
     reg avs_s0_read /*verilator public_flat_rw*/;
@@ -129,43 +46,8 @@ module bench #(
     ray_caster_module dut (
         .clk(clk),
         .reset(reset),
-`ifdef BUS_AXI4LITE
-        .s_axi_awaddr(seen_s_axi_awaddr),
-        .s_axi_awvalid(seen_s_axi_awvalid),
-        .s_axi_wdata(seen_s_axi_wdata),
-        .s_axi_wstrb(seen_s_axi_wstrb),
-        .s_axi_wvalid(seen_s_axi_wvalid),
-        .s_axi_bready(seen_s_axi_bready),
-        .s_axi_araddr(seen_s_axi_araddr),
-        .s_axi_arvalid(seen_s_axi_arvalid),
-        .s_axi_rready(seen_s_axi_rready),
-        .s_axi_awready(s_axi_awready),
-        .s_axi_wready(s_axi_wready),
-        .s_axi_bresp(s_axi_bresp),
-        .s_axi_bvalid(s_axi_bvalid),
-        .s_axi_arready(s_axi_arready),
-        .s_axi_rdata(s_axi_rdata),
-        .s_axi_rresp(s_axi_rresp),
-        .s_axi_rvalid(s_axi_rvalid),
-`elsif BUS_WISHBONE
-        .wb_cyc(seen_wb_cyc),
-        .wb_stb(seen_wb_stb),
-        .wb_we(seen_wb_we),
-        .wb_adr(seen_wb_adr),
-        .wb_sel(seen_wb_sel),
-        .wb_dat_w(seen_wb_dat_w),
-        .wb_ack(wb_ack),
-        .wb_dat_r(wb_dat_r),
-`elsif BUS_APB
-        .s_apb_paddr(seen_s_apb_paddr),
-        .s_apb_psel(seen_s_apb_psel),
-        .s_apb_penable(seen_s_apb_penable),
-        .s_apb_pwrite(seen_s_apb_pwrite),
-        .s_apb_pwdata(seen_s_apb_pwdata),
-        .s_apb_pstrb(seen_s_apb_pstrb),
-        .s_apb_pready(s_apb_pready),
-        .s_apb_pslverr(s_apb_pslverr),
-        .s_apb_prdata(s_apb_prdata),
+`ifdef BRIDGED
+`include "bus_ports.vh"
 `else
         .avs_s0_address(avs_s0_address),
         .avs_s0_read(avs_s0_read),

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator
-from typing import Any
+from abc import abstractmethod
+from collections.abc import Callable, Iterator, Mapping
+from random import Random
+from typing import Any, ClassVar
 
 from cocotb.handle import HierarchyObject
 from cocotbext.axi import (
@@ -30,18 +32,44 @@ from cocotbext.axi.axil_channels import (
 )
 from cocotbext.wishbone.driver import WBOp, WishboneMaster
 
+from raycaster.buses import BUSES, OWN
 from raycaster.configuration import Configuration
 from raycaster.sim.avalon import AvalonBus
 from raycaster.sim.register_bus import RegisterBus
 
 WORD_BYTES = 4
 
-for driver in ("s_axi", "s_apb", "wb"):
-    logging.getLogger(f"cocotb.bench.{driver}").setLevel(logging.WARNING)  # they tell of each access
+for known in BUSES.values():
+    logging.getLogger(f"cocotb.bench.{known.port}").setLevel(logging.WARNING)  # they tell of each access
 
 
-class Axi4LiteBus(RegisterBus):
+class BridgedBus(RegisterBus):
+    """A bus in front of Avalon-MM.
+
+    Attributes:
+        begins: signals that are high, or with a mark low, in the first cycle of a write and of a read.
+        ends: those of the last cycle.
+    """
+
+    begins: ClassVar[Mapping[str, tuple[str, ...]]]
+    ends: ClassVar[Mapping[str, tuple[str, ...]]]
+
+    @abstractmethod
+    def press_back(self, random: Random) -> None:
+        """Make wait at random, by other chances for each channel."""
+
+
+def _odds(random: Random, chance: float) -> Iterator[bool]:
+    """True as often as that, in each clock anew."""
+    while True:
+        yield random.random() < chance
+
+
+class Axi4LiteBus(BridgedBus):
     """On a bench whose signals are named `s_axi_*`, by cocotbext-axi's channels; each of them may be paused."""
+
+    begins: ClassVar = {"write": ("s_axi_awvalid", "s_axi_wvalid"), "read": ("s_axi_arvalid",)}
+    ends: ClassVar = {"write": ("s_axi_bvalid", "s_axi_bready"), "read": ("s_axi_rvalid", "s_axi_rready")}
 
     def __init__(self, bench: HierarchyObject, configuration: Configuration):
         super().__init__(configuration)
@@ -69,22 +97,23 @@ class Axi4LiteBus(RegisterBus):
         assert answer.rresp == AxiResp.OKAY, f"a read of {address} got the response {answer.rresp}"
         return int(answer.rdata)
 
-    def pause(self, *generators: Iterator[bool]) -> None:
-        """Hold back the five channels, AW, W, B, AR and R, in the clocks in which these say so."""
-        channels = (self.write_address, self.write_data, self.response, self.read_address, self.read_data)
-        for one, generator in zip(channels, generators, strict=True):
-            one.set_pause_generator(generator)
+    def press_back(self, random: Random) -> None:
+        """Pause channels."""
+        for one in (self.write_address, self.write_data, self.response, self.read_address, self.read_data):
+            one.set_pause_generator(_odds(random, random.choice((0.0, 0.3, 0.8))))
 
 
-class WishboneBus(RegisterBus):
+class WishboneBus(BridgedBus):
     """On a bench whose signals are named `wb_*`, by cocotbext-wishbone's master."""
+
+    begins: ClassVar = {"write": ("wb_cyc", "wb_stb", "wb_we"), "read": ("wb_cyc", "wb_stb", "!wb_we")}
+    ends: ClassVar = dict.fromkeys(("write", "read"), ("wb_ack",))
 
     def __init__(self, bench: HierarchyObject, configuration: Configuration):
         super().__init__(configuration)
         signals = {name: name for name in ("cyc", "stb", "we", "adr", "ack")} | {"datwr": "dat_w", "datrd": "dat_r"}
         self._master = WishboneMaster(bench, "wb", bench.bus_clk, timeout=64, signals_dict=signals)
-        self.idle: Iterator[int] | None = None
-        """Clocks between the bus cycle's begin and each strobe; none where it is None."""
+        self._idle: Iterator[int] | None = None
 
     async def write_word(self, address: int, word: int, byteenable: int = 0b1111) -> None:
         """As declared."""
@@ -95,14 +124,22 @@ class WishboneBus(RegisterBus):
         return await self._access(WBOp(adr=address, acktimeout=64))
 
     async def _access(self, operation: WBOp) -> int:
-        operation.idle = next(self.idle) if self.idle else 0
+        operation.idle = next(self._idle) if self._idle else 0
         [result] = await self._master.send_cycle([operation])
         assert result.ack == 1, f"an access to {operation.adr} was not acknowledged"
         return int(result.datrd) if operation.dat is None else 0
 
+    def press_back(self, random: Random) -> None:
+        """Leave idle clocks between the bus cycle's begin and each strobe."""
+        most = random.choice((0, 3))
+        self._idle = iter(lambda: random.randint(0, most), None)
 
-class ApbRegisterBus(RegisterBus):
+
+class ApbRegisterBus(BridgedBus):
     """On a bench whose signals are named `s_apb_*`, by cocotbext-axi's APB master, which may be paused."""
+
+    begins: ClassVar = {"write": ("s_apb_psel", "s_apb_pwrite"), "read": ("s_apb_psel", "!s_apb_pwrite")}
+    ends: ClassVar = dict.fromkeys(("write", "read"), ("s_apb_penable", "s_apb_pready"))
 
     def __init__(self, bench: HierarchyObject, configuration: Configuration):
         super().__init__(configuration)
@@ -127,13 +164,13 @@ class ApbRegisterBus(RegisterBus):
         assert done.resp == AxiResp.OKAY, f"a read of {address} failed"
         return int.from_bytes(done.data, "little")
 
-    def pause(self, generator: Iterator[bool]) -> None:
-        """Begin no access in the clocks in which this says so."""
-        self._master.set_pause_generator(generator)
+    def press_back(self, random: Random) -> None:
+        """Begin no access in some clocks."""
+        self._master.set_pause_generator(_odds(random, random.choice((0.0, 0.5))))
 
 
-BUSES: dict[str, Callable[[HierarchyObject, Configuration], RegisterBus]] = {
-    "avalon": AvalonBus,
+DRIVERS: dict[str, Callable[[HierarchyObject, Configuration], RegisterBus]] = {
+    OWN: AvalonBus,
     "axi4lite": Axi4LiteBus,
     "wishbone": WishboneBus,
     "apb": ApbRegisterBus,

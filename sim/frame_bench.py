@@ -22,7 +22,7 @@ async def one_frame(bench: HierarchyObject) -> None:
     harness = Harness(bench)
     job, configuration, bus = harness.job, harness.configuration, harness.bus
     scene = load_scene(job.scene, configuration.capacity)
-    reflections = scene.reflections if job.reflections is None else job.reflections
+    reflections = job.reflections_of(scene)
 
     started = time.perf_counter()
     await harness.reset()

@@ -11,10 +11,11 @@ import numpy as np
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import FallingEdge, RisingEdge
 
-from raycaster.golden import engines, exact
+from raycaster.golden.engines import model_of
+from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.scene import Scene
-from raycaster.sim.buses import BUSES
+from raycaster.sim.buses import DRIVERS
 from raycaster.sim.job import Job
 from raycaster.sim.monitor import CLOCK_NS, Monitor
 from raycaster.sim.register_model import LiveScene
@@ -35,6 +36,7 @@ class Viewer:
         self.job = Job.from_environment()
         self.configuration = self.job.configuration
         self.screen = self.configuration.screen_geometry
+        self.model = model_of(self.configuration)
         self.monitor = Monitor(bench, self.configuration)
 
     def shown(self, picture: np.ndarray) -> np.ndarray:
@@ -43,23 +45,22 @@ class Viewer:
 
     def golden(self, scene: Scene, reflections: int) -> np.ndarray:
         """The visible screen that this design must show of a scene; uint8, visible lines x visible pixels x 3."""
-        return self.shown(engines.render(self.configuration, scene, reflections))
+        return self.shown(self.model.render(scene, self.screen, reflections))
 
     def golden_and_exact(self, scene: Scene, reflections: int) -> tuple[np.ndarray, np.ndarray]:
         """The same, and that of exact arithmetic, which of an engine without quotients is the same picture."""
         golden = self.golden(scene, reflections)
         if not self.configuration.facts.divides:
             return golden, golden
-        return golden, self.shown(exact.render(scene, self.screen, reflections))
+        return golden, self.shown(ExactModel().render(scene, self.screen, reflections))
 
     def golden_live(self, scene: LiveScene | None) -> np.ndarray:
         """The same of what the registers say, or nothing, for the time before the first StartScreen."""
         if scene is None or not scene.run:
             return self.shown(np.zeros((self.screen.rows, self.screen.columns, 3), dtype=np.uint8))
         return self.shown(
-            engines.picture(
-                self.configuration, scene.rectangles, scene.camera, scene.background, scene.reflections,
-                basis=scene.basis,
+            self.model.picture(
+                self.screen, scene.rectangles, scene.camera, scene.background, scene.reflections, basis=scene.basis
             )
         )  # fmt: skip
 
@@ -82,7 +83,7 @@ class Harness(Viewer):
 
     def __init__(self, bench: HierarchyObject):
         super().__init__(bench)
-        self.bus = BUSES[self.configuration.bus](bench, self.configuration)
+        self.bus = DRIVERS[self.configuration.bus](bench, self.configuration)
 
     async def reset(self) -> None:
         """Reset the design; returns at the first clock edge at which reset is low."""
@@ -94,7 +95,7 @@ class Harness(Viewer):
         self.monitor.forget()
         await RisingEdge(self.bench.clk)
 
-    async def frame_after_reset(self, released_ns: int, on_row: Callable[[int], None] | None = None) -> np.ndarray:
+    async def frame_after_reset(self, released_ns: float, on_row: Callable[[int], None] | None = None) -> np.ndarray:
         """The first frame after a reset, which restarts the video at the first pixel of the vertical front porch.
 
         Args:

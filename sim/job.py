@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from raycaster.configuration import Configuration, configure
+from raycaster.scene import Scene
 
 JOB_VARIABLE = "RAYCASTER_JOB"
 """The environment variable that carries a job, as JSON, into a simulation."""
@@ -43,6 +44,10 @@ class Job:
 
     buttons: tuple[int, ...] = ()
     """For a system with a processor: which are held from each frame's vertical sync on, a bit each."""
+
+    def reflections_of(self, scene: Scene) -> int:
+        """The number of reflections to show a scene with."""
+        return scene.reflections if self.reflections is None else self.reflections
 
     def environment(self) -> dict[str, str]:
         """The environment in which a simulation finds this job."""

@@ -30,6 +30,7 @@ from filelock import FileLock
 import raycaster
 import raycaster.convert
 import raycaster.rtl
+from raycaster.buses import OWN
 from raycaster.configuration import Configuration
 from raycaster.digests import sources_digest, tools_digest
 from raycaster.errors import UserError
@@ -136,8 +137,16 @@ class Bench:
 
     def defines(self, configuration: Configuration) -> dict[str, int]:
         """Macros of its Verilog, for a design."""
-        bus = {} if configuration.bus == "avalon" else {f"BUS_{configuration.bus.upper()}": 1}
+        bus = {} if configuration.bus == OWN else {"BRIDGED": 1}
         return bus | ({"WAVE_WINDOW": 1} if self.window else {})
+
+    def included(self, configuration: Configuration) -> dict[str, str]:
+        """Files that its Verilog includes, for a design: their texts by their names."""
+        if configuration.bus == OWN:
+            return {}
+        from raycaster.sim.bus_signals import bus_files  # noqa: PLC0415 - MyHDL is only loaded where it has work
+
+        return bus_files(configuration)
 
     def parameters(self, configuration: Configuration) -> dict[str, int]:
         """Of its Verilog, for a design."""
@@ -315,18 +324,22 @@ def build_model(
     built_for_waves = waves or (bench.window and simulator == "verilator")
     wave_format = tool.wave_format if built_for_waves or bench.window else "fst"
     arguments = _build_arguments(simulator, wave_format if built_for_waves else None, flags)
-    made_with = [tool, cocotb.__version__, parameters, defines, arguments, built_for_waves]
+    included = bench.included(configuration)
+    made_with = [tool, cocotb.__version__, parameters, defines, included, arguments, built_for_waves]
     if any(flag.startswith("--coverage") for flag in arguments):
         made_with.append([source.resolve() for source in sources])  # which the counts name
     name = "-".join((configuration.name, bench.top, simulator))
     with made(models(build), name, [*sources, *program], made_with) as (directory, fresh):
         if fresh:
             log = directory.with_suffix(".log")
+            for file, text in included.items():
+                (directory / file).write_text(text)
             with _building(tool, models(build), arguments):
                 try:
                     (_VerilatorWithMain() if program else get_runner(simulator)).build(
                         sources=[source.resolve() for source in sources],
                         hdl_toplevel=bench.top,
+                        includes=[directory.resolve()],
                         parameters=parameters,
                         defines=defines,
                         build_args=arguments,

@@ -120,7 +120,9 @@ def bench_digest(bench: str, model: Model, *parts: object) -> str:
 
     The model's directory has a digest of its own, of the Verilog and how it was built.
     """
-    source = Path(importlib.util.find_spec(bench).origin)
+    spec = importlib.util.find_spec(bench)
+    assert spec and spec.origin, f"{bench} is no module"
+    source = Path(spec.origin)
     packages = (Path(package.__path__[0]) for package in (raycaster, golden, sim, benches))
     return digest(model.directory.name, model.configuration, source, Path(random_scenes.__file__), *packages, *parts)
 

@@ -52,7 +52,7 @@ def random_scene(seed: int, rectangles: int, reflections: int, looks: Collection
         background=background,
         camera=Camera(position=tuple(camera.tolist()), **angles),
         rect=tuple(
-            Rectangle(corners=tuple(map(tuple, pair)), colour=tuple(colour), **_look(table, index, looks))
+            Rectangle.model_validate({"corners": pair, "colour": tuple(colour), **_look(table, index, looks)})
             for index, (pair, colour) in enumerate(zip(corners.tolist(), colours, strict=True))
         ),
     )

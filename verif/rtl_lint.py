@@ -214,11 +214,13 @@ class _Process:
 
     def _assigned(self, node: ast.expr) -> Iterator[Finding]:
         """The whole right side: one operator may stand here, and the wrap of its result to the target's width."""
-        if self._wraps(node):
+        if isinstance(node, ast.BinOp) and self._wraps(node):
             node = node.left
-        if self._operates(node):
-            for operand in (node.left, node.right) if isinstance(node, ast.BinOp) else (node.operand,):
-                yield from self._expression(operand)
+        if isinstance(node, ast.BinOp) and self._operates(node):
+            yield from self._expression(node.left)
+            yield from self._expression(node.right)
+        elif isinstance(node, ast.UnaryOp) and self._operates(node):
+            yield from self._expression(node.operand)
         else:
             yield from self._expression(node)
 
@@ -229,7 +231,7 @@ class _Process:
         if isinstance(node, (ast.Lambda, ast.ListComp, ast.GeneratorExp)):
             yield self._finding(node, "call", "write a for loop")
             return
-        if self._operates(node):
+        if isinstance(node, ast.expr) and self._operates(node):
             yield self._finding(
                 node, "arithmetic", "assign it to a signal of declared width by itself, and use that one"
             )
@@ -268,7 +270,7 @@ class _Process:
     def _on_signals(self, *operands: ast.expr) -> bool:
         return not all(_constant(operand, self._known) for operand in operands)
 
-    def _finding(self, node: ast.AST, rule: str, advice: str) -> Finding:
+    def _finding(self, node: ast.stmt | ast.expr, rule: str, advice: str) -> Finding:
         return Finding(self._path, node.lineno, rule, advice)
 
 

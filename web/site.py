@@ -17,7 +17,6 @@ from typing import Any
 
 from raycaster.configuration import WORLD_SIZE, Configuration, configure
 from raycaster.convert.provenance import Provenance
-from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.jobs import run_jobs
 from raycaster.memory_map import BUTTON_NAMES
@@ -92,7 +91,7 @@ def described(config: Configuration) -> dict[str, int]:
     """What the page must know of a design."""
     screen = config.screen_geometry
     return {
-        "engine": list(ENGINES).index(config.engine),
+        "engine": config.facts.code,
         **{name: int(getattr(config, name)) for name in ("materials", "patterns", "turn")},
         **{name: getattr(config, name) for name in ("rectangles", "reflections", "fraction_bits")},
         **{name: getattr(screen, name) for name in ("columns", "rows", "horizon_row", "scale", "doubling")},

@@ -109,7 +109,7 @@ def walked(ray: Ray, place: Place) -> Sequence[Value]:
 
 def mirrored(ray: Ray, place: Place) -> Sequence[Value] | None:
     """What mirrors add to a point, by axis: the way from the camera to its image."""
-    eyes = zip(ray.of_ray(place.bounce, "eyes"), ray.scene.camera.position, strict=True)
+    eyes = zip(ray.of_ray(place.bounce, "origins"), ray.scene.camera.position, strict=True)
     return [image - coordinate for image, coordinate in eyes] if place.bounce else None
 
 

@@ -6,9 +6,10 @@ from raycaster.debug.probes.beam import BeamProbes
 from raycaster.debug.probes.exact import ExactProbes
 from raycaster.debug.probes.ray import Description
 from raycaster.debug.probes.seed import SeedProbes
+from raycaster.engines import BEAM, EXACT, SEED
 
-DESCRIPTIONS = {"seed": SeedProbes, "exact": ExactProbes, "beam": BeamProbes}
-"""By the configuration's name for the engine."""
+DESCRIPTIONS = {SEED.name: SeedProbes, EXACT.name: ExactProbes, BEAM.name: BeamProbes}
+"""By engine."""
 
 
 def description_of(config: Configuration, unit: int) -> Description:

@@ -61,7 +61,7 @@ class ExactProbes(UnitProbes):
         nearest_t = tuple(f"{keeper}.found_{name}" for name in ("distance", "slope"))
         return [
             *self.first_probes(),
-            Probe("eye", fields(memory, "eye", AXES), "ray", lambda ray, place: ray.of_ray(place.bounce, "eyes"),
+            Probe("eye", fields(memory, "eye", AXES), "ray", lambda ray, place: ray.of_ray(place.bounce, "origins"),
                 late=1, signed=True),
             Probe("signs", fields(memory, "signs", SIGNS, Signs()), "ray", slope_signs, late=1),
             Probe("mirror", fields(memory, "mirror", ("active", "axis", "distance"), mirror_of(self.config)), "ray",

@@ -20,7 +20,8 @@ from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.debug.waves import Samples, Waves, signed
 from raycaster.design import Design
 from raycaster.errors import UserError
-from raycaster.golden import exact, seed_engine
+from raycaster.golden.engines import model_of
+from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import shown
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
@@ -224,12 +225,7 @@ class Ray:
             # Golden's are the shorter ones then; the hardware's are as long as of any other basis.
             slopes = slopes * BASIS_SCALE
         arguments = self.rectangles, self.scene.camera.position, self.scene.background, slopes, design.reflections
-        self.true = exact.trace(*arguments, keep=True)
-        self.golden: seed_engine.Trace | exact.Trace = self.true
-        if self.config.facts.divides:
-            self.golden = seed_engine.trace(
-                *arguments, fraction_bits=self.config.fraction_bits, rounding=self.config.rounding, keep=True
-            )
+        self.true, self.golden = (model.trace(*arguments, keep=True) for model in (ExactModel(), model_of(self.config)))
 
     @property
     def reflections(self) -> int:
@@ -271,9 +267,7 @@ class Ray:
         """The nearest rectangle of some, at a bounce; -1 for none."""
         bounce = self.golden.bounces[number]
         hits = [i for i in candidates if i < len(self.rectangles) and bounce.hits[i, 0]]
-        # Of a fraction; the seed engine's depths are all over one.
-        divisors = np.ones(len(self.rectangles)) if self.config.facts.divides else bounce.denominators[:, 0]
-        return min(hits, key=lambda i: (Fraction(int(bounce.depths[i, 0]), int(divisors[i])), i), default=-1)
+        return min(hits, key=lambda i: (Fraction(int(bounce.depths[i, 0]), int(bounce.scales[i, 0])), i), default=-1)
 
     def colour(self, rectangle: int) -> int:
         """A rectangle's, or the background for -1; 24 bits, red above green above blue."""
@@ -306,7 +300,7 @@ class Ray:
         ahead = (position - self.true_origin(place.bounce)[axis]) * int(bounce.slopes[0, axis])
         if not bounce.alive[0] or ahead <= 0:
             return None
-        return self._true_point(bounce.points[place.index, 0], bounce.denominators[place.index, 0])
+        return self._true_point(bounce.points[place.index, 0], bounce.scales[place.index, 0])
 
     @staticmethod
     def _true_point(scaled: np.ndarray, divisor: SupportsInt) -> tuple[Fraction, ...]:

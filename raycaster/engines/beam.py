@@ -129,6 +129,7 @@ class Beam(Engine):
     """A lane for each pixel of a clock, without a line buffer."""
 
     name, code = "beam", 2
+    colour, marker = "#009E73", "^"
     screens = BEAM_SCREENS
     rect_latency = 2
     line_buffered = False

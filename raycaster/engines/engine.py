@@ -27,6 +27,8 @@ class Engine(ABC):
     Attributes:
         name: as users choose it.
         code: what the register `engine` reads.
+        colour: of its marks and lines in plots; one that Okabe and Ito chose for this.
+        marker: of its points in plots, as Matplotlib names it.
         screens: those that it can fill, by name and rows.
         rect_latency: cycles from `fetch` to the rectangle.
         margin: how far outside a rectangle's bounds a primary ray may pass that hits it, in world units.
@@ -37,6 +39,8 @@ class Engine(ABC):
 
     name: ClassVar[str]
     code: ClassVar[int]
+    colour: ClassVar[str]
+    marker: ClassVar[str]
     screens: ClassVar[Mapping[tuple[str, int], Screen]] = SCREENS
     rect_latency: ClassVar[int] = 1
     margin: ClassVar[int] = 0

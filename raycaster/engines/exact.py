@@ -22,6 +22,7 @@ class Exact(LineBufferedEngine):
     """Units that test a rectangle a clock."""
 
     name, code = "exact", 1
+    colour, marker = "#0072B2", "s"
 
     def sized(self, config: Configuration, options: Options) -> Configuration:
         """Take as few units as meet the row budget."""

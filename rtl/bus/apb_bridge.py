@@ -3,7 +3,22 @@
 
 from myhdl import always_comb, always_seq, block, instances
 
-from raycaster.rtl.common.widths import bit
+from raycaster.rtl.common.interfaces import BusPort
+from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, unsigned
+
+
+class ApbPort(BusPort):
+    """APB4, 32 bits, as a completer has it; without protection types, to which no register pays regard.
+
+    address_bits: of a word's address; paddr has two more, as it counts bytes.
+    """
+
+    outputs = "pready", "pslverr", "prdata"
+
+    def __init__(self, address_bits: int):
+        self.paddr = unsigned(address_bits + 2)
+        self.psel, self.penable, self.pwrite, self.pready, self.pslverr = (bit() for _ in range(5))
+        self.pwdata, self.pstrb, self.prdata = unsigned(WORD_BITS), unsigned(LANES), unsigned(WORD_BITS)
 
 
 @block

@@ -3,7 +3,24 @@
 
 from myhdl import always_comb, always_seq, block, instances
 
-from raycaster.rtl.common.widths import bit
+from raycaster.rtl.common.interfaces import BusPort
+from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, unsigned
+
+
+class Axi4LitePort(BusPort):
+    """AXI4-Lite, 32 bits, as a subordinate has it; without protection types, to which no register pays regard.
+
+    address_bits: of a word's address; awaddr and araddr have two more, as they count bytes.
+    """
+
+    outputs = "awready", "wready", "bresp", "bvalid", "arready", "rdata", "rresp", "rvalid"
+
+    def __init__(self, address_bits: int):
+        self.awaddr, self.awvalid, self.awready = unsigned(address_bits + 2), bit(), bit()
+        self.wdata, self.wstrb, self.wvalid, self.wready = unsigned(WORD_BITS), unsigned(LANES), bit(), bit()
+        self.bresp, self.bvalid, self.bready = unsigned(2), bit(), bit()
+        self.araddr, self.arvalid, self.arready = unsigned(address_bits + 2), bit(), bit()
+        self.rdata, self.rresp, self.rvalid, self.rready = unsigned(WORD_BITS), unsigned(2), bit(), bit()
 
 
 @block

@@ -3,7 +3,19 @@
 
 from myhdl import always, always_comb, always_seq, block, instances
 
-from raycaster.rtl.common.widths import bit
+from raycaster.rtl.common.interfaces import BusPort
+from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, unsigned
+
+
+class WishbonePort(BusPort):
+    """Wishbone B4, classic cycles, 32 bits in lanes of 8, as a slave has it; adr counts words."""
+
+    outputs = "ack", "dat_r"
+
+    def __init__(self, address_bits: int):
+        self.cyc, self.stb, self.we, self.ack = (bit() for _ in range(4))
+        self.adr, self.sel = unsigned(address_bits), unsigned(LANES)
+        self.dat_w, self.dat_r = unsigned(WORD_BITS), unsigned(WORD_BITS)
 
 
 @block

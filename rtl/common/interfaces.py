@@ -4,6 +4,8 @@
 What a class says of its attributes stands above those ports in Verilog.
 """
 
+from typing import ClassVar
+
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.records import rect_of
 from raycaster.rtl.common.widths import (
@@ -76,39 +78,13 @@ class AvalonPort(Interface):
         self.readdatavalid, self.waitrequest = bit(), bit()
 
 
-class Axi4LitePort(Interface):
-    """AXI4-Lite, 32 bits, as a subordinate has it; without protection types, to which no register pays regard.
+class BusPort(Interface):
+    """A bus that has a bridge to Avalon-MM, as the bridge has it.
 
-    address_bits: of a word's address; awaddr and araddr have two more, as they count bytes.
+    outputs: names of the signals that the bridge drives.
     """
 
-    def __init__(self, address_bits: int):
-        self.awaddr, self.awvalid, self.awready = unsigned(address_bits + 2), bit(), bit()
-        self.wdata, self.wstrb, self.wvalid, self.wready = unsigned(WORD_BITS), unsigned(LANES), bit(), bit()
-        self.bresp, self.bvalid, self.bready = unsigned(2), bit(), bit()
-        self.araddr, self.arvalid, self.arready = unsigned(address_bits + 2), bit(), bit()
-        self.rdata, self.rresp, self.rvalid, self.rready = unsigned(WORD_BITS), unsigned(2), bit(), bit()
-
-
-class WishbonePort(Interface):
-    """Wishbone B4, classic cycles, 32 bits in lanes of 8, as a slave has it; adr counts words."""
-
-    def __init__(self, address_bits: int):
-        self.cyc, self.stb, self.we, self.ack = (bit() for _ in range(4))
-        self.adr, self.sel = unsigned(address_bits), unsigned(LANES)
-        self.dat_w, self.dat_r = unsigned(WORD_BITS), unsigned(WORD_BITS)
-
-
-class ApbPort(Interface):
-    """APB4, 32 bits, as a completer has it; without protection types, to which no register pays regard.
-
-    address_bits: of a word's address; paddr has two more, as it counts bytes.
-    """
-
-    def __init__(self, address_bits: int):
-        self.paddr = unsigned(address_bits + 2)
-        self.psel, self.penable, self.pwrite, self.pready, self.pslverr = (bit() for _ in range(5))
-        self.pwdata, self.pstrb, self.prdata = unsigned(WORD_BITS), unsigned(LANES), unsigned(WORD_BITS)
+    outputs: ClassVar[tuple[str, ...]]
 
 
 class Picture(Interface):

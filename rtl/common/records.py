@@ -2,7 +2,7 @@
 """Records: fields side by side in one word, so that a copy is one assignment, and a memory of them one of words."""
 
 from collections.abc import Mapping
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from myhdl import ConcatSignal
 from myhdl._ShadowSignal import _ShadowSignal, _SliceSignal
@@ -57,7 +57,7 @@ class Field(Part):
 
     def _genfuncSlice(self):
         """MyHDL's, but that a signed field keeps its sign."""
-        set_next = _Signal.next.fset
+        set_next: Any = _Signal.next.fset
         while True:
             bits = self._sig[self._left : self._right]
             set_next(self, bits.signed() if self.min < 0 else bits)
@@ -128,6 +128,10 @@ class Record:
             setattr(self, name, Field(self.word, name, width, bits))
         for name in self.lacking:
             setattr(self, name, tied(0, 1))
+
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Field: ...
 
     def twin(self) -> Self:
         """Another of its kind."""
@@ -401,10 +405,8 @@ class Turn(Record):
     """
 
     def __init__(self, turn_bits: int):
-        super().__init__(
-            dict.fromkeys(("met_x", "met_y", "met_z", "back_x", "back_y", "back_z"), 1)
-            | dict.fromkeys(("turn_x", "turn_y", "turn_z"), Signed(turn_bits))
-        )
+        flags = dict.fromkeys(("met_x", "met_y", "met_z", "back_x", "back_y", "back_z"), 1)
+        super().__init__({**flags, **dict.fromkeys(("turn_x", "turn_y", "turn_z"), Signed(turn_bits))})
 
 
 def turn_of(config: Configuration) -> Turn:

@@ -2,8 +2,10 @@
 """Every width of the hardware, derived from the configuration by name, and signals of those widths."""
 
 from myhdl import ConcatSignal, Signal, intbv
+from myhdl._Signal import _Signal
 
 from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, WORLD_SIZE, Configuration
+from raycaster.scene import PATTERNS
 
 SLOPE_BITS = 9
 """Magnitude of a slope; the sign is kept beside it."""
@@ -27,7 +29,7 @@ MIRROR_BITS = 3
 REFLECTION_BITS = 3
 """How many reflections a scene asks for."""
 
-KIND_BITS = 2
+KIND_BITS = (len(PATTERNS) - 1).bit_length()
 CELL_BITS = 3
 """Of a pattern: its kind, and log2 of a cell's size in world units, less three."""
 
@@ -145,21 +147,21 @@ def pixel_bits(config: Configuration) -> int:
     return 3 * config.colour_bits
 
 
-def unsigned(width: int) -> Signal:
+def unsigned(width: int) -> _Signal:
     """An unsigned signal, 0 at first."""
     return Signal(intbv(0)[width:])
 
 
-def signed(width: int) -> Signal:
+def signed(width: int) -> _Signal:
     """A two's complement signal, 0 at first."""
     return Signal(intbv(0, min=-(1 << (width - 1)), max=1 << (width - 1)))
 
 
-def bit() -> Signal:
+def bit() -> _Signal:
     """A signal of one bit, low at first."""
     return Signal(bool(0))
 
 
-def side_by_side(signals: list) -> Signal:
+def side_by_side(signals: list) -> _Signal:
     """The signals as one vector, the first in the lowest bits."""
     return ConcatSignal(*reversed(signals)) if len(signals) > 1 else signals[0]

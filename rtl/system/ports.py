@@ -5,21 +5,22 @@ from typing import Any
 
 from myhdl import ResetSignal
 
+from raycaster.buses import BUSES
 from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.registers import address_bits
-from raycaster.rtl.bus.buses import BUSES
-from raycaster.rtl.common.interfaces import Vga, vga_of
+from raycaster.rtl.bus.buses import BRIDGES
+from raycaster.rtl.common.interfaces import AvalonPort, Vga, vga_of
 from raycaster.rtl.common.widths import bit, unsigned
 from raycaster.rtl.dvi.tmds_encoder import SYMBOL_BITS
 from raycaster.rtl.system.scene_player import BUTTONS
 
 
 def module_ports(config: Configuration) -> dict[str, Any]:
-    """Those of ray_caster_module; Verilog has vga_* and, of its bus, avs_s0_*, s_axi_*, wb_* or s_apb_*."""
-    bus = BUSES[config.bus]
+    """Those of ray_caster_module; Verilog has vga_* and, of its bus, such as avs_s0_*."""
+    interface = BRIDGES[config.bus].interface if config.bus in BRIDGES else AvalonPort
     ports = {"clk": bit(), "reset": ResetSignal(0, active=1, isasync=False), "avs_s0": None}
-    ports |= {bus.port: bus.interface(address_bits(config.table))}
+    ports |= {BUSES[config.bus].port: interface(address_bits(config.table))}
     return ports | {"irq": bit(), "vga": vga_of(config)}
 
 

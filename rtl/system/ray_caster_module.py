@@ -3,12 +3,13 @@
 
 from myhdl import always_comb, block, instances
 
+from raycaster.buses import BUSES
 from raycaster.configuration import Configuration
-from raycaster.engines import BEAM, EXACT, SEED
+from raycaster.engines import BEAM
 from raycaster.registers import address_bits
 from raycaster.rtl.beam.beam_renderer import beam_renderer
 from raycaster.rtl.bus.avalon_interface import avalon_interface
-from raycaster.rtl.bus.buses import BUSES
+from raycaster.rtl.bus.buses import BRIDGES
 from raycaster.rtl.common.clock_gate import clock_gate, rests_on
 from raycaster.rtl.common.interfaces import AvalonPort, Picture, Progress, Rects, SceneBus
 from raycaster.rtl.common.records import camera_of
@@ -19,8 +20,8 @@ from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.rtl.scene.rect_rom import rect_rom
 from raycaster.rtl.system.ray_caster_renderer import ray_caster_renderer
 
-RENDERERS = {SEED.name: ray_caster_renderer, EXACT.name: ray_caster_renderer, BEAM.name: beam_renderer}
-"""By engine, the block that fills the screen."""
+RENDERERS = {BEAM.name: beam_renderer}
+"""By engine, the block that fills the screen; of the others `ray_caster_renderer`."""
 
 
 @block
@@ -64,11 +65,10 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
         if not config.facts.line_buffered and config.reflections == 0:
             picture.reflections = unconnected(picture.reflections)  # where there are none, it does not ask how many
         position = camera_mem(clk, reset, bus, camera_readback, camera, config)
-    foreign = BUSES[config.bus]
-    if foreign.bridge:
-        avs_s0 = AvalonPort(len(bus.address))
-        port = {"s_axi": s_axi, "wb": wb, "s_apb": s_apb}[foreign.port]
-        bridge = foreign.bridge(clk, reset, avm_m0=avs_s0, **{foreign.port: port})
+    if config.bus in BRIDGES:
+        avs_s0, name = AvalonPort(len(bus.address)), BUSES[config.bus].port
+        port = {"s_axi": s_axi, "wb": wb, "s_apb": s_apb}[name]
+        bridge = BRIDGES[config.bus].block(clk, reset, avm_m0=avs_s0, **{name: port})
     registers = avalon_interface(
         clk, reset, avs_s0=avs_s0, irq=irq, bus=bus, camera_readback=camera_readback, rect_readback=rect_readback,
         bad_rectangle=bad_rectangle, picture=picture, progress=progress, config=config,
@@ -83,7 +83,7 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
 
         gate = clock_gate(clk, awake=scene_awake, gated_clk=scene_clk)
         rests_on(scene_clk, rectangles, position)
-    renderer = RENDERERS[config.engine](
+    renderer = RENDERERS.get(config.engine, ray_caster_renderer)(
         clk, reset, picture=picture, camera=camera, rects=rects, progress=progress, vga=vga, config=config
     )
 

@@ -7,37 +7,23 @@ registers themselves.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from random import Random
+from typing import Any
 
 import cocotb
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import ClockCycles, RisingEdge
 
+from raycaster.buses import BUSES
 from raycaster.configuration import Configuration
 from raycaster.registers import Register, register_map
 from raycaster.scene import load_scene
-from raycaster.sim.buses import ApbRegisterBus, Axi4LiteBus, WishboneBus
+from raycaster.sim.buses import Axi4LiteBus, BridgedBus
 from raycaster.sim.harness import Harness
 from raycaster.sim.register_model import EVERY_LANE
 
 ACCESSES = 400
 """By each seed."""
-
-CYCLES = {"axi4lite": {"write": 3, "read": 3}, "wishbone": {"write": 1, "read": 3}, "apb": {"write": 2, "read": 3}}
-"""Of an access, from the first in which all of it is on the bus to the one with its response, on a bus that is free."""
-
-BEGINS = {
-    "axi4lite": {"write": ("s_axi_awvalid", "s_axi_wvalid"), "read": ("s_axi_arvalid",)},
-    "wishbone": {"write": ("wb_cyc", "wb_stb", "wb_we"), "read": ("wb_cyc", "wb_stb", "!wb_we")},
-    "apb": {"write": ("s_apb_psel", "s_apb_pwrite"), "read": ("s_apb_psel", "!s_apb_pwrite")},
-}
-ENDS = {
-    "axi4lite": {"write": ("s_axi_bvalid", "s_axi_bready"), "read": ("s_axi_rvalid", "s_axi_rready")},
-    "wishbone": dict.fromkeys(("write", "read"), ("wb_ack",)),
-    "apb": dict.fromkeys(("write", "read"), ("s_apb_penable", "s_apb_pready")),
-}
-"""Signals that are high, or with a mark low, in the first and in the last cycle of an access."""
 
 
 def kept_registers(config: Configuration) -> list[Register]:
@@ -47,45 +33,24 @@ def kept_registers(config: Configuration) -> list[Register]:
     return [registers[name] for name in ("irq_enable", "background", "camera", *corners)]
 
 
-def odds(random: Random, chance: float) -> Iterator[bool]:
-    """True as often as that, in each clock anew."""
-    while True:
-        yield random.random() < chance
-
-
-def press_back(harness: Harness, random: Random) -> None:
-    """Have the master make wait, by chances of its own for each channel."""
-    match harness.bus:
-        case Axi4LiteBus():
-            harness.bus.pause(*(odds(random, random.choice((0.0, 0.3, 0.8))) for _ in range(5)))
-        case ApbRegisterBus():
-            harness.bus.pause(odds(random, random.choice((0.0, 0.5))))
-        case WishboneBus():
-            most = random.choice((0, 3))
-            harness.bus.idle = iter(lambda: random.randint(0, most), None)
-
-
-async def measure(bench: HierarchyObject, bus: str, found: dict[str, set[int]]) -> None:
+async def measure(bench: Any, bus: BridgedBus, found: dict[str, set[int]]) -> None:
     """Count the cycles of each access that the bus has."""
     ages = dict.fromkeys(found, 0)
 
-    def all_high(names: tuple[str, ...]) -> bool:
-        return all(str(getattr(bench, name.lstrip("!")).value) == ("0" if "!" in name else "1") for name in names)
+    def is_as_marked(name: str) -> bool:
+        signal = name.lstrip("!")
+        # As the design has it in this cycle, where it is an input.
+        present = f"seen_{signal}" if hasattr(bench, f"seen_{signal}") else signal
+        return str(getattr(bench, present).value) == ("0" if "!" in name else "1")
 
     while True:
         await RisingEdge(bench.bus_clk)
         for kind, age in ages.items():
-            if age or all_high(seen(BEGINS[bus][kind])):
+            if age or all(map(is_as_marked, bus.begins[kind])):
                 ages[kind] = age + 1
-            if ages[kind] and all_high(seen(ENDS[bus][kind])):
+            if ages[kind] and all(map(is_as_marked, bus.ends[kind])):
                 found[kind].add(ages[kind])
                 ages[kind] = 0
-
-
-def seen(names: tuple[str, ...]) -> tuple[str, ...]:
-    """These signals of a bench as the design has them in the present cycle."""
-    driven = ("ack", "bvalid", "rvalid", "pready")
-    return tuple(name if name.endswith(driven) else f"{'!' * ('!' in name)}seen_{name.lstrip('!')}" for name in names)
 
 
 @cocotb.test()
@@ -94,6 +59,7 @@ async def words_and_a_frame(bench: HierarchyObject) -> None:
     scene that is drawn without a wrong pixel."""
     harness = Harness(bench)
     bus, config = harness.bus, harness.configuration
+    assert isinstance(bus, BridgedBus)
     accesses = 0
     for seed in harness.job.seeds:
         random = Random(seed)
@@ -102,7 +68,7 @@ async def words_and_a_frame(bench: HierarchyObject) -> None:
         words = {register.address: 0 for register in kept}
         masks = {register.address: register.implemented for register in kept}
         unmapped = set(range(1 << bus.address_bits)) - {one.address for one in bus.registers.values()}
-        press_back(harness, random)
+        bus.press_back(random)
 
         async def write(random=random, words=words, masks=masks) -> None:
             address, word, lanes = random.choice(list(words)), random.getrandbits(32), random.randint(0, EVERY_LANE)
@@ -160,13 +126,14 @@ async def cycles(bench: HierarchyObject) -> None:
     """An access that nothing hinders takes as many as it should, and never fewer."""
     harness = Harness(bench)
     bus = harness.bus
+    assert isinstance(bus, BridgedBus)
     await harness.reset()
-    await ClockCycles(bench.clk, 4)
+    await ClockCycles(harness.bench.clk, 4)
     found: dict[str, set[int]] = {"write": set(), "read": set()}
-    cocotb.start_soon(measure(bench, harness.configuration.bus, found))
+    cocotb.start_soon(measure(harness.bench, bus, found))
     address = bus.registers["background"].address
     for number in range(20):
         await bus.write_word(address, number)
         assert await bus.read_word(address) == number
-    expected = CYCLES[harness.configuration.bus]
-    assert found == {kind: {count} for kind, count in expected.items()}, found
+    expected = BUSES[harness.configuration.bus]
+    assert found == {"write": {expected.write}, "read": {expected.read}}, found

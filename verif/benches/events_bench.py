@@ -32,18 +32,18 @@ async def events(bench: HierarchyObject) -> None:
         while True:
             for delay in DELAYS_NS:
                 await Timer(delay, "ns")
-                note(f"{delay} ns", int(bench.clk.value))
+                note(f"{delay} ns", int(harness.bench.clk.value))
 
     async def note_phases() -> None:
         while True:
             for edge in (RisingEdge, FallingEdge):
-                await edge(bench.clk)
-                note(edge.__name__, int(bench.bus_clk.value))
+                await edge(harness.bench.clk)
+                note(edge.__name__, int(harness.bench.bus_clk.value))
                 for phase in (ReadWrite, ReadOnly, NextTimeStep):
                     await phase()
-                    note(phase.__name__, int(bench.bus_clk.value))
-            await bench.sink.line_event.value_change
-            note("line event", int(bench.sink.line_samples.value))
+                    note(phase.__name__, int(harness.bench.bus_clk.value))
+            await harness.bench.sink.line_event.value_change
+            note("line event", int(harness.bench.sink.line_samples.value))
 
     cocotb.start_soon(note_delays())
     cocotb.start_soon(note_phases())
@@ -55,7 +55,7 @@ async def events(bench: HierarchyObject) -> None:
     await harness.bus.commit(reflections=scene.reflections)
     note("commit", 0)
     frame = await harness.monitor.frame()
-    note("frame", int(bench.busy_cycles.value))
+    note("frame", int(harness.bench.busy_cycles.value))
     seen += [("line", line.end_ns, line.samples) for line in harness.monitor.frame_lines]
     for name, value in (await harness.bus.read("cycles")).items():
         note(name, value)

@@ -18,28 +18,28 @@ async def what_is_fixed_ignores_writes(bench: HierarchyObject) -> None:
     harness = Harness(bench)
     bus, config, job = harness.bus, harness.configuration, harness.job
     scene = load_scene(job.scene, config.capacity)
-    everything = config.fixed.camera is not None
+    assert config.fixed is not None
+    everything, asked = config.fixed.camera is not None, job.reflections_of(scene)
     await harness.reset()
     assert (await bus.read("engine"))["fixed"] == (2 if everything else 1)
     assert (await bus.read("size"))["rectangles"] == 0
     assert not any(name.startswith("rectangle") for name in bus.registers)
 
     await bus.load_scene(scene)
-    await bus.commit(reflections=job.reflections)
-    harness.expect_picture(await harness.monitor.frame(), harness.golden(scene, job.reflections), "the scene")
+    await bus.commit(reflections=asked)
+    harness.expect_picture(await harness.monitor.frame(), harness.golden(scene, asked), "the scene")
     written = ("camera", "background") if everything else ()
     for name in written:
         await bus.write_word(bus.registers[name].address, EVERY_BIT)
         assert await bus.read_word(bus.registers[name].address) == 0, f"{name} is fixed, and reads 0"
-    reflections = 0 if everything else job.reflections
-    await bus.commit(reflections=reflections)
-    kept = 0 if everything else job.reflections
+    kept = 0 if everything else asked
+    await bus.commit(reflections=kept)
     assert (await bus.read("control"))["reflections"] == kept
-    for address in set(range(1 << len(bench.avs_s0_address))) - {one.address for one in bus.registers.values()}:
+    for address in set(range(1 << bus.address_bits)) - {one.address for one in bus.registers.values()}:
         await bus.write_word(address, EVERY_BIT)
         assert await bus.read_word(address) == 0, f"there is nothing at {address}"
     await harness.monitor.frame()
-    expected = harness.golden(scene, job.reflections)
+    expected = harness.golden(scene, asked)
     harness.expect_picture(await harness.monitor.frame(), expected, "after writes to what is fixed")
     assert await bus.read("status") | {"busy": 0, "frame": 0} == {
         "busy": 0, "underrun": 0, "bad_rectangle": 0, "frame": 0,

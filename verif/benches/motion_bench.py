@@ -79,20 +79,20 @@ async def start_screen_interrupts(bench: HierarchyObject) -> None:
     bus, monitor, screen = harness.bus, harness.monitor, harness.screen
     await harness.reset()
     await bus.write("irq_enable", start_screen=1)
-    assert bench.irq.value == 0, "irq before the first StartScreen"
+    assert harness.bench.irq.value == 0, "irq before the first StartScreen"
 
     first_line = Event()
     frame = cocotb.start_soon(monitor.frame(_setter(first_line, 1)))
     await first_line.wait()
-    assert bench.irq.value == 1, "StartScreen raises irq"
+    assert harness.bench.irq.value == 1, "StartScreen raises irq"
     assert (await bus.read("irq_pending"))["start_screen"] == 1
     await bus.write("irq_pending", start_screen=0)
-    await ClockCycles(bench.clk, 2)
-    assert bench.irq.value == 1, "writing 0 must not clear a pending interrupt"
+    await ClockCycles(harness.bench.clk, 2)
+    assert harness.bench.irq.value == 1, "writing 0 must not clear a pending interrupt"
     await bus.write("irq_pending", start_screen=1)
     assert (await bus.read("irq_pending"))["start_screen"] == 0
-    assert bench.irq.value == 0, "writing 1 clears irq"
-    raised = cocotb.start_soon(_rise_ns(bench.irq))
+    assert harness.bench.irq.value == 0, "writing 1 clears irq"
+    raised = cocotb.start_soon(_rise_ns(harness.bench.irq))
     await frame
     assert not raised.done(), "irq before the second StartScreen"
 
@@ -104,14 +104,14 @@ async def start_screen_interrupts(bench: HierarchyObject) -> None:
     assert abs(late) <= START_SCREEN_TOLERANCE, f"StartScreen came {late} clocks late"
 
     await bus.write("irq_enable", start_screen=0)
-    await ClockCycles(bench.clk, 2)
-    assert bench.irq.value == 0, "irq is not enabled"
+    await ClockCycles(harness.bench.clk, 2)
+    assert harness.bench.irq.value == 0, "irq is not enabled"
     assert (await bus.read("irq_pending"))["start_screen"] == 1, "pending is set whether or not it is enabled"
 
 
 def _scene(harness: Harness) -> tuple[Scene, int]:
     scene = load_scene(harness.job.scene, harness.configuration.capacity)
-    return scene, scene.reflections if harness.job.reflections is None else harness.job.reflections
+    return scene, harness.job.reflections_of(scene)
 
 
 def _seen_from(scene: Scene, position: tuple[int, int, int]) -> Scene:

@@ -14,6 +14,7 @@ from cocotb.triggers import ClockCycles
 
 from raycaster.registers import Register
 from raycaster.scene import Scene, load_scene
+from raycaster.sim.avalon import AvalonBus
 from raycaster.sim.harness import Harness
 from raycaster.verif.seeds import seed
 
@@ -52,7 +53,7 @@ async def says_what_it_is(bench: HierarchyObject) -> None:
         "id": {"magic": int.from_bytes(b"RAYC", "big")},
         "version": {name: field.reset for name, field in bus.registers["version"].fields.items()},
         "engine": {
-            "engine": {"seed": 0, "exact": 1, "beam": 2}[configuration.engine],
+            "engine": configuration.facts.code,
             "fraction_bits": configuration.fraction_bits,
             "nearest": int(configuration.rounding == "nearest"),
             "divider_bits": configuration.divider_bits,
@@ -133,7 +134,7 @@ async def unmapped_addresses(bench: HierarchyObject) -> None:
     for address, word in expected.items():
         await bus.write_word(address, word)
     mapped = {register.address for register in bus.registers.values()}
-    unmapped = [address for address in range(1 << len(bench.avs_s0_address)) if address not in mapped]
+    unmapped = [address for address in range(1 << bus.address_bits) if address not in mapped]
     for address in unmapped:
         await bus.write_word(address, ALL_ONES)
         assert await bus.read_word(address) == 0, f"address {address}"
@@ -152,6 +153,7 @@ async def pipelined_reads(bench: HierarchyObject) -> None:
     for address, word in expected.items():
         await bus.write_word(address, word)
     addresses = random.choices(list(expected), k=64)
+    assert isinstance(bus, AvalonBus)
     assert await bus.read_pipelined(addresses) == [expected[address] for address in addresses]
 
 
@@ -205,7 +207,7 @@ async def bad_rectangle(bench: HierarchyObject) -> None:
     await bus.write(f"rectangle[{bad}].surface", enable=1, red=255, green=255, blue=255)
     assert (await bus.read("status"))["bad_rectangle"] == 0, "it is not committed yet"
     await bus.commit(reflections=scene.reflections)
-    await ClockCycles(bench.clk, 4)
+    await ClockCycles(harness.bench.clk, 4)
     assert (await bus.read("status"))["bad_rectangle"] == 1
     harness.expect_picture(
         await harness.monitor.frame(), harness.golden(scene, scene.reflections), "without the bad one"
@@ -260,7 +262,7 @@ async def reset_in_mid_frame(bench: HierarchyObject) -> None:
     lines_to_middle = screen.vertical.blank + screen.vertical.visible // 2
     for _ in range(lines_to_middle):
         await monitor.line()
-    await ClockCycles(bench.clk, 37)
+    await ClockCycles(harness.bench.clk, 37)
 
     await harness.reset()
     released_ns = get_sim_time("ns")

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import cocotb
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import ClockCycles
 
 from raycaster.configuration import Configuration
-from raycaster.golden import engines
+from raycaster.golden.engines import model_of
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.scene import load_scene
 from raycaster.sim import simulator
@@ -48,17 +49,18 @@ async def one_frame(bench: HierarchyObject) -> None:
     config = job.configuration
     scene = load_scene(job.scene)
     monitor = Monitor(bench, config, blanking=False)
-    bench.ena.value = 1
-    bench.ui_in.value = 0b10100101
-    bench.uio_in.value = 0b01011010
-    bench.rst_n.value = 0
-    await ClockCycles(bench.clk, RESET_CLOCKS)
+    pins: Any = bench
+    pins.ena.value = 1
+    pins.ui_in.value = 0b10100101
+    pins.uio_in.value = 0b01011010
+    pins.rst_n.value = 0
+    await ClockCycles(pins.clk, RESET_CLOCKS)
     monitor.forget()
-    bench.rst_n.value = 1
+    pins.rst_n.value = 1
     frame = await monitor.frame()
-    expected = shown(engines.render(config, scene, job.reflections), config)
+    expected = shown(model_of(config).render(scene, config.screen_geometry, job.reflections), config)
     wrong = count_wrong(frame, expected)
     assert wrong == 0, f"{wrong} of {expected[..., 0].size} pixels are wrong"
     assert expected.any(), "the expected picture is black"
-    assert int(bench.uio_oe.value) == 0, "pins that are not used are driven"
+    assert int(pins.uio_oe.value) == 0, "pins that are not used are driven"
     monitor.check_pins()

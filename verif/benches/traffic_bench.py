@@ -151,7 +151,7 @@ async def _play(harness: Harness, seed: int) -> Traffic:
     return player
 
 
-async def _watch(harness: Harness, model: RegisterFile, released_ns: int) -> None:
+async def _watch(harness: Harness, model: RegisterFile, released_ns: float) -> None:
     """The frames after a reset: at the right time, and what the model says is live."""
     live: list[LiveScene | None] = []
 

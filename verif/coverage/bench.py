@@ -19,8 +19,8 @@ async def every_bit_of_the_live_scene(bench: HierarchyObject) -> None:
     harness = Harness(bench)
     await harness.reset()
     for high in (True, False):
-        point = (WORLD_SIZE - 1,) * 3 if high else (0,) * 3
-        colour = ((1 << CHANNEL_BITS) - 1,) * 3 if high else (0,) * 3
+        place, channel = (WORLD_SIZE - 1, (1 << CHANNEL_BITS) - 1) if high else (0, 0)
+        point, colour = (place, place, place), (channel, channel, channel)
         scene = Scene(
             background=colour,
             camera=Camera(position=point),
@@ -41,10 +41,11 @@ async def every_axis_in_every_entry(bench: HierarchyObject) -> None:
     for axis in (1, 2, 0):
         corners = [[100, 100, 100], [400, 400, 400]]
         corners[1][axis] = corners[0][axis]
+        rectangle = Rectangle.model_validate({"corners": corners, "colour": (200, 100, 50)})
         scene = Scene(
             # At distances whose lowest bits are those of 0, -101 and 80.
             camera=Camera(position=(20, 256, 201)),
-            rect=(Rectangle(corners=corners, colour=(200, 100, 50)),) * harness.configuration.rectangles,
+            rect=(rectangle,) * harness.configuration.rectangles,
         )
         await harness.bus.load_scene(scene)
         await harness.bus.commit(reflections=0)
@@ -61,9 +62,10 @@ async def every_bit_of_every_distance(bench: HierarchyObject) -> None:
     near, below, above = (200, down, up, up), (400, far_down, down, far_down), (20, up, ~far_down, ~far_down)
     for eye, low, high, plane in (near, below, near, above, near):
         corners = [[eye + bound, eye + plane, eye + bound] for bound in (low, high)]
+        rectangle = Rectangle.model_validate({"corners": corners, "colour": (200, 100, 50)})
         scene = Scene(
-            camera=Camera(position=(eye,) * 3),
-            rect=(Rectangle(corners=corners, colour=(200, 100, 50)),) * harness.configuration.rectangles,
+            camera=Camera(position=(eye, eye, eye)),
+            rect=(rectangle,) * harness.configuration.rectangles,
         )
         await harness.bus.load_scene(scene)
         await harness.bus.commit(reflections=0)

@@ -90,7 +90,7 @@ class Explanation(BaseModel):
         if not re.fullmatch(self.module, point.module):
             return False
         if self.signal is None:
-            return point.kind != "toggle" and bool(re.search(self.code, point.what))
+            return point.kind != "toggle" and bool(re.search(self.code or "", point.what))
         if point.toggle is None:
             return False
         signal, bit, edge = point.toggle

@@ -14,34 +14,36 @@ from pathlib import Path
 import numpy as np
 from cocotb_coverage.coverage import CoverCross, CoverPoint, coverage_db, coverage_section
 
+from raycaster.engines import ENGINES, SEED, Engine
+
 HERE = Path(__file__).parent
+COUNTER = HERE / "intersection_counter.v"
 PROBES = {
-    "seed": (HERE / "intersection_counter.v", HERE / "seed_probe.v"),
-    "exact": (HERE / "intersection_counter.v", HERE / "exact_probe.v"),
-    "beam": (HERE / "beam_probe.v",),
+    name: (*((COUNTER,) if engine.line_buffered else ()), HERE / f"{name}_probe.v") for name, engine in ENGINES.items()
 }
 """By engine, Verilog beside the design's, which writes what `read_bins` reads."""
 
 PROBE_MODULES = "intersection_counter", "intersection_probe", "pass_probe", "tester_probe"
 
-_FOURTH = {"seed": "overflow", "exact": "before mirror", "beam": "before mirror"}
 POINTS = {
-    engine: {
+    name: {
         "axis": ("x", "y", "z"),
         "slope": ("negative", "zero", "positive"),
         # In this order of precedence: parallel to the plane, from a point on it, running away from it; of the seed
         # engine a quotient on u or v that is too large, of the exact engine between the mirrored eye and the mirror, or
         # on an axis that was met there, else a hit; outside the bounds, exactly on one of them, inside.
-        "result": ("parallel", "on plane", "behind", fourth, "miss", "edge", "hit"),
+        "result": (
+            "parallel", "on plane", "behind", "overflow" if engine.divides else "before mirror", "miss", "edge", "hit",
+        ),
         # What is made of a hit.
         "rank": ("none", "first", "nearer", "tie", "farther"),
         "ray": ("primary", "first", "second"),
     }
-    for engine, fourth in _FOURTH.items()
-}
+    for name, engine in ENGINES.items()
+}  # fmt: skip
 """By engine, the points that are crossed, and the bins of each: of the rectangle's plane, of the ray along it, ..."""
 
-SHAPE = tuple(map(len, POINTS["seed"].values()))
+SHAPE = tuple(map(len, POINTS[SEED.name].values()))
 CROSS = "raycaster.intersection"
 HITS = ("edge", "hit")
 Bin = tuple[str, str, str, str, str]
@@ -49,9 +51,9 @@ Pattern = tuple[str | None, str | None, str | None, str | None, str | None]
 """A bin, where None stands for every value."""
 
 
-def _impossible_in(engine: str) -> dict[str, tuple[Pattern, ...]]:
-    """Bins that no ray can hit, by the reason, in whichever engine; named as in this one."""
-    results, ranks = POINTS[engine]["result"], POINTS[engine]["rank"]
+def _impossible_in(engine: Engine) -> dict[str, tuple[Pattern, ...]]:
+    """Bins that no ray can hit, by the reason."""
+    results, ranks = POINTS[engine.name]["result"], POINTS[engine.name]["rank"]
     return {
         "without a slope along its axis a plane is never reached": tuple(
             (None, "zero", result, None, None) for result in results if result != "parallel"
@@ -70,36 +72,31 @@ def _impossible_in(engine: str) -> dict[str, tuple[Pattern, ...]]:
         ),
         "the slope along x is 100 in magnitude, never 0": (("x", "zero", None, None, None),),
         "primary rays run along positive x": (("x", "negative", None, None, "primary"),),
+        **(_GIVEN_UP if engine.divides else _WITHOUT_MIRROR),
     }
 
 
-IMPOSSIBLE: dict[str, dict[str, tuple[Pattern, ...]]] = {
-    "seed": {
-        **_impossible_in("seed"),
-        # Its control ends a rectangle that no ray of the group runs towards.
-        "a group's primary rays run one way from one point; a plane that none runs towards is given up": (
-            (None, None, "on plane", None, "primary"),
-            (None, None, "behind", None, "primary"),
-        ),
-        "a group's rays have the row's slope along z, so a plane that one is parallel to is given up": (
-            ("z", None, "parallel", None, None),
-        ),
-    },
-    **{
-        engine: {
-            **_impossible_in(engine),
-            "primary rays have left no mirror": ((None, None, _FOURTH[engine], None, "primary"),),
-        }
-        for engine in ("exact", "beam")
-    },
+# A control that waits for divisions ends a rectangle that no ray of the group runs towards.
+_GIVEN_UP: dict[str, tuple[Pattern, ...]] = {
+    "a group's primary rays run one way from one point; a plane that none runs towards is given up": (
+        (None, None, "on plane", None, "primary"),
+        (None, None, "behind", None, "primary"),
+    ),
+    "a group's rays have the row's slope along z, so a plane that one is parallel to is given up": (
+        ("z", None, "parallel", None, None),
+    ),
 }
+_WITHOUT_MIRROR: dict[str, tuple[Pattern, ...]] = {
+    "primary rays have left no mirror": ((None, None, "before mirror", None, "primary"),),
+}
+IMPOSSIBLE = {name: _impossible_in(engine) for name, engine in ENGINES.items()}
 """By engine, bins that no ray can hit, by the reason; with culling."""
 
 
 class FunctionalCoverage:
     """The bins, empty at first. cocotb-coverage keeps them in one place a process, so a new one replaces the last."""
 
-    def __init__(self, engine: str = "seed"):
+    def __init__(self, engine: str = SEED.name):
         """Declare the bins.
 
         Args:

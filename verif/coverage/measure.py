@@ -52,14 +52,20 @@ from raycaster.verif.soak.soak import BENCH as SOAK
 # with two reflections take 202, of which culling leaves more than that where the bench of the underrun wants it; what
 # the other benches show takes less. So it is with four units of the exact engine, 52 cycles and a budget of 39.
 DESIGNS = {
-    "seed": configure(units=16, reflections=2, divider_bits=2, allow_underrun=True),
-    "exact": configure(engine="exact", units=4, reflections=2, culling=True, allow_underrun=True),
-    "beam": configure(engine="beam", scale=1, reflections=2),
+    config.engine: config
+    for config in (
+        configure(units=16, reflections=2, divider_bits=2, allow_underrun=True),
+        configure(engine="exact", units=4, reflections=2, culling=True, allow_underrun=True),
+        configure(engine="beam", scale=1, reflections=2),
+    )
 }
 SOAK_DESIGNS = {
-    "seed": configure(reflections=2),
-    "exact": configure(engine="exact", units=8, reflections=2, culling=True),
-    "beam": configure(engine="beam", reflections=2),
+    config.engine: config
+    for config in (
+        configure(reflections=2),
+        configure(engine="exact", units=8, reflections=2, culling=True),
+        configure(engine="beam", reflections=2),
+    )
 }
 """Without counters of lines they show a random scene several times as fast."""
 

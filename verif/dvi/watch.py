@@ -20,7 +20,7 @@ from raycaster.design import Design
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.bitstream import write_project
 from raycaster.fpga.board import OpenBoard, board_names, find_board
-from raycaster.golden import engines
+from raycaster.golden.engines import model_of
 from raycaster.golden.picture import count_wrong, shown
 from raycaster.golden.tmds import CONTROL_SYMBOLS, decode
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
@@ -92,7 +92,8 @@ def golden(design: Design, position: tuple[int, int, int] | None = None) -> np.n
     scene = design.scene
     if position is not None:
         scene = scene.model_copy(update={"camera": scene.camera.model_copy(update={"position": position})})
-    return shown(engines.render(design.configuration, scene, design.reflections), design.configuration)
+    config = design.configuration
+    return shown(model_of(config).render(scene, config.screen_geometry, design.reflections), config)
 
 
 def _record(

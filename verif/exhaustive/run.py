@@ -253,7 +253,8 @@ def run(command: Sequence[str], bench: Bench, number: int) -> Outcome:
     if first:
         raise Mismatch(f"{bench.label}: {first[0]}; {counts[3] if counts else 'more'} are wrong")
     if counts and done.returncode == 0:
-        return Outcome(*map(int, counts.groups()), time.monotonic() - begin)
+        vectors, valid, wrong = map(int, counts.groups())
+        return Outcome(vectors, valid, wrong, time.monotonic() - begin)
     raise BenchError(f"{bench.label}: ended without a result, code {done.returncode}")
 
 
@@ -268,15 +269,16 @@ def show(outcomes: Mapping[Bench, Outcome], number: int, console: Console) -> No
     for heading in ("vectors", "valid", "wrong", "seconds", "vectors/s"):
         table.add_column(heading, justify="right", no_wrap=True)
 
-    def add(label: str, vectors: int, valid: int, wrong: int, seconds: float, style: str = "") -> None:
+    def add(label: str, outcomes: Sequence[Outcome], style: str = "") -> None:
+        vectors, valid, wrong, seconds = map(sum, zip(*map(astuple, outcomes), strict=True))
         rate = f"{vectors / max(seconds, 1e-9):,.0f}"
         table.add_row(Text(label, style), f"{vectors:,}", f"{valid:,}", f"{wrong:,}", f"{seconds:.1f}", rate)
 
     for kind in dict.fromkeys(bench.kind for bench in outcomes):
         of_kind = [(bench, outcome) for bench, outcome in outcomes.items() if bench.kind == kind]
         for bench, outcome in of_kind:
-            add(bench.label, *astuple(outcome))
-        add(kind, *map(sum, zip(*(astuple(outcome) for _, outcome in of_kind), strict=True)), "bold")
+            add(bench.label, [outcome])
+        add(kind, [outcome for _, outcome in of_kind], "bold")
         table.add_section()
     console.print(table)
 

@@ -8,10 +8,11 @@ multiplication. These facts lead from there to the definition, which is of ratio
 from __future__ import annotations
 
 import ast
+import importlib
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from raycaster.output import emptied
 from raycaster.tools import run_program
@@ -123,8 +124,7 @@ def _z3(path: Path, timeout: float) -> tuple[str, str]:
 
 
 def _cvc5(path: Path, timeout: float) -> tuple[str, str]:
-    import cvc5  # noqa: PLC0415  # an optional package
-
+    cvc5: Any = importlib.import_module("cvc5")  # an optional package, which says nothing of its types
     solver = cvc5.Solver()
     solver.setOption("tlimit-per", str(round(timeout * 1000)))
     parser = cvc5.InputParser(solver)

@@ -64,7 +64,7 @@ def _signed_bits(least: int, beyond: int) -> int:
 
 def _video(design: Configuration | Screen, label: str, small: bool) -> Property:
     screen = design if isinstance(design, Screen) else design.screen_geometry
-    beam = not isinstance(design, Screen) and not design.facts.line_buffered
+    lead = None if isinstance(design, Screen) or design.facts.line_buffered else beam_latency(design)
     spans = {"H": screen.beats, "V": screen.vertical}
     parameters = {}
     for letter, span in spans.items():
@@ -80,7 +80,7 @@ def _video(design: Configuration | Screen, label: str, small: bool) -> Property:
         "ROWS": screen.rows,
         "COLOUR_BITS": 8 if isinstance(design, Screen) else design.colour_bits * design.pixels,
         "CLOCKS": screen.clocks_per_pixel,
-        "LEAD": beam_latency(design) if beam else 0,
+        "LEAD": lead or 0,
         "X_BITS": _signed_bits(-screen.beats.blank, screen.beats.visible),
         "Y_BITS": _signed_bits(-screen.vertical.blank, screen.vertical.visible),
         "REPEAT_BITS": bits_for(screen.doubling),
@@ -88,7 +88,8 @@ def _video(design: Configuration | Screen, label: str, small: bool) -> Property:
     return Property(
         "video-timing",
         "sync, blanking and strobes exactly at the standard's counts, whatever the inputs",
-        design, label, ("video_generator", *(["pixel_clock"] if beam else [])), parameters, induction=1, small=small,
+        design, label, ("video_generator", *([] if lead is None else ["pixel_clock"])), parameters, induction=1,
+        small=small,
     )  # fmt: skip
 
 

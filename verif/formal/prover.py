@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache, partial
 from pathlib import Path
 
+from raycaster.buses import BUSES
 from raycaster.configuration import Configuration
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import convert_hierarchy
@@ -24,7 +25,7 @@ from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.beam.ray_tester import ray_tester
 from raycaster.rtl.bus.avalon_host import avalon_host
-from raycaster.rtl.bus.buses import BUSES
+from raycaster.rtl.bus.buses import BRIDGES
 from raycaster.rtl.common.interfaces import Access, AvalonPort, Direction, Eye, Rects, Scan, SceneBus, Slope, Steps, Vga
 from raycaster.rtl.common.records import Candidate, Facet, Fold, Mirror, Pixel, Rect, Reflector, Signs, Turn, Walk
 from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, unsigned
@@ -377,10 +378,10 @@ def _convert_host(widths: HostWidths, directory: Path) -> None:
 
 
 def _convert_bridge(widths: BridgeWidths, directory: Path) -> None:
-    bus = BUSES[widths.bus]
+    bridge = BRIDGES[widths.bus]
     with elaboration():
-        ports = {bus.port: bus.interface(widths.address)}
-        top = bus.bridge(bit(), reset_signal(), avm_m0=AvalonPort(widths.address), **ports)
+        ports = {BUSES[widths.bus].port: bridge.interface(widths.address)}
+        top = bridge.block(bit(), reset_signal(), avm_m0=AvalonPort(widths.address), **ports)
     convert_hierarchy(top, directory, "// {module}")
 
 

@@ -237,7 +237,8 @@ def _at(term: str, state: str) -> str:
 
 
 def _state_bits(model: str) -> int:
-    return int(re.search(r"^\(define-sort \|[^|]+_s\| \(\) \(_ BitVec (\d+)\)\)", model, re.M)[1])
+    [bits] = re.findall(r"^\(define-sort \|[^|]+_s\| \(\) \(_ BitVec (\d+)\)\)", model, re.M)
+    return int(bits)
 
 
 def _solve(text: str, deadline: float) -> dict[str, int] | None:
@@ -254,4 +255,7 @@ def _solve(text: str, deadline: float) -> dict[str, int] | None:
     if answer.r == 0:
         return None
     model = solver.model()
-    return {entry.name(): model[entry].as_long() for entry in model.decls() if hasattr(model[entry], "as_long")}
+    values = {entry.name(): model[entry] for entry in model.decls()}
+    return {
+        name: value.as_long() for name, value in values.items() if isinstance(value, (z3.BitVecNumRef, z3.IntNumRef))
+    }

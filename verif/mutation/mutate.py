@@ -354,8 +354,8 @@ class Recording:
 
     def _text(self, source: str) -> str:
         """The Verilog from `file:line.column` up to `line.column`, or the first line of it."""
-        match = re.fullmatch(r"(.+):(\d+)\.(\d+)-(\d+)\.(\d+)", source)
-        file, first, start, last, end = match[1], *map(int, match.groups()[1:])
+        [(file, *numbers)] = re.findall(r"^(.+):(\d+)\.(\d+)-(\d+)\.(\d+)$", source)
+        first, start, last, end = map(int, numbers)
         line = (self._work / file).read_text().splitlines()[first - 1]
         # The label of a case has a place, and no extent.
         return line[start - 1 : end - 1 if first == last and start < end else None].strip()
@@ -383,7 +383,8 @@ class Recording:
                 mutant.outcome, mutant.detail = "caught", f"cycle {cycle}"
 
     def _words(self) -> tuple[int, int]:
-        return tuple(-(-sum(ports.values()) // 32) for ports in (self._inputs, self._outputs))
+        into, out = (-(-sum(ports.values()) // 32) for ports in (self._inputs, self._outputs))
+        return into, out
 
     def _wrapper(self, selector_width: int) -> str:
         # Vectors of more than 64 bits, so that Verilator has arrays of words for them.
@@ -477,7 +478,7 @@ def stale(results: Iterable[Result], known: Mapping[str, Expectation]) -> list[s
 
 def count_outcomes(mutants: Iterable[Mutant]) -> dict[str, int]:
     """How many mutants had each outcome."""
-    counts = dict.fromkeys(OUTCOMES, 0)
+    counts: dict[str, int] = dict.fromkeys(OUTCOMES, 0)
     for mutant in mutants:
         counts[mutant.outcome] += 1
     return counts
@@ -674,7 +675,7 @@ def main(argv: list[str] | None = None) -> int:
     console.print(_table(results))
     by_module = {module: [one for one in results if one.module == module] for module in known}
     shares = {module: share_caught(_counts(of_module)) for module, of_module in by_module.items()}
-    worst = min(shares, key=shares.get)
+    worst = min(shares, key=shares.__getitem__)
     figures = {"modules": len({one.module for one in results}), "recordings": len(results), **_counts(results)}
     figures["not_run"] = len(failures)
     figures |= {"caught_of_the_rest": share_caught(_counts(results)), "worst": worst, "worst_caught": shares[worst]}

@@ -10,7 +10,9 @@ import hypothesis
 import numpy as np
 from hypothesis import strategies as st
 
+from raycaster.buses import BUSES
 from raycaster.configuration import WORLD_SIZE
+from raycaster.engines import ENGINES, Engine
 from raycaster.golden.random_world import EXTREMES
 from raycaster.golden.world import Rectangles
 from raycaster.verif.seeds import seed
@@ -23,7 +25,7 @@ def examples(count: int) -> Callable:
 
 
 class World(NamedTuple):
-    """A table, and rays from one camera; as `raycaster.golden.exact.trace` takes them."""
+    """A table, and rays from one camera; as `raycaster.golden.model.Model.trace` takes them."""
 
     rectangles: Rectangles
     camera: np.ndarray
@@ -53,28 +55,23 @@ def worlds(draw: st.DrawFn, lowest: int = 0, highest: int = WORLD_SIZE - 1) -> W
     return World(Rectangles(corners, colours, enabled), np.array(draw(point)), np.array(slopes))
 
 
-ENGINE_OPTIONS = {
-    "seed": {
+def engine_options(engine: Engine) -> dict[str, st.SearchStrategy]:
+    """Options that an engine takes, beside those that every engine takes."""
+    found: dict[str, st.SearchStrategy] = {"screen": st.sampled_from(sorted({name for name, _ in engine.screens}))}
+    if engine.turns:
+        found["turn"] = st.booleans()
+    if not engine.line_buffered:
+        return found | {"scale": st.sampled_from([1, 2, 4])}
+    found |= {"units": st.sampled_from([1, 2, 4, 8, 16, 32, 64]), "culling": st.booleans()}
+    if not engine.divides:
+        return found | {"reflections": st.integers(0, 4)}
+    return found | {
         "fraction_bits": st.integers(0, 8),
         "rounding": st.sampled_from(["truncate", "nearest"]),
         "divider_bits": st.sampled_from(["auto", 1, 2, 3]),
-        "units": st.sampled_from([1, 2, 4, 8, 16, 32, 64]),
-        "culling": st.booleans(),
-        "screen": st.sampled_from(["vga", "tiny"]),
-    },
-    "exact": {
-        "units": st.sampled_from([1, 2, 4, 8, 16, 32, 64]),
-        "reflections": st.integers(0, 4),
-        "culling": st.booleans(),
-        "turn": st.booleans(),
-        "screen": st.sampled_from(["vga", "tiny"]),
-    },
-    "beam": {
-        "turn": st.booleans(),
-        "scale": st.sampled_from([1, 2, 4]),
-        "screen": st.sampled_from(["vga", "tiny", "play"]),
-    },
-}
+    }
+
+
 ANY_OPTIONS = {
     "rectangles": st.integers(1, 32),
     "reflections": st.integers(0, 2),
@@ -82,7 +79,7 @@ ANY_OPTIONS = {
     "colour_bits": st.integers(1, 8),
     "materials": st.booleans(),
     "patterns": st.booleans(),
-    "bus": st.sampled_from(["avalon", "axi4lite", "wishbone", "apb"]),
+    "bus": st.sampled_from(list(BUSES)),
 }
 ODD = {
     "engine": "none", "units": 7, "rectangles": 33, "reflections": -1, "rows": 100, "scale": 6, "fraction_bits": 9,
@@ -95,8 +92,8 @@ ODD = {
 @st.composite
 def options(draw: st.DrawFn, odd: bool = False) -> dict[str, Any]:
     """A configuration's options, most of which go together; now and then with an odd one."""
-    engine = draw(st.sampled_from(list(ENGINE_OPTIONS)))
-    chosen = draw(st.fixed_dictionaries({}, optional=ANY_OPTIONS | ENGINE_OPTIONS[engine]))
+    engine = draw(st.sampled_from(list(ENGINES)))
+    chosen = draw(st.fixed_dictionaries({}, optional=ANY_OPTIONS | engine_options(ENGINES[engine])))
     chosen |= {"engine": engine, "allow_underrun": draw(st.booleans())}
     if odd and draw(st.integers(0, 3)) == 0:
         name = draw(st.sampled_from(list(ODD)))

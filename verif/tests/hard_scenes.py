@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from raycaster.configuration import CHANNEL_BITS, WORLD_SIZE, Configuration
-from raycaster.golden import exact, seed_engine
+from raycaster.golden.engines import model_of
 from raycaster.golden.random_world import random_camera, random_looks, random_rectangles
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.verif.seeds import repeat
@@ -84,8 +84,7 @@ def edged(random: np.random.Generator, config: Configuration, golden, table: Rec
         corners[other] = corners[winner]
         corners[other, :, flat] = np.clip(corners[winner, 0, flat] + random.integers(-4, 5), 0, WORLD_SIZE - 1)
     axis = int(random.choice(OTHER_AXES[flat]))
-    point = int(bounce.points[winner, 0][axis])
-    whole = point // int(bounce.denominators[winner, 0]) if config.engine != "seed" else point >> config.fraction_bits
+    whole = int(bounce.points[winner, 0][axis]) // int(bounce.scales[winner, 0])
     place = whole + int(random.integers(-1, 2))
     corners[winner, int(random.integers(2)), axis] = np.clip(place, 0, WORLD_SIZE - 1)
     return replace(table, corners=corners)
@@ -154,9 +153,7 @@ def facing(random: np.random.Generator, table: Rectangles, camera, slope) -> Rec
 
 def tracer(config: Configuration, **given) -> Callable:
     """Golden's trace by a design's engine, with these of its arguments, to be called with the others."""
-    if config.engine != "seed":
-        return partial(exact.trace, keep=True, **given)
-    return partial(seed_engine.trace, fraction_bits=config.fraction_bits, rounding=config.rounding, keep=True, **given)
+    return partial(model_of(config).trace, keep=True, **given)
 
 
 def traced_scene(random: np.random.Generator, config: Configuration, slopes: np.ndarray) -> tuple:

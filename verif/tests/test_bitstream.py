@@ -21,7 +21,7 @@ from raycaster.errors import UserError
 from raycaster.fpga import bitstream
 from raycaster.fpga.bitstream import Outcome, make_bitstream, write_project
 from raycaster.fpga.board import OpenBoard, board_names, find_board
-from raycaster.golden import engines
+from raycaster.golden.engines import model_of
 from raycaster.golden.picture import shown as as_shown
 from raycaster.rtl.system.camera_axis import STEP
 from raycaster.rtl.system.scene_player import BUTTONS
@@ -108,7 +108,7 @@ def test_a_processor_on_the_board(tmp_path):
     x, y, z = scene.camera.position
     for step, frame in enumerate(drawn, 1):
         camera = scene.camera.model_copy(update={"position": (x, y + step * PROGRAM_STEP, z)})
-        picture = engines.render(config, scene.model_copy(update={"camera": camera}), scene.reflections)
+        picture = model_of(config).render(scene.model_copy(update={"camera": camera}), config.screen_geometry)
         assert np.array_equal(frame, as_shown(picture, config)), step
     # Buttons are sent as letters.
     assert (project / "serial.txt").read_text().startswith("RAYCMEgo\nBBB")

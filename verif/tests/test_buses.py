@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from conftest import BUILD, SMALL_SCENE, Bench
 
+from raycaster.buses import BRIDGED
 from raycaster.configuration import ConfigurationError, configure
 from raycaster.convert.write import write_processor_system, write_system
 from raycaster.fpga import verilog
@@ -16,7 +17,6 @@ from raycaster.sim.simulator import SIMULATORS, SimulationError, convert
 from raycaster.verif.seeds import seed
 
 SCENE = load_scene(SMALL_SCENE)
-BUSES = ("axi4lite", "wishbone", "apb")
 
 
 def small(bus: str):
@@ -24,7 +24,7 @@ def small(bus: str):
 
 
 @pytest.mark.parametrize("simulator", SIMULATORS)
-@pytest.mark.parametrize("bus", BUSES)
+@pytest.mark.parametrize("bus", BRIDGED)
 def test_bus(bench: Bench, bus, simulator):
     """Random words with back-pressure, a frame, and the cycles of an access; in Icarus registers start unknown."""
     first = seed()
@@ -32,7 +32,7 @@ def test_bus(bench: Bench, bus, simulator):
 
 
 @pytest.mark.parametrize("start", [1, 2])
-@pytest.mark.parametrize("bus", BUSES)
+@pytest.mark.parametrize("bus", BRIDGED)
 def test_random_start(bench: Bench, bus, start):
     """Registers start with random values, and nothing of them is seen after reset."""
     values = ("+verilator+rand+reset+2", f"+verilator+seed+{start}")

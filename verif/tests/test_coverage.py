@@ -16,7 +16,7 @@ from rich.console import Console
 
 from raycaster.configuration import Configuration, configure
 from raycaster.errors import UserError
-from raycaster.golden import exact, seed_engine
+from raycaster.golden.engines import model_of
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.scene import Scene, dump_scene, load_scene
@@ -221,9 +221,7 @@ def counted(scene: Scene, config: Configuration) -> np.ndarray:
     slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
     position, background = scene.camera.position, scene.background
     divides = config.facts.divides
-    options = {"fraction_bits": config.fraction_bits} if divides else {}
-    trace = seed_engine.trace if divides else exact.trace
-    traced = trace(rectangles, position, background, slopes, scene.reflections, keep=True, **options)
+    traced = model_of(config).trace(rectangles, position, background, slopes, scene.reflections, keep=True)
     counts = np.zeros(np.prod(SHAPE), dtype=np.int64)
     for number, bounce in enumerate(traced.bounces):
         # Those that have hit nothing before go on missing, and nothing of them is seen.

@@ -31,6 +31,7 @@ from raycaster.convert.take_home import TOP
 from raycaster.digests import code_digest, uncommented
 from raycaster.docs import blocks, commands, drawings, engine_figures, facts, pages, proofs, scaling, tables, timing
 from raycaster.docs.commands import commands_of, outside_make
+from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.fpga.cells import Area
 from raycaster.golden.picture import shown
@@ -421,7 +422,7 @@ def test_comments_make_no_figure_stale(tmp_path: Path):
 
 def test_only_what_decides_a_figure_makes_it_stale(monkeypatch):
     """One operator in a block of the exact engine: the digests of the other engines stay."""
-    designs = [configure(engine=name, screen="tiny", rectangles=3) for name in ("seed", "exact", "beam")]
+    designs = [configure(engine=name, screen="tiny", rectangles=3) for name in ENGINES]
     before = [provenance.verilog_digest(design) for design in designs]
     assert before == [provenance.verilog_digest(design) for design in designs]
     text = uncommented
@@ -499,7 +500,7 @@ def test_pages(tmp_path: Path):
     text = "".join(path.read_text() for path in output.glob("*.html"))
     written = {page.with_suffix(".html").name for page in pages.PAGES if page.parent == pages.HERE}
     assert written | {"library.html"} <= {path.name for path in output.iterdir()}
-    assert "raycaster.golden.exact.trace" in text, "the library's reference"
+    assert "raycaster.golden.model.Model.trace" in text, "the library's reference"
     assert "The RayCaster authors" in text
     there = {f"{drawing.name}.svg" for drawing in (*blocks.DRAWINGS, *timing.DIAGRAMS)}
     there |= {"scaling.svg", "error_and_time.svg"}
@@ -575,4 +576,4 @@ def test_the_plot_of_the_growth():
     """It is of what the tables are of."""
     plot = (pages.HERE / "scaling.svg").read_text()
     assert f"measured {tables.outcomes()['scaling'].date}" in plot
-    assert set(drawings.words(plot)) > {"seed", "exact", "beam", "rectangles", "reflections", "LUT4"}
+    assert set(drawings.words(plot)) > {*ENGINES, "rectangles", "reflections", "LUT4"}

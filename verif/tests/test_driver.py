@@ -27,10 +27,11 @@ from tcl import run_tcl
 
 from raycaster.configuration import configure
 from raycaster.convert.take_home import TOP
+from raycaster.engines import ENGINES
 from raycaster.golden.world import Rectangles
 from raycaster.program import scene_words
 from raycaster.registers import register_map
-from raycaster.scene import UNTURNED, Camera, load_scene
+from raycaster.scene import PATTERNS, UNTURNED, Camera, load_scene
 from raycaster.verif.seeds import repeat, seed
 
 ERRORS = enumerators(SOFTWARE / "raycaster.h", "raycaster_error")
@@ -80,12 +81,17 @@ def test_probe_reads_what_the_design_is(library, config):
         "materials", "patterns",
     ):  # fmt: skip
         assert getattr(found, name) == getattr(config, name), name
-    engines = enumerators(SOFTWARE / "raycaster.h", "raycaster_engine")
-    assert engines[found.engine] == f"RAYCASTER_{config.engine.upper()}"
+    assert found.engine == config.facts.code
     assert found.nearest == (config.rounding == "nearest")
     version = register_map(config.rectangles)["version"].fields
     assert (found.major, found.minor) == (version["major"].reset, version["minor"].reset)
     assert found.built_in == 0
+
+
+def test_the_header_names_every_engine_and_pattern():
+    engines, patterns = (enumerators(SOFTWARE / "raycaster.h", f"raycaster_{what}") for what in ("engine", "pattern"))
+    assert dict(enumerate(engines)) == {engine.code: f"RAYCASTER_{name.upper()}" for name, engine in ENGINES.items()}
+    assert patterns == [f"RAYCASTER_{name.upper()}" for name in PATTERNS]
 
 
 @pytest.mark.parametrize(
@@ -244,7 +250,8 @@ def test_mirrors_that_are_none(library, everything, quarters):
 
 
 @pytest.mark.parametrize(
-    ("pattern", "cell"), [(4, 32), (0xFFFFFFFF, 32), (1, 0), (1, 4), (1, 12), (1, 257), (1, 512), (1, 0x80000000)]
+    ("pattern", "cell"),
+    [(len(PATTERNS), 32), (0xFFFFFFFF, 32), (1, 0), (1, 4), (1, 12), (1, 257), (1, 512), (1, 0x80000000)],
 )
 def test_patterns_that_are_none(library, everything, pattern, cell):
     model, handle = everything

@@ -11,7 +11,7 @@ import pytest
 
 from raycaster.configuration import configure
 from raycaster.convert.write import write_verilog
-from raycaster.golden import seed_engine
+from raycaster.golden.seed_engine import SeedModel
 from raycaster.scene import load_scene
 from raycaster.tools import find_program
 
@@ -73,7 +73,7 @@ def test_picture_frame(name, bus, ports, tmp_path, monkeypatch):
         assert done.returncode == 0, done.stdout + done.stderr
     words = np.array([int(line, 16) for line in (tmp_path / "pixels.txt").read_text().split()]).reshape(visible)
     shown = np.stack([words >> 16, words >> 8 & 255, words & 255], axis=-1)
-    expected = seed_engine.render(scene, screen)
+    expected = SeedModel().render(scene, screen)
     doubled = expected.repeat(screen.doubling, axis=0).repeat(screen.doubling, axis=1)
     assert np.array_equal(shown, doubled)
 

@@ -19,6 +19,7 @@ from rich.console import Console
 from raycaster.configuration import Configuration, configure
 from raycaster.convert.write import write_verilog
 from raycaster.design import design_for
+from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.fit.choice import keep_choice, kept_choice
 from raycaster.fit.fixing import FIT, SCOPES, configuration_of, design_of, fix, fixed_rectangle
@@ -26,7 +27,7 @@ from raycaster.fit.unneeded import covered, seen, unreachable, without_mirrors
 from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
 from raycaster.fpga import fit as search
 from raycaster.fpga.cells import FAMILIES, measure
-from raycaster.golden import engines
+from raycaster.golden.engines import model_of
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.beam.beam_caster import known_facet, known_growth
@@ -39,7 +40,6 @@ from raycaster.tools import run_yosys
 from raycaster.verif.leaf import Leaf
 from raycaster.verif.seeds import repeat, seed
 
-ENGINES = ("seed", "exact", "beam")
 BOXES = ROOT / "scenes" / "boxes.toml"
 
 
@@ -107,11 +107,12 @@ def test_what_is_seen_is_enough(engine):
     config = configure(engine=engine, screen="tiny", allow_underrun=True)
     scene = load_scene(BOXES)
     met = set().union(*seen(config, scene, 1))
-    picture = engines.render(config, scene, 1)
+    model = model_of(config)
+    picture = model.render(scene, config.screen_geometry, 1)
 
     def without(indices) -> np.ndarray:
         kept = tuple(rectangle for index, rectangle in enumerate(scene.rect) if index not in indices)
-        return engines.render(config, scene.model_copy(update={"rect": kept}), 1)
+        return model.render(scene.model_copy(update={"rect": kept}), config.screen_geometry, 1)
 
     assert 3 <= len(met) < len(scene.rect)
     assert np.array_equal(without(set(range(len(scene.rect))) - met), picture)

@@ -14,7 +14,8 @@ from PIL import Image
 
 from raycaster.configuration import configure
 from raycaster.design import packaged_for
-from raycaster.golden import exact
+from raycaster.engines import ENGINES
+from raycaster.golden.exact import ExactModel
 from raycaster.scene import load_scene, packaged_scenes
 
 PLAIN = packaged_scenes(plain=True)
@@ -26,7 +27,7 @@ def test_full_size(bench: Bench, scene):
     check_full_size(bench, scene, "seed")
 
 
-@pytest.mark.parametrize("engine", ["seed", "exact", "beam"])
+@pytest.mark.parametrize("engine", ENGINES)
 def test_scenes_with_looks(bench: Bench, engine):
     """Every scene whose camera is turned or whose rectangles have looks, small, by one design of each engine."""
     scenes = [path for path in packaged_for({"engine": engine}) if path.stem not in PLAIN]
@@ -59,7 +60,7 @@ def test_full_size_beam(bench: Bench, rows, scale, pixels, shown):
     assert result["worst_row_cycles"] == configuration.screen_geometry.horizontal.visible // pixels
     assert result["worst_group_cycles"] == 1
     # The same view, sampled finer: what the coarse picture has is in it.
-    coarse = exact.render(load_scene(scene), configure(engine="beam", rows=rows, scale=1).screen_geometry)
+    coarse = ExactModel().render(load_scene(scene), configure(engine="beam", rows=rows, scale=1).screen_geometry)
     step = configuration.screen_geometry.horizontal.visible // 320
     assert np.array_equal(np.asarray(Image.open(directory / "frame.png"))[::step, ::step], coarse)
 
@@ -76,7 +77,7 @@ def check_full_size(bench: Bench, scene, engine: str) -> dict:
     return result
 
 
-@pytest.mark.parametrize("engine", ["seed", "exact", "beam"])
+@pytest.mark.parametrize("engine", ENGINES)
 def test_tiny_in_icarus(engine):
     """On the small screen in Icarus, through the command itself: with no, one and two reflections, and at the edges."""
     build = BUILD / "test" / f"tiny_in_icarus_{engine}"

@@ -24,7 +24,7 @@ from host_software import (
 )
 
 from raycaster.configuration import configure
-from raycaster.golden import exact
+from raycaster.golden.exact import ExactModel
 from raycaster.golden.rays import primary_slopes
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.registers import register_map
@@ -274,7 +274,7 @@ def test_mirrors_show_what_the_veil_hides(session):
     for number, frame in enumerate(session.play(load(DEMO)[:220])):
         if number >= 80 and number % 10 == 0:
             live = frame.live
-            first, second = exact.trace(live.rectangles, live.camera, live.background, slopes, 1).winners
+            first, second = ExactModel().trace(live.rectangles, live.camera, live.background, slopes, 1).winners
             direct += (first == ball).any()
             only_in_mirrors += (second == ball).any() and not (first == ball).any()
     assert direct

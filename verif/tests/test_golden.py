@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -14,17 +13,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from raycaster.configuration import WORLD_SIZE
-from raycaster.golden import exact, seed_engine
+from raycaster.golden.exact import ExactModel
 from raycaster.golden.rays import primary_slopes
+from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.world import Rectangles
 from raycaster.screens import BEAM_SCREENS
 
 BACKGROUND = (7, 80, 201)
 MIRRORS = st.integers(0, 2)
 MODELS = {
-    "exact": exact.trace,
-    "seed-truncate": seed_engine.trace,
-    "seed-nearest": partial(seed_engine.trace, fraction_bits=3, rounding="nearest"),
+    "exact": ExactModel().trace,
+    "seed-truncate": SeedModel().trace,
+    "seed-nearest": SeedModel(3, "nearest").trace,
 }
 of_each = pytest.mark.parametrize("trace", MODELS.values(), ids=list(MODELS))
 
@@ -44,7 +44,7 @@ def assert_equal(one, other) -> None:
 @given(worlds(), st.integers(0, 4))
 def test_exact_traces_as_fractions_do(world, reflections):
     table, camera, slopes = world
-    traced = exact.trace(table, camera, BACKGROUND, slopes, reflections)
+    traced = ExactModel().trace(table, camera, BACKGROUND, slopes, reflections)
     for ray, slope in enumerate(slopes.tolist()):
         path = follow(table, BACKGROUND, camera.tolist(), slope, reflections)
         winners = [stop.winner for stop in path] + [-1] * (reflections + 1 - len(path))
@@ -81,7 +81,7 @@ def test_a_finer_picture_has_the_coarse_one_in_it(place, world, data, reflection
     scales = [scale for scale in range(1, screen.doubling + 1) if screen.doubling % scale == 0]
     row = data.draw(st.integers(0, screen.rows - 1), label="row")
     rows = [
-        exact.trace(
+        ExactModel().trace(
             world.rectangles, world.camera, BACKGROUND,
             primary_slopes(screen.scaled(scale))[scale * row, ::scale], reflections,
         )

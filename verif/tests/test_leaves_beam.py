@@ -37,7 +37,7 @@ from raycaster.engines.beam import (
     start_cycles,
     winner_latency,
 )
-from raycaster.golden import exact
+from raycaster.golden.exact import ExactModel
 from raycaster.golden.random_world import EXTREMES, random_basis, random_camera, random_looks, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
@@ -1518,7 +1518,7 @@ def race(random: np.random.Generator, config: Configuration, slopes) -> tuple[np
             plane = coordinate(eye, turned, times[-2 if by_mirror else -1], axis) + int(random.integers(-1, 2))
             opened(random, corners[order[ends + 1]], axis, min(max(plane, 0), LAST), eye, turned)
         table = Rectangles(corners, table.colours, np.ones(count, dtype=bool))
-        traced = exact.trace(table, camera, (0, 0, 0), slopes[column : column + 1], ends, keep=True)
+        traced = ExactModel().trace(table, camera, (0, 0, 0), slopes[column : column + 1], ends, keep=True)
         if traced.bounces[-1].hits.sum() >= min(1 if by_mirror else 2, count):
             return camera, table, column
     raise AssertionError(f"no ray has two rectangles, or one by a mirror, after {ends} reflections; {repeat()}")
@@ -1593,7 +1593,7 @@ def test_beam_caster(config, lines, tmp_path):
             line = slopes[row]
         if config.materials:
             table = random_looks(random, table)
-        traced = exact.trace(table, camera, background, line, reflections)
+        traced = ExactModel().trace(table, camera, background, line, reflections)
         fates |= {tuple(int(winner[column] >= 0) for winner in traced.winners) for column in range(len(line))}
         vectors = np.concatenate([camera, *(basis if config.turn else ())]).tolist()
         held = {f"camera_{name}": value for name, value in zip(camera_of(config).layout, vectors, strict=True)}
@@ -1693,7 +1693,7 @@ def test_beam_pass(mirrors, tmp_path):
         camera, table, column = race(random, config, view)
         first = int(random.integers(column + 1))
         line = view[first : column + 1 + int(random.integers(4))]
-        traced = exact.trace(table, camera, (0, 0, 0), line, mirrors)
+        traced = ExactModel().trace(table, camera, (0, 0, 0), line, mirrors)
         held, begin = row_ports(config, table, camera, view[first : first + 2])
         stimulus += [quiet | held | cycle for cycle in begin]
         # A column's strobes follow it; now and then a cycle is no column's.
@@ -1766,7 +1766,7 @@ def test_beam_lane(config, first, lines, tmp_path):
         background = random.integers(256, size=3)
         reflections = config.reflections if number % 4 else int(random.integers(config.reflections))
         line = view[: column + 1 + int(random.integers(4))]
-        traced = exact.trace(table, camera, background, line[first :: config.pixels], reflections)
+        traced = ExactModel().trace(table, camera, background, line[first :: config.pixels], reflections)
         held, begin = row_ports(config, table, camera, view[first : first + 2])
         held |= {"next_column": 0, "picture_reflections": reflections}
         held["picture_background"] = int.from_bytes(bytes(background.astype(np.uint8)))

@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from raycaster.rtl.bus.buses import BUSES
+from raycaster.buses import BUSES
+from raycaster.rtl.bus.buses import BRIDGES
 from raycaster.rtl.common.interfaces import AvalonPort
 from raycaster.rtl.common.widths import LANES, WORD_BITS, bit
 from raycaster.verif.leaf import Leaf, reset_signal
@@ -64,13 +65,13 @@ def any_byte_address(random: np.random.Generator) -> int:
 
 
 def bridge_leaf(name: str, directory: Path) -> Leaf:
-    bus = BUSES[name]
+    bridge = BRIDGES[name]
     return Leaf(
-        bus.bridge,
+        bridge.block,
         lambda: {
             "clk": bit(),
             "reset": reset_signal(),
-            bus.port: bus.interface(ADDRESS_BITS),
+            BUSES[name].port: bridge.interface(ADDRESS_BITS),
             "avm_m0": AvalonPort(ADDRESS_BITS),
         },
         directory,

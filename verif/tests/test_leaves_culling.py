@@ -10,7 +10,7 @@ from fates import margin_of, may_hit_mask
 
 from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
 from raycaster.engines.engine import SETUP_LATENCY
-from raycaster.golden import exact, seed_engine
+from raycaster.golden.engines import model_of
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
@@ -50,13 +50,7 @@ def any_place(random: np.random.Generator) -> int:
 def hit_mask(config: Configuration, table: Rectangles, camera, row: int, offset: int) -> int:
     """What golden's primary rays of the group hit."""
     slopes = primary_slopes(config.screen_geometry)[row, offset * config.units : (offset + 1) * config.units]
-    if config.engine == "exact":
-        traced = exact.trace(table, camera, (0, 0, 0), slopes, 0, keep=True)
-    else:
-        traced = seed_engine.trace(
-            table, camera, (0, 0, 0), slopes, 0,
-            fraction_bits=config.fraction_bits, rounding=config.rounding, keep=True,
-        )  # fmt: skip
+    traced = model_of(config).trace(table, camera, (0, 0, 0), slopes, 0, keep=True)
     return sum(int(hit) << index for index, hit in enumerate(traced.bounces[0].hits.any(axis=1)))
 
 

@@ -14,7 +14,7 @@ from hard_scenes import edged, pixel_of, pixel_word, rectangles_in_view, traced_
 
 from raycaster.configuration import WORLD_SIZE, Configuration, configure
 from raycaster.engines.engine import SETUP_LATENCY
-from raycaster.golden import engines, seed_engine
+from raycaster.golden.engines import model_of
 from raycaster.golden.random_world import random_basis
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
@@ -29,6 +29,7 @@ from raycaster.rtl.system.camera_axis import STEP
 from raycaster.rtl.system.ports import module_ports, system_ports
 from raycaster.rtl.system.ray_caster import ray_caster
 from raycaster.rtl.system.ray_caster_module import RENDERERS, ray_caster_module
+from raycaster.rtl.system.ray_caster_renderer import ray_caster_renderer
 from raycaster.rtl.system.ray_caster_system import ray_caster_system
 from raycaster.rtl.system.reset_release import HOLD_CYCLES
 from raycaster.rtl.system.scene_player import BUTTONS
@@ -515,7 +516,7 @@ def start_screen_cycle(screen: Screen) -> int:
 
 def renderer_leaf(config: Configuration, directory) -> Leaf:
     return Leaf(
-        RENDERERS[config.engine],
+        RENDERERS.get(config.engine, ray_caster_renderer),
         lambda: {
             "clk": bit(),
             "reset": reset_signal(),
@@ -570,10 +571,8 @@ def test_ray_caster_renderer(config, tmp_path):
     # What the control asks the memory for is known from the first group on.
     outputs = renderer_leaf(config, tmp_path).run_both(stimulus, settled=2 + start + 6)[2:]
 
-    colours = seed_engine.trace(
-        table, camera, background, primary_slopes(screen).reshape(-1, 3), config.reflections,
-        fraction_bits=config.fraction_bits, rounding=config.rounding,
-    ).colours  # fmt: skip
+    slopes = primary_slopes(screen).reshape(-1, 3)
+    colours = model_of(config).trace(table, camera, background, slopes, config.reflections).colours
     golden = golden_words(config, colours)
     assert len(set(golden.flat)) > 1, "the rectangle was to have an edge in view"
     empty = np.full_like(golden, pixel_word(config, background))
@@ -803,7 +802,7 @@ def test_ray_caster_module(config, tmp_path):
             slopes = primary_slopes(screen, basis).reshape(-1, 3)
             table = with_looks(random, config, rectangles_in_view(random, camera, slopes, config.rectangles))
             background = random.integers(256, size=3)
-            colours = engines.trace(config, table, camera, background, slopes, config.reflections).colours
+            colours = model_of(config).trace(table, camera, background, slopes, config.reflections).colours
             if len(np.unique(colours, axis=0)) > min(config.rectangles, 3):
                 break
         else:
@@ -901,12 +900,9 @@ def test_ray_caster_system(tmp_path):
         holds = np.repeat(random.integers(1 << len(BUTTONS), size=frames // 3), 3)
         positions = walk(camera, holds)
         pictures = [
-            seed_engine.trace(
-                table, position, background, slopes, config.reflections,
-                fraction_bits=config.fraction_bits, rounding=config.rounding,
-            ).colours
+            model_of(config).trace(table, position, background, slopes, config.reflections).colours
             for position in positions
-        ]  # fmt: skip
+        ]
         # Most of what is random looks the same from everywhere.
         if len({picture.tobytes() for picture in pictures}) > frames // 2:
             break

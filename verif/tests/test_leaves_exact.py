@@ -52,6 +52,7 @@ from raycaster.rtl.exact.rect_tester import rect_tester
 from raycaster.rtl.exact.slope_component import slope_component
 from raycaster.rtl.exact.turned_generator import turned_generator
 from raycaster.rtl.seed.ray_control import ray_control
+from raycaster.scene import PATTERNS
 from raycaster.verif.leaf import EARLY_OUT_AT, Leaf, TraceCycle, ends_early, slot_length, sorted_rect, trace_cycles
 from raycaster.verif.seeds import repeat, seed
 
@@ -854,7 +855,7 @@ def test_pattern_colour(tmp_path):
     )
     random = np.random.default_rng(seed())
     stimulus, expected = [], []
-    for kind, odd_u, odd_v in product(range(4), range(2), range(2)):
+    for kind, odd_u, odd_v in product(range(len(PATTERNS)), range(2), range(2)):
         second = (0, (odd_u + odd_v) % 2, odd_v, odd_u)[kind]
         for colours in ((0, (1 << RGB_BITS) - 1), ((1 << RGB_BITS) - 1, 0), random.integers(1 << RGB_BITS, size=2)):
             look = {"kind": kind, "colour": int(colours[0]), "colour_2": int(colours[1])}

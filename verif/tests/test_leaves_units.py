@@ -10,6 +10,7 @@ import pytest
 
 from raycaster.configuration import CHANNEL_BITS, WORLD_SIZE, Configuration, configure
 from raycaster.golden import seed_engine
+from raycaster.golden.engines import model_of
 from raycaster.golden.random_world import EXTREMES, random_camera, random_looks, random_rectangles, random_slopes
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
@@ -122,10 +123,8 @@ def traced_rays(config: Configuration, random: np.random.Generator, count: int) 
     rays = []
     while len(rays) < count:
         table = random_rectangles(random, count=8, closed=True)
-        trace = seed_engine.trace(
-            table, random_camera(random, table), (0, 0, 0), random_slopes(random, 2), 2,
-            fraction_bits=config.fraction_bits, rounding=config.rounding, keep=True,
-        )  # fmt: skip
+        camera, slopes = random_camera(random, table), random_slopes(random, 2)
+        trace = model_of(config).trace(table, camera, (0, 0, 0), slopes, 2, keep=True)
         for bounce in trace.bounces:
             for ray in np.flatnonzero(bounce.alive):
                 golden = [(bool(bounce.hits[i, ray]), bounce.depths[i, ray], bounce.points[i, ray]) for i in range(8)]

@@ -23,7 +23,7 @@ from migen.genlib.io import CRG
 from raycaster.configuration import configure
 from raycaster.convert.litex import add_ray_caster
 from raycaster.errors import UserError
-from raycaster.golden import exact
+from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import shown
 from raycaster.scene import load_scene
 from raycaster.sim.simulator import build_program
@@ -115,7 +115,7 @@ def test_a_frame_is_golden(example, options, tmp_path):
     assert done.stdout.splitlines()[0] == "leds 2, wrong syncs 0", done.stdout + done.stderr
     screen = config.screen_geometry
     shape = screen.vertical.visible, screen.horizontal.visible
-    expected = shown(exact.render(SCENE, screen), config)
+    expected = shown(ExactModel().render(SCENE, screen), config)
     assert len(np.unique(expected.reshape(-1, 3), axis=0)) == 1 + len(SCENE.rect)
     assert np.array_equal(pixels(tmp_path / "pins.txt", shape, config.colour_bits), expected)
     assert np.array_equal(pixels(tmp_path / "stream.txt", shape, 8), expected)

@@ -11,6 +11,7 @@ from itertools import product
 import pytest
 from conftest import SMALL_SCENE
 
+from raycaster.buses import BRIDGED
 from raycaster.configuration import configure
 from raycaster.convert.write import write_dvi_encoder, write_processor_system, write_system, write_verilog
 from raycaster.engines import ENGINES
@@ -197,12 +198,12 @@ def test_an_explanation_fits_what_it_names():
 def test_every_module_is_mutated(tmp_path):
     scene = load_scene(SMALL_SCENE)
     files = []
-    for engine, rich in product(("seed", "exact", "beam"), (True, False)):
+    for engine, rich in product(ENGINES, (True, False)):
         looks = {"turn": rich and ENGINES[engine].turns, "materials": rich, "patterns": rich}
         config = configure(engine=engine, units=1, rectangles=5, reflections=2, allow_underrun=True, **looks)
         files += write_system(config, scene, tmp_path / config.name)
     files += write_processor_system(config, tmp_path / "processor")
-    for bus in ("axi4lite", "wishbone", "apb"):
+    for bus in BRIDGED:
         files += write_verilog(replace(config, bus=bus), tmp_path / bus)
     files += write_verilog(configure(engine="beam", pixels=2, reflections=1), tmp_path / "lanes")
     files += write_verilog(fix(SMALL_SCENE, {"engine": "exact"}, "rects").design.configuration, tmp_path / "fixed")

@@ -12,7 +12,7 @@ import pytest
 from conftest import ROOT
 
 from raycaster.configuration import Configuration, configure
-from raycaster.golden import engines
+from raycaster.golden.engines import model_of
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.scene import PATTERNS, Camera, Rectangle, Scene, load_scene, packaged_scenes
@@ -177,7 +177,7 @@ def test_the_page_says_what_golden_draws(name, options):
         places = [divmod(number, screen["columns"]) for number in chosen]
         mine = [slope_of(screen, camera, *place) for place in places]
         table = Rectangles.of_scene(shown)
-        trace = engines.trace(config, table, camera.position, shown.background, slopes[chosen], shown.reflections)
+        trace = model_of(config).trace(table, camera.position, shown.background, slopes[chosen], shown.reflections)
         drawn = [pixel(engine, shown, slope) for slope in mine]
         assert drawn == trace.colours.tolist(), name
 

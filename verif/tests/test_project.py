@@ -122,21 +122,26 @@ def test_no_two_folders_may_import_each_other(order):
         seen.append(folder)
 
 
-def compared_names(path: Path) -> list[str]:
-    """Lines of a file that compare something with the name of an engine."""
-    trees = (node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Compare))
-    return [
-        f"{path}:{tree.lineno}"
-        for tree in trees
-        if any(isinstance(side, ast.Constant) and side.value in ENGINES for side in (tree.left, *tree.comparators))
-    ]
+def asked_names(path: Path) -> list[str]:
+    """Lines of a file that compare something with the name of an engine, or have a table by such names."""
+    asked = []
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Compare):
+            texts, most = [node.left, *node.comparators], 0
+        elif isinstance(node, ast.Dict):
+            texts, most = node.keys, 1  # one name may be another thing, such as a seed
+        else:
+            continue
+        if sum(isinstance(text, ast.Constant) and text.value in ENGINES for text in texts) > most:
+            asked.append(f"{path}:{node.lineno}")
+    return asked
 
 
 def test_nothing_outside_an_engine_asks_for_its_name():
     """What an engine can do is a property of it. Tests may ask for names."""
     files = [path for folder in MAY_IMPORT for path in (ROOT / folder).rglob("*.py")]
     outside = [path for path in files if path.parent not in (ROOT / "raycaster/engines", ROOT / "verif/tests")]
-    assert [line for path in outside for line in compared_names(path)] == []
+    assert [line for path in outside for line in asked_names(path)] == []
 
 
 def test_each_folder_of_rtl_has_its_place_in_the_order():

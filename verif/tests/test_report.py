@@ -32,11 +32,12 @@ from raycaster.configuration import configure
 from raycaster.errors import UserError
 from raycaster.fpga.cells import Area
 from raycaster.golden import errors as golden_errors
-from raycaster.golden import exact, seed_engine
 from raycaster.golden.catalogue import catalogue
 from raycaster.golden.errors import compare
+from raycaster.golden.exact import ExactModel
 from raycaster.golden.random_world import random_camera, random_rectangles, random_slopes
 from raycaster.golden.rays import primary_slopes
+from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.world import Rectangles
 from raycaster.jobs import executors
 from raycaster.options import add_configuration_options, as_options, given_options
@@ -76,8 +77,7 @@ SLOPES = primary_slopes(TINY).reshape(-1, 3)
 def fraction_errors(table, camera, slope, reflections, fraction_bits, rounding):
     """Of one ray, for each depth at which it hits what the exact ray hits: errors and bounds, as fractions."""
     arguments = table, camera, (0, 0, 0), slope[None, :], reflections
-    perfect = exact.trace(*arguments)
-    rounded = seed_engine.trace(*arguments, fraction_bits=fraction_bits, rounding=rounding)
+    perfect, rounded = (model.trace(*arguments) for model in (ExactModel(), SeedModel(fraction_bits, rounding)))
     last_place = Fraction(1 if rounding == "truncate" else Fraction(1, 2), 1 << fraction_bits)
     bound = [Fraction(0)] * 3
     for depth in range(reflections + 1):
@@ -137,10 +137,10 @@ def test_a_condition_is_how_far_a_hit_moves():
     for _ in range(30):
         table = random_rectangles(rng, closed=True)
         camera, slopes = random_camera(rng, table), random_slopes(rng, 20)
-        perfect = exact.trace(table, camera, (0, 0, 0), slopes, 2)
+        perfect = ExactModel().trace(table, camera, (0, 0, 0), slopes, 2)
         # The paths stay below 2^50, as `exact` wants its slopes.
         moved = [
-            exact.trace(table, camera, (0, 0, 0), fine * slopes + np.eye(3, dtype=np.int64)[u], 2) for u in range(3)
+            ExactModel().trace(table, camera, (0, 0, 0), fine * slopes + unit, 2) for unit in np.eye(3, dtype=np.int64)
         ]
         for depth, one in enumerate(golden_errors.conditions(table, camera, slopes, perfect)):
             hit = perfect.winners[depth] >= 0
@@ -208,7 +208,7 @@ def test_a_hit_point_of_the_hardware_that_is_off_is_noticed(monkeypatch):
     point = HitsPoint(View.of("case:facing_y_40"), config)
 
     def golden_hits(_, scene, reflections, directory, *, off=0):
-        traced = seed_engine.trace(
+        traced = SeedModel().trace(
             Rectangles.of_scene(scene), scene.camera.position, scene.background, SLOPES, reflections
         )
         seen = [np.where(w[:, None] >= 0, p, -1) for w, p in zip(traced.winners, traced.points, strict=True)]

@@ -12,9 +12,13 @@ import pytest
 from definition import Stop, colour_at, pixel
 
 from raycaster.configuration import configure
-from raycaster.golden import engines, exact, seed_engine
+from raycaster.golden import seed_engine
+from raycaster.golden.engines import model_of
+from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong
 from raycaster.golden.random_world import random_camera, random_looks, random_rectangles, random_slopes
+from raycaster.golden.seed_engine import SeedModel
+from raycaster.golden.world import Rectangles
 from raycaster.scene import load_scene
 from raycaster.screens import SCREENS
 from raycaster.verif.seeds import repeat, seed
@@ -92,9 +96,7 @@ def test_traces_by_definition(mode, reflections):
         if table % 2:
             rectangles = random_looks(rng, rectangles)
         camera = random_camera(rng, rectangles)
-        trace = seed_engine.trace(
-            rectangles, camera, BACKGROUND, slopes, reflections, fraction_bits=mode[0], rounding=mode[1], keep=True
-        )
+        trace = SeedModel(*mode).trace(rectangles, camera, BACKGROUND, slopes, reflections, keep=True)
         for ray, slope in enumerate(slopes.tolist()):
             context = f"table {table}, ray {ray}: camera {camera.tolist()}, slope {slope}; {repeat()}"
             path = follow_by_definition(rectangles, camera.tolist(), slope, reflections, mode)
@@ -129,19 +131,19 @@ def test_kept_values_agree_with_each_other():
     for _ in range(20):
         rectangles, slopes = random_rectangles(rng), random_slopes(rng, 100)
         camera = random_camera(rng, rectangles)
-        options = {"fraction_bits": 3, "rounding": "nearest"}
-        kept = seed_engine.trace(rectangles, camera, BACKGROUND, slopes, 2, keep=True, **options)
-        plain = seed_engine.trace(rectangles, camera, BACKGROUND, slopes, 2, **options)
+        mode = 3, "nearest"
+        kept, plain = (
+            SeedModel(*mode).trace(rectangles, camera, BACKGROUND, slopes, 2, keep=keep) for keep in (True, False)
+        )
         assert (kept.colours == plain.colours).all(), repeat()
         assert plain.bounces == ()
-        for bounce, winner in zip(kept.bounces, kept.winners, strict=True):
-            assert (bounce.winners == winner).all(), repeat()
+        for bounce in kept.bounces:
             for index in np.flatnonzero(rectangles.visible):
                 axis = rectangles.axes[index]
                 numerator = np.abs(bounce.numerators[index])
                 for i, u in enumerate(axis for axis in range(3) if axis != rectangles.axes[index]):
                     quotient, overflow = seed_engine.divide(
-                        np.abs(bounce.slopes[:, u]) * numerator, np.abs(bounce.denominators[index]), **options
+                        np.abs(bounce.slopes[:, u]) * numerator, np.abs(bounce.denominators[index]), *mode
                     )
                     ahead = bounce.numerators[index] * bounce.denominators[index] > 0
                     valid = ahead & ~overflow
@@ -232,18 +234,18 @@ def test_lower_index_wins_a_tie():
     wall = ((100, 0, 0), (100, 511, 511))
     for order in ([0, 1], [1, 0]):
         colours = np.array([(1, 1, 1), (2, 2, 2)], dtype=np.uint8)[order]
-        rectangles = seed_engine.Rectangles(np.array([wall, wall]), colours, np.ones(2, dtype=bool))
-        trace = seed_engine.trace(rectangles, (0, 5, 5), (0, 0, 0), [(100, 0, 0)], 0)
+        rectangles = Rectangles(np.array([wall, wall]), colours, np.ones(2, dtype=bool))
+        trace = SeedModel().trace(rectangles, (0, 5, 5), (0, 0, 0), [(100, 0, 0)], 0)
         assert trace.colours.tolist() == [colours[0].tolist()]
 
 
 def test_refuses_a_camera_that_turns():
     scene = load_scene(SCENES / "mirror_room.toml")
     turned = scene.model_copy(update={"camera": scene.camera.model_copy(update={"yaw": 1.0})})
-    with pytest.raises(ValueError, match="the camera cannot turn"):
-        seed_engine.render(turned, SCREENS["tiny", 48])
     with pytest.raises(ValueError, match="a design without turn does not draw this scene"):
-        engines.render(configure(), turned, 1)
+        SeedModel().render(turned, SCREENS["tiny", 48])
+    with pytest.raises(ValueError, match="a design without turn does not draw this scene"):
+        model_of(configure()).render(turned, SCREENS["tiny", 48])
 
 
 def test_refuses_an_unknown_rounding():
@@ -256,9 +258,9 @@ def test_comes_close_to_exact_with_more_fraction_bits(rounding):
     """The wrong pixels of a closed room by fraction bits; `pytest -s` shows them."""
     scene = load_scene(SCENES / "mirror_room.toml")
     screen = SCREENS["vga", 240]
-    reference = exact.render(scene, screen)
+    reference = ExactModel().render(scene, screen)
     pixels = screen.rows * screen.columns
-    wrong = {bits: count_wrong(seed_engine.render(scene, screen, bits, rounding), reference) for bits in (0, 2, 4, 8)}
+    wrong = {bits: count_wrong(SeedModel(bits, rounding).render(scene, screen), reference) for bits in (0, 2, 4, 8)}
     print(f"{scene.title}, {rounding}, wrong pixels of {pixels} by fraction bits: {wrong}")
     assert wrong[0] > wrong[2] > wrong[4] >= wrong[8], wrong
     # The rates that the design was planned with: about a hundredth without fraction bits, next to none with eight.

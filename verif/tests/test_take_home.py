@@ -15,13 +15,14 @@ from pathlib import Path
 import pytest
 from conftest import SMALL_SCENE
 
+from raycaster.buses import BRIDGED
 from raycaster.configuration import Configuration, configure
 from raycaster.convert.take_home import FILE_LIST, TOP, WAIVERS
 from raycaster.convert.write import write_verilog
+from raycaster.engines import ENGINES
 from raycaster.fit.fixing import fix
 from raycaster.sim.simulator import find_tool
 
-BUSES = ("axi4lite", "wishbone", "apb")
 CONFIGURATIONS = [
     configure(),
     configure(
@@ -41,9 +42,9 @@ CONFIGURATIONS = [
     configure(engine="beam", rows=180, scale=6, pixels=2),
     configure(engine="beam", screen="tiny", rectangles=2, turn=True, materials=True, patterns=True, pixels=2),
     configure(engine="beam", screen="tiny", reflections=2, rectangles=2, turn=True, materials=True, patterns=True),
-    *(configure(engine="exact", screen="tiny", rectangles=2, bus=bus) for bus in BUSES),
+    *(configure(engine="exact", screen="tiny", rectangles=2, bus=bus) for bus in BRIDGED),
     fix(SMALL_SCENE, {"screen": "tiny"}, "rects").design.configuration,
-    *(fix(SMALL_SCENE, {"engine": engine}, "all").design.configuration for engine in ("seed", "exact", "beam")),
+    *(fix(SMALL_SCENE, {"engine": engine}, "all").design.configuration for engine in ENGINES),
 ]
 SMALL = configure(screen="tiny", units=2, rectangles=2, allow_underrun=True)
 
@@ -130,7 +131,7 @@ def test_fusesoc_simulates(core, tool):
     assert "PASS: " in done.stdout
 
 
-@pytest.mark.parametrize("bus", BUSES)
+@pytest.mark.parametrize("bus", BRIDGED)
 def test_fusesoc_simulates_each_bus(bus, tmp_path):
     write_verilog(replace(SMALL, bus=bus), tmp_path / "cores" / "verilog")
     done = fusesoc(tmp_path, "sim")

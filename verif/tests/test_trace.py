@@ -20,25 +20,20 @@ from raycaster.debug.trace import difference_line, main, show
 from raycaster.debug.wave_files import View, signal_names
 from raycaster.debug.waves import Waves
 from raycaster.design import Design, design_for
+from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.sim.simulator import WINDOW_BENCH, build_model, convert
 
 SCENE = Path(__file__).with_name("tall.toml")
+LOOKS = {"materials": "1", "patterns": "1", "allow_underrun": "1"}
+SIZES = {
+    name: {"units": "8" if engine.divides else "4"} if engine.line_buffered else {"scale": "1"}
+    for name, engine in ENGINES.items()
+}
 OPTIONS = {
-    "seed": {"units": "8"},
-    "exact": {"engine": "exact", "units": "4"},
-    "beam": {"engine": "beam", "scale": "1"},
-    **{
-        f"{engine}-looks": {
-            "engine": engine,
-            "units": units,
-            "scale": "1",
-            "materials": "1",
-            "patterns": "1",
-            "allow_underrun": "1",
-        }
-        for engine, units in (("seed", "8"), ("exact", "4"), ("beam", "1"))
-    },
+    name + ending: {"engine": name, **size, **looks}
+    for ending, looks in (("", {}), ("-looks", LOOKS))
+    for name, size in SIZES.items()
 }
 PIXEL = (48, 2)
 """Column and row: the post hides the wall there, and mirrors it."""

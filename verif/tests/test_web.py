@@ -15,7 +15,8 @@ from rich.console import Console
 
 from raycaster.configuration import configure
 from raycaster.errors import UserError
-from raycaster.golden import exact, seed_engine
+from raycaster.golden.exact import ExactModel
+from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.world import Rectangles
 from raycaster.play.machine import Machine, build_machine
 from raycaster.scene import Camera, SceneError, load_scene, packaged_scenes
@@ -55,7 +56,7 @@ def golden_hash(scene, camera: Camera | None = None) -> str:
     screen = configure(engine="beam", screen="play").screen_geometry
     camera = camera or scene.camera
     return picture_hash(
-        exact.picture(
+        ExactModel().picture(
             screen, Rectangles.of_scene(scene), camera.position, scene.background, scene.reflections, basis=camera.basis
         )
     )
@@ -155,7 +156,7 @@ def test_keys_move_the_camera(page, site):
     assert state["camera"]["basis"] != start["basis"]
     scene = load_scene(packaged_scenes()["mirror_room"])
     screen = configure(engine="beam", screen="play").screen_geometry
-    golden = exact.picture(
+    golden = ExactModel().picture(
         screen, Rectangles.of_scene(scene), state["camera"]["position"], scene.background, scene.reflections,
         basis=tuple(map(tuple, state["camera"]["basis"])),
     )  # fmt: skip
@@ -253,8 +254,8 @@ def test_the_engines_side_by_side(page, whole_site, fraction_bits):
     state = page.evaluate("RayCaster.state.engines")
     scene = load_scene(packaged_scenes()["mirror_room"])
     screen = configure(engine="seed").screen_geometry
-    perfect = exact.render(scene, screen)
-    rounded = seed_engine.render(scene, screen, fraction_bits)
+    perfect = ExactModel().render(scene, screen)
+    rounded = SeedModel(fraction_bits).render(scene, screen)
     assert state["exact"] == {"hash": picture_hash(perfect), "wrong": 0}
     assert state["seed"] == {"hash": picture_hash(rounded), "wrong": 0}
     assert state["differs"] == np.any(perfect != rounded, axis=2).sum() > 0

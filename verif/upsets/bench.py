@@ -14,7 +14,7 @@ from random import Random
 
 import cocotb
 import numpy as np
-from cocotb.handle import ArrayObject, HierarchyObject, ValueObjectBase
+from cocotb.handle import ArrayObject, HierarchyObject, LogicArrayObject, LogicObject
 from cocotb.simtime import get_sim_time
 from cocotb.triggers import ClockCycles, FallingEdge, SimTimeoutError, with_timeout
 
@@ -23,6 +23,9 @@ from raycaster.scene import Scene
 from raycaster.sim.harness import Harness
 from raycaster.sim.monitor import CLOCK_NS, VideoError
 from raycaster.verif.random_scenes import random_scene
+
+Register = LogicObject | LogicArrayObject | ArrayObject
+"""A register, or a memory."""
 
 KINDS = (*8 * ("upset",), "reset", "bus")
 """One of ten cases each for reset and for the bus."""
@@ -41,7 +44,9 @@ PATIENCE = 1000
 async def disturb(bench: HierarchyObject) -> None:
     """Disturb the design once a case; write a line of JSON for each, and fail where it did not come back."""
     harness = Harness(bench)
-    registers = list(find_registers(bench.dut, {name: set(found) for name, found in harness.job.registers.items()}))
+    registers = list(
+        find_registers(harness.bench.dut, {name: set(found) for name, found in harness.job.registers.items()})
+    )
     assert registers, "there is nothing to flip"
     lost = []
     with (Path(harness.job.output) / "results.jsonl").open("w") as results:
@@ -54,23 +59,23 @@ async def disturb(bench: HierarchyObject) -> None:
     assert not lost, f"did not come back in cases {lost}"
 
 
-def find_registers(scope: HierarchyObject, names: Mapping[str, set[str]]) -> Iterator[ValueObjectBase]:
+def find_registers(scope: HierarchyObject, names: Mapping[str, set[str]]) -> Iterator[Register]:
     """The registers and memories within an instance, by the names that each module has."""
     for child in scope:
         if isinstance(child, HierarchyObject):
             yield from find_registers(child, names)
-        elif child._name in names.get(scope._def_name, ()):
+        elif isinstance(child, Register) and child._name in names.get(scope._def_name or "", ()):
             yield child
 
 
-def bits_of(register: ValueObjectBase) -> int:
+def bits_of(register: Register) -> int:
     """The number of bits of a register, or of all words of a memory."""
     if isinstance(register, ArrayObject):
         return len(register) * len(register[register.range.left])
     return len(register)
 
 
-async def _case(harness: Harness, registers: list[ValueObjectBase], number: int) -> dict[str, object]:
+async def _case(harness: Harness, registers: list[Register], number: int) -> dict[str, object]:
     """What was done, what became of it, and the frames from then on that were not right."""
     random = Random(number)
     configuration, screen = harness.configuration, harness.screen
@@ -144,7 +149,7 @@ async def _shows(harness: Harness, scene: Scene) -> bool:
     return any([await _look(harness, picture) == "right" for _ in range(FRAMES)])
 
 
-async def _flip(harness: Harness, registers: list[ValueObjectBase], random: Random) -> dict[str, object]:
+async def _flip(harness: Harness, registers: list[Register], random: Random) -> dict[str, object]:
     """Flip a bit; each one of all registers and memories is as likely as any other."""
     [register] = random.choices(registers, [bits_of(register) for register in registers])
     if isinstance(register, ArrayObject):
@@ -155,7 +160,7 @@ async def _flip(harness: Harness, registers: list[ValueObjectBase], random: Rand
     return {"where": f"{register._path.removeprefix('bench.dut.')}[{bit}]"}
 
 
-async def _reset(harness: Harness, registers: list[ValueObjectBase], random: Random) -> dict[str, object]:
+async def _reset(harness: Harness, registers: list[Register], random: Random) -> dict[str, object]:
     """Reset for some clocks, at any time."""
     clocks = random.randint(1, MOST_CLOCKS)
     harness.bench.reset.value = 1
@@ -167,7 +172,7 @@ async def _reset(harness: Harness, registers: list[ValueObjectBase], random: Ran
     return {"where": f"{clocks} clocks"}
 
 
-async def _misuse(harness: Harness, registers: list[ValueObjectBase], random: Random) -> dict[str, object]:
+async def _misuse(harness: Harness, registers: list[Register], random: Random) -> dict[str, object]:
     """Anything on the bus: both at once, let go or changed while it waits, addresses where nothing is."""
     bench, clocks = harness.bench, random.randint(1, MOST_CLOCKS)
     pins = [getattr(bench, f"avs_s0_{name}") for name in ("address", "byteenable", "read", "write", "writedata")]

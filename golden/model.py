@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: MIT
+"""The shape of the golden models: rays followed from mirror to mirror, and the pictures that they make."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import islice
+from typing import SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from raycaster.configuration import LOOKS
+from raycaster.golden.colour import blend, hit_colours
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import Rectangles
+from raycaster.scene import UNTURNED, Basis, Scene
+from raycaster.screens import Screen
+
+
+@dataclass(frozen=True)
+class Bounce:
+    """All that happened to every ray between two mirrors.
+
+    Lengths of the exact model are in world units, those of the seed engine's in units of 2^-F; slopes are in world
+    units. Rows of rectangles that are disabled or have no plane are all 0.
+    """
+
+    origins: np.ndarray
+    """int64 (rays, 3): where rays start. Exact: the camera, mirrored in all mirrors so far. Seed: the camera, or the
+    last hit point as stored, where a ray that has ended stays."""
+
+    slopes: np.ndarray
+    """int64 (rays, 3): slopes of the rays, with the reflections so far."""
+
+    met: np.ndarray
+    """bool (rays, 3): on which axes a plane through the ray's start is not hit. Exact: those of the mirrors that it met
+    there, and all of a ray from the camera. Seed: all."""
+
+    alive: np.ndarray
+    """bool (rays,): has hit something that mirrors at every bounce before."""
+
+    numerators: np.ndarray
+    """int64 (rectangles, rays): n = plane - origin along the rectangle's axis. Exact: times the sign of the slope, so
+    that positive is ahead."""
+
+    denominators: np.ndarray
+    """int64 (rectangles, rays): e, the slope along the rectangle's axis. Exact: its magnitude."""
+
+    scales: np.ndarray
+    """int64 (rectangles, rays): the denominator of quotients, points and depths in world units. Exact: |e|, 0 for a
+    parallel ray. Seed: 2^F."""
+
+    quotients: np.ndarray
+    """int64 (rectangles, rays, 2): the way from the origin on u and v. Exact: slope times n, signed. Seed: magnitudes
+    |slope n / e|, rounded; 0 where not valid."""
+
+    valid: np.ndarray
+    """bool (rectangles, rays, 2): that there is a coordinate on u and on v: the plane is ahead, behind the last mirror
+    or in a corner with it; and of the seed engine, the quotient fits its bits."""
+
+    points: np.ndarray
+    """int64 (rectangles, rays, 3): the point on the rectangle's plane. Seed: 0 on u and v where not valid."""
+
+    depths: np.ndarray
+    """int64 (rectangles, rays): the way along x. Exact: from the camera by all mirrors, with the sign of n. Seed: from
+    the origin; means something where hit."""
+
+    hits: np.ndarray
+    """bool (rectangles, rays): the ray is alive, and both coordinates are valid and within the bounds."""
+
+    @classmethod
+    def empty(cls, count: int, origin: np.ndarray, slope: np.ndarray, met: np.ndarray, alive: np.ndarray) -> Bounce:
+        """The rays, as (3, rays), before any of so many rectangles."""
+        shapes = {name: () for name in ("numerators", "denominators", "scales", "depths")}
+        numbers = {**shapes, "quotients": (2,), "points": (3,)}
+        return cls(
+            origins=origin.T.copy(), slopes=slope.T.copy(), met=met.T.copy(), alive=alive.copy(),
+            **{name: np.zeros((count, len(alive), *shape), dtype=np.int64) for name, shape in numbers.items()},
+            valid=np.zeros((count, len(alive), 2), dtype=bool), hits=np.zeros((count, len(alive)), dtype=bool),
+        )  # fmt: skip
+
+    def note(self, rectangle: SupportsIndex, **values: ArrayLike) -> None:
+        """Keep the values of a rectangle, by the names of the arrays."""
+        for name, value in values.items():
+            getattr(self, name)[rectangle] = value
+
+
+Meeting = tuple[np.ndarray, np.ndarray, np.ndarray, Bounce | None]
+"""Winners, points and denominators of a pass, as in `Trace`, and its `Bounce` if that is kept."""
+
+
+@dataclass(frozen=True)
+class Trace:
+    """Ray-tracing results: the pixels, then a tuple with an entry for the primary ray and for each reflection."""
+
+    colours: np.ndarray
+    """uint8 (rays, 3)."""
+
+    winners: tuple[np.ndarray, ...]
+    """int64 (rays,): index of the rectangle hit, -1 for none and after what does not mirror."""
+
+    seen: tuple[np.ndarray, ...]
+    """uint8 (rays, 3): the colour of what was hit, the background for none."""
+
+    points: tuple[np.ndarray, ...]
+    """int64 (rays, 3): where it hit, in world units times the denominator; of the seed engine's misses, where they
+    started."""
+
+    denominators: tuple[np.ndarray, ...]
+    """int64 (rays,): of the points. Exact: |slope| along the axis of what was hit, 0 for a miss. Seed: 2^F."""
+
+    bounces: tuple[Bounce, ...]
+    """Everything else; empty unless it was to be kept."""
+
+
+@dataclass(frozen=True)
+class Model(ABC):
+    """A golden model: the arithmetic of an engine, on whole arrays of rays."""
+
+    looks: Collection[str] = field(default=LOOKS, kw_only=True)
+    """Options that scenes may need, from `LOOKS`."""
+
+    @abstractmethod
+    def meetings(
+        self, rectangles: Rectangles, origin: np.ndarray, slope: np.ndarray, *, keep: bool
+    ) -> Iterator[Meeting]:
+        """Follow rays from mirror to mirror without end; it may change the arrays, which are (3, rays)."""
+
+    def trace(
+        self,
+        rectangles: Rectangles,
+        camera: ArrayLike,
+        background: Sequence[int],
+        slopes: ArrayLike,
+        reflections: int,
+        *,
+        keep: bool = False,
+    ) -> Trace:
+        """Follow rays to their last reflection.
+
+        Args:
+            rectangles: the table.
+            camera: (3,), or (rays, 3) for one per ray: where the rays start, in world units.
+            background: red, green, blue.
+            slopes: int (rays, 3); only their ratios count.
+            reflections: 0 or more.
+            keep: also return every intermediate value: some 100 bytes per ray, rectangle and bounce.
+        """
+        slope = np.array(np.asarray(slopes).T, dtype=np.int64, order="C")
+        origin = np.array(np.broadcast_to(np.asarray(camera), slope.T.shape).T, dtype=np.int64, order="C")
+        met = list(islice(self.meetings(rectangles, origin, slope, keep=keep), reflections + 1))
+        winners, points, denominators, bounces = zip(*met, strict=True)
+        seen = tuple(hit_colours(rectangles, background, *meeting[:3]) for meeting in met)
+        colours = blend(seen, [rectangles.mirrors[winner] for winner in winners])
+        return Trace(colours, winners, seen, points, denominators, bounces if keep else ())
+
+    def picture(
+        self,
+        screen: Screen,
+        rectangles: Rectangles,
+        camera: Sequence[int] | np.ndarray,
+        background: Sequence[int],
+        reflections: int,
+        *,
+        basis: Basis = UNTURNED,
+    ) -> np.ndarray:
+        """The picture of a table of rectangles; the arguments are those of `trace` and `primary_slopes`.
+
+        Returns:
+            uint8 (rows, columns, 3).
+        """
+        slopes = primary_slopes(screen, basis)
+        traced = self.trace(rectangles, camera, background, slopes.reshape(-1, 3), reflections)
+        return traced.colours.reshape(slopes.shape)
+
+    def render(self, scene: Scene, screen: Screen, reflections: int | None = None) -> np.ndarray:
+        """The picture of a scene.
+
+        Args:
+            scene: what is seen; its `rows` are not looked at.
+            screen: what it is looked at through.
+            reflections: instead of the scene's reflections.
+
+        Returns:
+            uint8 (rows, columns, 3).
+
+        Raises:
+            ValueError: the scene needs an option that is not among `looks`.
+        """
+        if lacking := scene.lacks(self.looks):
+            raise ValueError(f"a design without {' and '.join(lacking)} does not draw this scene")
+        reflections = scene.reflections if reflections is None else reflections
+        camera, rectangles = scene.camera, Rectangles.of_scene(scene)
+        return self.picture(screen, rectangles, camera.position, scene.background, reflections, basis=camera.basis)
