@@ -13,7 +13,7 @@ from pydantic.dataclasses import dataclass as validated_dataclass
 from pydantic.fields import FieldInfo
 
 from raycaster.engines import ENGINES, SEED, Engine
-from raycaster.errors import UserError
+from raycaster.errors import UserError, refusal
 from raycaster.fixed import FixedScene
 from raycaster.screens import COORDINATE_BITS, Screen
 
@@ -327,10 +327,6 @@ def configure(**values: Any) -> Configuration:
     try:
         return decided(Options(**values))
     except ValidationError as error:
-        first = error.errors()[0]
-        message = first["msg"]
-        if first["loc"]:
-            message = f"{first['loc'][0]}: {message}, not {first['input']!r}"
-        raise ConfigurationError(message) from None
+        raise ConfigurationError(refusal(error.errors(), depth=1)) from None
     except ValueError as error:
         raise ConfigurationError(str(error)) from None

@@ -28,7 +28,7 @@ from pydantic import (
 from pydantic_core import CoreSchema, ErrorDetails
 
 from raycaster.configuration import MOST_RECTANGLES, MOST_REFLECTIONS, WORLD_SIZE
-from raycaster.errors import UserError
+from raycaster.errors import UserError, did_you_mean
 
 BASIS_SCALE = 256
 """A whole vector of a camera's basis."""
@@ -312,7 +312,9 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
             raise SceneError(f"{path}: has too many dots in a line; a key of a scene has one part")
         contents = tomllib.loads(text)
     except OSError as error:
-        raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
+        others = [*packaged_scenes(), *(other.name for other in path.parent.glob("*.toml"))]
+        near = "" if path.exists() else did_you_mean(path.name, others)
+        raise SceneError(f"{path}: cannot be read: {error.strerror}{near}") from None
     except UnicodeDecodeError:
         raise SceneError(f"{path}: {COMPLAINTS['encoding']}") from None
     except (ValueError, RecursionError) as error:
@@ -348,7 +350,8 @@ def find_scene(name: str) -> Path:
         return path
     scenes = packaged_scenes()
     if name not in scenes:
-        raise SceneError(f"{name}: no such file, and none of the packaged scenes: {', '.join(scenes)}")
+        near = did_you_mean(name, scenes) or ": " + ", ".join(scenes)
+        raise SceneError(f"{name}: no such file, and none of the packaged scenes{near}")
     return scenes[name]
 
 
@@ -436,7 +439,7 @@ def _expected(details: ErrorDetails) -> str:
         case "value_error":
             expected = str(details.get("ctx", {}).get("error"))
         case kind:
-            expected = COMPLAINTS.get(kind, details["msg"])
+            expected = COMPLAINTS[kind]
     return expected + _given(details["input"])
 
 
