@@ -12,7 +12,8 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, model_validator
 
-from raycaster.errors import UserError, did_you_mean, refusal
+from raycaster.complaints import did_you_mean, refusal
+from raycaster.errors import UserError
 from raycaster.rtl.system.scene_player import BUTTONS
 
 HERE = Path(__file__).parent

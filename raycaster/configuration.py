@@ -12,8 +12,9 @@ from pydantic import ConfigDict, Field, ValidationError
 from pydantic.dataclasses import dataclass as validated_dataclass
 from pydantic.fields import FieldInfo
 
+from raycaster.complaints import refusal
 from raycaster.engines import ENGINES, SEED, Engine
-from raycaster.errors import UserError, refusal
+from raycaster.errors import UserError
 from raycaster.fixed import FixedScene
 from raycaster.screens import COORDINATE_BITS, Screen
 

@@ -18,8 +18,9 @@ from typing import Any, NoReturn
 
 from pydantic.fields import FieldInfo
 
+from raycaster.complaints import did_you_mean, fault_in_block
 from raycaster.configuration import OPTIONS, Configuration
-from raycaster.errors import UserError, did_you_mean, fault_in_block
+from raycaster.errors import UserError
 from raycaster.output import printable
 from raycaster.scene import find_scene
 from raycaster.tools import ToolError

@@ -16,12 +16,13 @@ from typing import Any
 
 from myhdl import ResetSignal, Simulation, StopSimulation, block, delay, instance
 
+from raycaster.complaints import fault_in_block
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import Module, Port, convert_hierarchy
 from raycaster.convert.inside import port_signals
 from raycaster.engines.exact import PATTERN_LATENCY
-from raycaster.errors import UserError, fault_in_block
+from raycaster.errors import UserError
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.output import emptied
 from raycaster.rtl.common.interfaces import Steps

@@ -13,7 +13,8 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
-from raycaster.errors import UserError, refusal
+from raycaster.complaints import refusal
+from raycaster.errors import UserError
 
 HOLES = Path(__file__).with_name("holes.toml")
 KINDS = {"lines": ("line", "branch"), "conditions": ("expr",), "toggles": ("toggle",)}

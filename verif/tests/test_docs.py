@@ -500,9 +500,11 @@ def test_pages(tmp_path: Path):
     written = {page.with_suffix(".html").name for page in pages.PAGES if page.parent == pages.HERE}
     assert written | {"library.html"} <= {path.name for path in output.iterdir()}
     assert "raycaster.golden.exact.trace" in text, "the library's reference"
+    assert "<p>0, 1 or 2: the first of x, y, z that is the same in both corners.</p>" in text
+    assert not re.search("model_config|ConfigDict|Create a new model", (output / "library.html").read_text())
     assert "The RayCaster authors" in text
     there = {f"{drawing.name}.svg" for drawing in (*blocks.DRAWINGS, *timing.DIAGRAMS)}
-    there |= {"scaling.svg", "error_and_time.svg"}
+    there |= {"scaling.svg", "error_and_time.svg", "view.svg"}
     assert {path.name for path in output.glob("_images/*.svg")} == there, "each is on a page"
     assert (output / "register_map" / "index.html").is_file()
 
