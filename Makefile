@@ -53,6 +53,10 @@ lint test: $(VENV)/base
 	@$(if $(filter lint,$@),$(PYTHON) -m raycaster.verif.rtl_lint,$(PYTHON) -m raycaster.sim.ensure_tools icarus chromium tcl)
 	@$(if $(filter test,$@),$(PYTHON) -m pytest -q -n 2 --dist worksteal -m 'not slow' --durations=10 verif/tests)
 
+# What is no target.
+.DEFAULT:
+	@$(PYTHON3) cli/commands.py $@
+
 clean:
 	rm -rf build .pytest_cache .ruff_cache
 	find . -name __pycache__ -not -path './$(VENV)/*' -prune -exec rm -rf {} +

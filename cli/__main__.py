@@ -4,13 +4,19 @@
 from __future__ import annotations
 
 import importlib
+import importlib.metadata
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from types import ModuleType
+from typing import TYPE_CHECKING
+from unittest.mock import MagicMock
 
-from raycaster.cli.commands import COMMANDS, Command, overview, verify_overview
+from raycaster.cli.commands import COMMANDS, Command, overview, unknown_command, verify_overview
 from raycaster.errors import UserError, not_installed
+
+if TYPE_CHECKING:
+    from raycaster.options import CommandParser
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -22,11 +28,27 @@ def main(argv: Sequence[str] | None = None) -> int:
     if words[0] == "verify" and (len(words) == 1 or words[1] in ("-h", "--help")):
         print(verify_overview())
         return 0
+    if words[0] == "--version":
+        print(f"raycaster {importlib.metadata.version('raycaster')}")
+        return 0
     for taken in (2, 1):
         command = COMMANDS.get(" ".join(words[:taken]))
         if command is not None:
+            if {"-h", "--help"} & {*words[taken:]}:
+                parser_of(command).parse_args(words[taken:])
             return loaded(command).main(words[taken:]) or 0
-    raise UserError(f"{words[0]}: is none of raycaster's commands; raycaster --help lists them")
+    raise UserError(unknown_command(" ".join(words[: 2 if words[0] == "verify" else 1])))
+
+
+def parser_of(command: Command) -> CommandParser:
+    """The parser of a command, whether its extra is installed or not: mocks stand in for packages that are missing."""
+    while True:
+        try:
+            return importlib.import_module(command.module).command_parser()
+        except ModuleNotFoundError as error:
+            if not error.name or error.name.startswith("raycaster"):
+                raise
+            sys.modules[error.name] = MagicMock()
 
 
 def loaded(command: Command) -> ModuleType:

@@ -6,6 +6,7 @@ Only the standard library is needed, so that `make help` can run this file befor
 
 from __future__ import annotations
 
+import difflib
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -86,5 +87,27 @@ def verify_overview() -> str:
     return "\n".join(["raycaster verify soak --seeds 10", "", *lines])
 
 
+OF_MAKE_ALONE = ("help", "test", "lint", "clean", "flash")
+"""Targets of make that are no commands of the program."""
+
+
+def unknown_command(asked: str, *, from_make: bool = False) -> str:
+    """The complaint about a command that there is not, with the one that was probably meant.
+
+    Args:
+        asked: its name.
+        from_make: whether it was given to make, which calls a check by its last word.
+    """
+    names = {word: name for name in COMMANDS for word in (name, name.removeprefix("verify "))}
+    if from_make:
+        names = {word: word for word in (*names, *OF_MAKE_ALONE) if word not in NOT_OF_MAKE and " " not in word}
+        names |= {"all": "verify-all", "verify-all": "verify-all", "verify": "verify-all"}
+    near = difflib.get_close_matches(asked, names, 1)
+    meant = f" (did you mean {names[near[0]]}?)" if near else ""
+    return f"unknown command: {asked}{meant}; {'make help' if from_make else 'raycaster --help'} lists all"
+
+
 if __name__ == "__main__":
+    if sys.argv[1:]:
+        sys.exit(f"error: {unknown_command(sys.argv[1], from_make=True)}")
     sys.stdout.write(overview(from_make=True) + "\n")

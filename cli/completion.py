@@ -10,10 +10,9 @@ from typing import get_args
 
 import shtab
 
-from raycaster.cli.__main__ import loaded
+from raycaster.cli.__main__ import parser_of
 from raycaster.cli.commands import COMMANDS
 from raycaster.configuration import OPTIONS
-from raycaster.errors import UserError
 from raycaster.options import CommandParser
 from raycaster.scene import packaged_scenes
 
@@ -26,18 +25,15 @@ def command_parser() -> CommandParser:
 
 
 def whole_parser() -> argparse.ArgumentParser:
-    """One parser of all commands; a command whose extra is not installed has a name and no options."""
+    """One parser of all commands."""
     whole = argparse.ArgumentParser("raycaster")
     places = {"": whole.add_subparsers()}
     verify = places[""].add_parser("verify", help="the checks that take long")
     places["verify"] = verify.add_subparsers()
     for name, command in COMMANDS.items():
         place, _, last = name.rpartition(" ")
-        try:
-            parents = [_completed(loaded(command).command_parser())]
-        except UserError:
-            parents = []
-        places[place].add_parser(last, parents=parents, add_help=not parents, help=command.purpose)
+        parents = [_completed(parser_of(command))]
+        places[place].add_parser(last, parents=parents, add_help=False, help=command.purpose)
     return whole
 
 

@@ -31,12 +31,13 @@ from myhdl.conversion._toVerilog import _ToVerilogConvertor, toVerilog
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.inside import block_arguments, block_ports, signals_in
 from raycaster.convert.verilog_style import restyle
+from raycaster.errors import UserError
 from raycaster.rtl.common.given import GivenVerilog, load_words
 from raycaster.rtl.common.records import Field
 from raycaster.rtl.common.ties import Tied, Unconnected
 
 
-class HierarchyError(Exception):
+class HierarchyError(UserError):
     """A block that cannot be made a module of its own; the text says which and why."""
 
 

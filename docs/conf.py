@@ -11,7 +11,7 @@ author = "The RayCaster authors"
 copyright = f"2026 {author}, MIT licence"
 html_title = "RayCaster"
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
-autodoc_default_options = {"members": True}
+autodoc_default_options = {"members": True, "exclude-members": "model_config"}
 autodoc_typehints = "description"
 autodoc_typehints_description_target = "documented"
 default_role = "code"
@@ -28,6 +28,22 @@ def _keep_bars(app: Any, what: str, name: str, thing: Any, options: Any, lines: 
     lines[:] = [re.sub(r"(`[^`]*`)|\|", lambda found: found[1] or r"\|", line) for line in lines]
 
 
+_as_written: dict[str, list[str]] = {}
+"""By name, docstrings that napoleon is about to change."""
+
+
+def _note(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
+    """Remember an attribute's docstring; napoleon takes what is before a colon in its first line for a type."""
+    if what in ("attribute", "data", "property"):
+        _as_written[name] = list(lines)
+
+
+def _restore(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
+    """Put it back."""
+    lines[:] = _as_written.pop(name, lines)
+
+
 def setup(app: Any) -> None:
     """What Sphinx asks of a configuration with code of its own."""
-    app.connect("autodoc-process-docstring", _keep_bars)
+    for change, priority in ((_note, 400), (_restore, 600), (_keep_bars, 700)):  # napoleon's is 500
+        app.connect("autodoc-process-docstring", change, priority=priority)

@@ -9,7 +9,7 @@ Run it to get the SoC's Verilog, with its memory and LiteX's headers beside it:
 
 from __future__ import annotations
 
-import sys
+import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -83,6 +83,8 @@ def write(soc: RayCasterSoC, directory: Path) -> list[Path]:
 
 
 if __name__ == "__main__":
-    output = Path(sys.argv[1])
+    parser = argparse.ArgumentParser(description="Write the Verilog of a SoC with the ray tracer.")
+    parser.add_argument("directory", type=Path, help="where the Verilog, LiteX's headers and the memory's contents go")
+    output = parser.parse_args().directory
     for path in write(make_soc(configure(bus="wishbone", engine="exact"), output), output):
         print(path)

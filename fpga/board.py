@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, model_validator
 
+from raycaster.complaints import did_you_mean, refusal
 from raycaster.errors import UserError
 from raycaster.rtl.system.scene_player import BUTTONS
 
@@ -210,10 +211,7 @@ def load_board(directory: Path) -> Board:
     try:
         return _kind(contents).model_validate(contents | {"directory": directory})
     except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(map(str, first["loc"]))
-        message = first["msg"].removeprefix("Value error, ")
-        raise BoardError(f"{path}: {place}: {message}" if place else f"{path}: {message}") from None
+        raise BoardError(f"{path}: {refusal(error.errors())}") from None
 
 
 def find_board(name: str, kind: type[Kind]) -> Kind:
@@ -224,7 +222,8 @@ def find_board(name: str, kind: type[Kind]) -> Kind:
     """
     known = board_names(kind)
     if name not in known:
-        raise BoardError(f"board: {', '.join(known[:-1])} or {known[-1]}, not {name}")
+        near = did_you_mean(name, known)
+        raise BoardError(f"board: expected {', '.join(known[:-1])} or {known[-1]}, got {name or 'none'}{near}")
     board = load_board(HERE / name)
     if not isinstance(board, kind):
         raise BoardError(f"board: {name} is none of {', '.join(known)}")

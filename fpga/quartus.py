@@ -184,7 +184,7 @@ def _patterns(bits: Iterable[str]) -> str:
 def command_parser() -> CommandParser:
     """What the command takes."""
     parser = CommandParser("quartus", __doc__, "boxes --board de1_soc")
-    parser.add_argument("--board", required=True, help=", ".join(board_names(QuartusBoard)))
+    parser.add_argument("--board", default="", help=", ".join(board_names(QuartusBoard)))
     add_scene_argument(parser, "what to show (mirror_room)", default=find_scene("mirror_room"))
     parser.add_argument(
         "--output",

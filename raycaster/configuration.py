@@ -13,6 +13,7 @@ from pydantic.dataclasses import dataclass as validated_dataclass
 from pydantic.fields import FieldInfo
 
 from raycaster.buses import BUSES, OWN
+from raycaster.complaints import refusal
 from raycaster.engines import ENGINES, SEED, Engine
 from raycaster.errors import UserError, listed
 from raycaster.fixed import FixedScene
@@ -329,10 +330,6 @@ def configure(**values: Any) -> Configuration:
     try:
         return decided(Options(**values))
     except ValidationError as error:
-        first = error.errors()[0]
-        message = first["msg"]
-        if first["loc"]:
-            message = f"{first['loc'][0]}: {message}, not {first['input']!r}"
-        raise ConfigurationError(message) from None
+        raise ConfigurationError(refusal(error.errors(), depth=1)) from None
     except ValueError as error:
         raise ConfigurationError(str(error)) from None

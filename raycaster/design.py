@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import Configuration, ConfigurationError, configure
 from raycaster.engines import ENGINES, EXACT, SEED
 from raycaster.errors import UserError
 from raycaster.scene import Scene, load_scene, packaged_scenes
@@ -87,7 +87,14 @@ def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, An
     chosen.setdefault("reflections", scene.reflections)
     if scene.camera.turned:
         chosen.setdefault("engine", EXACT.name)
-    configuration = configure(**dict.fromkeys(scene.lacks(()), True) | chosen)
+    try:
+        configuration = configure(**dict.fromkeys(scene.lacks(()), True) | chosen)
+    except ConfigurationError as error:
+        option, _, reason = str(error).partition(": ")
+        if option != "turn" or "turn" in chosen:
+            raise
+        angle = next(name for name in ("yaw", "pitch", "roll") if getattr(scene.camera, name))
+        raise ConfigurationError(f"{path}: camera.{angle}: {reason}") from None
     if lacking := scene.lacks(configuration.looks):
         raise UserError(f"{path}: the scene needs {NEEDED_FOR[lacking[0]]}; leave {lacking[0].upper()} out")
     load_scene(path, configuration.rectangles)  # refuses more rectangles than that

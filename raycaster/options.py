@@ -18,6 +18,7 @@ from typing import Any, NoReturn
 
 from pydantic.fields import FieldInfo
 
+from raycaster.complaints import did_you_mean, fault_in_block
 from raycaster.configuration import OPTIONS, Configuration
 from raycaster.errors import UserError
 from raycaster.output import printable
@@ -86,13 +87,28 @@ class CommandParser(argparse.ArgumentParser):
             UserError: one line that says which word is wrong.
         """
         words = sys.argv[1:] if args is None else args
-        arguments = super().parse_intermixed_args([one for word in words for one in self._translated(str(word))])
+        given = [one for word in words for one in self._translated(str(word))]
+        self._refuse_unknown(given)
+        arguments = super().parse_intermixed_args(given)
         arguments.command_line = shlex.join([*self.prog.split(), *map(str, words)])
         return arguments
 
     def error(self, message: str) -> NoReturn:
         """One line instead of argparse's usage."""
         raise UserError(f"{message}; see {_program()} {self.name} --help")
+
+    def _refuse_unknown(self, words: Sequence[str]) -> None:
+        """Look for options that there are not, before their values are taken for scenes.
+
+        Raises:
+            UserError: there is one.
+        """
+        for word in words:
+            option = word.partition("=")[0]
+            known = (name.startswith(option) for name in self._option_string_actions)
+            if re.fullmatch(r"--[a-z][a-z0-9_-]*", option) and not any(known):
+                near = did_you_mean(option, self._option_string_actions)
+                raise UserError(f"unknown option: {option}{near}; see {_program()} {self.name} --help")
 
     def _translated(self, word: str) -> list[str]:
         """A variable of make's as an option; nothing where it is empty, or a switch that is off."""
@@ -108,7 +124,8 @@ class CommandParser(argparse.ArgumentParser):
         action = self._option_string_actions.get(option)
         if action is None:
             taker = f"make {self.name.split()[-1]}" if _from_make() else self.prog
-            raise UserError(f"{match[1]}: {taker} does not take it; see {_program()} {self.name} --help")
+            near = did_you_mean(match[1], map(_variable, self._option_string_actions))
+            raise UserError(f"{match[1]}: {taker} does not take it{near}; see {_program()} {self.name} --help")
         if action.nargs == 0:
             return [option] if value != "0" else []
         return [option, value]
@@ -124,6 +141,12 @@ class _Help(argparse.HelpFormatter):
 
 def _help_width() -> int:
     return min(120, shutil.get_terminal_size().columns)
+
+
+def _variable(option: str) -> str:
+    """What make calls an option."""
+    name = option.lstrip("-").replace("-", "_")
+    return next((variable for variable, long in SHORT_NAMES.items() if long == name), name).upper()
 
 
 def _from_make() -> bool:
@@ -230,6 +253,12 @@ def run_command(main: Callable[[], int | None]) -> NoReturn:
         code = 128 + signal.SIGPIPE
     except OSError as error:
         print(f"error: {printable(_complaint(error))}", file=sys.stderr)
+        code = 2
+    except Exception as error:
+        fault = fault_in_block(error)
+        if fault is None:
+            raise
+        print(f"error: {printable(fault)}", file=sys.stderr)
         code = 2
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)

@@ -27,6 +27,7 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema, ErrorDetails
 
+from raycaster.complaints import LONGEST_SHOWN, did_you_mean
 from raycaster.configuration import MOST_RECTANGLES, MOST_REFLECTIONS, WORLD_SIZE
 from raycaster.errors import UserError, listed
 
@@ -59,6 +60,7 @@ COMPLAINTS = {
     ),
     "far_too_many": "rect: {count} rectangles, but no hardware holds more than {most}; remove some",
     "encoding": "is not UTF-8 text; a scene is a TOML file",
+    "heading": "head each rectangle with [[rect]]",
     "syntax": "is not TOML at line {number}{line} ({reason})",
 }
 """What is said of a file beside what the rules of its values expect; the first four by pydantic's types of errors."""
@@ -68,9 +70,6 @@ MOST_BYTES = 1_000_000
 
 MOST_DOTS_SQUARED = 10**7
 """Largest sum, over a file's lines, of the square of the number of dots: a fraction of a second to tomllib."""
-
-LONGEST_SHOWN = 60
-"""Characters of the longest value or line that a complaint shows: longer ones do not help to find themselves."""
 
 
 _NO_NAME = re.compile("[\\0-\\x1f\\x7f-\\x9f\\ud800-\\udfff]")
@@ -313,7 +312,9 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
             raise SceneError(f"{path}: has too many dots in a line; a key of a scene has one part")
         contents = tomllib.loads(text)
     except OSError as error:
-        raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
+        others = [*packaged_scenes(), *(other.name for other in path.parent.glob("*.toml"))]
+        near = "" if path.exists() else did_you_mean(path.name, others)
+        raise SceneError(f"{path}: cannot be read: {error.strerror}{near}") from None
     except UnicodeDecodeError:
         raise SceneError(f"{path}: {COMPLAINTS['encoding']}") from None
     except (ValueError, RecursionError) as error:
@@ -349,7 +350,8 @@ def find_scene(name: str) -> Path:
         return path
     scenes = packaged_scenes()
     if name not in scenes:
-        raise SceneError(f"{name}: no such file, and none of the packaged scenes: {', '.join(scenes)}")
+        near = did_you_mean(name, scenes) or ": " + ", ".join(scenes)
+        raise SceneError(f"{name}: no such file, and none of the packaged scenes{near}")
     return scenes[name]
 
 
@@ -397,7 +399,9 @@ def _syntax_complaint(said: str, text: str) -> str:
     number = min(int(parts[2] or len(lines)), len(lines))
     line = lines[number - 1].strip(" \t")
     shown = f": {line}" if line.isprintable() and len(line) <= LONGEST_SHOWN else ""
-    return COMPLAINTS["syntax"].format(number=number, line=shown, reason=parts[1])
+    # With [rect] in some places a table is declared twice, or is no list.
+    reason = COMPLAINTS["heading"] if re.match(r"\[+rect\]+", line) else parts[1]
+    return COMPLAINTS["syntax"].format(number=number, line=shown, reason=reason)
 
 
 def _first_complaint(error: ValidationError, contents: Mapping) -> str:
@@ -437,7 +441,7 @@ def _expected(details: ErrorDetails) -> str:
         case "value_error":
             expected = str(details.get("ctx", {}).get("error"))
         case kind:
-            expected = COMPLAINTS.get(kind, details["msg"])
+            expected = COMPLAINTS[kind]
     return expected + _given(details["input"])
 
 

@@ -16,11 +16,13 @@ from typing import Any
 
 from myhdl import ResetSignal, Simulation, StopSimulation, block, delay, instance
 
+from raycaster.complaints import fault_in_block
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import Module, Port, convert_hierarchy
 from raycaster.convert.inside import port_signals
 from raycaster.engines.exact import PATTERN_LATENCY
+from raycaster.errors import UserError
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.output import emptied
 from raycaster.rtl.common.interfaces import Steps
@@ -56,9 +58,14 @@ class Leaf:
 
     def __init__(self, function: Callable, arguments: Callable[[], dict[str, Any]], directory: Path):
         self._function, self._arguments, self._directory = function, arguments, directory
-        with elaboration():
-            top = function(**arguments())
-        self.modules: list[Module] = convert_hierarchy(top, directory, "// {module}")
+        try:
+            with elaboration():
+                top = function(**arguments())
+            self.modules: list[Module] = convert_hierarchy(top, directory, "// {module}")
+        except Exception as error:
+            if fault := fault_in_block(error):
+                raise UserError(fault) from None
+            raise
         self.verilog: Sequence[Path] = [module.path for module in self.modules]
         """What `run_verilog` simulates; another form of the same block, such as its netlist, may stand in for it."""
         ports = self.modules[-1].ports

@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+from raycaster.complaints import LONGEST_SHOWN
 from raycaster.configuration import MOST_RECTANGLES
-from raycaster.scene import COMPLAINTS, LONGEST_SHOWN, PATTERNS, Scene
+from raycaster.scene import COMPLAINTS, PATTERNS, Scene
 
 
 def scene_schema() -> dict[str, object]:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
+from raycaster.complaints import refusal
 from raycaster.errors import UserError
 
 HOLES = Path(__file__).with_name("holes.toml")
@@ -154,7 +155,9 @@ def load_explanations(engine: str, path: Path = HOLES) -> list[Explanation]:
     try:
         every = [Explanation(**table) for table in tomllib.loads(path.read_text())["hole"]]
         return [one for one in every if one.engine is None or re.fullmatch(one.engine, engine)]
-    except (ValidationError, tomllib.TOMLDecodeError, KeyError) as error:
+    except ValidationError as error:
+        raise UserError(f"{path}: {refusal(error.errors())}") from None
+    except (tomllib.TOMLDecodeError, KeyError) as error:
         raise UserError(f"{path}: {error}") from None
 
 

@@ -203,7 +203,7 @@ def test_too_slow_gets_one_line(tmp_path, monkeypatch, capsys, clk, shift_clk, c
 @pytest.mark.parametrize(
     ("options", "complaint"),
     [
-        (("--board", "ice40"), f"error: board: {', '.join(board_names(OpenBoard)[:-1])} or ulx3s, not ice40"),
+        (("--board", "ice40"), f"error: board: expected {', '.join(board_names(OpenBoard)[:-1])} or ulx3s, got ice40"),
         (("nowhere.toml",), "error: nowhere.toml: cannot be read"),
         ((str(SMALL_SCENE), "--colour-bits", "4"), "error: colour_bits: a DVI link carries 8 bits"),
         (

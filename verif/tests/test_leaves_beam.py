@@ -250,7 +250,7 @@ def test_a_finer_view_is_the_same_view(options):
         ({"engine": "seed", "scale": 2}, "^scale: the seed engine shows 240 rows at 1, not 2; scales need the beam"),
         ({"engine": "exact", "screen": "play"}, "^screen: play needs the beam engine, ENGINE=beam, not exact$"),
         ({"engine": "exact", "rows": 180}, "180 rows need the beam engine, ENGINE=beam$"),
-        ({"pixels": 3}, "^pixels: Input should be less than or equal to 2, not 3$"),
+        ({"pixels": 3}, "^pixels: expected 2 or less, got 3$"),
         ({"pixels": 2, "units": 1}, "^units: the beam engine has one for each of PIXELS=2 a clock, not 1$"),
         ({"engine": "seed", "pixels": 2}, "^pixels: 2 a clock need the beam engine, ENGINE=beam, not seed$"),
         (

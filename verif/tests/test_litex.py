@@ -161,3 +161,10 @@ def test_what_does_not_fit_gets_one_line(options, clock, complaint, tmp_path):
     with pytest.raises(UserError, match=rf"^{complaint}$"):
         add_ray_caster(soc, configure(screen="tiny", rectangles=3, **options), tmp_path / "verilog")
     assert not any(tmp_path.iterdir())
+
+
+def test_the_example_without_its_argument_explains_it():
+    command = [sys.executable, ROOT / "examples" / "litex_soc.py"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith("usage: litex_soc.py [-h] directory")

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import importlib
+import importlib.metadata
+import importlib.util
 import json
 import os
 import re
@@ -19,9 +21,14 @@ from conftest import ROOT
 from raycaster.cli import __main__ as program
 from raycaster.cli import completion
 from raycaster.cli.commands import COMMANDS, NOT_OF_MAKE, Command, overview, verify_overview
+from raycaster.convert.elaboration import elaboration
+from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.docs.commands import outside_make
 from raycaster.errors import UserError
-from raycaster.options import FROM_MAKE, command_line
+from raycaster.options import FROM_MAKE, command_line, run_command
+from raycaster.rtl.common.records import Colour
+from raycaster.rtl.common.widths import bit
+from raycaster.scene import packaged_scenes
 
 SCREEN_LINES, MOST_LINES, COLUMNS = 24, 40, 80
 
@@ -99,10 +106,131 @@ def test_other_completions(shell: str, capsys):
     assert "mirror_room" in capsys.readouterr().out
 
 
-def test_completion_without_an_extra(monkeypatch):
-    """A command that cannot be loaded still has its name."""
-    monkeypatch.setitem(COMMANDS, "docs", Command("no_such_module", "build the manual", "docs"))
-    assert ",docs," in completion.whole_parser().format_usage()
+WITHOUT_EXTRAS = """
+import sys
+from contextlib import suppress
+from importlib.abc import MetaPathFinder
+
+class Refuse(MetaPathFinder):
+    def find_spec(self, name, path, target=None):
+        if name.partition(".")[0] in {missing}:
+            raise ModuleNotFoundError(name, name=name)
+
+sys.meta_path.insert(0, Refuse())
+from raycaster.cli import __main__ as program, completion
+from raycaster.cli.commands import COMMANDS
+for name in COMMANDS:
+    with suppress(SystemExit):
+        program.main([*name.split(), "--help"])
+completion.main(["bash"])
+"""
+
+
+def test_help_and_completions_without_an_extra():
+    """Each command explains itself where nothing that only an extra brings is installed."""
+    missing = {
+        "adjustText", "cocotb_coverage", "distributed", "elftools", "litex", "matplotlib", "playwright", "pygame",
+        "pygraphviz", "skimage", "sphinx", "wavedrom", "ziglang",
+    }  # fmt: skip
+    script = WITHOUT_EXTRAS.replace("{missing}", str(missing))
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    for name, command in COMMANDS.items():
+        example = importlib.import_module(command.module).command_parser().example
+        assert f"{example}\n\n" in done.stdout, name
+    assert re.search("raycaster_report_option_strings=.*--quick", done.stdout)
+
+
+def test_version(capsys):
+    assert program.main(["--version"]) == 0
+    assert capsys.readouterr().out == f"raycaster {importlib.metadata.version('raycaster')}\n"
+
+
+@pytest.mark.parametrize("words", [[], ["--help"], ["--version"], ["verify"], ["smi"], ["sim", "--enigne"]])
+def test_the_module_says_what_the_program_says(words: list[str], tmp_path: Path):
+    program, module = (
+        subprocess.run([*start, *words], cwd=tmp_path, capture_output=True, text=True, check=False)
+        for start in ([Path(sys.executable).with_name("raycaster")], [sys.executable, "-m", "raycaster.cli"])
+    )
+    assert (program.stdout, program.stderr, program.returncode) == (module.stdout, module.stderr, module.returncode)
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        ("smi", "unknown command: smi (did you mean sim?); raycaster --help lists all"),
+        ("soak", "unknown command: soak (did you mean verify soak?); raycaster --help lists all"),
+        ("verify sok", "unknown command: verify sok (did you mean verify soak?); raycaster --help lists all"),
+        ("xyzzy", "unknown command: xyzzy; raycaster --help lists all"),
+        ("sim --enigne beam", "unknown option: --enigne (did you mean --engine?); see raycaster sim --help"),
+        ("sim --xyzzy", "unknown option: --xyzzy; see raycaster sim --help"),
+        ("sim ENGIN=beam", "ENGIN: raycaster sim does not take it (did you mean ENGINE?); see raycaster sim --help"),
+        ("sim SIMM=icarus", "SIMM: raycaster sim does not take it (did you mean SIM?); see raycaster sim --help"),
+        ("sim mirror_rom", "mirror_rom: no such file, and none of the packaged scenes (did you mean mirror_room?)"),
+        ("sim boxs.toml", "boxs.toml: cannot be read: No such file or directory (did you mean boxes?)"),
+        ("sim --engine baem", "engine: expected seed, exact or beam, got baem (did you mean beam?)"),
+        ("sim --rectangles 99", "rectangles: expected 32 or less, got 99"),
+        ("quartus", "board: expected de10_lite, de1_soc, de2 or de2_115, got none"),
+        (
+            "sim pool --engine seed",
+            f"{packaged_scenes()['pool']}: camera.yaw: the seed engine measures depth along x, so its camera cannot "
+            "turn; choose ENGINE=exact or ENGINE=beam",
+        ),
+    ],
+)  # fmt: skip
+def test_a_mistake_is_one_line_with_what_was_probably_meant(words: str, complaint: str):
+    with pytest.raises(UserError) as error:
+        program.main(words.split())
+    assert str(error.value) == complaint
+
+
+@pytest.mark.parametrize(
+    ("asked", "meant"),
+    [("smi", "sim"), ("sok", "soak"), ("verify-al", "verify-all"), ("lnit", "lint"), ("tst", "test")],
+)
+def test_make_says_what_was_probably_meant(asked: str, meant: str):
+    words = ["make", asked, f"PYTHON3={sys.executable}"]
+    done = subprocess.run(words, cwd=ROOT, env=outside_make(), capture_output=True, text=True, check=False)
+    assert done.stderr.startswith(f"error: unknown command: {asked} (did you mean {meant}?); make help lists all\n")
+
+
+GOOD = re.findall(r"```python\n(.*?)```", (ROOT / "docs/extend.md").read_text(), re.DOTALL)[0]
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "fault"),
+    [
+        ("if dim:", "if dimm:", "32: Local variable may be referenced before assignment: dimm"),
+        ("half.word.next =", "half.wrd.next =", "26: AttributeError: 'Colour' object has no attribute 'wrd'"),
+        ("half = Colour()", "half = colour_of()", "22: NameError: name 'colour_of' is not defined"),
+        ("half = Colour()", "half = Colour(", "22: '(' was never closed"),
+        ("dimmed.word.next = colour", "dimmed.word.next = brighter(colour", "35: "),
+    ],
+)
+def test_a_fault_in_a_block_is_one_line(right: str, wrong: str, fault: str, tmp_path: Path, capsys):
+    """File, line and what: of the block on the page that says how to write one."""
+    assert right in GOOD
+    path = tmp_path / "colour_dimmer.py"
+    path.write_text(GOOD.replace(right, wrong))
+
+    def convert() -> None:
+        spec = importlib.util.spec_from_file_location("colour_dimmer", path)
+        assert spec is not None and spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        with elaboration():
+            block = module.colour_dimmer(clk=bit(), dim=bit(), colour=Colour(), dimmed=Colour())
+        convert_hierarchy(block, tmp_path, "// {module}")
+
+    with pytest.raises(SystemExit) as ended:
+        run_command(convert)
+    assert ended.value.code == 2
+    assert capsys.readouterr().err.startswith(f"error: {path}:{fault}")
+
+
+def test_a_fault_of_another_kind_keeps_its_traceback():
+    with pytest.raises(ZeroDivisionError):
+        run_command(lambda: 1 // 0)
 
 
 def test_a_missing_extra_is_named(monkeypatch):

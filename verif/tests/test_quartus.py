@@ -207,7 +207,7 @@ def test_a_broken_settings_file_is_noticed(right, wrong, complaint, qsf):
         ('"B8", "A7"', '"B8", "PIN_A7"', 'signals.KEY.pins: must be a pin such as "N2", not "PIN_A7"'),
         ('["B8", "A7"]', "[]", 'signals.KEY.pins: must be a pin such as "N2", or a list of them'),
         ('clock = "MAX10_CLK1_50"', 'clock = "CLOCK"', "signals: CLOCK is missing, and the board's clocks name it"),
-        ("family =", "familiy =", "family: Field required"),
+        ("family =", "familiy =", "familiy: is unknown (did you mean family?)"),
         ("[settings]", "[settings", "is not TOML: "),
     ],
 )
@@ -461,7 +461,11 @@ def test_quartus_takes_too_long(command, tmp_path, monkeypatch):
 
 
 def test_mistakes_are_told_in_one_line(command, tmp_path):
-    assert command(name="de0") == (2, [], ["error: board: de10_lite, de1_soc, de2 or de2_115, not de0"])
+    assert command(name="de0") == (
+        2,
+        [],
+        ["error: board: expected de10_lite, de1_soc, de2 or de2_115, got de0 (did you mean de2?)"],
+    )
     code, _, err = command(scene=tmp_path / "none.toml")
     assert (code, err) == (2, [f"error: {tmp_path / 'none.toml'}: cannot be read: No such file or directory"])
     code, _, err = command("--colour-bits", "9")

@@ -27,6 +27,7 @@ colour = "#c8c8b4"
 """
 CAMERA = "[camera]\nposition = [20, 256, 100]\n"
 RECT = GOOD[GOOD.index("[[rect]]") :]
+SINGLE = RECT.replace("[[rect]]", "[rect]")
 CORNERS = "[[0, 0, 0], [511, 511, 0]]"
 TOP_KEYS = "title, rows, reflections, background, camera, rect"
 CAMERA_KEYS = "position, yaw, pitch, roll"
@@ -159,6 +160,9 @@ def test_rows_that_a_file_may_ask_for(tmp_path, rows):
             'rect[0] ("floor"): colour2 is for a pattern; give pattern = "checker", "rows" or "columns"',
         ),
         # Not TOML.
+        (RECT, 2 * SINGLE, "is not TOML at line 11: [rect] (head each rectangle with [[rect]])"),
+        (RECT, SINGLE + RECT, "is not TOML at line 11: [[rect]] (head each rectangle with [[rect]])"),
+        (RECT, RECT + SINGLE, "is not TOML at line 11: [rect] (head each rectangle with [[rect]])"),
         ("rows = 240", " rows = ", "is not TOML at line 2: rows = (Invalid value)"),
         ("rows = 240", "rows: 2", "is not TOML at line 2: rows: 2 (Expected '=' after a key in a key/value pair)"),
         ("rows = 240", "rows = \u2028", "is not TOML at line 2 (Invalid value)"),

@@ -126,12 +126,14 @@ const RayCasterScene = (() => {
   }
 
   function syntaxComplaint(error, text, schema) {
-    const [reason] = error.message.replace("Invalid TOML document: ", "").split("\n");
-    if (!error.line) return `is not TOML: ${reason}`;
+    const [said] = error.message.replace("Invalid TOML document: ", "").split("\n");
+    if (!error.line) return `is not TOML: ${said}`;
     const lines = text.replace(/[ \t\n]+$/, "").split("\n");
     const number = Math.min(error.line, lines.length);
     const line = lines[number - 1].replace(/^[ \t]+|[ \t]+$/g, "");
     const isShown = length(line) <= schema.longest_shown && !/(?! )[\p{C}\p{Z}]/u.test(line);
+    // With [rect] in some places a table is declared twice, or is no list.
+    const reason = /^\[+rect\]+/.test(line) ? schema.complaints.heading : said;
     return fill(schema.complaints.syntax, { number, line: isShown ? `: ${line}` : "", reason });
   }
 

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: MIT
+"""The words of one-line complaints: a word that was probably meant, a refused value, a fault in a block."""
+
+from __future__ import annotations
+
+import ast
+import difflib
+import re
+import reprlib
+import traceback
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """Suggest, behind a word that is none of these, the nearest one, if any is near."""
+    near = difflib.get_close_matches(word, known, 1)
+    return f" (did you mean {near[0]}?)" if near else ""
+
+
+LONGEST_SHOWN = 60
+"""Characters of the longest value that a complaint shows whole."""
+
+EXPECTED: Mapping[str, str] = {
+    "literal_error": "{expected}",
+    **dict.fromkeys(("int_type", "int_parsing", "int_parsing_size", "int_from_float"), "a whole number"),
+    **dict.fromkeys(("float_type", "float_parsing"), "a number"),
+    **dict.fromkeys(("bool_type", "bool_parsing"), "1 or 0"),
+    "string_type": "a text",
+    "greater_than_equal": "{ge} or more",
+    "less_than_equal": "{le} or less",
+    **dict.fromkeys(("dict_type", "model_type", "model_attributes_type"), "a table"),
+    **dict.fromkeys(("list_type", "tuple_type"), "a list"),
+    "missing": "a value",
+    "path_type": "a path",
+}
+"""What pydantic expects, by its type of error, instead of its own words."""
+
+
+def refusal(errors: Sequence[ErrorDetails], depth: int | None = None) -> str:
+    """One line for the first value that pydantic refuses: its place, what was expected, and what stood there.
+
+    Args:
+        errors: as pydantic lists them.
+        depth: how many of the keys that lead to the value are its place; all by default.
+    """
+    unknown = ("extra_forbidden", "unexpected_keyword_argument")
+    # A mistyped key leaves the right one missing; the mistake itself is the better thing to report.
+    first = next((one for one in errors if one["type"] in unknown), errors[0])
+    keys = first["loc"][:depth]
+    place = f"{'.'.join(map(str, keys))}: " if keys else ""
+    if first["type"] in unknown:
+        missing = [str(one["loc"][-1]) for one in errors if one["type"] == "missing"]
+        return f"{place}is unknown{did_you_mean(str(keys[-1]), missing)}; remove it or correct its name"
+    if first["type"] == "value_error":
+        return f"{place}{first.get('ctx', {}).get('error')}"
+    # A value that may be of several kinds has an error of each.
+    expected = [
+        EXPECTED[one["type"]].format_map(one.get("ctx", {})).replace("'", "")
+        for one in errors
+        if one["loc"][:depth] == keys
+    ]
+    text = f"{place}expected {' or '.join(dict.fromkeys(expected))}"
+    if first["type"] == "missing":
+        return text
+    choices = re.findall("'([^']*)'", str(first.get("ctx", {}).get("expected", "")))
+    given = reprlib.repr(first["input"]) if len(str(first["input"])) > LONGEST_SHOWN else first["input"]
+    return f"{text}, got {'nothing' if given == '' else given}{did_you_mean(str(given), choices)}"
+
+
+def fault_in_block(error: BaseException) -> str | None:
+    """File, line and reason of a fault in a MyHDL block; None where the error is of something else."""
+    if found := re.fullmatch(r"in file (.+), line (\d+):\s*(.*)", str(error), re.DOTALL):
+        return f"{found[1]}:{found[2]}: {found[3]}"
+    if isinstance(error, SyntaxError):
+        return f"{error.filename}:{error.lineno}: {error.msg}"
+    frames = list(traceback.walk_tb(error.__traceback__))
+    modules = [frame.f_globals.get("__name__", "") for frame, _ in frames]
+    if not any(module.startswith("myhdl.") for module in modules):
+        return None
+    reason = f"{type(error).__name__}: {error}"
+    # What MyHDL reads of a process has its place in the syntax tree, and what runs has it in a frame.
+    values = [value for frame, _ in frames for value in frame.f_locals.values()]
+    trees = [tree for value in values if hasattr(tree := getattr(value, "ast", None), "sourcefile")]
+    nodes = [value for value in values if isinstance(value, ast.AST) and hasattr(value, "lineno")]
+    if trees and nodes:
+        return f"{trees[-1].sourcefile}:{trees[-1].lineoffset + nodes[-1].lineno}: {reason}"
+    for (frame, line), module in zip(reversed(frames), reversed(modules), strict=True):
+        if not module.startswith(("myhdl.", "raycaster.convert.")):
+            return f"{frame.f_code.co_filename}:{line}: {reason}"
+    return None
