@@ -54,6 +54,7 @@ def write_take_home(config: Configuration, modules: Sequence[Module], directory:
 def _description(config: Configuration) -> str:
     """The configuration as comment lines, without what its engine has no choice of, and a fixed scene where none is."""
     values = {name: getattr(config, name) for name in OPTIONS}
+    values = {name: int(value) if isinstance(value, bool) else value for name, value in values.items()}
     if config.fixed:
         values["fixed"] = config.fixed.name
     if config.facts.line_buffered:

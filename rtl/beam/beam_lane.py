@@ -40,7 +40,7 @@ def beam_lane(
         clk: the clock.
         start_line: strobe; begins a line.
         next_column: strobe; begins a column.
-        enter: strobe where the camera turns, otherwise None. In the cycle after it, growths and aim are the start, and
+        enter: strobe; None unless the camera turns. In the cycle after it, growths and aim are the start, and
             all that walks along the row takes it; next_column is low in both cycles.
         load: `config.rectangles` bits, high for the rectangle that start belongs to; None where the camera turns, and
             start_line loads all of them.

@@ -34,14 +34,14 @@ class Vga(Interface):
     With two pixels per clock each colour is two channels; the low half belongs to the left pixel, in an even column.
 
     Attributes:
-        r: red.
-        g: green.
-        b: blue.
+        r: red, 0 in the blanking.
+        g: green, 0 in the blanking.
+        b: blue, 0 in the blanking.
         hs: horizontal sync.
         vs: vertical sync.
-        blank_n: low while nothing is shown.
+        blank_n: low in the blanking.
         sync_n: composite sync, unused and low.
-        clk: pixel clock.
+        clk: pixel clock; its rising edge is in the middle of a pixel.
     """
 
     def __init__(self, colour_bits: int):
@@ -58,11 +58,11 @@ class AvalonPort(Interface):
     """Avalon-MM with word addresses, 32-bit data and pipelined reads, as a host or an agent has it.
 
     Attributes:
-        address: of a word.
+        address: number of the register, its byte offset over four.
         read: request to read, held while waitrequest is high.
         write: request to write, held while waitrequest is high.
         writedata: word to write.
-        byteenable: which bytes of it to write.
+        byteenable: a bit for each byte of writedata; only bytes whose bit is 1 are written.
         readdata: word that was read, valid with readdatavalid.
         readdatavalid: high for a cycle with each word that was read, in the order of the requests.
         waitrequest: the request of this cycle is not taken yet.
@@ -80,6 +80,25 @@ class Axi4LitePort(Interface):
     """AXI4-Lite, 32 bits, as a subordinate has it; without protection types, to which no register pays regard.
 
     address_bits: of a word's address; awaddr and araddr have two more, as they count bytes.
+
+    Attributes:
+        awaddr: byte offset of the register to write; the lowest two bits are not read.
+        awvalid: awaddr waits to be taken.
+        awready: awaddr is taken at the end of this cycle.
+        wdata: word to write.
+        wstrb: a bit for each byte of wdata; only bytes whose bit is 1 are written.
+        wvalid: wdata and wstrb wait to be taken.
+        wready: wdata and wstrb are taken at the end of this cycle.
+        bresp: response to a write, always 0, which is OKAY.
+        bvalid: a write is done, and its response waits to be taken.
+        bready: bresp is taken at the end of this cycle.
+        araddr: byte offset of the register to read; the lowest two bits are not read.
+        arvalid: araddr waits to be taken.
+        arready: araddr is taken at the end of this cycle.
+        rdata: word that was read.
+        rresp: response to a read, always 0, which is OKAY.
+        rvalid: rdata waits to be taken.
+        rready: rdata is taken at the end of this cycle.
     """
 
     def __init__(self, address_bits: int):
@@ -91,7 +110,18 @@ class Axi4LitePort(Interface):
 
 
 class WishbonePort(Interface):
-    """Wishbone B4, classic cycles, 32 bits in lanes of 8, as a slave has it; adr counts words."""
+    """Wishbone B4, classic cycles, 32 bits in lanes of 8, as a slave has it; adr counts words.
+
+    Attributes:
+        cyc: high for the whole bus cycle.
+        stb: request, held until ack.
+        we: 1: write, 0: read.
+        ack: the request is done in this cycle.
+        adr: number of the register, its byte offset over four.
+        sel: a bit for each byte of dat_w; only bytes whose bit is 1 are written.
+        dat_w: word to write.
+        dat_r: word that was read, valid with ack.
+    """
 
     def __init__(self, address_bits: int):
         self.cyc, self.stb, self.we, self.ack = (bit() for _ in range(4))
@@ -103,6 +133,17 @@ class ApbPort(Interface):
     """APB4, 32 bits, as a completer has it; without protection types, to which no register pays regard.
 
     address_bits: of a word's address; paddr has two more, as it counts bytes.
+
+    Attributes:
+        paddr: byte offset of the register; the lowest two bits are not read.
+        psel: a transfer to this block, from its setup cycle to pready.
+        penable: high in all cycles of a transfer after the first.
+        pwrite: 1: write, 0: read.
+        pready: the transfer is done in this cycle.
+        pslverr: always 0.
+        pwdata: word to write.
+        pstrb: a bit for each byte of pwdata; only bytes whose bit is 1 are written.
+        prdata: word that was read, valid with pready.
     """
 
     def __init__(self, address_bits: int):
@@ -234,8 +275,8 @@ class GroupFate(Interface):
     """What any ray of a group may still meet.
 
     Attributes:
-        any_towards: `RayFate.towards` of at least one unit.
-        any_alive: `RayFate.alive` of at least one unit.
+        any_towards: fate.towards of at least one unit.
+        any_alive: fate.alive of at least one unit.
         may_hit: a bit for each rectangle, 1 where a primary ray may hit it.
     """
 

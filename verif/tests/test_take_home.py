@@ -67,10 +67,16 @@ def verilator_says(directory: Path) -> list[str]:
     return re.findall(r"^%(?:Warning|Error).*$", done.stdout + done.stderr, re.M)
 
 
+PYTHON = re.compile(r"`|\b(?:None|True|False|config|self)\b|\b[a-z_]\w*\.[a-z_]")
+"""What no comment in Verilog has: names in backticks, words of Python, attributes."""
+
+
 @configurations
 def test_tools_have_nothing_to_say(config: Configuration, tmp_path):
     directory = tmp_path / "taken home"
     write_verilog(config, directory)
+    comments = [line for path in directory.glob("*.v") for line in re.findall(r"//.*", path.read_text())]
+    assert [line for line in comments if PYTHON.search(line)] == []
     assert verilator_says(directory) == []
     done = run(directory, "iverilog", "-g2005", "-Wall", "-s", TOP, "-o", "a.out", "-c", FILE_LIST)
     assert (done.returncode, done.stdout + done.stderr) == (0, "")
