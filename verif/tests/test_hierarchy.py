@@ -1122,6 +1122,13 @@ def test_a_top_does_not_take_the_name_of_given_verilog(tmp_path):
         converted(adder(bit(), unsigned(4), unsigned(4)), tmp_path / "verilog")
 
 
+def test_given_verilog_has_its_module(tmp_path):
+    source = tmp_path / "given.v"
+    source.write_text(ADDER.replace("module adder", "module adders"))
+    with pytest.raises(HierarchyError, match=r"adder: .*given\.v has no module of this name"):
+        converted(two_adders_of(adder_of(source)), tmp_path / "verilog")
+
+
 def test_an_output_of_given_verilog_must_be_an_argument(tmp_path):
     adder = adder_of(tmp_path / "given.v", ("sum", "carry"))
     with pytest.raises(HierarchyError, match=r"adder: carry is said to be an output, and is no argument"):
