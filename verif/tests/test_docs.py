@@ -498,7 +498,7 @@ def test_pages(tmp_path: Path):
     assert [path.name for path in tmp_path.iterdir()] == ["site"]
     text = "".join(path.read_text() for path in output.glob("*.html"))
     written = {page.with_suffix(".html").name for page in pages.PAGES if page.parent == pages.HERE}
-    assert written | {"library.html"} <= {path.name for path in output.iterdir()}
+    assert written | {"python_api.html"} <= {path.name for path in output.iterdir()}
     assert "raycaster.golden.exact.trace" in text, "the library's reference"
     assert "The RayCaster authors" in text
     there = {f"{drawing.name}.svg" for drawing in (*blocks.DRAWINGS, *timing.DIAGRAMS)}

@@ -38,7 +38,7 @@ from raycaster.verif.seeds import repeat, seed
 
 ERRORS = enumerators(SOFTWARE / "raycaster.h", "raycaster_error")
 WHITE = Colour(255, 255, 255)
-PAGE = ROOT / "docs" / "hardware.md"
+PAGE = ROOT / "docs" / "integration.md"
 CONTROL = 4 * register_map(CONFIG.rectangles)["control"].address
 COMMIT = register_map(CONFIG.rectangles)["control"].fields["commit"].mask
 
