@@ -17,7 +17,7 @@ def command_parser() -> CommandParser:
     """What the command takes."""
     parser = CommandParser("verilog", __doc__, "--engine exact")
     parser.add_argument("--output", type=Path, default=Path("build/verilog"), help="(default: %(default)s)")
-    parser.add_argument("--prefix", default=PREFIX, help="of the names of all modules (default: %(default)s)")
+    parser.add_argument("--prefix", default=PREFIX, help="prefix of all module names (default: %(default)s)")
     add_scene_argument(parser, "what to build in, with --fix")
     add_fix_option(parser)
     add_configuration_options(parser)

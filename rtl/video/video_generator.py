@@ -25,7 +25,7 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0,
         scan: `Scan`; output. start_screen: strobe, a row of rays (of `screen.doubling` lines) before the first visible
             line, time to render row 0. start_row: strobe at the beginning of the first line of each row, which is then
             handed over. visible_line: high in the visible part of a line, blanked lines included. next_column: strobe
-            in the last clock of each column there or, with at_start, of the column's first pixel.
+            in the last clock of the last pixel of each column there, or of its first pixel with at_start.
         pixel: `Pixel`; the column's colour, sampled at the end of each of its pixels.
         vga: `Vga`; output. Changes at the falling edge of vga.clk.
         screen: the screen and its timing.
