@@ -124,8 +124,9 @@ def _constraints(config: Configuration, top: str, pixel_clock: str) -> str:
     forwarded = "" if divided else f"# For a pin, replace the module {pixel_clock} by the chip's DDR output register.\n"
     relation = f"-divide_by {screen.clocks_per_pixel}" if divided else "-invert"
     return f"""# SPDX-License-Identifier: MIT
-# {top}, {config.name}. One clock; the VGA outputs are registers that change at the falling edge of
-# vga_clk, which is clk {made}, and are taken at its rising edge half a pixel later.
+# {top}, {config.name}.
+# There is one clock. The VGA outputs are registers that change at the falling edge of vga_clk, which is clk {made}, and
+# are taken at its rising edge half a pixel later.
 create_clock -name clk -period {clock_period(config)} [get_ports clk]
 create_generated_clock -name vga_clk -source [get_ports clk] {relation} [get_ports vga_clk]
 {forwarded}
