@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import inspect
 import re
-import shutil
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -153,13 +152,19 @@ class _RecordingConvertor(_ToVerilogConvertor):
                 siglist.append(field)
 
 
-def convert_hierarchy(top: _Block, directory: Path, header: str) -> list[Module]:
+def prefixed(name: str, prefix: str) -> str:
+    """Begin a module's name with a prefix, unless it does already, as `ray_caster` and `ray_caster_module` may."""
+    return name if f"{name}_".startswith(prefix) else f"{prefix}{name}"
+
+
+def convert_hierarchy(top: _Block, directory: Path, header: str, prefix: str = "") -> list[Module]:
     """Write one Verilog file for each distinct block below and including `top`.
 
     Args:
         top: an elaborated block; it cannot be simulated any more afterwards.
         directory: where the files go; it exists.
         header: comment lines for the head of each file; `{module}` stands for the module's name.
+        prefix: of the modules' names, and so of the files'; instances keep their names.
 
     Returns:
         The modules, each after those that it instantiates; `top` is the last.
@@ -167,16 +172,16 @@ def convert_hierarchy(top: _Block, directory: Path, header: str) -> list[Module]
     Raises:
         HierarchyError: a block cannot be a module: a signal has no driver or no reader; a process indexes a list of
             slices; a constant is below 0; two things in it would have one name in Verilog; an instance connects to a
-            signal that no variable holds; given Verilog drives what is no argument of its block, or another block has
-            its name.
+            signal that no variable holds; given Verilog drives what is no argument of its block, lacks its module, or
+            another block has its name.
     """
     with elaboration():
-        return _Converter(directory, header).convert(top)
+        return _Converter(directory, header, prefix).convert(top)
 
 
 class _Converter:
-    def __init__(self, directory: Path, header: str):
-        self._directory, self._header = directory, header
+    def __init__(self, directory: Path, header: str, prefix: str):
+        self._directory, self._header, self._prefix = directory, header, prefix
         self._kinds: dict[str, Any] = {}
         self._modules: dict[str, Module] = {}
 
@@ -192,17 +197,19 @@ class _Converter:
         for known, module in self._modules.items():
             if self._kinds[known] == kind:
                 return module
-        name, number = block.func.__name__, 0
+        name = first = prefixed(block.func.__name__, self._prefix)
+        number = 0
         while name in self._kinds:
             number += 1
-            name = f"{block.func.__name__}_{number}"
+            name = f"{first}_{number}"
         self._kinds[name] = kind  # the name is taken while the block's own parts are converted
         self._modules[name] = self._convert_block(block, name, block_ports(block))
         return self._modules[name]
 
     def _copy(self, given: GivenVerilog, block: _Block) -> Module:
         """The module of given Verilog: one file for all instances, each of which has its own parameters."""
-        name, ports = block.func.__name__, block_ports(block)
+        given_name, ports = block.func.__name__, block_ports(block)
+        name = prefixed(given_name, self._prefix)
         if strangers := given.outputs - set(ports):
             raise HierarchyError(f"{name}: {', '.join(sorted(strangers))} is said to be an output, and is no argument")
         shapes = tuple(
@@ -215,7 +222,12 @@ class _Converter:
         )
         if name not in self._kinds:
             path = self._directory / f"{name}.v"
-            shutil.copyfile(given.source(), path)
+            text, found = re.subn(
+                rf"^(\s*module\s+){given_name}\b", rf"\g<1>{name}", given.source().read_text(), flags=re.M
+            )
+            if not found:
+                raise HierarchyError(f"{given_name}: {given.source()} has no module of this name")
+            path.write_text(text)
             self._kinds[name], self._modules[name] = block.func, Module(name, path, shapes, {}, parameters)
         if self._kinds[name] is not block.func:
             raise HierarchyError(f"{name} is given Verilog, whose name stays, and another block's name; rename that")

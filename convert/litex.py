@@ -15,6 +15,7 @@ from litex.soc.interconnect.axi import AXILiteInterface
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourceLevel
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
+from raycaster.convert.take_home import PREFIX, TOP
 from raycaster.convert.write import write_verilog
 from raycaster.errors import UserError
 from raycaster.registers import address_bits, register_map
@@ -57,7 +58,7 @@ class RayCaster(LiteXModule):
             raise UserError(f"bus: LiteX takes {' or '.join(BUSES)}, not {config.bus}")
         if config.pixels != 1:
             raise UserError(f"pixels: LiteX's video has 1 a clock, not {config.pixels}")
-        for path in write_verilog(config, directory):
+        for path in write_verilog(config, directory, PREFIX):
             platform.add_source(str(path), "verilog")
         words = address_bits(config.table)
         self.size = 4 << words
@@ -67,7 +68,7 @@ class RayCaster(LiteXModule):
         self.vga = {name: Signal(len(port), name=f"vga_{name}") for name, port in vars(vga_of(config)).items()}
         ports: dict[str, Any] = {f"o_vga_{name}": signal for name, signal in self.vga.items()}
         self.specials += Instance(
-            "ray_caster_module",
+            TOP,
             i_clk=ClockSignal(),
             i_reset=ResetSignal(),
             o_irq=self.ev.frame.trigger,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Comments of ports in Verilog, from the `Args:` of a block's docstring."""
+"""Comments in Verilog, from a block's docstring and comments: of the module, its ports and its processes."""
 
 from __future__ import annotations
 
@@ -7,14 +7,20 @@ import inspect
 import re
 import textwrap
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, get_args
 
+from raycaster.configuration import OPTIONS
 from raycaster.engines import beam, engine, exact
 from raycaster.rtl.common import widths
 from raycaster.rtl.common.interfaces import Interface
+from raycaster.rtl.common.records import Record
 
 _SHARED = {name: value for module in (engine, beam, exact, widths) for name, value in vars(module).items()}
 """Latencies and widths, which a docstring may name without need of them in its code."""
+
+
+CLOCK = "the clock."
+"""The text of a clock of which there is nothing to say."""
 
 
 def split(purpose: str) -> tuple[str, Mapping[str, str]]:
@@ -42,8 +48,8 @@ def split(purpose: str) -> tuple[str, Mapping[str, str]]:
 def commented(ports: Sequence[str], texts: Mapping[str, str], block: Any, width: int) -> Mapping[str, str]:
     """Find the comment that stands above each port.
 
-    The text of a record or an interface goes above the first of its ports. Above each port of an interface goes what
-    the class says about that attribute.
+    The text of an interface goes above the first of its ports, behind the names of all of them, as in `vga_*`. Above
+    each of its ports goes what the class says about that attribute. A record's port has the bits of each field.
 
     Args:
         ports: names, in order; those of a record or an interface begin with the argument's name.
@@ -52,20 +58,35 @@ def commented(ports: Sequence[str], texts: Mapping[str, str], block: Any, width:
         width: of a line, at most.
     """
     comments = dict.fromkeys(ports, "")
+    given = _given(block)
 
     def add(port: str, text: str) -> None:
+        text = _without_absent(in_verilog(text, block))
         lines = textwrap.wrap(text, width - len("    // "), break_long_words=False, break_on_hyphens=False)
         comments[port] += "".join(f"    // {line}\n" for line in lines)
 
-    given = _given(block)
+    def add_layout(record: object, port: str) -> None:
+        if isinstance(record, Record) and port in comments:
+            add(port, f"{_layout(record)}.")
+
     for argument, text in texts.items():
+        value = given.get(argument)
         first = next((port for port in ports if port == argument or port.startswith(f"{argument}_")), None)
-        if first and first != "clk":
-            add(first, text)
-        for attribute, meaning in _attributes(given.get(argument)).items():
-            if f"{argument}_{attribute}" in comments:
-                add(f"{argument}_{attribute}", with_numbers(meaning, block))
+        if first and text != CLOCK:
+            add(first, f"{argument}_*: {text}" if isinstance(value, Interface) else text)
+        add_layout(value, f"{argument}_word")
+        for attribute, meaning in _attributes(value).items():
+            port, record = f"{argument}_{attribute}", getattr(value, attribute)
+            for name in {port, f"{port}_word"} & set(comments):
+                add(name, meaning)
+            add_layout(record, f"{port}_word")
     return comments
+
+
+def _layout(record: Record) -> str:
+    """The bits of each field."""
+    places = ((name, *record.slice(name)) for name in record.layout)
+    return ", ".join(f"[{high}:{low}] {name}" if high > low else f"[{low}] {name}" for name, high, low in places)
 
 
 def _attributes(value: object) -> Mapping[str, str]:
@@ -79,22 +100,49 @@ def _given(block: Any) -> Mapping[str, Any]:
     return inspect.signature(block.func).bind(*block.args, **block.kwargs).arguments
 
 
-def with_numbers(text: str, block: Any) -> str:
-    """Replace the names that stand in backticks by their numbers, where a block's configuration or module has them.
+def in_verilog(text: str, block: Any) -> str:
+    """Replace what a text says in Python by what Verilog has.
+
+    Names in backticks are numbers where a block's arguments or module have them; a clock has its MHz. A choice that the
+    text depends on, `config.turn`, is the option by which a user makes it, `TURN=1`. An attribute, `steps.add_colour`,
+    is the signal `steps_add_colour`.
 
     Args:
-        text: a docstring or a part of one, with names such as `config.units`, `unit_bits` and `SETUP_LATENCY`.
-        block: whose docstring it is.
+        text: of the block's docstring or comments, with names such as `config.units`, `unit_bits` and `SETUP_LATENCY`.
+        block: whose text it is.
     """
-    known: Mapping[str, Any] = _SHARED | block.func.__globals__ | {"config": _given(block).get("config")}
+    given = _given(block)
+    config = given.get("config")
+    screen = {"screen": config.screen_geometry, "doubling": config.screen_geometry.doubling} if config else {}
+    known: Mapping[str, Any] = {**screen, **_SHARED, **block.func.__globals__, **given}
 
     def number(match: re.Match[str]) -> str:
         name, *attributes = match[1].split(".")
         value = known.get(name)
         for attribute in attributes:
             value = getattr(value, attribute, None)
-        if inspect.isfunction(value) and known["config"] and [*inspect.signature(value).parameters] == ["config"]:
-            value = value(known["config"])
-        return str(value) if isinstance(value, int) and not isinstance(value, bool) else match[1]
+        if inspect.isfunction(value) and config and [*inspect.signature(value).parameters] == ["config"]:
+            value = value(config)
+        if not isinstance(value, int) or isinstance(value, bool):
+            return match[1] + match[2]
+        return f"{value / 1e6:g} MHz" if match[2] else str(value)
 
-    return re.sub(r"`([\w.]+)`", number, text)
+    text = re.sub(r"`([\w.]+)`((?: Hz)?)", number, text)
+    text = re.sub(r"\bconfig\.(\w+)\b", _option, text)
+    return re.sub(r"\b([a-z]\w*)\.([a-z]\w*)\b", r"\1_\2", text)
+
+
+def _option(match: re.Match[str]) -> str:
+    """What a user gives to `make` or `raycaster` for an attribute of the configuration that is true."""
+    if match[1] == "fixed":
+        return "FIX"
+    if match[1] not in OPTIONS:
+        return match[0]
+    annotation = OPTIONS[match[1]].annotation
+    return f"{match[1].upper()}=1" if bool in (annotation, *get_args(annotation)) else match[1].upper()
+
+
+def _without_absent(text: str) -> str:
+    """Leave out where a port is None: where it stands it is not."""
+    text = re.sub(r"(?<=\.) [^.;]*\bNone\b[^.]*\.", "", text)
+    return re.sub(r"; [^.;]*\bNone\b[^.;]*", "", text)

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""What goes with the Verilog so that it builds in other people's flows: lists, constraints, waivers, a first bench."""
+"""What goes with the Verilog so that it builds in other people's flows.
+
+Lists of files, constraints, waivers, an instantiation template, and a first test bench.
+"""
 
 from __future__ import annotations
 
+import re
 import shutil
 from collections.abc import Sequence
 from importlib.metadata import version
@@ -10,13 +14,16 @@ from pathlib import Path
 
 from raycaster.configuration import OPTIONS, Configuration
 from raycaster.convert import ip_xact
-from raycaster.convert.hierarchy import Module
+from raycaster.convert.hierarchy import Module, prefixed
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM, component
 from raycaster.register_views import HEADER, write_header
 from raycaster.registers import address_bits
 from raycaster.rtl.bus.avalon_interface import size_word
 
 TOP = "ray_caster_module"
+PREFIX = "ray_caster_"
+"""Of the modules' names where Verilog is written for others: the top has it anyway."""
+
 FILE_LIST = f"{TOP}.f"
 SMOKE_BENCH = Path(__file__).with_name("smoke_bench.v")
 BENCHES = "bench"
@@ -25,35 +32,40 @@ BENCHES = "bench"
 WAIVERS = Path(__file__).with_name("waivers.vlt")
 
 
-def write_take_home(config: Configuration, modules: Sequence[Module], directory: Path) -> None:
+def write_take_home(config: Configuration, prefix: str, modules: Sequence[Module], directory: Path) -> None:
     """Write beside the Verilog what tools want to know of it.
 
     Args:
         config: what was generated.
+        prefix: of the modules' names.
         modules: what it consists of, each after those that it instantiates; the top is the last.
         directory: where its files are.
     """
-    sources = [module.path.name for module in modules]
-    (directory / FILE_LIST).write_text("".join(f"{name}\n" for name in sources))
-    (directory / f"{TOP}.sdc").write_text(_constraints(config))
-    (directory / f"{TOP}.core").write_text(_core(config, sources))
+    sources, top = [module.path.name for module in modules], modules[-1].name
+    (directory / f"{top}.f").write_text("".join(f"{name}\n" for name in sources))
+    (directory / f"{top}.qip").write_text(_quartus_list(config, top, sources))
+    (directory / f"{top}.sdc").write_text(_constraints(config, top, prefixed("pixel_clock", prefix)))
+    (directory / f"{top}.core").write_text(_core(config, top, sources))
     if config.bus == "avalon":
         (directory / COMPONENT).write_text(component(config, modules[-1].ports, sources))
-        shutil.copyfile(NIOS_SYSTEM, directory / NIOS_SYSTEM.name)
+        (directory / NIOS_SYSTEM.name).write_text(NIOS_SYSTEM.read_text().replace(TOP, top))
     elif config.bus in ip_xact.BUS_TYPES:
         (directory / ip_xact.IP_XACT).write_text(ip_xact.component(config, modules[-1].ports, sources))
     write_header(config.table, directory / HEADER)
-    shutil.copyfile(WAIVERS, directory / f"{TOP}.vlt")
+    shutil.copyfile(WAIVERS, directory / f"{top}.vlt")
     (directory / BENCHES).mkdir()
     define = "" if config.bus == "avalon" else f"`define BUS_{config.bus.upper()}\n"
-    (directory / BENCHES / SMOKE_BENCH.name).write_text(define + SMOKE_BENCH.read_text())
-    top = directory / f"{TOP}.v"
-    top.write_text(top.read_text().replace(f"{config.name}\n", f"{config.name}\n{_description(config)}", 1))
+    (directory / BENCHES / SMOKE_BENCH.name).write_text(define + SMOKE_BENCH.read_text().replace(TOP, top))
+    path = directory / f"{top}.v"
+    text = path.read_text()
+    path.write_text(text.replace(f"{config.name}\n", f"{config.name}\n{_description(config)}", 1))
+    (directory / f"{top}.veo").write_text(_template(config, top, text))
 
 
 def _description(config: Configuration) -> str:
     """The configuration as comment lines, without what its engine has no choice of, and a fixed scene where none is."""
     values = {name: getattr(config, name) for name in OPTIONS}
+    values = {name: int(value) if isinstance(value, bool) else value for name, value in values.items()}
     if config.fixed:
         values["fixed"] = config.fixed.name
     if config.facts.line_buffered:
@@ -67,15 +79,54 @@ def clock_period(config: Configuration) -> str:
     return f"{1e9 / config.screen_geometry.clock_hz:.3f}"
 
 
-def _constraints(config: Configuration) -> str:
+def _quartus_list(config: Configuration, top: str, sources: Sequence[str]) -> str:
+    """Quartus's list of files, each relative to the list."""
+    files = "".join(
+        f'set_global_assignment -name VERILOG_FILE [file join $::quartus(qip_path) "{name}"]\n' for name in sources
+    )
+    return f"""# SPDX-License-Identifier: MIT
+# {top}, {config.name}.
+# {top}.sdc is not in this list, as it is for a design whose top this is.
+{files}"""
+
+
+def _template(config: Configuration, top: str, text: str) -> str:
+    """An instance of the top, with the comments and the shape of each port.
+
+    Args:
+        config: the design.
+        top: the module's name.
+        text: its Verilog.
+    """
+    [listed] = re.findall(rf"^module {top} \(\n(.*?)^\);", text, re.M | re.S)
+    ports = re.findall(r"^( +//.*|.*\w)(?:,?)$", listed, re.M)
+    names = [port.split()[-1] for port in ports if "//" not in port]
+    pad = max(map(len, names))
+    lines = []
+    for port in ports:
+        direction, _, *width, name = port.split()
+        comma = "," if name != names[-1] else ""
+        pin = f"    .{name}({name}){comma}"
+        lines.append(port if "//" in port else f"{pin:<{2 * pad + 9}}// {' '.join([direction, *width])}")
+    body = "\n".join(lines)
+    return f"""// SPDX-License-Identifier: MIT
+// {top}, {config.name}. Copy this into your own module, and connect your signals.
+{top} {top}_i (
+{body}
+);
+"""
+
+
+def _constraints(config: Configuration, top: str, pixel_clock: str) -> str:
     screen = config.screen_geometry
     divided = screen.clocks_per_pixel > 1
     made = f"divided by {screen.clocks_per_pixel}" if divided else "inverted"
-    forwarded = "" if divided else "# For a pin, replace the module pixel_clock by the chip's DDR output register.\n"
+    forwarded = "" if divided else f"# For a pin, replace the module {pixel_clock} by the chip's DDR output register.\n"
     relation = f"-divide_by {screen.clocks_per_pixel}" if divided else "-invert"
     return f"""# SPDX-License-Identifier: MIT
-# {TOP}, {config.name}. One clock; the VGA outputs are registers that change at the falling edge of
-# vga_clk, which is clk {made}, and are taken at its rising edge half a pixel later.
+# {top}, {config.name}.
+# There is one clock. The VGA outputs are registers that change at the falling edge of vga_clk, which is clk {made}, and
+# are taken at its rising edge half a pixel later.
 create_clock -name clk -period {clock_period(config)} [get_ports clk]
 create_generated_clock -name vga_clk -source [get_ports clk] {relation} [get_ports vga_clk]
 {forwarded}
@@ -84,7 +135,7 @@ create_generated_clock -name vga_clk -source [get_ports clk] {relation} [get_por
 """
 
 
-def _core(config: Configuration, sources: Sequence[str]) -> str:
+def _core(config: Configuration, top: str, sources: Sequence[str]) -> str:
     """A FuseSoC core (CAPI2) that lints, simulates and synthesises the files where they are."""
     horizontal = config.screen_geometry.beats
     parameters = {
@@ -102,7 +153,7 @@ def _core(config: Configuration, sources: Sequence[str]) -> str:
     )
     return f"""CAPI=2:
 # SPDX-License-Identifier: MIT
-name: raycaster::{TOP}:{version("raycaster")}
+name: raycaster::{top}:{version("raycaster")}
 description: RayCaster, a real-time ray tracer, as {config.name}
 
 filesets:
@@ -111,10 +162,10 @@ filesets:
 {files}    file_type: verilogSource-2005
   constraints:
     files:
-      - {TOP}.sdc: {{file_type: SDC}}
+      - {top}.sdc: {{file_type: SDC}}
   waivers:
     files:
-      - {TOP}.vlt: {{file_type: vlt}}
+      - {top}.vlt: {{file_type: vlt}}
   bench:
     files:
       - {BENCHES}/{SMOKE_BENCH.name}: {{file_type: verilogSource-2005}}
@@ -122,7 +173,7 @@ filesets:
 targets:
   default: &default
     filesets: [rtl, constraints]
-    toplevel: {TOP}
+    toplevel: {top}
   lint:
     <<: *default
     description: Verilator's -Wall, with the waivers

@@ -15,7 +15,7 @@ from myhdl._block import _Block
 from myhdl._enum import EnumItemType
 from myhdl._instance import _Instantiator
 
-from raycaster.convert.port_comments import commented, split, with_numbers
+from raycaster.convert.port_comments import commented, in_verilog, split
 
 LINE_LENGTH = 120
 
@@ -42,7 +42,7 @@ def restyle(text: str, block: _Block, ports: Sequence[str]) -> str:
     """
     for sub in block.subs:
         if isinstance(sub, _Instantiator):
-            text = _comment(text, sub)
+            text = _comment(text, sub, block)
     # A block that declares nothing needs no name, and Icarus pays for one with a thread at each evaluation.
     text = re.sub(r"^(always [^\n]*begin): \w+\n(?! *(?:integer|reg)\b)", r"\1\n", text, flags=re.M)
     text = re.sub(r"^always @\(([^)]*)\)", _sensitivity, text, flags=re.M)
@@ -73,12 +73,13 @@ def _size_words(text: str) -> str:
     return re.sub(r"\b(\w+) (<?=) (\d+)'h([0-9a-f]+);", size, text)
 
 
-def _comment(text: str, process: _Instantiator) -> str:
+def _comment(text: str, process: _Instantiator, block: _Block) -> str:
     """Put the comment above a process, if it has one, above it in the Verilog."""
     comment = inspect.getcomments(process.funcobj)
     if not comment:
         return text
-    purpose = "// " + " ".join(line.lstrip("# ").rstrip() for line in comment.splitlines()) + "\n"
+    words = " ".join(line.lstrip("# ").rstrip() for line in comment.splitlines())
+    purpose = f"// {in_verilog(words, block)}\n"
     label = re.escape(process.funcobj.__name__.lower())
     text, found = re.subn(
         rf"^(always [^\n]*begin: {label}\n)", lambda match: purpose + match[1], text, flags=re.M | re.I
@@ -193,8 +194,9 @@ def _declare_ports(text: str, ports: Sequence[str], block: _Block) -> str:
         direction, (_, sign, width) = words[0], kinds[0]
         rows.append((f"{direction:<6} {'reg' if 'reg' in words else 'wire':<4}{sign}{width}", port))
     pad = max(len(left) for left, _ in rows)
-    purpose, texts = split(with_numbers(purpose, block))
+    purpose, texts = split(purpose)
     comments = commented(ports, texts, block, LINE_LENGTH)
+    purpose = in_verilog(purpose, block)
     declarations = ",\n".join(f"{comments[port]}    {left:<{pad}} {port}" for left, port in rows)
     return f"{before}{purpose}module {name} (\n{declarations}\n);\n{body}"
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -13,7 +14,8 @@ from raycaster.configuration import Configuration, need_avalon
 from raycaster.convert.elaboration import elaborated, elaboration
 from raycaster.convert.hierarchy import Module, convert_hierarchy
 from raycaster.convert.inside import state_names
-from raycaster.convert.take_home import write_take_home
+from raycaster.convert.take_home import PREFIX, write_take_home
+from raycaster.errors import UserError
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.output import replaced
 from raycaster.rtl.dvi.dvi_encoder import dvi_encoder
@@ -24,20 +26,32 @@ from raycaster.rtl.system.ray_caster_system import ray_caster_system
 from raycaster.scene import Scene
 
 
-def write_verilog(config: Configuration, directory: Path) -> list[Path]:
+def write_verilog(config: Configuration, directory: Path, prefix: str = "") -> list[Path]:
     """Write the ray tracer, `ray_caster_module`, and beside it what other flows want.
 
     This and the other functions here replace the directory as a whole, once everything is generated; equal arguments
     give equal bytes.
 
+    Args:
+        config: what to generate.
+        directory: where to.
+        prefix: of the names of all modules that do not begin with it, such as `PREFIX`, so that they are no others' in
+            a larger design; none in the project's own simulations.
+
     Returns:
         The modules' files, each after those that it instantiates; the top is the last.
+
+    Raises:
+        UserError: the prefix is no beginning of a name in Verilog.
     """
+    if prefix and not re.fullmatch(r"[A-Za-z_]\w*", prefix, re.ASCII):
+        raise UserError(f"prefix: expected the beginning of a Verilog name, such as {PREFIX}, got {prefix}")
     return _write(
         config,
         directory,
         lambda: elaborated(ray_caster_module, **module_ports(config), config=config),
-        partial(write_take_home, config),
+        partial(write_take_home, config, prefix),
+        prefix,
     )
 
 
@@ -89,10 +103,11 @@ def _write(
     directory: Path,
     elaborate: Callable[[], _Block],
     complete: Callable[[list[Module], Path], None] | None = None,
+    prefix: str = "",
 ) -> list[Path]:
     with replaced(directory) as written:
         with elaboration():
-            modules = convert_hierarchy(elaborate(), written, _header(config))
+            modules = convert_hierarchy(elaborate(), written, _header(config), prefix)
         if complete:
             complete(modules, written)
     return [directory / module.path.name for module in modules]

@@ -28,10 +28,15 @@ REFERENCE = (
     "raycaster.configuration",
     "raycaster.design",
     "raycaster.golden.model",
+    "raycaster.program",
     "raycaster.golden.exact",
     "raycaster.golden.engines",
     "raycaster.golden.picture",
     "raycaster.convert.write",
+    "raycaster.sim.register_bus",
+    "raycaster.sim.avalon",
+    "raycaster.sim.buses",
+    "raycaster.sim.monitor",
     "raycaster.sim.simulator",
     "raycaster.errors",
 )
@@ -55,10 +60,17 @@ def draw_timing(build: Path) -> None:
         partial.replace(timing.SOURCES / f"{name}.json")
 
 
-EMBEDDED = """```{raw} html
-<iframe src="web/index.html?embedded#walk" title="The hardware in the browser" class="embedded"></iframe>
-```"""
-"""The page that runs the hardware, on the first page."""
+LIVE = """```{image} \\2
+:alt: \\1
+:target: web/index.html#walk
+:class: live
+```
+
+*Click the picture: the hardware runs in your browser.*"""
+"""The first page's picture, as a link to the page that runs the hardware, which takes seconds to load."""
+
+GROUP_OF_API = "Reference"
+"""Where the Python API is among the pages."""
 
 
 def write_site(output: Path, web: Path | None = None) -> Path:
@@ -81,7 +93,9 @@ def write_site(output: Path, web: Path | None = None) -> Path:
         if web:
             shutil.copytree(web, pages / "extra" / "web")
             index = pages / "index.md"
-            index.write_text(re.sub(r"^!\[.*\]\(.*\)$", EMBEDDED, index.read_text(), count=1, flags=re.MULTILINE))
+            index.write_text(
+                re.sub(r"^\[!\[(.*)\]\((.*)\)\]\(.*\)$", LIVE, index.read_text(), count=1, flags=re.MULTILINE)
+            )
         write_page(configure().rectangles, pages / "extra" / "register_map")
         if build_main(["-q", "-W", "--keep-going", "-d", f"{scratch}/doctrees", str(pages), str(written)]):
             raise UserError("the pages have faults, which stand above")
@@ -102,19 +116,22 @@ def command_parser() -> CommandParser:
 
 
 def _add_what_forges_would_not_show(pages: Path) -> None:
-    """The order of the pages, the library's reference, and the link to the register map's own page."""
-    (pages / "library.rst").write_text("\n".join(_reference()))
+    """The groups of the pages, the Python API, and the link to the register map's own page."""
+    (pages / "python_api.rst").write_text("\n".join(_reference()))
     index, registers = pages / "index.md", pages / "registers.md"
-    order = [*re.findall(r"^- \[.*?\]\((\w+)\.md\)", index.read_text(), re.MULTILINE), "library"]
-    toctree = "\n".join(["```{toctree}", ":hidden:", *order, "```", ""])
-    index.write_text(f"{index.read_text()}\n{toctree}")
+    toctrees = []
+    for group, listed in re.findall(r"^## (.*)\n\n((?:- .*\n)+)", index.read_text(), re.MULTILINE):
+        names = re.findall(r"\]\((\w+)\.md\)", listed)
+        names += ["python_api"] if group == GROUP_OF_API else []
+        toctrees += ["```{toctree}", ":hidden:", f":caption: {group}", "", *names, "```", ""]
+    index.write_text("\n".join([index.read_text(), *toctrees]))
     link = '<a href="register_map/index.html">The register map as a page of its own, which decodes words.</a>'
     registers.write_text(f"{registers.read_text()}\n{link}\n")
 
 
 def _reference() -> Iterator[str]:
     """A page of what the docstrings say of the modules that a program of one's own calls."""
-    yield from ("The library", "===========", "")
+    yield from ("Python API", "==========", "")
     for module in REFERENCE:
         yield from (module, "-" * len(module), "", f".. automodule:: {module}", "")
 

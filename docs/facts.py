@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
 from dataclasses import replace
 
 from pydantic.fields import FieldInfo
@@ -101,25 +103,45 @@ def beam_latencies() -> str:
     return table(["block", "what it does", "cycles"], rows)
 
 
+def register_overview() -> str:
+    """A row for each register."""
+    rows = []
+    for node in _registers():
+        values = [(field.get_property("reset"), field.low) for field in node.fields()]
+        known = [value << low for value, low in values if isinstance(value, int)]
+        reset = f"`{sum(known):#010x}`" if len(known) == len(values) else "as generated"
+        said = re.fullmatch(r"(?:(Shadowed)(, except \w+)?\. )?(.*?)\.(?: .*)?", _about(node))
+        shadowed = f"yes{said[2] or ''}" if said and said[1] else ""
+        path, offset = _place(node)
+        rows.append([f"`{path}`", f"`{offset}`", reset, shadowed, said[3] if said else ""])
+    return table(["register", "offset", "after reset", "shadowed", "purpose"], rows)
+
+
 def registers() -> str:
     """Every register with its fields."""
     parts = []
-    for node in compile_registers(configure().rectangles).descendants():
-        if not isinstance(node, RegNode):
-            continue
-        entry = node.parent if node.parent.is_array else None
-        offset, stride = node.raw_absolute_address, ""
-        if entry:
-            offset, stride = entry.raw_absolute_address + node.address_offset, f" + {entry.array_stride:#x} i"
-        path = node.get_path(empty_array_suffix="[i]").removeprefix("ray_caster.")
+    for node in _registers():
         rows = [
             [_bits(field), f"`{field.inst_name}`", _access(field), _about(field)]
             for field in sorted(node.fields(), key=lambda field: -field.high)
         ]
-        about = _about(node) or (_about(entry) if entry else "")
-        heading = f"## `{path}`, {offset:#04x}{stride}"
-        parts += filter(None, [heading, about, table(["bits", "field", "access", "meaning"], rows)])
+        path, offset = _place(node)
+        parts += [f"## `{path}`, {offset}", _about(node), table(["bits", "field", "access", "meaning"], rows)]
     return "\n\n".join(parts)
+
+
+def _registers() -> Iterator[RegNode]:
+    """Those of the default design, of the table's entries once."""
+    return (node for node in compile_registers(configure().rectangles).descendants() if isinstance(node, RegNode))
+
+
+def _place(node: RegNode) -> tuple[str, str]:
+    """Its name, and its offset in bytes."""
+    path = node.get_path(empty_array_suffix="[i]").removeprefix("ray_caster.")
+    if not node.parent.is_array:
+        return path, f"{node.raw_absolute_address:#04x}"
+    offset = node.parent.raw_absolute_address + node.address_offset
+    return path, f"{offset:#04x} + {node.parent.array_stride:#x} i"
 
 
 def _about(node: Node) -> str:
@@ -148,6 +170,7 @@ def facts() -> dict[str, str]:
         "exact_cycles": exact_cycles(),
         "beam_screens": beam_screens(),
         "beam_latencies": beam_latencies(),
+        "register_overview": register_overview(),
         "registers": registers(),
         "units": str(default.units),
         "rectangles": str(default.rectangles),

@@ -21,6 +21,7 @@ from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import Component, In, Out
 
 from raycaster.configuration import Configuration, configure
+from raycaster.convert.take_home import PREFIX, TOP
 from raycaster.convert.write import write_verilog
 from raycaster.program import scene_words
 from raycaster.registers import address_bits
@@ -61,7 +62,7 @@ class RayTracer(Component):
         ports = {"i_clk": ClockSignal(), "i_reset": ResetSignal()}
         for path, member, signal in self.signature.flatten(self):
             ports["_".join(("i" if member.flow is In else "o", *path))] = signal
-        m.submodules.tracer = Instance("ray_caster_module", **ports)
+        m.submodules.tracer = Instance(TOP, **ports)
         return m
 
 
@@ -111,7 +112,7 @@ class PictureFrame(Component):
 
 def convert(scene: Scene, config: Configuration, directory: Path) -> list[Path]:
     """Write the design as Verilog, the ray tracer a file a module, the top last."""
-    files = write_verilog(config, directory)
+    files = write_verilog(config, directory, PREFIX)
     top = directory / "picture_frame.v"
     top.write_text(verilog.convert(PictureFrame(scene, config), name="picture_frame"))
     return [*files, top]

@@ -62,7 +62,7 @@ def write_project(board: QuartusBoard, config: Configuration, scene: Scene, dire
     if config.screen_geometry.clocks_per_pixel == 1:
         raise UserError(
             f"engine: the boards' projects run at 50 MHz, and the {config.engine} engine at the pixel clock; take "
-            "make verilog, a PLL, and a DDR output register in place of pixel_clock"
+            "make verilog, a PLL, and a DDR output register in place of ray_caster_pixel_clock"
         )
     with replaced(directory) as written:
         modules = write_system(config, scene, written / VERILOG)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from raycaster.convert.take_home import FILE_LIST
+from raycaster.convert.take_home import PREFIX
 from raycaster.convert.write import write_verilog
 from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
@@ -17,6 +17,7 @@ def command_parser() -> CommandParser:
     """What the command takes."""
     parser = CommandParser("verilog", __doc__, "--engine exact")
     parser.add_argument("--output", type=Path, default=Path("build/verilog"), help="(default: %(default)s)")
+    parser.add_argument("--prefix", default=PREFIX, help="prefix of all module names (default: %(default)s)")
     add_scene_argument(parser, "what to build in, with --fix")
     add_fix_option(parser)
     add_configuration_options(parser)
@@ -27,6 +28,6 @@ def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
     arguments = command_parser().parse_args(argv)
     config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, Console())
-    files = write_verilog(config, arguments.output)
-    where = f"{arguments.output}/, listed in {arguments.output / FILE_LIST}"
+    files = write_verilog(config, arguments.output, arguments.prefix)
+    where = f"{arguments.output}/, listed in {files[-1].with_suffix('.f')}"
     print(printable(f"{len(files)} modules of {config.name} in {where}"))

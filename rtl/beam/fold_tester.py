@@ -31,10 +31,8 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
         facet: `Facet` of the rectangle, which serves all rays of a row.
         walk: `Walk` of the rectangle; the ways are read with step_way, the bounds with step_bounds.
         signs: `Signs` of D; read with step_way.
-        slope: `Slope`, the magnitudes of D; read with step_bounds if staged, otherwise with step_slope: slope_at cycles
-            after the ray's cycle.
-        fold: `Fold` of the ray; read a cycle before the ray's cycle if staged, otherwise in the ray's cycle: fold_lead
-            cycles before it.
+        slope: `Slope`, the magnitudes of D; read with step_bounds if staged, otherwise with step_slope.
+        fold: `Fold` of the ray; read a cycle before the ray's cycle if staged, otherwise in the ray's cycle.
         index: unsigned, as wide as hit.index; the rectangle's number, constant.
         hit: `Candidate`; output, `TESTER_LATENCY` cycles after the ray's cycle.
         staged: registers the fields that the block chooses from fold and slope; see is_staged.

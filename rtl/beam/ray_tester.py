@@ -25,8 +25,7 @@ def ray_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope
         facet: `Facet` of the rectangle, which serves all rays of a row.
         walk: `Walk` of the rectangle; read with step_bounds.
         signs: `Signs` of D; read with step_way.
-        slope: `Slope`, the magnitudes of D; read with step_bounds if staged, otherwise with step_slope: slope_at cycles
-            after the ray's cycle.
+        slope: `Slope`, the magnitudes of D; read with step_bounds if staged, otherwise with step_slope.
         index: unsigned, as wide as hit.index; the rectangle's number, constant.
         hit: `Candidate`; output, `TESTER_LATENCY` cycles after the ray's cycle, and never at a mirror.
         staged: registers the component that the block chooses from slope; see is_staged.

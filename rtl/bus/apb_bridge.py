@@ -11,6 +11,17 @@ class ApbPort(BusPort):
     """APB4, 32 bits, as a completer has it; without protection types, to which no register pays regard.
 
     address_bits: of a word's address; paddr has two more, as it counts bytes.
+
+    Attributes:
+        paddr: byte offset of the register; the lowest two bits are not read.
+        psel: a transfer to this block, from its setup cycle to pready.
+        penable: high in all cycles of a transfer after the first.
+        pwrite: 1: write, 0: read.
+        pready: the transfer is done in this cycle.
+        pslverr: always 0.
+        pwdata: word to write.
+        pstrb: a bit for each byte of pwdata; only bytes whose bit is 1 are written.
+        prdata: word that was read, valid with pready.
     """
 
     outputs = "pready", "pslverr", "prdata"

@@ -11,6 +11,25 @@ class Axi4LitePort(BusPort):
     """AXI4-Lite, 32 bits, as a subordinate has it; without protection types, to which no register pays regard.
 
     address_bits: of a word's address; awaddr and araddr have two more, as they count bytes.
+
+    Attributes:
+        awaddr: byte offset of the register to write; the lowest two bits are not read.
+        awvalid: awaddr waits to be taken.
+        awready: awaddr is taken at the end of this cycle.
+        wdata: word to write.
+        wstrb: a bit for each byte of wdata; only bytes whose bit is 1 are written.
+        wvalid: wdata and wstrb wait to be taken.
+        wready: wdata and wstrb are taken at the end of this cycle.
+        bresp: response to a write, always 0, which is OKAY.
+        bvalid: a write is done, and its response waits to be taken.
+        bready: bresp is taken at the end of this cycle.
+        araddr: byte offset of the register to read; the lowest two bits are not read.
+        arvalid: araddr waits to be taken.
+        arready: araddr is taken at the end of this cycle.
+        rdata: word that was read.
+        rresp: response to a read, always 0, which is OKAY.
+        rvalid: rdata waits to be taken.
+        rready: rdata is taken at the end of this cycle.
     """
 
     outputs = "awready", "wready", "bresp", "bvalid", "arready", "rdata", "rresp", "rvalid"

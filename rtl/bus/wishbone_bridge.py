@@ -8,7 +8,18 @@ from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, unsigned
 
 
 class WishbonePort(BusPort):
-    """Wishbone B4, classic cycles, 32 bits in lanes of 8, as a slave has it; adr counts words."""
+    """Wishbone B4, classic cycles, 32 bits in lanes of 8, as a slave has it; adr counts words.
+
+    Attributes:
+        cyc: high for the whole bus cycle.
+        stb: request, held until ack.
+        we: 1: write, 0: read.
+        ack: the request is done in this cycle.
+        adr: number of the register, its byte offset over four.
+        sel: a bit for each byte of dat_w; only bytes whose bit is 1 are written.
+        dat_w: word to write.
+        dat_r: word that was read, valid with ack.
+    """
 
     outputs = "ack", "dat_r"
 

@@ -36,14 +36,14 @@ class Vga(Interface):
     With two pixels per clock each colour is two channels; the low half belongs to the left pixel, in an even column.
 
     Attributes:
-        r: red.
-        g: green.
-        b: blue.
+        r: red, 0 in the blanking.
+        g: green, 0 in the blanking.
+        b: blue, 0 in the blanking.
         hs: horizontal sync.
         vs: vertical sync.
-        blank_n: low while nothing is shown.
+        blank_n: low in the blanking.
         sync_n: composite sync, unused and low.
-        clk: pixel clock.
+        clk: pixel clock; its rising edge is in the middle of a pixel.
     """
 
     def __init__(self, colour_bits: int):
@@ -60,11 +60,11 @@ class AvalonPort(Interface):
     """Avalon-MM with word addresses, 32-bit data and pipelined reads, as a host or an agent has it.
 
     Attributes:
-        address: of a word.
+        address: number of the register, its byte offset over four.
         read: request to read, held while waitrequest is high.
         write: request to write, held while waitrequest is high.
         writedata: word to write.
-        byteenable: which bytes of it to write.
+        byteenable: a bit for each byte of writedata; only bytes whose bit is 1 are written.
         readdata: word that was read, valid with readdatavalid.
         readdatavalid: high for a cycle with each word that was read, in the order of the requests.
         waitrequest: the request of this cycle is not taken yet.
@@ -210,8 +210,8 @@ class GroupFate(Interface):
     """What any ray of a group may still meet.
 
     Attributes:
-        any_towards: `RayFate.towards` of at least one unit.
-        any_alive: `RayFate.alive` of at least one unit.
+        any_towards: fate.towards of at least one unit.
+        any_alive: fate.alive of at least one unit.
         may_hit: a bit for each rectangle, 1 where a primary ray may hit it.
     """
 

@@ -25,9 +25,9 @@ def ray_sequencer(
 ):  # fmt: skip
     """Cycle through the usable rectangles once per ray, for the primary ray and each reflection, then raise done.
 
-    A new rectangle starts every slot_cycles: steps.find_intersection. When nothing is in flight after the last
-    rectangle, BLEND follows, and then the next ray. In a fixed scene each ray has the rectangles of its mask in
-    `config.passes` instead of the usable ones.
+    A new rectangle starts every `slot_cycles` cycles: steps.find_intersection. When nothing is in flight after the last
+    rectangle, BLEND follows, and then the next ray. In a fixed scene each ray has the rectangles that it may hit there,
+    the primary ray and each reflection its own, instead of the usable ones.
 
     Culling leaves out rectangles and rays that cannot change a pixel, and is correct where its signals are valid in
     time:

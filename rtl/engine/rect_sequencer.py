@@ -12,7 +12,7 @@ def rect_sequencer(
     clk, reset_ray_caster, start_ray, wanted, early_out, index, fetch, fetched, starting, slot_cycles,
     config: Configuration,
 ):  # fmt: skip
-    """Give each wanted rectangle a time slot of slot_cycles, in ascending order, from the cycle after start_ray on.
+    """Give each wanted rectangle a slot of `slot_cycles` cycles, in ascending order, from the cycle after start_ray on.
 
     Args:
         clk: the clock.

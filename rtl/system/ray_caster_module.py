@@ -28,15 +28,15 @@ RENDERERS = {BEAM.name: beam_renderer}
 def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi=None, wb=None, s_apb=None):
     """Join registers, scene memories and renderer, in one clock domain.
 
-    Parts of the scene that config.fixed holds are built in: they have no memory, and writes to their registers do
-    nothing. The bus is avs_s0, s_axi, wb or s_apb, by config.bus; the others are None.
+    Parts of the scene that config.fixed names are built in: they have no memory, and writes to their registers do
+    nothing. The bus is avs_s0, s_axi, wb or s_apb, as config.bus says.
 
     Args:
         clk: the clock, `config.screen_geometry.clock_hz` Hz.
         reset: synchronous, active high.
         avs_s0: `AvalonPort`, this block as the agent; its addresses count 32-bit words.
-        irq: level; output, the interrupt.
-        vga: `Vga`; output. Data changes at the falling edge of vga.clk, which is the pixel clock.
+        irq: output, the interrupt; high while irq_pending and irq_enable are set.
+        vga: `Vga`; output. Data changes at the falling edge of vga.clk.
         config: the design.
         s_axi: `Axi4LitePort`, this block as the subordinate; its addresses count bytes.
         wb: `WishbonePort`, this block as the slave; its addresses count 32-bit words.

@@ -13,7 +13,7 @@ from raycaster.screens import Screen
 def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0, at_start: bool = False):
     """Generate the monitor's timing, which runs freely whatever the inputs, and send it the pixels.
 
-    A pixel takes screen.clocks_per_pixel clocks, 1 or 2, and reaches the outputs a pixel after its turn. With two
+    A pixel takes `screen.clocks_per_pixel` of clk, and reaches the outputs a pixel after its turn. With two
     pixels per clock, a pixel means both of them here, and so does a column.
 
     Screen coordinates are signed: negative in the blanking, which comes first, so that visible means >= 0. Lines and
@@ -22,10 +22,10 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0,
     Args:
         clk: the clock.
         reset: synchronous, active high; restarts at the first pixel of the first line of the vertical front porch.
-        scan: `Scan`; output. start_screen: strobe, a row of rays (screen.doubling lines) before the first visible line,
-            time to render row 0. start_row: strobe at the beginning of the first line of each row, which is then handed
-            over. visible_line: high in the visible part of a line, blanked lines included. next_column: strobe in the
-            last clock of each column there or, with at_start, of the column's first pixel.
+        scan: `Scan`; output. start_screen: strobe, a row of rays (of `screen.doubling` lines) before the first visible
+            line, time to render row 0. start_row: strobe at the beginning of the first line of each row, which is then
+            handed over. visible_line: high in the visible part of a line, blanked lines included. next_column: strobe
+            in the last clock of the last pixel of each column there, or of its first pixel with at_start.
         pixel: `Pixel`; the column's colour, sampled at the end of each of its pixels.
         vga: `Vga`; output. Changes at the falling edge of vga.clk.
         screen: the screen and its timing.

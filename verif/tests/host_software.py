@@ -138,8 +138,8 @@ def enumerators(header: Path, name: str) -> list[str]:
     return re.findall(r"\w+", body)
 
 
-def compile_library(directory: Path, *sources: str) -> ctypes.CDLL:
-    """Compile sources of sw/, and load them."""
+def compile_library(directory: Path, *sources: str | Path) -> ctypes.CDLL:
+    """Compile sources of sw/, or of elsewhere by their whole paths, and load them."""
     compiler = shutil.which("gcc") or shutil.which("cc")
     library = directory / "library.so"
     tests = Path(__file__).parent

@@ -499,10 +499,10 @@ def test_pages(tmp_path: Path):
     assert [path.name for path in tmp_path.iterdir()] == ["site"]
     text = "".join(path.read_text() for path in output.glob("*.html"))
     written = {page.with_suffix(".html").name for page in pages.PAGES if page.parent == pages.HERE}
-    assert written | {"library.html"} <= {path.name for path in output.iterdir()}
+    assert written | {"python_api.html"} <= {path.name for path in output.iterdir()}
     assert "raycaster.golden.model.Model.trace" in text, "the library's reference"
     assert "<p>0, 1 or 2: the first of x, y, z that is the same in both corners.</p>" in text
-    assert not re.search("model_config|ConfigDict|Create a new model", (output / "library.html").read_text())
+    assert not re.search("model_config|ConfigDict|Create a new model", (output / "python_api.html").read_text())
     assert "The RayCaster authors" in text
     there = {f"{drawing.name}.svg" for drawing in (*blocks.DRAWINGS, *timing.DIAGRAMS)}
     there |= {"scaling.svg", "error_and_time.svg", "view.svg"}

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ctypes
+import re
 import shutil
 import subprocess
 
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 from host_software import (
     CONFIG,
+    ROOT,
     SOFTWARE,
     STRICT,
     Colour,
@@ -28,6 +30,7 @@ from tcl import run_tcl
 from raycaster.configuration import configure
 from raycaster.convert.take_home import TOP
 from raycaster.engines import ENGINES
+from raycaster.golden.engines import model_of
 from raycaster.golden.world import Rectangles
 from raycaster.program import scene_words
 from raycaster.registers import register_map
@@ -36,6 +39,9 @@ from raycaster.verif.seeds import repeat, seed
 
 ERRORS = enumerators(SOFTWARE / "raycaster.h", "raycaster_error")
 WHITE = Colour(255, 255, 255)
+PAGE = ROOT / "docs" / "integration.md"
+CONTROL = 4 * register_map(CONFIG.rectangles)["control"].address
+COMMIT = register_map(CONFIG.rectangles)["control"].fields["commit"].mask
 
 
 @pytest.fixture(scope="module")
@@ -107,6 +113,48 @@ def test_probe_refuses_others(library, registers, register, fields, expected):
     registers.say(register, **fields)
     assert error(library.raycaster_probe(ctypes.byref(RayCaster()), None)) == expected
     assert not registers.written
+
+
+class ShownWhenPolled(Registers):
+    """What was committed goes live while software waits for that."""
+
+    live = None
+
+    def read(self, offset: int) -> int:
+        if self.live is None and self.written and offset == CONTROL and self.written[-1][1] & COMMIT:
+            self.polls = getattr(self, "polls", 0) + 1
+            if self.polls == 3:
+                self.live = self.start_screen()
+        return super().read(offset)
+
+
+@pytest.mark.parametrize("language", ["c", "python"])
+def test_the_programs_of_the_page(language, tmp_path):
+    """As they stand there, they draw what the golden model draws of the same rectangle."""
+    scene = tmp_path / "scene.toml"
+    scene.write_text(
+        '[camera]\nposition = [20, 250, 40]\n[[rect]]\ncorners = [[300, 60, 0], [300, 400, 180]]\ncolour = "#50a0ff"\n'
+    )
+    program, *_ = re.findall(rf"^```{language}\n(.*?)^```", PAGE.read_text(), re.M | re.S)
+    assert len(program.splitlines()) <= 23
+    model = ShownWhenPolled(CONFIG)
+    if language == "c":
+        (tmp_path / "main.c").write_text(program)
+        library = compile_library(tmp_path, "raycaster.c", tmp_path / "main.c")
+        with attached(library, model):
+            assert library.main() == 0
+    else:
+        names: dict = {}
+        exec(program.replace("0x40000000", "0"), names)
+        names["draw"](scene, model.read, model.write)
+        with pytest.raises(OSError, match="no ray tracer"):
+            names["draw"](scene, lambda address: 0, model.write)
+    live = model.live
+    assert live.run
+    full, screen = model_of(configure(engine="exact")), configure(engine="exact").screen_geometry
+    shown = full.picture(screen, live.rectangles, live.camera, live.background, live.reflections, basis=live.basis)
+    assert np.unique(shown.reshape(-1, 3), axis=0).shape[0] > 1
+    np.testing.assert_array_equal(shown, full.render(load_scene(scene), screen, 1))
 
 
 def test_a_scene_is_the_words_that_the_project_writes(library, registers, device, scenes):

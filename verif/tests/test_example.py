@@ -2,6 +2,7 @@
 """The examples of a design of one's own do what they say: converted as a user would, each shows the scene."""
 
 import importlib.util
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -120,3 +121,23 @@ def test_apb_background(colour, alike, tmp_path):
     screen = config.screen_geometry
     clocks = screen.vertical.visible * screen.horizontal.visible * screen.clocks_per_pixel
     assert done.stdout.split() == [str(clocks), "pixels,", "0" if alike else str(clocks), "others"]
+
+
+@pytest.mark.parametrize(
+    ("simulator", "fault"),
+    [("icarus", ""), ("icarus", "255 - "), ("verilator", "")],
+    ids=["icarus", "fault", "verilator"],
+)
+def test_cocotb_picture(simulator, fault, tmp_path):
+    """The test that the page shows, with waveforms, away from the project; a wrong picture fails it."""
+    [example] = (ROOT / "examples" / "cocotb_picture").glob("*.py")
+    text = example.read_text()
+    assert text.count("golden = shown(") == 1
+    (tmp_path / example.name).write_text(text.replace("golden = shown(", f"golden = {fault}shown("))
+    command = [sys.executable, "-m", "pytest", "-q", "-n", "0", "-k", simulator, example.name]
+    done = subprocess.run(
+        command, cwd=tmp_path, env=os.environ | {"WAVES": "1", "GUI": ""}, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == int(bool(fault)), done.stdout + done.stderr
+    waves = {"icarus": "ray_caster_module.fst", "verilator": "dump.vcd"}
+    assert (tmp_path / "build" / "cocotb_picture" / simulator / waves[simulator]).is_file()

@@ -29,7 +29,7 @@ from raycaster.output import emptied
 from raycaster.rtl.common.clock_gate import clock_gate, rests_on
 from raycaster.rtl.common.given import given_verilog, load_words
 from raycaster.rtl.common.interfaces import Interface, Place
-from raycaster.rtl.common.records import Record
+from raycaster.rtl.common.records import Record, Signs
 from raycaster.rtl.common.ties import Signed, tied, unconnected
 from raycaster.rtl.common.widths import bit, signed, unsigned
 from raycaster.verif.leaf import Leaf
@@ -192,45 +192,56 @@ def few_words(clk, value, kept, both, either, stepped):
 
 
 @block
-def with_documented_ports(clk, value, pair, cycles: int, config=None):
+def with_documented_ports(clk, value, slope, pair, cycles: int, config=None):
     """Do nothing, `config.units` times in `SETUP_LATENCY` cycles.
 
+    Without config.turn it is `slope.dx` that is not read, whatever config.rounding says.
+
     Args:
-        clk: the clock.
-        value: flag; read for `unit_bits` units,
-            or not at all.
-        pair: Place; output.
+        clk: the clock, `config.screen_geometry.clock_hz` Hz.
+        value: flag; read for `unit_bits` units with slope.dy,
+            or not at all; None with config.turn, and where nothing reads it.
+        slope: `Signs`. None where there is no ray. Read `cycles` cycles later.
+        pair: `Place`; output.
         cycles: no port.
         config: the design.
     """
 
+    # With config.materials a row has `screen.doubling` lines.
     @always(clk.posedge)
     def copy():
-        pair.row.next = value
+        pair.row.next = value + slope.dz
         pair.column_offset.next = value
 
     return copy
 
 
 def test_ports_have_their_comments(tmp_path):
-    """Each argument's stands above its first port, with numbers in place of what the configuration decides."""
+    """Each argument's stands above its first port, with numbers, options and Verilog's names for what is in Python."""
     config = configure(units=32)
-    modules = converted(with_documented_ports(bit(), bit(), Place(config), 3, config), tmp_path)
-    head, _, _ = modules["with_documented_ports"].path.read_text().partition(");\n\n")
+    modules = converted(with_documented_ports(bit(), bit(), Signs(), Place(config), 3, config), tmp_path)
+    head, _, body = modules["with_documented_ports"].path.read_text().partition(");\n\n")
     assert (
         head[head.index("// Do") :]
         == """// Do nothing, 32 times in 5 cycles.
+//
+// Without TURN=1 it is slope_dx that is not read, whatever ROUNDING says.
 module with_documented_ports (
+    // the clock, 50 MHz.
     input  wire       clk,
-    // flag; read for 5 units, or not at all.
+    // flag; read for 5 units with slope_dy, or not at all.
     input  wire       value,
-    // Place; output.
+    // Signs. Read 3 cycles later.
+    // [2] dx, [1] dy, [0] dz.
+    input  wire [2:0] slope_word,
+    // pair_*: Place; output.
     // row of rays, 0 at the top.
     output reg  [7:0] pair_row,
     // number of the group in its row.
     output reg  [3:0] pair_column_offset
 """
     )
+    assert "// With MATERIALS=1 a row has 2 lines.\nalways @" in body
 
 
 @pytest.mark.parametrize(
@@ -1109,6 +1120,13 @@ def test_a_top_does_not_take_the_name_of_given_verilog(tmp_path):
 
     with pytest.raises(HierarchyError, match="adder is given Verilog, whose name stays"):
         converted(adder(bit(), unsigned(4), unsigned(4)), tmp_path / "verilog")
+
+
+def test_given_verilog_has_its_module(tmp_path):
+    source = tmp_path / "given.v"
+    source.write_text(ADDER.replace("module adder", "module adders"))
+    with pytest.raises(HierarchyError, match=r"adder: .*given\.v has no module of this name"):
+        converted(two_adders_of(adder_of(source)), tmp_path / "verilog")
 
 
 def test_an_output_of_given_verilog_must_be_an_argument(tmp_path):

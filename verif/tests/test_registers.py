@@ -12,11 +12,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from systemrdl.node import RegNode
 
 from raycaster.configuration import configure
 from raycaster.convert.write import write_verilog
 from raycaster.register_views import HEADER, SOFTWARE, write_header, write_page
-from raycaster.registers import SOURCE, register_map
+from raycaster.registers import SOURCE, compile_registers, register_map
 
 ROOT = Path(__file__).parents[2]
 RECTANGLES = 12
@@ -93,6 +94,19 @@ def test_the_page_has_every_text(tmp_path):
     assert len(descriptions) > 30
     for description in descriptions:
         assert " ".join(description.split()) in words
+
+
+def test_each_register_and_field_has_a_text():
+    """Of its own: only a rectangle's two corners are one type, and have the same."""
+    registers = [node for node in compile_registers(RECTANGLES).descendants() if isinstance(node, RegNode)]
+    texts = {node.get_path(): node.get_property("desc") for node in registers}
+    assert all(texts.values())
+    assert len(set(texts.values())) == len(texts) - 1
+    assert all(field.get_property("desc") for node in registers for field in node.fields())
+    shadowed = {node.inst_name for node in registers if node.get_property("desc").startswith("Shadowed")}
+    assert shadowed == {
+        "control", "background", "camera", "forward", "right", "up", "corner_0", "corner_1", "surface", "pattern",
+    }  # fmt: skip
 
 
 def test_the_verilog_decodes_what_the_map_says(tmp_path):

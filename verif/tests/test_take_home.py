@@ -14,13 +14,15 @@ from pathlib import Path
 
 import pytest
 from conftest import SMALL_SCENE
+from tcl import run_tcl
 
 from raycaster.buses import BRIDGED
 from raycaster.configuration import Configuration, configure
-from raycaster.convert.take_home import FILE_LIST, TOP, WAIVERS
+from raycaster.convert.take_home import FILE_LIST, PREFIX, TOP, WAIVERS
 from raycaster.convert.write import write_verilog
 from raycaster.engines import ENGINES
 from raycaster.fit.fixing import fix
+from raycaster.fpga import verilog
 from raycaster.sim.simulator import find_tool
 
 CONFIGURATIONS = [
@@ -68,10 +70,16 @@ def verilator_says(directory: Path) -> list[str]:
     return re.findall(r"^%(?:Warning|Error).*$", done.stdout + done.stderr, re.M)
 
 
+PYTHON = re.compile(r"`|\b(?:None|True|False|config|self)\b|\b[a-z_]\w*\.[a-z_]")
+"""What no comment in Verilog has: names in backticks, words of Python, attributes."""
+
+
 @configurations
 def test_tools_have_nothing_to_say(config: Configuration, tmp_path):
     directory = tmp_path / "taken home"
     write_verilog(config, directory)
+    comments = [line for path in directory.glob("*.v") for line in re.findall(r"//.*", path.read_text())]
+    assert [line for line in comments if PYTHON.search(line)] == []
     assert verilator_says(directory) == []
     done = run(directory, "iverilog", "-g2005", "-Wall", "-s", TOP, "-o", "a.out", "-c", FILE_LIST)
     assert (done.returncode, done.stdout + done.stderr) == (0, "")
@@ -81,6 +89,60 @@ def test_tools_have_nothing_to_say(config: Configuration, tmp_path):
     assert done.returncode == 0, done.stderr
     assert "arning" not in done.stdout + done.stderr
     assert re.search(rf"=== {TOP} ===", done.stdout)
+
+
+@pytest.mark.parametrize("prefix", [PREFIX, "left_"])
+def test_each_module_has_the_prefix(prefix, tmp_path):
+    """Files and instances follow, and nothing else differs."""
+    plain = write_verilog(SMALL, tmp_path / "plain")
+    files = write_verilog(SMALL, tmp_path / "taken", prefix)
+    longer = re.compile(rf"\b{prefix}(?=(?:{'|'.join(path.stem for path in plain)})\b)")
+    for path, old in zip(files, plain, strict=True):
+        assert f"{path.stem}_".startswith(prefix)
+        assert longer.sub("", path.stem) == old.stem
+        assert re.findall(r"^\s*module (\w+)", path.read_text(), re.M) == [path.stem]
+        assert longer.sub("", path.read_text()).split() == old.read_text().split()
+    assert longer.sub("", files[-1].stem) == TOP
+
+
+def test_what_make_verilog_writes_has_a_prefix(tmp_path, refuses):
+    options = ["--screen", "tiny", "--engine", "exact", "--rectangles", "2", "--output", str(tmp_path / "verilog")]
+    verilog.main(options)
+    assert all(path.stem.startswith(PREFIX[:-1]) for path in (tmp_path / "verilog").glob("*.v"))
+    verilog.main([*options, "--prefix", ""])
+    assert (tmp_path / "verilog" / "nearest_hit.v").is_file()
+    assert refuses(verilog.main, "PREFIX=9x").endswith("such as ray_caster_, got 9x\n")
+
+
+@pytest.mark.parametrize("prefix", [PREFIX, "left_"])
+def test_lists_and_template_work_from_anywhere(prefix, tmp_path):
+    """Each list names files as seen from itself; the instance in the template has all ports of the module."""
+    directory, elsewhere = tmp_path / "taken home", tmp_path / "elsewhere"
+    files = write_verilog(SMALL, directory, prefix)
+    elsewhere.mkdir()
+    top, library = files[-1], (directory / files[-1].stem)
+    waivers = str(library.with_suffix(".vlt"))
+    done = run(elsewhere, "verilator", "--lint-only", "-Wall", "--top-module", top.stem, waivers, "-F", f"{library}.f")
+    assert done.returncode == 0
+    assert "%" not in done.stdout + done.stderr
+    template = library.with_suffix(".veo").read_text()
+    ports = re.findall(r"^    \.(\w+)\(\1\),? +// (\w+)( \[\d+:0\])?$", template, re.M)
+    wires = "".join(f"wire{width} {name};\n" for name, _, width in ports)
+    (elsewhere / "user.v").write_text(f"module user;\n{wires}\n{template}endmodule\n")
+    command = ["iverilog", "-g2005", "-Wall", "-Wno-timescale", "-s", "user", "-y", str(directory), "-o", "a.out"]
+    done = run(elsewhere, *command, "user.v")
+    assert (done.returncode, done.stdout + done.stderr) == (0, "")
+    head = top.read_text().partition(");")[0]
+    assert [(name, way) for name, way, _ in ports] == [
+        (name, way) for way, name in re.findall(r"^    (input|output) .*?(\w+),?$", head, re.M)
+    ]
+    script = (
+        f"set quartus(qip_path) {{{directory}}}\n"
+        "proc set_global_assignment {flag kind path} {puts $kind:$path}\n"
+        f"source {{{library}.qip}}"
+    )
+    done = run_tcl(elsewhere, script)
+    assert done.stdout.splitlines() == [f"VERILOG_FILE:{path}" for path in files], done.stderr
 
 
 def test_every_waiver_is_needed(tmp_path):
@@ -115,7 +177,7 @@ def test_the_top_says_what_it_is(tmp_path):
 @pytest.fixture
 def core(tmp_path) -> Path:
     """A folder with a small design's core, and nothing of this project."""
-    write_verilog(SMALL, tmp_path / "cores" / "verilog")
+    write_verilog(SMALL, tmp_path / "cores" / "verilog", PREFIX)
     return tmp_path
 
 
@@ -147,7 +209,7 @@ def test_fusesoc_simulates_each_bus(bus, tmp_path):
     ],
 )
 def test_the_smoke_bench_fails(core, module, right, wrong, complaint):
-    path = core / "cores" / "verilog" / f"{module}.v"
+    path = core / "cores" / "verilog" / f"{PREFIX}{module}.v"
     text = path.read_text()
     assert right in text
     path.write_text(text.replace(right, wrong))

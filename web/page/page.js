@@ -249,7 +249,6 @@ addEventListener("DOMContentLoaded", () => {
     });
   }
   const parameters = new URLSearchParams(location.search);
-  document.body.classList.toggle("embedded", parameters.has("embedded"));
   const planted = parameters.get("plant")?.split(",").map(Number);
   if (RayCaster.test && planted) {
     RayCaster.plant = (pixels, columns) => (pixels[4 * (planted[1] * columns + planted[0])] ^= 0x80);
