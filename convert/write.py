@@ -19,10 +19,10 @@ from raycaster.errors import UserError
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.output import replaced
 from raycaster.rtl.dvi.dvi_encoder import dvi_encoder
-from raycaster.rtl.system.ports import dvi_ports, module_ports, processor_ports, system_ports
-from raycaster.rtl.system.processor_system import processor_system
+from raycaster.rtl.system.ports import dvi_ports, module_ports, scene_system_ports, system_ports
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
 from raycaster.rtl.system.ray_caster_system import ray_caster_system
+from raycaster.rtl.system.scene_system import scene_system
 from raycaster.scene import Scene
 
 
@@ -55,20 +55,20 @@ def write_verilog(config: Configuration, directory: Path, prefix: str = "") -> l
     )
 
 
-def write_system(config: Configuration, scene: Scene, directory: Path) -> list[Path]:
-    """Write `ray_caster_system`, which has no processor, with a scene of no more rectangles than the hardware.
+def write_scene_system(config: Configuration, scene: Scene, directory: Path) -> list[Path]:
+    """Write `scene_system`, which has no processor, with a scene of no more rectangles than the hardware.
 
     Raises:
         UserError: the configuration has another bus than Avalon-MM.
     """
     need_avalon(config, "a system without a processor")
     return _write(
-        config, directory, lambda: elaborated(ray_caster_system, **system_ports(config), config=config, scene=scene)
+        config, directory, lambda: elaborated(scene_system, **scene_system_ports(config), config=config, scene=scene)
     )
 
 
-def write_processor_system(config: Configuration, directory: Path, program: str = PROGRAM_FILE) -> list[Path]:
-    """Write `processor_system`; PicoRV32 is among the files as it was given.
+def write_system(config: Configuration, directory: Path, program: str = PROGRAM_FILE) -> list[Path]:
+    """Write `ray_caster_system`; PicoRV32 is among the files as it was given.
 
     Args:
         config: what to generate.
@@ -83,7 +83,7 @@ def write_processor_system(config: Configuration, directory: Path, program: str 
     return _write(
         config,
         directory,
-        lambda: elaborated(processor_system, **processor_ports(config), config=config, program=program),
+        lambda: elaborated(ray_caster_system, **system_ports(config), config=config, program=program),
     )
 
 

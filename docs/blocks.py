@@ -17,9 +17,9 @@ from raycaster.configuration import Configuration, configure
 from raycaster.convert.elaboration import elaborated, elaboration
 from raycaster.convert.inside import Inside, Part, find_block, look_inside
 from raycaster.memory_map import PROGRAM_FILE
-from raycaster.rtl.system.ports import module_ports, processor_ports
-from raycaster.rtl.system.processor_system import processor_system
+from raycaster.rtl.system.ports import module_ports, system_ports
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
+from raycaster.rtl.system.ray_caster_system import ray_caster_system
 
 FONT = "Helvetica,Arial,sans-serif"
 BLOCK_FILL, PROCESS_FILL, OPENED_FILL = "#d6e6f2", "#ffffff", "#f6f8fa"
@@ -47,11 +47,11 @@ def _module(config: Configuration) -> _Block:
 
 
 def _system(config: Configuration) -> _Block:
-    return elaborated(processor_system, **processor_ports(config), config=config, program=PROGRAM_FILE)
+    return elaborated(ray_caster_system, **system_ports(config), config=config, program=PROGRAM_FILE)
 
 
 DRAWINGS = (
-    Drawing("system", _system, "processor_system", frozenset({"processor_host", "ray_caster_module"}), "exact"),
+    Drawing("system", _system, "ray_caster_system", frozenset({"processor_host", "ray_caster_module"}), "exact"),
     Drawing("renderer", _module, "ray_caster_renderer", frozenset({"ray_caster"})),
     Drawing("ray_unit", _module, "ray_unit", frozenset({"intersection_finder"})),
     Drawing("video_generator", _module, "video_generator"),

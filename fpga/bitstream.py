@@ -26,7 +26,7 @@ from rich.table import Table
 
 from raycaster.configuration import CHANNEL_BITS, Configuration, configure
 from raycaster.convert.provenance import Provenance, files_digest
-from raycaster.convert.write import write_dvi_encoder, write_processor_system, write_system
+from raycaster.convert.write import write_dvi_encoder, write_scene_system, write_system
 from raycaster.design import Design, ProcessorDesign
 from raycaster.errors import UserError, not_installed
 from raycaster.fit.fixing import add_fix_option, design_of
@@ -105,10 +105,10 @@ def write_project(board: OpenBoard, design: Design | ProcessorDesign, directory:
         raise UserError(f"colour_bits: a DVI link carries {CHANNEL_BITS} bits a colour, not {config.colour_bits}")
     clocks = clocks_for(board, config)
     if isinstance(design, ProcessorDesign):
-        files, kind = write_processor_system(config, directory / "system"), "game"
+        files, kind = write_system(config, directory / "system"), "game"
         shutil.copy(design.path, directory / PROGRAM_FILE)
     else:
-        files, kind = write_system(config, design.shown, directory / "system"), "scene"
+        files, kind = write_scene_system(config, design.shown, directory / "system"), "scene"
     if board.video == "dvi":
         files += write_dvi_encoder(config, directory / "dvi")
     own = [*HERE.glob(f"{board.video}_*.v"), *(HERE / kind).glob("*.v"), *(HERE / board.flow).glob("*.v")]

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from raycaster.configuration import Configuration
 from raycaster.convert.take_home import clock_period
-from raycaster.convert.write import write_system
+from raycaster.convert.write import write_scene_system
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.fpga.board import TOP, QuartusBoard, board_names, check_project, find_board, top_ports
@@ -65,7 +65,7 @@ def write_project(board: QuartusBoard, config: Configuration, scene: Scene, dire
             "make verilog, a PLL, and a DDR output register in place of ray_caster_pixel_clock"
         )
     with replaced(directory) as written:
-        modules = write_system(config, scene, written / VERILOG)
+        modules = write_scene_system(config, scene, written / VERILOG)
         sources = [f"{VERILOG}/{path.name}" for path in modules] + [HELPER.name, f"{TOP}.v"]
         shutil.copyfile(HELPER, written / HELPER.name)
         (written / f"{TOP}.v").write_text(top)

@@ -27,7 +27,7 @@ wire [COLOUR_BITS-1:0] green;
 wire [COLOUR_BITS-1:0] blue;
 
 // buttons, from bit 5 on: down, up, right, left, back, forward.
-ray_caster_system system (
+scene_system system (
     .clk(CLOCK_50),
     .ready(~SW[2]),
     .buttons({SW[1], SW[0], ~KEY[0], ~KEY[3], ~KEY[1], ~KEY[2]}),

@@ -279,7 +279,7 @@ def convert(configuration: Configuration, build: Path = BUILD, *, system: bool =
             return [directory / name for name in files]
         from raycaster.convert import write as converter  # noqa: PLC0415 - MyHDL is only loaded where it has work
 
-        write = converter.write_processor_system if system else converter.write_verilog
+        write = converter.write_system if system else converter.write_verilog
         files = [path.name for path in write(configuration, directory) if path.suffix == ".v"]
         write_stamp(stamp, digest, files)
         return [directory / name for name in files]

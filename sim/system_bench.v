@@ -30,7 +30,7 @@ module system_bench #(
     wire [PIXELS*COLOUR_BITS-1:0] vga_r, vga_g, vga_b;
     wire vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_clk;
 
-    processor_system dut (
+    ray_caster_system dut (
         .clk(clk),
         .ready(ready),
         .buttons(buttons),

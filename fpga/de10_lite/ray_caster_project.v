@@ -25,7 +25,7 @@ wire [COLOUR_BITS-1:0] blue;
 
 // buttons, from bit 5 on: down, up, right, left, back, forward. The DAC is of resistors, and needs no clock; what is
 // blanked is black already.
-ray_caster_system system (
+scene_system system (
     .clk(MAX10_CLK1_50),
     .ready(~SW[2]),
     .buttons({SW[1], SW[0], ~KEY[0], ~KEY[1], SW[3], SW[4]}),

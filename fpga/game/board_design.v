@@ -17,7 +17,7 @@ module board_design #(
     output wire vga_clk
 );
 
-processor_system system (
+ray_caster_system system (
     .clk(clk),
     .ready(ready),
     .buttons({buttons[0] | buttons[1], buttons[5], buttons[4], buttons[3], buttons[2]}),

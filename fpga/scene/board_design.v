@@ -19,7 +19,7 @@ module board_design #(
 
 assign uart_tx = 1'b1;                  // idle
 
-ray_caster_system system (
+scene_system system (
     .clk(clk),
     .ready(ready),
     .buttons(buttons),

@@ -24,14 +24,14 @@ def module_ports(config: Configuration) -> dict[str, Any]:
     return ports | {"irq": bit(), "vga": vga_of(config)}
 
 
-def system_ports(config: Configuration) -> dict[str, Any]:
-    """Those of ray_caster_system."""
+def scene_system_ports(config: Configuration) -> dict[str, Any]:
+    """Those of scene_system."""
     return {"clk": bit(), "ready": bit(), "buttons": unsigned(len(BUTTONS)), "vga": vga_of(config)}
 
 
-def processor_ports(config: Configuration) -> dict[str, Any]:
-    """Those of processor_system."""
-    return system_ports(config) | {"buttons": unsigned(len(BUTTON_NAMES)), "uart_tx": bit()}
+def system_ports(config: Configuration) -> dict[str, Any]:
+    """Those of ray_caster_system."""
+    return scene_system_ports(config) | {"buttons": unsigned(len(BUTTON_NAMES)), "uart_tx": bit()}
 
 
 def dvi_ports() -> dict[str, Any]:

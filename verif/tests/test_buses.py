@@ -10,7 +10,7 @@ from conftest import BUILD, SMALL_SCENE, Bench
 
 from raycaster.buses import BRIDGED
 from raycaster.configuration import ConfigurationError, configure
-from raycaster.convert.write import write_processor_system, write_system
+from raycaster.convert.write import write_scene_system, write_system
 from raycaster.fpga import verilog
 from raycaster.scene import load_scene
 from raycaster.sim.simulator import SIMULATORS, SimulationError, convert
@@ -63,7 +63,7 @@ def test_a_fault_is_noticed(bench: Bench, tmp_path: Path, bus, right, wrong, com
         bench("verif.benches.bus_bench", small(bus), "icarus", SMALL_SCENE, seeds=(seed(),), verilog=files)
 
 
-@pytest.mark.parametrize("write", [write_processor_system, lambda *given: write_system(*given[:1], SCENE, *given[1:])])
+@pytest.mark.parametrize("write", [write_system, lambda *given: write_scene_system(*given[:1], SCENE, *given[1:])])
 def test_what_drives_the_registers_itself_takes_no_other_bus(tmp_path, write):
     with pytest.raises(ConfigurationError, match=r"bus: a system with.* processor drives .*; leave out apb$"):
         write(small("apb"), tmp_path / "verilog")

@@ -26,13 +26,13 @@ from raycaster.rtl.common.widths import bit, pixel_bits, unit_bits, unsigned
 from raycaster.rtl.seed.ray_control import ray_control
 from raycaster.rtl.seed.ray_unit import ray_unit
 from raycaster.rtl.system.camera_axis import STEP
-from raycaster.rtl.system.ports import module_ports, system_ports
+from raycaster.rtl.system.ports import module_ports, scene_system_ports
 from raycaster.rtl.system.ray_caster import ray_caster
 from raycaster.rtl.system.ray_caster_module import RENDERERS, ray_caster_module
 from raycaster.rtl.system.ray_caster_renderer import ray_caster_renderer
-from raycaster.rtl.system.ray_caster_system import ray_caster_system
 from raycaster.rtl.system.reset_release import HOLD_CYCLES
 from raycaster.rtl.system.scene_player import BUTTONS
+from raycaster.rtl.system.scene_system import scene_system
 from raycaster.scene import UNTURNED, Basis, Camera, Rectangle, Scene
 from raycaster.screens import BEAM_SCREENS, SCREENS, Screen, Span
 from raycaster.sim.register_model import RegisterFile, Request
@@ -886,7 +886,7 @@ def test_ray_caster_module_scenes(config, tmp_path):
         assert np.array_equal(frame, doubled(config, picture)), f"frame {number}; {repeat()}"
 
 
-def test_ray_caster_system(tmp_path):
+def test_scene_system(tmp_path):
     """A scene that loads itself, and the camera that buttons move from frame to frame."""
     config = small_config(TINY_SCREEN, units=2, rectangles=3, reflections=1, divider_bits=2)
     screen = config.screen_geometry
@@ -923,7 +923,7 @@ def test_ray_caster_system(tmp_path):
         until = start + start_screen_cycle(screen) + number * screen.frame_cycles + 2
         stimulus += [{"ready": 1, "buttons": int(held)}] * (until - len(stimulus))
     stimulus += [{"ready": 1, "buttons": 0}] * screen.frame_cycles
-    leaf = Leaf(ray_caster_system, lambda: {**system_ports(config), "config": config, "scene": scene}, tmp_path)
+    leaf = Leaf(scene_system, lambda: {**scene_system_ports(config), "config": config, "scene": scene}, tmp_path)
     shown = monitored(leaf.run_both(stimulus, settled=ready)[start:], config)
     assert len(shown) == frames
     for number, (frame, picture) in enumerate(zip(shown, pictures, strict=True)):

@@ -13,7 +13,7 @@ from conftest import SMALL_SCENE
 
 from raycaster.buses import BRIDGED
 from raycaster.configuration import configure
-from raycaster.convert.write import write_dvi_encoder, write_processor_system, write_system, write_verilog
+from raycaster.convert.write import write_dvi_encoder, write_scene_system, write_system, write_verilog
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.fit.fixing import fix
@@ -201,8 +201,8 @@ def test_every_module_is_mutated(tmp_path):
     for engine, rich in product(ENGINES, (True, False)):
         looks = {"turn": rich and ENGINES[engine].turns, "materials": rich, "patterns": rich}
         config = configure(engine=engine, units=1, rectangles=5, reflections=2, allow_underrun=True, **looks)
-        files += write_system(config, scene, tmp_path / config.name)
-    files += write_processor_system(config, tmp_path / "processor")
+        files += write_scene_system(config, scene, tmp_path / config.name)
+    files += write_system(config, tmp_path / "processor")
     for bus in BRIDGED:
         files += write_verilog(replace(config, bus=bus), tmp_path / bus)
     files += write_verilog(configure(engine="beam", pixels=2, reflections=1), tmp_path / "lanes")
@@ -214,7 +214,7 @@ def test_every_module_is_mutated(tmp_path):
     # whose edges a replay compares, and a gated clock has no value per cycle. Of word_of there is nothing but a wire,
     # and by_axis is one line, whose outputs are disturbed in each block that has one.
     unmutated = {
-        "ray_caster_system", "processor_system", "processor_host", "picorv32", "pixel_clock", "clock_gate", "word_of",
+        "scene_system", "ray_caster_system", "processor_host", "picorv32", "pixel_clock", "clock_gate", "word_of",
         "by_axis",
     }  # fmt: skip
     # Of several sizes of one block those after the first have a number.

@@ -272,7 +272,7 @@ def test_constraints_are_tcl_of_these_ports(name, tmp_path):
 
 
 SYSTEM = """
-module ray_caster_system (
+module scene_system (
     input wire clk, input wire ready, input wire [5:0] buttons,
     output wire [{bits}-1:0] vga_r, output wire [{bits}-1:0] vga_g, output wire [{bits}-1:0] vga_b,
     output wire vga_hs, output wire vga_vs, output wire vga_blank_n, output wire vga_sync_n, output wire vga_clk

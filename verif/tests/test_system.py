@@ -10,7 +10,7 @@ from PIL import Image
 from small_program import write_program
 
 from raycaster.configuration import configure
-from raycaster.convert.write import write_processor_system
+from raycaster.convert.write import write_system
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, MEMORY_WORDS
 from raycaster.play import game
@@ -87,7 +87,7 @@ def test_a_fault_is_noticed(module, right, wrong, complaint, output, tmp_path):
     """The bench finds what is wrong beyond the ray tracer's bus; what is wrong before it shows in text and pictures."""
     configuration = configure(engine="exact", screen="tiny", rectangles=3)
     program = write_program(SMALL_SCENE, configuration, tmp_path)
-    files = write_processor_system(configuration, tmp_path / "verilog")
+    files = write_system(configuration, tmp_path / "verilog")
     [broken] = [path for path in files if path.stem == module]
     text = broken.read_text()
     assert text.count(right) == 1, f"{module}.v has {text.count(right)} places for this fault"

@@ -1,38 +1,41 @@
 # SPDX-License-Identifier: MIT
-"""The ray tracer and a processor that drives it: the top of a system that runs a program, such as a game."""
+"""The ray tracer and what drives its bus, for boards without a processor: the top of what a board's pins connect to."""
 
 from myhdl import ResetSignal, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.registers import address_bits
 from raycaster.rtl.common.interfaces import AvalonPort
+from raycaster.rtl.common.ties import tied, unconnected
 from raycaster.rtl.common.widths import bit
-from raycaster.rtl.system.processor_host import processor_host
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
 from raycaster.rtl.system.reset_release import reset_release
+from raycaster.rtl.system.scene_player import scene_player
+from raycaster.scene import Scene
 
 
 @block
-def processor_system(clk, ready, buttons, uart_tx, vga, config: Configuration, program: str):
-    """Run a program that finds the ray tracer, five buttons and a serial port by memory_map.
+def scene_system(clk, ready, buttons, vga, config: Configuration, scene: Scene):
+    """Show one scene on a monitor, its camera moved by buttons.
 
     Args:
         clk: the clock, `config.screen_geometry.clock_hz` Hz.
         ready: flag, such as a PLL's lock or a button; low for at least three cycles resets everything. It may change at
             any time.
-        buttons: unsigned, 5 bits, active high; from bit 0 on left, right, up, down, fire, as memory_map.BUTTON_NAMES
-            has them. They may change at any time.
-        uart_tx: output of the serial port: 8 data bits, no parity, a stop bit, at `memory_map.BAUD_RATE`.
+        buttons: unsigned, 6 bits, active high; from bit 0 on forward, back, left, right, up, down, as
+            scene_player.BUTTONS has them. They may change at any time.
         vga: `Vga`; output, as in ray_caster_module.
         config: the design.
-        program: the file with the program, as in word_memory.
+        scene: the scene.
     """
     reset = ResetSignal(0, active=1, isasync=False)
     bus = AvalonPort(address_bits(config.table))
+    bus.read = tied(0, bus.read)
+    bus.readdata, bus.readdatavalid = unconnected(bus.readdata), unconnected(bus.readdatavalid)
     irq = bit()
 
     reset_source = reset_release(clk, ready, reset)
-    host = processor_host(clk, reset, buttons, irq, uart_tx=uart_tx, avm_m0=bus, config=config, program=program)
+    player = scene_player(clk, reset, buttons, irq, avm_m0=bus, config=config, scene=scene)
     module = ray_caster_module(clk, reset, avs_s0=bus, irq=irq, vga=vga, config=config)
 
     return instances()
