@@ -5,8 +5,8 @@ Blocks are converted from the leaves up. Each converts as a top level of its own
 replaced by text that instantiates the module. Blocks of one function share one module where their arguments are alike:
 see `_kind`.
 
-This package, `raycaster.rtl.common.records` and `ties`, and `raycaster.docs.blocks` import MyHDL's internals, which is
-why its version is pinned; the contract that they rely on is tested.
+This package, `raycaster.rtl.common.records`, `ties` and `widths`, and `raycaster.docs.blocks` import MyHDL's internals,
+which is why its version is pinned; the contract that they rely on is tested.
 """
 
 from __future__ import annotations

@@ -43,6 +43,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     written = unsigned(count)
     stored, old, mask, data, merged = (written_of(config) for _ in range(5))
     implemented = tied(implemented_bits(config), len(merged.word))
+    pattern_word = old.pattern if old.has("pattern") else tied(0, WORD_BITS)
     mask_0, mask_1, mask_2, mask_3 = (unsigned(WORD_BITS) for _ in range(4))
     shadow_words = [unsigned(len(merged.word)) for _ in range(1 << index_width)]
 
@@ -110,7 +111,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
             elif bus.address[2:] == 2:
                 readback.next = old.surface
             else:
-                readback.next = old.pattern
+                readback.next = pattern_word
 
     @always_comb
     def select_word():

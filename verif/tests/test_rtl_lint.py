@@ -137,13 +137,6 @@ def test_a_process_of_another_file_is_refused(tmp_path, call):
     assert [finding.rule for finding in check(source)] == ["process"]
 
 
-def test_a_hazard_in_a_process_that_a_call_makes_is_caught(tmp_path):
-    source = tmp_path / "fold_tester.py"
-    text = (RTL / "beam" / source.name).read_text()
-    source.write_text(text.replace("turned.next = fold.back_x", "turned.next = (fold.back_x + fold.back_y) >> 1"))
-    assert [finding.rule for finding in check(source)] == ["arithmetic"]
-
-
 @pytest.mark.parametrize(
     "body",
     [
