@@ -201,10 +201,17 @@ def measure_modules(config: Configuration, family: Family, directory: Path) -> d
                     visit(inside, times * count)
 
         visit(TOP, 1)
-        return [(name, times, asdict(family.count(modules[name]["cells"]))) for name, times in found.items()]
+        return [(_sized(name), times, asdict(family.count(modules[name]["cells"]))) for name, times in found.items()]
 
     counted = _counted(directory, _prepare(config, family, directory, TOP, "-noflatten"), by_module)
     return {name: (times, Area(**counts)) for name, times, counts in counted}
+
+
+def _sized(name: str) -> str:
+    """Yosys's name for a module, or `by_axis_9` for what it calls `$paramod\\by_axis\\width=s32'...01001`."""
+    if parts := re.fullmatch(r"\$paramod\\(\w+)\\\w+=s32'([01]+)", name):
+        return f"{parts[1]}_{int(parts[2], 2)}"
+    return name
 
 
 def synthesise(config: Configuration, family: Family, directory: Path, top: str) -> Mapping[str, Any]:

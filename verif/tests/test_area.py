@@ -29,7 +29,7 @@ INSTANCES = {
     "ray_caster_module": 1, "avalon_interface": 1, "camera_mem": 1, "rect_mem": 1, "rect_sorter": 1, "rect_slot": 2,
     "scene_word": 3, "ray_caster_renderer": 1, "video_generator": 1, "line_buffer": 2, "ray_caster": 1,
     "ray_control": 1, "ray_sequencer": 1, "rect_sequencer": 1, "ray_unit": 2, "ray_generator": 2,
-    "magnitude": 8,
+    "magnitude": 8, "by_axis_1": 6, "by_axis_9": 14, "by_axis_27": 2,
     "intersection_finder": 2, "intersection_helper": 4,
     "divider": 4, "divider_step": 4, "z_buffer": 2, "ray_mem": 2, "colour_combiner": 2, "colour_share": 2,
     "colour_sum": 6,
@@ -57,7 +57,7 @@ def test_modules_and_their_multipliers(family, tmp_path):
 
 UNIT = {
     "ray_unit", "ray_generator", "magnitude", "intersection_finder", "intersection_helper", "divider", "divider_step",
-    "z_buffer", "ray_mem", "colour_combiner", "colour_share", "colour_sum",
+    "z_buffer", "ray_mem", "colour_combiner", "colour_share", "colour_sum", "by_axis_1", "by_axis_9", "by_axis_27",
 }  # fmt: skip
 
 
@@ -71,7 +71,7 @@ def test_what_culling_takes(family, tmp_path):
             found[re.sub(r"_\d+$", "", name)] += instances
             taken += counted * instances
     products = {"array_multiplier": 6, "multiplier_step": 6 * (exact_slope_bits(SMALL) + 1)}
-    assert found == {"group_culler": 1, "group_tester": 1, "rect_copy": 1, "rect_setup": 1} | products
+    assert found == {"group_culler": 1, "group_tester": 1, "rect_copy": 1, "rect_setup": 1, "by_axis": 3} | products
     assert not taken.multipliers
     unit = sum(
         (modules[name][1] * (count // SMALL.units) for name, count in INSTANCES.items() if name in UNIT),
