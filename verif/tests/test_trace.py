@@ -108,7 +108,7 @@ FAULTS = {
     ],
     "exact": [
         ("exact_control", "steps_write_z_buf = in_flight[2]", "steps_write_z_buf = 0"),
-        ("extent_tester", "way = n * slope_1", "way = n + slope_1"),
+        ("rect_tester", "hit <= seen_2_crosses", "hit <= 0 && seen_2_crosses"),
         ("nearest_hit", "offered_product < nearest_product", "offered_product > nearest_product"),
         ("eye_register", "difference = twice_signed - mirrored", "difference = twice_signed + mirrored"),
     ],
