@@ -12,7 +12,7 @@ COMMANDS: Mapping[str, str] = {"area": "3 min", "fit": "4 min per scene", "docs"
 """By command, with its default options and nothing kept from an earlier run."""
 
 BUILDS: Mapping[str, str] = {"seed": "30 s", "exact": "15 s", "beam": "25 s"}
-"""By engine, to convert its default design and build it with Verilator."""
+"""By engine, to convert its default design and build it with Verilator; estimated from processor time."""
 
 
 def building(engine: str) -> str:
