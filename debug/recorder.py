@@ -22,6 +22,7 @@ from raycaster.sim.simulator import (
     find_tool,
     run_bench,
 )
+from raycaster.waits import building
 
 MARGIN = 32
 """Clocks after the last row's time, in which its last pixels reach the pins."""
@@ -129,7 +130,9 @@ def build_and_record(
     """
     check_replaceable(target)
     find_tool(simulator)
-    with console.status(f"building {design.configuration.name} with {simulator}"):
+    with console.waiting(
+        f"building {design.configuration.name} with {simulator}", building(design.configuration.engine)
+    ):
         model = build_model(design.configuration, simulator, build=build, bench=WINDOW_BENCH)
-    with console.status("simulating"):
+    with console.waiting("simulating"):
         return record(model, design, rows, target)

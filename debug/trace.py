@@ -13,7 +13,7 @@ from rich.text import Text
 
 from raycaster.configuration import CHANNEL_BITS
 from raycaster.debug.probes.engines import description_of
-from raycaster.debug.probes.ray import Number, Place, Probe, Ray, Reading, Value, first_difference, read
+from raycaster.debug.probes.ray import Number, Place, Probe, Ray, Reading, Value, channels_of, first_difference, read
 from raycaster.debug.recorder import add_recording_options, build_and_record, pixel_place
 from raycaster.debug.waves import Waves
 from raycaster.design import design_for
@@ -31,7 +31,7 @@ ERROR_DIGITS = 3
 def show(ray: Ray, readings: Sequence[Reading], console: Console) -> None:
     """Print the life of a pixel: a table of each ray's rectangles, and one of all else."""
     first = first_difference(readings)
-    colour = f"#{ray.pixel:0{(3 * ray.config.colour_bits + 3) // 4}x}"
+    colour = _colour(ray.pixel, ray.config.colour_bits)
     console.print(f"{ray.design.path}, column {ray.column}, row {ray.row}: golden has {colour}")
     for bounce in range(ray.reflections + 1):
         name = "the ray from the camera" if bounce == 0 else f"reflection {bounce}"
@@ -57,15 +57,16 @@ def show(ray: Ray, readings: Sequence[Reading], console: Console) -> None:
 def difference_line(ray: Ray, reading: Reading) -> str:
     """Where the hardware parts from golden, in a line."""
     part = reading.wrong or 0
-    golden = _text(ray, reading.probe, reading.golden[part : part + 1])
-    found = _text(ray, reading.probe, reading.found[part : part + 1])
+    quantity = ", ".join((reading.probe.quantity, *reading.probe.parts[part : part + 1]))
+    golden = _one(ray, reading.probe, part, reading.golden[part])
+    found = _one(ray, reading.probe, part, reading.found[part])
     of = "the ray" if reading.place.bounce == 0 else f"reflection {reading.place.bounce}"
     if _of_pixel(reading):
         of = "the pixel"
     if reading.place.rectangle is not None:
         of += f", rectangle {_label(ray, reading.place.rectangle)}"
     return (
-        f"First difference: at {reading.time_ns:.0f} ns, {of}: {reading.probe.quantity} is {found}, "
+        f"First difference: at {reading.time_ns:.0f} ns, {of}: {quantity} is {found}, "
         f"golden has {golden}; module {reading.module}, signal {reading.signal}"
     )
 
@@ -100,7 +101,7 @@ def _others(ray: Ray, readings: Sequence[Reading], first: Reading | None) -> Tab
         true = tuple(probe.true(ray, reading.place)) if probe.true else ()
         of = "" if reading.place.rectangle is None else f", {_label(ray, reading.place.rectangle)}"
         table.add_row(
-            probe.quantity + of,
+            _named(probe) + of,
             _text(ray, probe, reading.golden),
             _found(ray, reading, first),
             *((_true_text(true), _error_text(ray, probe, reading.golden, true)) if exactly else ()),
@@ -120,8 +121,8 @@ def _rectangles(ray: Ray, bounce: int, readings: Sequence[Reading], first: Readi
     table = _table()
     table.add_column("rectangle", no_wrap=True)
     table.add_column("", no_wrap=True)
-    for quantity in probes:
-        table.add_column(quantity, justify="right", no_wrap=True)
+    for probe in probes.values():
+        table.add_column(_named(probe), justify="right", no_wrap=True)
     for rectangle in range(len(ray.rectangles)):
         cells = [by_place.get((rectangle, quantity)) for quantity in probes]
         name = _label(ray, rectangle)
@@ -144,6 +145,11 @@ def _rectangles(ray: Ray, bounce: int, readings: Sequence[Reading], first: Readi
     return table
 
 
+def _named(probe: Probe) -> str:
+    """A quantity with the names of its values."""
+    return f"{probe.quantity} ({', '.join(probe.parts)})" if probe.parts else probe.quantity
+
+
 def _label(ray: Ray, rectangle: int) -> str:
     """A rectangle's number and name."""
     name = printable(ray.scene.rect[rectangle].name)
@@ -161,18 +167,22 @@ def _found(ray: Ray, reading: Reading, first: Reading | None) -> Text:
 def _text(ray: Ray, probe: Probe, values: Sequence[Value], like: Sequence[Value] | None = None) -> str:
     """Values as people read them; what means nothing is a dash."""
     likes = values if like is None else like
-    shown = [_one(ray, probe, value) if hint is not None else "-" for value, hint in zip(values, likes, strict=True)]
-    return ", ".join(shown)
+    pairs = enumerate(zip(values, likes, strict=True))
+    return ", ".join("-" if hint is None else _one(ray, probe, number, value) for number, (value, hint) in pairs)
 
 
-def _one(ray: Ray, probe: Probe, value: Value) -> str:
+def _colour(value: int, bits: int) -> str:
+    """A colour as #rrggbb, whose channels have so many bits."""
+    return "#" + "".join(f"{channel << (CHANNEL_BITS - bits):02x}" for channel in channels_of(value, bits))
+
+
+def _one(ray: Ray, probe: Probe, number: int, value: Value) -> str:
     if value is None:
         return "unknown"
     if isinstance(value, str):
         return value
-    if probe.colour:
-        bits = 3 * (ray.config.colour_bits if probe.quantity.startswith("pixel") else CHANNEL_BITS)
-        return f"#{int(value):0{(bits + 3) // 4}x}"
+    if probe.is_colour(number):
+        return _colour(int(value), ray.config.colour_bits if probe.quantity.startswith("pixel") else CHANNEL_BITS)
     if probe.scale and ray.config.fraction_bits:
         return f"{int(value) / (1 << ray.config.fraction_bits):g}"
     return str(int(value))

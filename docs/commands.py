@@ -105,7 +105,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             table.add_row(command, "", "", f"left out: {reason}")
             continue
         log = arguments.output / f"{number:02}.log"
-        with console.status(f"{number + 1} of {len(chosen)}: {command}"):
+        with console.waiting(f"{number + 1} of {len(chosen)}: {command}"):
             code, seconds = run(command, log)
         failed += code != 0
         table.add_row(command, f"{seconds:.0f}", str(code), str(log), style="red" if code else None)

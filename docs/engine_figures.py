@@ -17,6 +17,7 @@ from raycaster.errors import UserError
 from raycaster.fpga.cells import DECIDES, FAMILIES, TOOLS, measure
 from raycaster.outcomes import Outcome, Published, table
 from raycaster.scene import packaged_scenes
+from raycaster.sim.scenes import RESULT, output_directory
 
 DESIGNS: tuple[Mapping[str, Any], ...] = (
     *({"engine": name} for name in ENGINES),
@@ -38,7 +39,7 @@ def measured(options: Mapping[str, Any], build: Path) -> dict[str, Any]:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         raise UserError(f"{' '.join(command[2:])}: {(done.stderr or done.stdout).strip().splitlines()[-1]}")
-    shown = [json.loads((build / "sim" / name / "result.json").read_text()) for name in scenes]
+    shown = [json.loads((output_directory(build, options) / name / RESULT).read_text()) for name in scenes]
     cells = measure(config, FAMILIES["ecp5"], build / "cells")
     return {
         "configuration": config.name,

@@ -32,7 +32,7 @@ def _measure_engines(arguments: argparse.Namespace, console: Console) -> int:
     designs = []
     for options in engine_figures.DESIGNS:
         name = configure(**options).name
-        with console.status(f"measuring {name}"):
+        with console.waiting(f"measuring {name}"):
             designs.append(engine_figures.measured(options, arguments.output / name))
     figures = {"scenes": len(packaged_scenes(plain=True)), "designs": designs}
     keep(arguments, figures, {"rectangles": configure().rectangles}, provenance, "placing and routing")

@@ -394,7 +394,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         return
     config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, console)
     if arguments.route_only:
-        with console.status("placing and routing"):
+        with console.waiting("placing and routing"):
             routed = route(config, arguments.output / "route", arguments.seed)
         show_routed(routed, console)
         keep(arguments, {"configuration": config.name, **routed}, scope_of(config), provenance, "a run on a chip")

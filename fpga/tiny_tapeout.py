@@ -272,7 +272,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     console, counted = Console(), []
     for name, design in designs_of(arguments.scene, given_options(arguments), console, compare=arguments.compare):
         config = design.configuration
-        with console.status(f"mapping {config.name} to gates"):
+        with console.waiting(f"mapping {config.name} to gates"):
             files = write_project(design, arguments.output / name)
             gates = count_gates(config, files, arguments.output / "gates" / name)
             write_info(design, files, shape_for(gates.tiles) or SHAPES[-1])

@@ -38,6 +38,7 @@ from raycaster.sim.contact_sheet import write_contact_sheet
 from raycaster.sim.simulator import SYSTEM_BENCH, SimulationError, build_model
 from raycaster.sw.firmware import build_firmware
 from raycaster.sw.play_script import DEMO, load
+from raycaster.waits import building
 
 FRAMES = 240
 ANIMATION = "game.webp"
@@ -172,7 +173,7 @@ def _film_game(arguments: argparse.Namespace) -> int:
     build, output = arguments.build, arguments.output or arguments.build / "game"
     firmware = build_firmware((build / "firmware").absolute())
     try:
-        with console.status(f"building {configuration.name} with a processor"):
+        with console.waiting(f"building {configuration.name} with a processor", building(configuration.engine)):
             model = build_model(configuration, "verilator", build=build, bench=SYSTEM_BENCH)
         with Progress(console=console, transient=True) as bars, ThreadPoolExecutor(1) as pool:
             bar = bars.add_task("frames", total=len(buttons))

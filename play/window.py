@@ -35,6 +35,7 @@ from raycaster.play.walk import TURNS, WALKS, Walker
 from raycaster.sim.register_model import LiveScene
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware
+from raycaster.waits import building
 
 GAME_KEYS = {"left": ("left", "a"), "right": ("right", "d"), "up": ("up", "w"), "down": ("down", "s")}
 GAME_KEYS |= {"fire": ("space", "return")}
@@ -251,7 +252,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             console.print(f"{button}: {' or '.join(held)}")
         if walker and config.turn:
             console.print("turn and look: drag with the mouse too")
-        with console.status(f"building {config.name}"):
+        with console.waiting(f"building {config.name}", building(config.engine)):
             command = build_machine(config, arguments.build, processor=walker is None)
         with Machine(command, config, program) as machine:
             play = walk_through(machine, walker, window) if walker else machine.frame

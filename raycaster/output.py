@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import rich.console
+from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
 from raycaster.errors import UserError
@@ -128,6 +129,24 @@ class Console(rich.console.Console):
     def render_str(self, text: str, **options: Any) -> Text:
         """Render what is not yet a `Text`."""
         return super().render_str(printable(text, lines=True), **options)
+
+    @contextmanager
+    def waiting(self, what: str, usual: str = "") -> Iterator[None]:
+        """Show what is being waited for: with the time so far on a terminal, once at the start elsewhere.
+
+        Args:
+            what: to show.
+            usual: duration, in words; see `raycaster.waits`.
+        """
+        text = f"{what} ({usual})" if usual else what
+        if not self.is_terminal:
+            self.print(text, soft_wrap=True)
+            yield
+            return
+        columns = SpinnerColumn(), TextColumn("{task.description}", markup=False), TimeElapsedColumn()
+        with Progress(*columns, console=self, transient=True) as progress:
+            progress.add_task(printable(text), total=None)
+            yield
 
     def on_broken_pipe(self) -> None:
         """Leave it to `raycaster.options.run_command`."""

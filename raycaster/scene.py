@@ -312,8 +312,9 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
             raise SceneError(f"{path}: has too many dots in a line; a key of a scene has one part")
         contents = tomllib.loads(text)
     except OSError as error:
-        others = [*packaged_scenes(), *(other.name for other in path.parent.glob("*.toml"))]
-        near = "" if path.exists() else did_you_mean(path.name, others)
+        beside = [other.name for other in path.parent.glob("*.toml")]
+        near = did_you_mean(path.name, beside) or did_you_mean(path.stem, packaged_scenes())
+        near = "" if path.exists() else near
         raise SceneError(f"{path}: cannot be read: {error.strerror}{near}") from None
     except UnicodeDecodeError:
         raise SceneError(f"{path}: {COMPLAINTS['encoding']}") from None

@@ -36,7 +36,7 @@ from raycaster.options import (
 from raycaster.outcomes import Check, Published, add_keep_option, keep, scope_of
 from raycaster.outcomes import Outcome as Kept
 from raycaster.outcomes import table as markdown
-from raycaster.output import Console, check_replaceable, printable, replaced
+from raycaster.output import Console, check_replaceable, printable, put, replaced
 from raycaster.scene import load_scene, packaged_scenes
 from raycaster.sim.contact_sheet import write_contact_sheet
 from raycaster.sim.job import Job
@@ -51,12 +51,15 @@ from raycaster.sim.simulator import (
     find_tool,
     run_bench,
 )
+from raycaster.waits import building
 
 GATES_OPTIONS: Mapping[str, Any] = {"screen": "tiny", "units": 16, "reflections": 2}
 """Of a netlist, where they are not given: the fewest units with which one design shows all packaged scenes in time."""
 
 SHEET = "scenes.png"
 SHEET_COLUMNS = 5
+RESULT = "result.json"
+"""What a bench writes last, when it has a picture."""
 
 POLL_SECONDS = 0.1
 LOG_COLUMNS = 120
@@ -114,31 +117,45 @@ def plan_runs(
 def simulate(run: Design, model: Model, sim: Path, progress: Path) -> Outcome:
     """Run one scene; its directory in `sim` appears when all is in it.
 
+    If the simulation ends without a picture, as after an interruption, the picture of the last run stays, and the log
+    is in a directory beside it.
+
     Args:
         run: the scene.
         model: a model of its configuration.
         sim: the directory of all outputs.
         progress: the file in which the simulation counts visible lines.
     """
-    target = sim / run.name
+    target, failed = sim / run.name, sim / f"{run.name}-failed"
     failure, waves = "", None
-    with replaced(target) as partial:
-        job = Job(
-            configuration=run.configuration,
-            scene=str(run.path.resolve()),
-            output=str(partial.resolve()),
-            reflections=run.reflections,
-            progress=str(progress.resolve()),
-        )
-        try:
-            waves = run_bench(model, "raycaster.sim.frame_bench", job, partial)
-        except SimulationError as error:
-            failure = str(error).replace(str(partial.resolve()), str(target))
-    results = target / "result.json"
-    result = json.loads(results.read_text()) if results.exists() else None
+    try:
+        with replaced(target) as partial:
+            job = Job(
+                configuration=run.configuration,
+                scene=str(run.path.resolve()),
+                output=str(partial.resolve()),
+                reflections=run.reflections,
+                progress=str(progress.resolve()),
+            )
+            try:
+                waves = run_bench(model, "raycaster.sim.frame_bench", job, partial)
+            except SimulationError as error:
+                is_whole = (partial / RESULT).exists()
+                failure = str(error).replace(str(partial.resolve()), str(target if is_whole else failed))
+                if not is_whole:
+                    put(partial, failed)
+                    raise SimulationError(failure) from None
+    except SimulationError:
+        return Outcome(run, None, failure)
     if failure and (target / "diff.png").exists():
         failure += f"; the difference is {target / 'diff.png'}"
-    return Outcome(run, result, failure, target / waves.name if waves else None)
+    return Outcome(run, json.loads((target / RESULT).read_text()), failure, target / waves.name if waves else None)
+
+
+def output_directory(build: Path, options: Mapping[str, Any], *, gates: bool = False) -> Path:
+    """The directory of a run's pictures; those of another engine or screen are kept apart."""
+    apart = (str(options[name]) for name in ("engine", "screen", "rows", "scale") if name in options)
+    return build / ("gates" if gates else "-".join(["sim", *apart]))
 
 
 def configurations(runs: list[Design]) -> list[Configuration]:
@@ -151,7 +168,7 @@ def synthesise_all(runs: list[Design], build: Path, family: str, console: Consol
     netlists: dict[str, Netlist] = {}
     for configuration in configurations(runs):
         name = configuration.name
-        with console.status(f"synthesising {name}"):
+        with console.waiting(f"synthesising {name}"):
             started = time.perf_counter()
             directory = build / "model" / name / (f"netlist-{family}" if family != "ecp5" else "netlist")
             netlist = synthesise(convert(configuration, build), directory, family=family)
@@ -170,7 +187,7 @@ def build_models(
         netlist = netlists.get(configuration.name)
         # A netlist keeps no names for the bench to look at.
         given = {"verilog": netlist.files, "defines": {"NETLIST": 1}} if netlist else {}
-        with console.status(f"building {configuration.name} with {simulator}"):
+        with console.waiting(f"building {configuration.name} with {simulator}", building(configuration.engine)):
             started = time.perf_counter()
             model = build_model(configuration, simulator, waves=waves, build=build, **given)
         took = f"built in {time.perf_counter() - started:.1f} s" if model.fresh else "was built before"
@@ -193,18 +210,22 @@ def run_all(runs: list[Design], models: dict[str, Model], sim: Path, jobs: int, 
             bar = bars.add_task(printable(run.path.stem), total=run.configuration.screen_geometry.vertical.visible)
             futures[pool.submit(simulate, run, models[run.configuration.name], sim, progress)] = (bar, progress)
         pending = set(futures)
-        while pending:
-            _, pending = wait(pending, timeout=POLL_SECONDS, return_when=FIRST_COMPLETED)
-            for bar, progress in futures.values():
-                text = progress.read_text() if progress.exists() else ""
-                if text:
-                    bars.update(bar, completed=int(text))
+        try:
+            while pending:
+                _, pending = wait(pending, timeout=POLL_SECONDS, return_when=FIRST_COMPLETED)
+                for bar, progress in futures.values():
+                    text = progress.read_text() if progress.exists() else ""
+                    if text:
+                        bars.update(bar, completed=int(text))
+        except BaseException:
+            pool.shutdown(cancel_futures=True)  # an interruption ends the running ones only
+            raise
         return [future.result() for future in futures]
 
 
 def _table(title: str | None = None) -> Table:
     # As narrow as a terminal of 80 columns wants it.
-    return Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+    return Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False, padding=0)
 
 
 def show_cells(netlists: Mapping[str, Netlist], console: Console) -> None:
@@ -222,16 +243,17 @@ def show_cells(netlists: Mapping[str, Netlist], console: Console) -> None:
 def show(outcomes: list[Outcome], console: Console, title: str | None = None) -> None:
     """Print a table, a line a scene, then what went wrong and where to look."""
     table = _table(title)
-    table.add_column("scene", no_wrap=True)
-    for heading in ("pixels", "wrong", "vs\nexact", "frame", "row", "group", "slack", "alone\nHz", "time\ns"):
+    table.add_column("scene", overflow="fold")
+    table.add_column("engine", no_wrap=True)
+    for heading in ("wrong", "vs\nexact", "frame", "row", "group", "alone\nHz", "time\ns"):
         table.add_column(heading, justify="right", no_wrap=True)
     for outcome in outcomes:
         table.add_row(outcome.run.path.stem, *_cells(outcome))
     console.print(table)
     console.print(
-        "wrong: pixels unlike golden. vs exact: pixels unlike the true picture, where the engine rounds; golden of the "
-        "others is the true picture. frame: system cycles of its rendering. row, group: those of the slowest, of those "
-        "it has. alone: frame rate that the renderer alone could hold.",
+        "wrong: pixels that differ from the golden model. vs exact: pixels that differ from the exact picture, for the "
+        "engine that rounds. frame: clock cycles to render it. row, group: cycles of the slowest one, and the cycles "
+        "available. alone: frames per second of the renderer by itself. time: seconds in the simulator.",
         style="dim",
     )
     for outcome in outcomes:
@@ -242,12 +264,23 @@ def show(outcomes: list[Outcome], console: Console, title: str | None = None) ->
             console.print(f"{outcome.run.path.stem}: {outcome.failure}", style="red", soft_wrap=True)
 
 
-def show_pictures(outcomes: list[Outcome], path: Path, console: Console) -> None:
-    """Write one picture of all frames, where there are several, and print its name."""
+def write_sheet(outcomes: list[Outcome], path: Path) -> None:
+    """Write one picture of all frames."""
     frames = [path.parent / outcome.run.name / "frame.png" for outcome in outcomes if outcome.result is not None]
-    if len(frames) > 1:
+    if frames:
         write_contact_sheet(frames, path, SHEET_COLUMNS)
-        console.print(f"{path} has all their pictures", soft_wrap=True)
+
+
+def summary(outcomes: list[Outcome], outputs: Path) -> str:
+    """The last line: how many scenes, how many pixels are wrong, and where the pictures are."""
+    results = [outcome.result for outcome in outcomes if outcome.result is not None]
+    wrong, pixels = (sum(result[name] for result in results) for name in ("wrong_vs_golden", "pixels"))
+    scenes = f"{len(results)} scene{'' if len(results) == 1 else 's'}"
+    lost = f", {len(outcomes) - len(results)} failed" if len(results) < len(outcomes) else ""
+    one = len(outcomes) == 1
+    place = outputs / outcomes[0].run.name / "frame.png" if one else f"{outputs / SHEET} and {outputs}/*/frame.png"
+    pictures = f"; picture{'' if one else 's'}: {place}" if results else ""
+    return f"{scenes}, {wrong:,} of {pixels:,} pixels wrong{lost}{pictures}"
 
 
 def show_traces(outcomes: list[Outcome], options: Mapping[str, Any], simulator: str, console: Console) -> None:
@@ -276,17 +309,16 @@ def _frames_per_second(configuration: Configuration, row_cycles: int) -> float:
 def _cells(outcome: Outcome) -> list[str | Text]:
     result, configuration = outcome.result, outcome.run.configuration
     if result is None:
-        return [Text("failed", "red")] + 8 * [""]
+        return [configuration.engine, Text("failed", "red")] + 6 * [""]
     row, group, wrong = result["worst_row_cycles"], result["worst_group_cycles"], result["wrong_vs_golden"]
     budget = configuration.group_budget
     return [
-        str(result["pixels"]),
+        configuration.engine,
         Text(str(wrong), "red" if wrong else ""),
         str(result["wrong_vs_exact"]) if configuration.facts.divides else "",
         str(result["frame_cycles"] or ""),
         f"{row}/{configuration.screen_geometry.row_cycles}",
-        f"{group}/{budget}",
-        Text("underrun", "red") if result["underrun"] else str(budget - group),
+        Text("underrun", "red") if result["underrun"] else f"{group}/{budget}",
         f"{_frames_per_second(configuration, row):.0f}" if row else "",
         f"{result['sim_seconds']:.2f}",
     ]
@@ -376,7 +408,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     # Into a file or a pipe rich would print as if on 80 columns, which the table does not fit.
     console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
     runs = _planned(arguments, console)
-    outputs = arguments.build / ("gates" if gates else "sim")
+    outputs = output_directory(arguments.build, given_options(arguments), gates=gates)
     for run in runs:
         check_replaceable(outputs / run.name)
     find_tool(arguments.simulator)
@@ -392,7 +424,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     if gates:
         show_cells(netlists, console)
     show(outcomes, console, "through the netlist" if gates else None)
-    show_pictures(outcomes, outputs / SHEET, console)
+    if len(outcomes) > 1:
+        write_sheet(outcomes, outputs / SHEET)
     figures = [{"scene": one.run.path.stem, **one.result} for one in outcomes if one.result is not None]
     scope = scope_of(runs[0].configuration) | {
         "simulator": arguments.simulator,
@@ -402,4 +435,5 @@ def main(argv: Sequence[str] | None = None) -> int:
     keep(arguments, {"scenes": figures}, scope, provenance)
     if not gates:
         show_traces(outcomes, given_options(arguments), arguments.simulator, console)
+    console.print(summary(outcomes, outputs), soft_wrap=True)
     return int(any(outcome.failure for outcome in outcomes))

@@ -71,14 +71,13 @@ VERILATOR_FLAGS = (
     "--no-public-flat-rw",
     "-Wno-fatal",
     "-O3",
-    # One huge C++ file takes the compiler forever, and two cores can share small ones.
+    # Large functions take the compiler forever; see `_TwoTexts` for the files.
     "--output-split",
     "20000",
     "--output-split-cfuncs",
     "500",
     "-CFLAGS",
-    # With -O2 models run as fast, and take a tenth longer to build.
-    "-fcoroutines -std=gnu++20 -O1",
+    "-fcoroutines -std=gnu++20",
 )
 
 
@@ -336,7 +335,7 @@ def build_model(
                 (directory / file).write_text(text)
             with _building(tool, models(build), arguments):
                 try:
-                    (_VerilatorWithMain() if program else get_runner(simulator)).build(
+                    (_TwoTexts(program, bench) if simulator == "verilator" else get_runner(simulator)).build(
                         sources=[source.resolve() for source in sources],
                         hdl_toplevel=bench.top,
                         includes=[directory.resolve()],
@@ -353,15 +352,45 @@ def build_model(
     return Model(configuration, simulator, directory, waves, fresh, bench, wave_format)
 
 
-class _VerilatorWithMain(Verilator):
-    """cocotb's runner, with `_MAIN` for its own main program."""
+_TEXTS = {"fast": "-O1", "slow": "-O0"}
+"""The texts of a model, and how they are optimised."""
 
-    def _build_command(self) -> list[list[str]]:
-        translate, *others = super()._build_command()
-        # Where it is not there this fails: with cocotb's main nothing would drive the clock.
-        theirs = translate.index(str(cocotb_config.share_dir / "lib" / "verilator" / "verilator.cpp"))
-        translate[theirs] = str(_MAIN)
-        return [translate, *others]
+
+class _TwoTexts(Verilator):
+    """cocotb's runner, but a model is compiled as two texts: what runs in each cycle, and what runs seldom.
+
+    File by file it takes three times as long, as each of them reads the same large header, which precompiled takes long
+    too. With -O2 models run as fast, and take a tenth longer to build.
+    """
+
+    def __init__(self, program: Sequence[Path], bench: Bench):
+        """Build with this main program, if there is one, instead of cocotb's."""
+        super().__init__()
+        self._program = program
+        # Of a window, few cycles are written, and half of the time would go into compiling what writes them.
+        self._seldom = "__Slow|__Trace__" if bench.window else "__Slow"
+
+    def _build_command(self) -> Iterator[list[str]]:  # pyright: ignore[reportIncompatibleMethodOverride] run one by one
+        translate, make = super()._build_command()
+        for path in self._program:
+            # Where cocotb's is not there this fails: with it nothing would drive the clock.
+            theirs = translate.index(str(cocotb_config.share_dir / "lib" / "verilator" / "verilator.cpp"))
+            translate[theirs] = str(path)
+        yield translate
+        files = sorted(path.name for path in self.build_dir.glob("*.cpp"))
+        variables = []
+        for text, level in _TEXTS.items():
+            parts = [file for file in files if bool(re.search(self._seldom, file)) == (text == "slow")]
+            (self.build_dir / f"{text}.cpp").write_text("".join(f'#include "{part}"\n' for part in parts))
+            (self.build_dir / f"Vtop__pch.h.{text}.gch").touch()  # so that make does not precompile the header
+            kind = text.upper()
+            variables += [
+                f"VM_CLASSES_{kind}={text}",
+                f"VM_SUPPORT_{kind}=",
+                f"OPT_{kind}={level}",
+                f"VK_PCH_I_{kind}=",
+            ]
+        yield [*make, "VM_PARALLEL_BUILDS=1", *variables]
 
 
 def build_program(
@@ -523,17 +552,23 @@ def _building(tool: Tool, parent: Path, arguments: Sequence[str]) -> Iterator[No
 def _runtime(tool: Tool, parent: Path, features: Sequence[str]) -> tuple[Path, Path]:
     """Verilator's library, compiled once for all models: it takes longer than a small design.
 
+    What a feature adds is compiled alone; all else of the library is the same without it.
+
     Returns:
         The directory of its objects, and that of its headers.
     """
+    plain = _runtime(tool, parent, ())[0].glob("*.o") if features else ()
     with made(parent, "runtime", (), (tool, features, _RUNTIME_OPTIONS)) as (place, fresh):
         directory = place.resolve()
         if fresh:
             (directory / "runtime.v").write_text(_RUNTIME)
             _call(
-                tool, directory, "verilator", "--cc", "--build", "-j", "2", "--vpi", "--timing", *features, "-CFLAGS",
-                _RUNTIME_OPTIONS, "--Mdir", ".", "runtime.v",
+                tool, directory, "verilator", "--cc", "--vpi", "--timing", *features, "-CFLAGS", _RUNTIME_OPTIONS,
+                "--Mdir", ".", "runtime.v",
             )  # fmt: skip
+            for path in plain:
+                shutil.copy(path, directory)  # newer than what it depends on
+            _call(tool, directory, "make", "-j", "2", "-f", "Vruntime.mk")
             for path in directory.glob("Vruntime*.o"):
                 path.unlink()
     return directory, library_sources(tool)

@@ -20,6 +20,7 @@ from raycaster.output import Console, emptied
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import VERILATOR_FLAGS, Model, SimulationError, build_model, convert, run_bench
 from raycaster.verif import benches, random_scenes
+from raycaster.waits import building
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,7 @@ def run_campaign(
         UserError: a tool is missing.
         SimulationError: the model cannot be built.
     """
-    with console.status(f"building {campaign.configuration.name}"):
+    with console.waiting(f"building {campaign.configuration.name}", building(campaign.configuration.engine)):
         model = _build(campaign)  # which the workers find
     started = time.perf_counter()
     output = campaign.output / bench_digest(campaign.bench, model, campaign.stiff, dict(campaign.registers))

@@ -88,7 +88,7 @@ def tap_facts(config: Configuration) -> dict:
                 "late": probe.late,
                 "taps": [place[name] for name in probe.signals],
                 "signed": bool(probe.signed),
-                "colour": probe.colour,
+                "colour": probe.colour is True,
                 "scale": probe.scale,
                 "printed": probe.shown,
             }

@@ -209,7 +209,7 @@ class BeamProbes(Description):
         return Probe(
             "channels, joined", tuple(f"{BLEND}.{name}.{port}" for name in names), "done" if mixes else "blend",
             lambda ray, place: pixel_channels(ray, place) if mixes or not place.bounce else None,
-            late=0 if mixes else 1, decode=lambda ray, place, *sums: [one >> low for one in sums],
+            late=0 if mixes else 1, decode=lambda ray, place, *sums: [one >> low for one in sums], parts=COLOURS
         )  # fmt: skip
 
     def controls(self) -> Iterable[str]:
@@ -279,8 +279,9 @@ class BeamProbes(Description):
         ]  # fmt: skip
         reflected = [
             Probe("turned by", fields("{fold}", "fold", [f"turn_{axis}" for axis in AXES], fold), "ray", mirrored,
-                signed=True),
-            Probe("runs back", fields("{fold}", "fold", [f"back_{axis}" for axis in AXES], fold), "ray", turned),
+                signed=True, parts=AXES),
+            Probe("runs back", fields("{fold}", "fold", [f"back_{axis}" for axis in AXES], fold), "ray", turned,
+                parts=AXES),
             Probe("last mirror", fields("{fold}", "fold", ("axis", "distance"), fold), "ray", last_mirror, signed=(1,),
                 shown=False),
         ]  # fmt: skip
@@ -293,7 +294,7 @@ class BeamProbes(Description):
         return [
             *scene_probes("column", self.config),
             Probe("rectangle", fields(f"{DUT}.rect_mem_i", "rects_rect", RECT_FIELDS, rect_of(config)), "fetch",
-                sorted_rect, late=2, shown=False),
+                sorted_rect, late=2, colour=(6,), shown=False),
             Probe("set up", fields(SETUP, "facet", plain, facet), "load", setup_facet, signed=(2, 3),
                 shown=False),
             Probe("products of the first column", fields(SETUP, "start", walk.layout, walk), "load", setup_start,
@@ -320,8 +321,9 @@ class BeamProbes(Description):
             Probe("its colour", fields("{look}", "look", ("colour",), Look(config.materials, config.patterns)), "blend",
                 found_colour, colour=True),
             Probe("colour seen", fields("{seen}", "shade", COLOURS, shade_of(config)), "blend",
-                seen_channels, late=1),
+                seen_channels, late=1, parts=COLOURS),
             *([self._joined()] if passes > 1 else []),
-            Probe("pixel", fields(BLEND, "pixel", COLOURS, Pixel(config.colour_bits)), "done", pixel_channels),
+            Probe("pixel", fields(BLEND, "pixel", COLOURS, Pixel(config.colour_bits)), "done", pixel_channels,
+                parts=COLOURS),
             *monitor_probes(RENDERER, "shown", VIDEO, config),
         ]  # fmt: skip

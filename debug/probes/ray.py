@@ -104,7 +104,12 @@ class Probe:
     scale: bool = False
     """Values are in units of 2^-F."""
 
-    colour: bool = False
+    colour: bool | tuple[int, ...] = False
+    """Whether the values are colours, or the numbers of those that are."""
+
+    parts: Sequence[str] = ()
+    """What the values are called, where that is not in the quantity."""
+
     module: str = ""
     """Which one answers for it, where that is not the one that contains the signal."""
 
@@ -114,6 +119,10 @@ class Probe:
     def is_signed(self, number: int) -> bool:
         """Whether that one of the signals is in two's complement."""
         return self.signed is True or bool(self.signed and number in self.signed)
+
+    def is_colour(self, number: int) -> bool:
+        """Whether that one of the values is a colour."""
+        return self.colour is True or bool(self.colour and number in self.colour)
 
 
 @dataclass(frozen=True)
@@ -184,7 +193,7 @@ class Description:
         place, values = Place(0, max(0, ray.winner(0))), {}
         for probe in self.probes:
             for number, signal in enumerate(probe.signals):
-                kind = ":hex" if probe.colour else ":signed" if probe.is_signed(number) else ""
+                kind = ":hex" if probe.is_colour(number) else ":signed" if probe.is_signed(number) else ""
                 values.setdefault(self.named(signal, place, ray), kind)
         video = {"x": ":signed", "y": ":signed", **dict.fromkeys(PINS, ":hex")}
         video |= dict.fromkeys(("vga_hs", "vga_vs", "vga_blank_n", "vga_clk"), "")

@@ -93,7 +93,7 @@ def scene_probes(event: str, config: Configuration) -> list[Probe]:
     bus = f"{DUT}.avalon_interface_i.picture"
     camera = fields(f"{DUT}.camera_mem_i", "camera", AXES, camera_of(config))
     return [
-        Probe("camera", camera, event, lambda ray, _: ray.scene.camera.position, shown=False),
+        Probe("camera", camera, event, lambda ray, _: ray.scene.camera.position, shown=False, parts=AXES),
         Probe("background", (f"{bus}_background",), event, lambda ray, _: (ray.colour(-1),), shown=False, colour=True),
         Probe("reflections", (f"{bus}_reflections",), event, lambda ray, _: (ray.reflections,), shown=False),
     ]
@@ -103,8 +103,8 @@ def monitor_probes(renderer: str, port: str, video: str, config: Configuration) 
     """The pixel's last steps."""
     channels = fields(renderer, port, COLOURS, Pixel(config.colour_bits))
     return [
-        Probe("pixel to the monitor", channels, "shown", pixel_channels),
-        Probe("pins", tuple(f"{video}.{name}" for name in PINS), "shown", pixel_channels, late=1),
+        Probe("pixel to the monitor", channels, "shown", pixel_channels, parts=COLOURS),
+        Probe("pins", tuple(f"{video}.{name}" for name in PINS), "shown", pixel_channels, late=1, parts=COLOURS),
     ]
 
 
@@ -236,12 +236,13 @@ class UnitProbes(Description):
             Probe("usable rectangles", (f"{rects}.rects_usable",), "start",
                 lambda ray, _: ((1 << len(ray.rectangles)) - 1,), shown=False),
             Probe("slope, magnitudes", fields(generator, "slope", SIGNS), "start",
-                lambda ray, _: [abs(slope) for slope in ray.of_ray(0, "slopes")], late=1),
-            Probe("slope, signs", fields(generator, "initial_signs", SIGNS, Signs()), "start", slope_signs, late=1),
+                lambda ray, _: [abs(slope) for slope in ray.of_ray(0, "slopes")], late=1, parts=AXES),
+            Probe("slope, signs", fields(generator, "initial_signs", SIGNS, Signs()), "start", slope_signs, late=1,
+                parts=AXES),
             Probe("comes from the camera", (f"{self.sequencer}.steps_initial_ray",), "ray",
                 lambda _, place: (int(place.bounce == 0),), late=1, shown=False),
             Probe("rectangle", fields(rects, "rects_rect", RECT_FIELDS, layout), "fetch", sorted_rect, late=1,
-                shown=False),
+                colour=(6,), shown=False),
             *([culling] if self.config.culling else []),
         ]  # fmt: skip
 
@@ -255,7 +256,7 @@ class UnitProbes(Description):
             Probe("found", (kept_colour.rpartition(".")[0] + ".found",), "blend", found),
             Probe("its colour", (kept_colour,), "blend", golden_colour, colour=True),
             Probe("colour seen", (f"{combiner}.seen_word",), "blend", seen_colour, colour=True),
-            Probe("means of the channels", channels, "done", pixel_channels),
+            Probe("means of the channels", channels, "done", pixel_channels, parts=COLOURS),
             Probe("pixel", (f"{combiner}.pixel_word",), "done", pixel, colour=True),
             Probe("pixel among all", (f"{self.caster}.pixels",), "done", pixel, colour=True,
                 decode=lambda ray, _, pixels: (pixels >> ray.unit * bits & (1 << bits) - 1,)),

@@ -46,6 +46,7 @@ from raycaster.verif.campaign import Campaign, bench_digest, run_campaign
 from raycaster.verif.coverage.code import KINDS, Judgement, Point, describe, judge, load_explanations, read_counts
 from raycaster.verif.coverage.functional import PROBE_MODULES, PROBES, FunctionalCoverage, read_bins
 from raycaster.verif.soak.soak import BENCH as SOAK
+from raycaster.waits import building
 
 # One design an engine that every bench can run, so that nothing must be merged. At full size, for the counters to run
 # through their range. Of the seed engine not 32 units but 16, whose budget is 159 cycles a group: all 12 rectangles
@@ -284,7 +285,7 @@ def main(argv: list[str] | None = None) -> int:
     output.mkdir(parents=True, exist_ok=True)
     started = time.perf_counter()
 
-    with console.status(f"building {design.name}"):
+    with console.waiting(f"building {design.name}", building(design.engine)):
         verilog = [*convert(design, arguments.build), *probes]
         counting = build_model(design, build=arguments.build, verilog=verilog, flags=FLAGS)
     runs = [*BENCHES, *(Run("sim.frame_bench", scene) for scene in scenes)]

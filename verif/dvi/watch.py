@@ -269,7 +269,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     emptied(output)
     screen = design.configuration.screen_geometry
     try:
-        with console.status(f"{board.name}, {design.configuration.name}: building and simulating"):
+        with console.waiting(f"{board.name}, {design.configuration.name}: building and simulating"):
             sources = write_project(board, design, output)
             frames = watch(board, sources, screen, arguments.frames, output, simulator=arguments.simulator)
     except (SimulationError, VideoError) as error:

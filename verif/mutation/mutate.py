@@ -658,7 +658,7 @@ def main(argv: list[str] | None = None) -> int:
 
     # A table of this many columns is read from a log as well as on a screen.
     console = Console(width=None if sys.stdout.isatty() else 150)
-    with console.status("recording the leaf tests"):
+    with console.waiting("recording the leaf tests"):
         record(tests, arguments.build / "recordings", arguments.jobs)
     jobs = [
         Job(test, module, arguments.build, arguments.mutants, arguments.seed, replace(known[module], explained=()))

@@ -86,7 +86,7 @@ def test_tiny_in_icarus(engine):
     options += tuple(map(str, scenes))
     subprocess.run([sys.executable, "-m", "raycaster.cli", "sim", *options], cwd=ROOT, check=True)
     for scene in scenes:
-        result = json.loads((build / "sim" / scene.stem / "result.json").read_text())
+        result = json.loads((build / f"sim-{engine}-tiny" / scene.stem / "result.json").read_text())
         assert result["pixels"] == 128 * 96
         assert result["wrong_vs_golden"] == 0
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ast
 import errno
+import io
 import os
 import signal
 import subprocess
@@ -242,3 +243,17 @@ def test_a_standard_output_that_is_closed(tmp_path: Path):
 def test_title_of_a_scene_is_text(capsys):
     Console(width=80).print(Scene.model_fields["title"].annotation(HOSTILE))
     assert printable(HOSTILE, lines=True) in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("is_terminal", [False, True])
+def test_a_wait_says_how_long_it_usually_is(is_terminal: bool):
+    """In a line at the start where output is a pipe; with the seconds so far on a terminal."""
+    file = io.StringIO()
+    console = Console(file=file, force_terminal=is_terminal, width=80)
+    with console.waiting("building [x]", "usually 30 s, once"):
+        begun = file.getvalue()
+    if is_terminal:
+        assert "building [x] (usually 30 s, once)" in file.getvalue()
+        assert "0:00:00" in file.getvalue()
+    else:
+        assert begun == file.getvalue() == "building [x] (usually 30 s, once)\n"

@@ -14,16 +14,19 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from conftest import ROOT
 
+from raycaster import waits
 from raycaster.cli import __main__ as program
 from raycaster.cli import completion
 from raycaster.cli.commands import COMMANDS, NOT_OF_MAKE, Command, overview, verify_overview
 from raycaster.convert.elaboration import elaboration
 from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.docs.commands import outside_make
+from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.options import FROM_MAKE, command_line, run_command
 from raycaster.rtl.common.records import Colour
@@ -226,6 +229,17 @@ def test_a_fault_in_a_block_is_one_line(right: str, wrong: str, fault: str, tmp_
         run_command(convert)
     assert ended.value.code == 2
     assert capsys.readouterr().err.startswith(f"error: {path}:{fault}")
+
+
+def test_a_long_command_says_how_long_it_usually_takes(monkeypatch, capsys):
+    """Before it begins, and without a word in what it prints; each such command and engine has its duration."""
+    assert waits.COMMANDS.keys() < COMMANDS.keys()
+    assert waits.BUILDS.keys() == ENGINES.keys()
+    monkeypatch.setattr(program, "loaded", lambda command: SimpleNamespace(main=lambda words: 0))
+    assert program.main(["area", "--engine", "exact"]) == 0
+    assert capsys.readouterr() == ("", f"area: usually {waits.COMMANDS['area']}, less where results are kept\n")
+    assert program.main(["scenes"]) == 0
+    assert capsys.readouterr() == ("", "")
 
 
 def test_a_fault_of_another_kind_keeps_its_traceback():

@@ -4,17 +4,27 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
+import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from conftest import ROOT, SMALL_SCENE
 from PIL import Image
 
-from raycaster.design import design_for
+from raycaster.configuration import configure
+from raycaster.design import Design, design_for
+from raycaster.output import Console, replaced
+from raycaster.scene import load_scene
+from raycaster.sim import scenes as simulate
+from raycaster.sim.scenes import Outcome, output_directory, run_all, show
+from raycaster.sim.simulator import MODELS_VARIABLE, Model, SimulationError
 
 RESULT_KEYS = {
     "pixels",
@@ -42,12 +52,14 @@ def build(tmp_path: Path) -> Path:
     return tmp_path / "build"
 
 
-def test_one_scene(build, scenes):
+def test_one_scene(build, scenes, monkeypatch):
     """Pictures, results, table and exit code; with Icarus, which builds at once."""
+    monkeypatch.delenv(MODELS_VARIABLE)  # so that nothing is found built
     first = _sim(*SMALL_OPTIONS, build=build)
     assert first.returncode == 0, first.stdout + first.stderr
-    assert "12288" in first.stdout
-    output = build / "sim" / "small"
+    line = f"1 scene, 0 of 12,288 pixels wrong; picture: {build / 'sim-tiny' / 'small' / 'frame.png'}"
+    assert first.stdout.endswith(f"{line}\n")
+    output = build / "sim-tiny" / "small"
     for name in ("frame", "golden", "exact", "diff"):
         assert Image.open(output / f"{name}.png").size == (128, 96)
     assert (output / "frame.png").read_bytes() == (output / "golden.png").read_bytes()
@@ -65,18 +77,73 @@ def test_two_scenes(build, tmp_path):
     other.write_text(SMALL_SCENE.read_text().replace("#c8c8b4", "#ff0000"))
     ran = _sim(*SMALL_OPTIONS, other, build=build)
     assert ran.returncode == 0, ran.stdout + ran.stderr
-    sheet = Image.open(build / "sim" / "scenes.png")
+    sheet = Image.open(build / "sim-tiny" / "scenes.png")
     assert sheet.size == (2 * 320 + 8, 240)
     floors = [sheet.getpixel((left + 160, 235)) for left in (0, 328)]
-    assert floors == [Image.open(build / "sim" / name / "frame.png").getpixel((64, 94)) for name in ("small", "other")]
-    assert str(build / "sim" / "scenes.png") in ran.stdout
+    output = build / "sim-tiny"
+    assert floors == [Image.open(output / name / "frame.png").getpixel((64, 94)) for name in ("small", "other")]
+    pictures = f"{output / 'scenes.png'} and {output}/*/frame.png"
+    assert ran.stdout.endswith(f"2 scenes, 0 of 24,576 pixels wrong; pictures: {pictures}\n")
+
+
+NAMES = ("checkered_hall", "facing_mirrors")
+
+
+@pytest.mark.parametrize(("engine", "screen"), [("seed", "vga"), ("beam", "vga")])
+def test_the_table_fits_a_terminal(engine, screen, capsys):
+    """Nothing of a number is cut off, and each line says which engine drew it."""
+    config = configure(engine=engine, screen=screen)
+    result = {
+        "pixels": 307200, "wrong_vs_golden": 12345, "wrong_vs_exact": 12345, "frame_cycles": 1234567,
+        "worst_row_cycles": 3199, "worst_group_cycles": 159, "underrun": False, "sim_seconds": 123.45,
+    }  # fmt: skip
+    scene = load_scene(SMALL_SCENE)
+    outcomes = [Outcome(Design(Path(f"{name}.toml"), scene, config, 1), result) for name in NAMES]
+    show(outcomes, Console(width=80))
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) <= 80
+    assert "…" not in "".join(lines)
+    rows = [line.split() for line in lines if engine in line.split()]
+    assert len(rows) == len(NAMES)
+    assert all({"12345", "1234567", "123.45"} < {*row} for row in rows)
+
+
+def test_pictures_of_another_screen_or_engine_are_kept_apart():
+    places = [
+        output_directory(Path("build"), options)
+        for options in ({}, {"units": 8}, {"engine": "beam"}, {"engine": "beam", "rows": 180}, {"screen": "tiny"})
+    ]
+    assert [place.name for place in places] == ["sim", "sim", "sim-beam", "sim-beam-180", "sim-tiny"]
+
+
+def test_an_interrupted_run_leaves_the_pictures(tmp_path, monkeypatch):
+    """Those of the run before: Ctrl-C ends the simulator, and what has not begun does not begin."""
+    design = design_for(SMALL_SCENE, {"screen": "tiny", "units": 8, "rectangles": 3})
+    before = tmp_path / design.name / "frame.png"
+    with replaced(before.parent) as partial:
+        (partial / before.name).write_text("as it was")
+    begun = []
+
+    def interrupted(model, bench, job, directory):
+        begun.append(job.scene)
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0.3)
+        raise SimulationError("the simulation ended without a result")
+
+    monkeypatch.setattr(simulate, "run_bench", interrupted)
+    model = Model(design.configuration, "icarus", tmp_path, False, False)
+    runs = [replace(design, path=path) for path in (SMALL_SCENE, Path("second.toml"), Path("third.toml"))]
+    with pytest.raises(KeyboardInterrupt):
+        run_all(runs, {design.configuration.name: model}, tmp_path, 1, Console(quiet=True))
+    assert len(begun) == 1
+    assert before.read_text() == "as it was"
 
 
 def test_waves(build, scenes):
     """Waveforms are written where the last lines say."""
     ran = _sim(*SMALL_OPTIONS, "--waves", build=build)
     assert ran.returncode == 0, ran.stdout + ran.stderr
-    waves = build / "sim" / "small" / "waves.fst"
+    waves = build / "sim-tiny" / "small" / "waves.fst"
     assert waves.stat().st_size > 0
     assert str(waves) in ran.stdout
 
@@ -92,8 +159,8 @@ def test_a_wrong_pixel_fails(build, scenes):
     ran = _sim(*SMALL_OPTIONS, build=build)
     assert ran.returncode == 1
     assert "pixels are wrong" in ran.stdout
-    assert str(build / "sim" / "small" / "sim.log") in ran.stdout
-    assert str(build / "sim" / "small" / "diff.png") in ran.stdout
+    assert str(build / "sim-tiny" / "small" / "sim.log") in ran.stdout
+    assert str(build / "sim-tiny" / "small" / "diff.png") in ran.stdout
     command = f"raycaster trace {SMALL_SCENE} --pixel 0,0 --units 8 --rectangles 3 --screen tiny --simulator icarus"
     assert command in ran.stdout
 
@@ -180,13 +247,16 @@ def test_a_packaged_scene_from_anywhere(tmp_path):
     command = [sys.executable, "-m", "raycaster.cli", "sim", "matte", "SCREEN=tiny", "ENGINE=exact"]
     ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stdout + ran.stderr
-    assert (tmp_path / "build" / "sim" / "matte" / "frame.png").is_file()
+    assert (tmp_path / "build" / "sim-exact-tiny" / "matte" / "frame.png").is_file()
 
 
 def test_no_such_scene(tmp_path):
     ran = _sim("mirror_rooms", build=tmp_path, cwd=tmp_path)
     assert ran.returncode == 2
-    assert re.fullmatch(r"error: mirror_rooms: no such file, and none of the packaged scenes: boxes, .*\n", ran.stderr)
+    assert re.fullmatch(
+        r"error: mirror_rooms: no such file, and none of the packaged scenes \(did you mean mirror_room\?\)\n",
+        ran.stderr,
+    )
 
 
 @pytest.mark.parametrize(

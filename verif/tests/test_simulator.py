@@ -160,6 +160,21 @@ def test_models_share_a_library(tmp_path, own_models, monkeypatch):
     [(library, _)] = {*libraries}
     assert (library / "verilated_vpi.o").exists()
     assert list(library.glob("verilated_*_c.o")) == []
+    assert {path.name for path in directory.glob("*.o")} == {"fast.o", "slow.o", "main.o"}
+
+
+def test_a_feature_of_the_library_is_compiled_alone(tmp_path, own_models, monkeypatch):
+    """What Verilator's library has without it is taken from there."""
+    calls = []
+    monkeypatch.setattr(simulator, "_call", lambda tool, directory, *command: calls.append((directory, command)))
+    tool = simulator.find_tool("verilator")
+    plain, _ = simulator._runtime(tool, tmp_path, ())
+    (plain / "verilated.o").write_text("compiled once")
+    traced, _ = simulator._runtime(tool, tmp_path, ("--trace",))
+    assert (traced / "verilated.o").read_text() == "compiled once"
+    assert [(place, "--trace" in command) for place, command in calls if "--cc" in command] == [
+        (plain, False), (traced, True)
+    ]  # fmt: skip
 
 
 def test_another_shell_finds_the_model(tmp_path, own_models, monkeypatch):

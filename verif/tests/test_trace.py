@@ -14,7 +14,7 @@ from conftest import BUILD, ROOT
 from rich.console import Console
 
 from raycaster.debug.probes.engines import description_of
-from raycaster.debug.probes.ray import Ray, Reading, first_difference, module_of, read
+from raycaster.debug.probes.ray import Place, Ray, Reading, first_difference, module_of, read
 from raycaster.debug.recorder import pixel_place, record
 from raycaster.debug.trace import difference_line, main, show
 from raycaster.debug.wave_files import View, signal_names
@@ -86,6 +86,27 @@ def test_a_sound_design_has_no_difference(tmp_path, engine):
     # A value that is never read would never be wrong.
     missing = {probe.quantity for probe in description_of(design(engine).configuration, ray.unit).probes} - quantities
     assert not missing, f"never read: {missing}"
+
+
+def test_values_have_names_and_colours_are_colours():
+    """Of three values the one that is wrong is named; a colour is #rrggbb, alone and beside other values."""
+    ray = Ray(design("seed"), PIXEL[1], PIXEL[0])
+    probes = {probe.quantity: probe for probe in description_of(ray.config, ray.unit).probes}
+
+    def line(quantity: str, golden: tuple[int, ...], found: tuple[int, ...], rectangle: int | None = None) -> str:
+        return difference_line(ray, Reading(probes[quantity], Place(0, rectangle), 0, 0, golden, found))
+
+    assert "pins, green is 9, golden has 2;" in line("pins", (1, 2, 3), (1, 9, 3))
+    assert "origin, z is 7, golden has 6;" in line("origin", (4, 5, 6), (4, 5, 7))
+    of_rectangle = ((0,) * 6 + (0xC8C8B4,), (0,) * 6 + (0xA00,), 0)
+    assert "rectangle is #000a00, golden has #c8c8b4;" in line("rectangle", *of_rectangle)
+    assert "rectangle is 1, golden has 0;" in line("rectangle", (0,) * 7, (1,) + (0,) * 6, 0)
+    narrow = Ray(design_for(SCENE, {"screen": "tiny", "units": "8", "rectangles": "3", "colour_bits": "4"}), 2, 48)
+    pixel = Reading(probes["pixel"], Place(0), 0, 0, (0x1F0,), (0,))
+    assert "pixel is #000000, golden has #10f000;" in difference_line(narrow, pixel)
+    console = Console(width=160, record=True, file=io.StringIO())
+    show(ray, [Reading(probes["pins"], Place(1), 0, 0, (1, 2, 3), (1, 9, 3))], console)
+    assert "pins (red, green, blue)" in console.export_text()
 
 
 FAULTS = {
