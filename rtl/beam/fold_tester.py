@@ -111,13 +111,13 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
     if staged:
 
         @always(clk.posedge)
-        def look():
+        def hold_chosen():
             seen.word.next = chosen
 
     else:
 
         @always_comb
-        def look():
+        def pass_chosen():
             seen.word.next = chosen
 
     # On the same axis, the plane must lie on the side that the folded ray runs to.
