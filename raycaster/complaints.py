@@ -85,7 +85,7 @@ def fault_in_block(error: BaseException) -> str | None:
     # What MyHDL reads of a process has its place in the syntax tree, and what runs has it in a frame.
     values = [value for frame, _ in frames for value in frame.f_locals.values()]
     trees = [tree for value in values if hasattr(tree := getattr(value, "ast", None), "sourcefile")]
-    nodes = [value for value in values if isinstance(value, ast.AST) and hasattr(value, "lineno")]
+    nodes = [value for value in values if isinstance(value, ast.stmt | ast.expr)]
     if trees and nodes:
         return f"{trees[-1].sourcefile}:{trees[-1].lineoffset + nodes[-1].lineno}: {reason}"
     for (frame, line), module in zip(reversed(frames), reversed(modules), strict=True):
