@@ -84,10 +84,10 @@ def fault_in_block(error: BaseException) -> str | None:
     reason = f"{type(error).__name__}: {error}"
     # What MyHDL reads of a process has its place in the syntax tree, and what runs has it in a frame.
     values = [value for frame, _ in frames for value in frame.f_locals.values()]
-    trees: list[Any] = [tree for value in values if hasattr(tree := getattr(value, "ast", None), "sourcefile")]
-    nodes: list[Any] = [value for value in values if isinstance(value, ast.AST) and hasattr(value, "lineno")]
-    if trees and nodes:
-        return f"{trees[-1].sourcefile}:{trees[-1].lineoffset + nodes[-1].lineno}: {reason}"
+    processes: list[Any] = [value.ast for value in values if hasattr(getattr(value, "ast", None), "sourcefile")]
+    nodes = [value for value in values if isinstance(value, ast.stmt | ast.expr)]
+    if processes and nodes:
+        return f"{processes[-1].sourcefile}:{processes[-1].lineoffset + nodes[-1].lineno}: {reason}"
     for (frame, line), module in zip(reversed(frames), reversed(modules), strict=True):
         if not module.startswith(("myhdl.", "raycaster.convert.")):
             return f"{frame.f_code.co_filename}:{line}: {reason}"
