@@ -64,8 +64,8 @@ clean:
 # Where uv is, it installs. A stamp stands for each set of extras, so that nothing is asked of an index twice.
 PIP = $(or $(addsuffix  pip install --python $(PYTHON),$(shell command -v uv)),$(PYTHON) -m pip install --use-pep517)
 ADD = $(PIP) -q -c constraints.txt -e
-install = $(if $1,if [ ! -e $(VENV)/$1 ]; then echo "installing $1, which usually takes a minute"; $(ADD) '.[$1]'; touch $(VENV)/$1; fi)
+install = $(if $1,if [ ! -e $(VENV)/$1 ]; then echo "installing $1 (usually a minute)"; $(ADD) '.[$1]'; touch $(VENV)/$1; fi)
 $(VENV)/base: pyproject.toml constraints.txt
 	@$(PYTHON3) -c 'import sys, ensurepip, venv; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { echo \
 	    "error: $(PYTHON3) is not Python 3.11 or newer with its venv module (Debian: apt-get install python3-venv)" >&2; exit 2; }
-	@echo "making a Python environment in $(VENV)/, which usually takes a minute" && $(PYTHON3) -m venv --clear $(VENV) && $(ADD) . && touch $@
+	@echo "making a Python environment in $(VENV)/ (usually a minute)" && $(PYTHON3) -m venv --clear $(VENV) && $(ADD) . && touch $@

@@ -12,7 +12,6 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 from unittest.mock import MagicMock
 
-from raycaster import waits
 from raycaster.cli.commands import COMMANDS, Command, overview, unknown_command, verify_overview
 from raycaster.errors import UserError, not_installed
 
@@ -37,10 +36,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if command is not None:
             if {"-h", "--help"} & {*words[taken:]}:
                 parser_of(command).parse_args(words[taken:])
-            module = loaded(command)
-            if usual := waits.COMMANDS.get(" ".join(words[:taken])):
-                print(f"{words[0]}: usually {usual}, less where results are kept", file=sys.stderr, flush=True)
-            return module.main(words[taken:]) or 0
+            return loaded(command).main(words[taken:]) or 0
     raise UserError(unknown_command(" ".join(words[: 2 if words[0] == "verify" else 1])))
 
 

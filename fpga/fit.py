@@ -38,6 +38,7 @@ from raycaster.outcomes import Outcome, Published, add_keep_option, keep, table
 from raycaster.output import Console
 from raycaster.scene import load_scene
 from raycaster.tools import find_program
+from raycaster.waits import announce
 
 FRACTIONS, ROUNDINGS = range(9), ("truncate", "nearest")
 GENERAL = "general"
@@ -287,6 +288,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     error = None if arguments.error is None else arguments.error / 100
     for path in paths:
         _check_rate(path, options, arguments.fps)
+    announce("fit")
     with executors(arguments.scheduler, arguments.jobs) as make_executor:
         figures = {
             path.stem: search(path, options, arguments.fix, error, arguments.output, console, make_executor)

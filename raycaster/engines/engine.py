@@ -29,6 +29,8 @@ class Engine(ABC):
         code: what the register `engine` reads.
         colour: of its marks and lines in plots; one that Okabe and Ito chose for this.
         marker: of its points in plots, as Matplotlib names it.
+        usual_build: how long its default design usually takes to convert and to build with Verilator, on two cores;
+            estimated from processor time.
         screens: those that it can fill, by name and rows.
         rect_latency: cycles from `fetch` to the rectangle.
         margin: how far outside a rectangle's bounds a primary ray may pass that hits it, in world units.
@@ -41,6 +43,7 @@ class Engine(ABC):
     code: ClassVar[int]
     colour: ClassVar[str]
     marker: ClassVar[str]
+    usual_build: ClassVar[str]
     screens: ClassVar[Mapping[tuple[str, int], Screen]] = SCREENS
     rect_latency: ClassVar[int] = 1
     margin: ClassVar[int] = 0

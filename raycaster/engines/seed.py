@@ -31,6 +31,7 @@ class Seed(LineBufferedEngine):
 
     name, code = "seed", 0
     colour, marker = "#D55E00", "o"
+    usual_build = "30 s"
     margin, turns, divides = 1, False, True
 
     def culls(self, options: Options) -> bool:
