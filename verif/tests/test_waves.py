@@ -13,7 +13,6 @@ from pathlib import Path
 
 import pytest
 from conftest import BUILD, SMALL_SCENE
-from rich.console import Console
 
 from raycaster.debug.probes.ray import Ray, fields
 from raycaster.debug.recorder import build_and_record
@@ -22,6 +21,7 @@ from raycaster.debug.wave_files import View, write_files
 from raycaster.debug.waves import Waves, signed
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
+from raycaster.output import Console
 from raycaster.rtl.common.records import Signs
 from raycaster.rtl.engine.ray_sequencer import RayState
 from raycaster.sim.monitor import CLOCK_NS

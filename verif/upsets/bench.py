@@ -14,7 +14,7 @@ from random import Random
 
 import cocotb
 import numpy as np
-from cocotb.handle import ArrayObject, HierarchyObject, LogicArrayObject, LogicObject
+from cocotb.handle import ArrayObject, HierarchyObject, LogicArrayObject, LogicObject, PackedObject
 from cocotb.simtime import get_sim_time
 from cocotb.triggers import ClockCycles, FallingEdge, SimTimeoutError, with_timeout
 
@@ -24,7 +24,7 @@ from raycaster.sim.harness import Harness
 from raycaster.sim.monitor import CLOCK_NS, VideoError
 from raycaster.verif.random_scenes import random_scene
 
-Register = LogicObject | LogicArrayObject | ArrayObject
+Register = LogicObject | LogicArrayObject | PackedObject | ArrayObject
 """A register, or a memory."""
 
 KINDS = (*8 * ("upset",), "reset", "bus")
