@@ -127,7 +127,7 @@ def test_an_interrupted_run_leaves_the_pictures(tmp_path, monkeypatch):
     def interrupted(model, bench, job, directory):
         begun.append(job.scene)
         os.kill(os.getpid(), signal.SIGINT)
-        time.sleep(0.3)
+        time.sleep(3)
         raise SimulationError("the simulation ended without a result")
 
     monkeypatch.setattr(simulate, "run_bench", interrupted)
