@@ -8,11 +8,11 @@
 module group_safe #(
     parameter UNITS = 4, parameter UNIT_BITS = 2, parameter RECTANGLES = 12, parameter INDEX_BITS = 4,
     parameter SLOPE_BITS = 9, parameter DISTANCE_BITS = 10, parameter WAY_BITS = 18, parameter WALK_BITS = 18,
-    parameter GROWTH_BITS = 11, parameter LOOK_BITS = 24
+    parameter GROWTH_BITS = 11
 ) (
     input clk, input [RECTANGLES-1:0] load, input signed [SLOPE_BITS-1:0] column, input signed [SLOPE_BITS-1:0] row,
     input usable, input [1:0] axis, input signed [DISTANCE_BITS-1:0] distance, input signed [WAY_BITS-1:0] way_q,
-    input [LOOK_BITS-1:0] look, input [5*GROWTH_BITS-1:0] growth, input [5*WALK_BITS-1:0] start,
+    input [5*GROWTH_BITS-1:0] growth, input [5*WALK_BITS-1:0] start,
     input [5*WALK_BITS-1:0] at_ray, input [UNIT_BITS-1:0] ray, input [INDEX_BITS-1:0] rectangle
 );
 localparam WIDE = WALK_BITS + UNIT_BITS + 2;
@@ -20,7 +20,7 @@ localparam WIDE = WALK_BITS + UNIT_BITS + 2;
 wire [RECTANGLES-1:0] may_hit;
 group_tester dut (
     .clk(clk), .load(load), .column_slope(column), .row_slope(row), .may_hit(may_hit),
-    .facet_word({usable, axis, distance, way_q, look}), .growth_word(growth), .start_word(start)
+    .facet_word({usable, axis, distance, way_q}), .growth_word(growth), .start_word(start)
 );
 
 // The five, the way along p and the bounds low and high on p and on q, at both ends of the group, and at this ray.

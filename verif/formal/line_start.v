@@ -54,25 +54,14 @@ end
 (* anyconst *) reg signed [FACTOR_BITS-1:0] view, first_column;
 always @* assume (view == VIEW_DISTANCE && first_column == -CENTRE);
 wire [2:0] to_end = {ended == 2, ended == 1, ended == 0};
+line_starter dut (
+    .clk(clk), .reset(reset), .start_line(start_line), .row_slope(row_slope), .loaded(loaded),
+    .start_sweep(start_sweep), .enter(enter), .camera_word(camera), .aim_x(aim[0 +: SLOPE_BITS]),
+    .aim_y(aim[SLOPE_BITS +: SLOPE_BITS]), .aim_z(aim[2*SLOPE_BITS +: SLOPE_BITS])
+);
+(* hierconn *) wire [PIXELS-1:0] \dut.sweeps ;
+always @* if (ready) assert (\dut.sweeps == to_end[PIXELS-1:0]);
 generate
-    if (PIXELS > 1) begin: design
-        line_starter dut (
-            .clk(clk), .reset(reset), .start_line(start_line), .row_slope(row_slope), .loaded(loaded),
-            .start_sweep(start_sweep), .enter(enter), .camera_word(camera), .aim_x(aim[0 +: SLOPE_BITS]),
-            .aim_y(aim[SLOPE_BITS +: SLOPE_BITS]), .aim_z(aim[2*SLOPE_BITS +: SLOPE_BITS])
-        );
-        (* hierconn *) wire [1:0] \dut.sweeps ;
-        always @* if (ready) assert (\dut.sweeps == to_end[1:0]);
-    end
-    else begin: design
-        line_starter dut (
-            .clk(clk), .reset(reset), .start_line(start_line), .row_slope(row_slope), .loaded(loaded),
-            .start_sweep(start_sweep), .enter(enter), .camera_word(camera), .aim_x(aim[0 +: SLOPE_BITS]),
-            .aim_y(aim[SLOPE_BITS +: SLOPE_BITS]), .aim_z(aim[2*SLOPE_BITS +: SLOPE_BITS])
-        );
-        (* hierconn *) wire \dut.first_sweep ;
-        always @* if (ready) assert (\dut.first_sweep == to_end[0]);
-    end
     genvar axis;
     for (axis = 0; axis < 3; axis = axis + 1) begin: along
         wire signed [BASIS_BITS-1:0] forward = camera[(8-axis)*BASIS_BITS +: BASIS_BITS];

@@ -99,7 +99,7 @@ def _avalon(config: Configuration, small: bool) -> Property:
         "reads answered once and in order, no write lost, commit atomic, sticky bits and interrupt kept",
         config,
         _label(config),
-        ("avalon_interface",),
+        ("avalon_interface", "camera_mem", "rect_mem"),
         {
             "ADDRESS_BITS": address_bits(config.table),
             "VERSION_WORD": register_map(config.table)["version"].reset,
@@ -423,7 +423,6 @@ def _group(config: Configuration, small: bool) -> Property:
             "WAY_BITS": walk_bits(config),
             "WALK_BITS": wide_walk_bits(config),
             "GROWTH_BITS": WIDE_BITS,
-            "LOOK_BITS": _look_bits(config),
         },
         induction=2,
         reach=4,

@@ -185,12 +185,16 @@ class Result:
 
 
 def parts_of(proof: Property, verilog: Mapping[str, str]) -> list[str]:
-    """The modules of a proof, and all that they instantiate except within those that are cut."""
+    """The modules of a proof, and all that they instantiate except within those that are cut.
+
+    A module that the wrapper has stands in for the generated one.
+    """
     parts = list(proof.modules)
+    own = re.findall(r"^module (\w+)", (WRAPPERS / f"{proof.wrapper}.v").read_text(), re.MULTILINE)
     for module in parts:
         inside = "" if module in proof.cut else verilog[f"{module}.v"]
         found = re.findall(r"^(\w+) (?:#\([^;]*?\) )?\w+_i \($", inside, re.MULTILINE)
-        parts += [one for one in dict.fromkeys(found) if one not in parts]
+        parts += [one for one in dict.fromkeys(found) if one not in (*parts, *own)]
     return parts
 
 

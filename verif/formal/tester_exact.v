@@ -24,15 +24,6 @@ wire [SLOPE_BITS-1:0] denominator;
 
 wire [RECT_BITS-1:0] rect = {axis, position, 24'd0, u_low, u_high, v_low, v_high};
 wire [2:0] signs = {backward[0], backward[1], backward[2]};
-wire [DISTANCE_BITS + 2 + (REFLECTIONS > 1 ? 3 : 0):0] mirror_word =
-    {mirrored, mirror_axis, distance_1, met[0], met[1], met[2]} >> (REFLECTIONS > 1 ? 0 : 3);
-rect_tester dut (
-    .clk(clk), .steps_find_intersection(started), .rect_word(rect), .eye_x(x), .eye_y(y), .eye_z(z),
-    .signs_word(signs), .slope_dx(dx), .slope_dy(dy), .slope_dz(dz),
-    .mirror_word(mirror_word), .hit(hit),
-    .at_mirror(at_mirror), .numerator(numerator), .denominator(denominator)
-);
-
 // The mirror's distance is read a cycle after all else.
 wire [SLOPE_BITS-1:0] mirror_slope = mirror_axis == 0 ? dx : mirror_axis == 1 ? dy : dz;
 wire mirror_back = mirror_axis == 0 ? backward[0] : mirror_axis == 1 ? backward[1] : backward[2];
@@ -41,6 +32,15 @@ wire signed [WIDE-1:0] mirror_place = {1'b0, mirror};
 wire signed [WIDE-1:0] distance = mirror_back ? mirror_eye - mirror_place : mirror_place - mirror_eye;
 reg [EYE_BITS-2:0] distance_1;
 always @(posedge clk) distance_1 <= distance;
+wire [EYE_BITS - 1 + 2 + (REFLECTIONS > 1 ? 3 : 0):0] mirror_word =
+    {mirrored, mirror_axis, distance_1, met[0], met[1], met[2]} >> (REFLECTIONS > 1 ? 0 : 3);
+rect_tester dut (
+    .clk(clk), .steps_find_intersection(started), .rect_word(rect), .eye_x(x), .eye_y(y), .eye_z(z),
+    .signs_word(signs), .slope_dx(dx), .slope_dy(dy), .slope_dz(dz),
+    .mirror_word(mirror_word), .hit(hit),
+    .at_mirror(at_mirror), .numerator(numerator), .denominator(denominator)
+);
+
 function in_reach(input signed [EYE_BITS-1:0] place);
     in_reach = place >= -LAST * REFLECTIONS && place <= LAST * (REFLECTIONS + 1);
 endfunction
