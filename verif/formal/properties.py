@@ -99,7 +99,7 @@ def _avalon(config: Configuration, small: bool) -> Property:
         "reads answered once and in order, no write lost, commit atomic, sticky bits and interrupt kept",
         config,
         _label(config),
-        ("avalon_interface", "camera_mem", "rect_mem"),
+        ("avalon_interface", "camera_mem", "rect_mem", "rect_slot", "rect_sorter", "scene_word"),
         {
             "ADDRESS_BITS": address_bits(config.table),
             "VERSION_WORD": register_map(config.table)["version"].reset,
@@ -163,7 +163,7 @@ def _order(config: Configuration, small: bool) -> Property:
         "budget's cycles",
         config,
         _label(config),
-        (CONTROLS[config.engine].__name__,),
+        (CONTROLS[config.engine].__name__, "ray_sequencer", "rect_sequencer"),
         {
             "RECTANGLES": config.rectangles,
             "INDEX_BITS": index_bits(config),
@@ -207,7 +207,7 @@ def _counters(config: Configuration, small: bool) -> Property:
         "the renderer's counters stay in range, a group is written once and into its row",
         config,
         _label(config),
-        ("ray_caster_renderer",),
+        ("ray_caster_renderer", "clock_gate", "ray_caster", "ray_control", "ray_sequencer", "rect_sequencer", *cut),
         {
             "RECTANGLES": config.rectangles,
             "INDEX_BITS": index_bits(config),
@@ -233,7 +233,7 @@ def _divider(config: Configuration, part: int, small: bool) -> Property:
         "quotient * divisor + remainder = dividend, rounded as configured, or overflow; without fraction bits",
         config,
         f"{_label(config)} {('digits', 'product', 'result')[part]}",
-        ("divider",),
+        ("divider", "divider_step"),
         {
             "WIDTH": position_bits(config),
             "BITS": config.divider_bits,
@@ -253,7 +253,13 @@ def _finder(config: Configuration, small: bool) -> Property:
         "a rectangle is hit, how far and where, as golden's a + b * (c - d) / e says, at full width",
         config,
         _label(config),
-        ("intersection_finder",),
+        (
+            "intersection_finder",
+            "intersection_helper",
+            "magnitude",
+            *(("cell_parity",) if config.patterns else ()),
+            "divider",
+        ),
         {
             "POSITION_BITS": position_bits(config),
             "FRACTION_BITS": config.fraction_bits,
@@ -278,7 +284,7 @@ def _tester(coordinate_bits: int, reflections: int, small: bool) -> Property:
         "a rectangle is hit where the quotient's point is within it and beyond the mirror, or with it in a corner",
         widths,
         f"{coordinate_bits} bits, {reflections} mirrors",
-        ("rect_tester",),
+        ("rect_tester", "extent_tester"),
         {
             "COORDINATE_BITS": widths.coordinate,
             "SLOPE_BITS": widths.slope,
@@ -301,7 +307,7 @@ def _tester_products(config: Configuration) -> Property:
         "a rectangle is hit where the cross-multiplied definition says, and no distance is too wide, at full width",
         config,
         _label(config),
-        ("rect_tester",),
+        ("rect_tester", "extent_tester"),
         {
             "COORDINATE_BITS": COORDINATE_BITS,
             "LOOK_BITS": _look_bits(config),
@@ -361,7 +367,7 @@ def _cell(config: Configuration, small: bool) -> Property:
         "the digits that tell a pattern's cell are the quotient's, as long division has them, at full width",
         config,
         _label(config),
-        ("cell_finder",),
+        ("cell_finder", "divider_step"),
         {
             "COORDINATE_BITS": COORDINATE_BITS,
             "LOOK_BITS": _look_bits(config),
@@ -382,7 +388,7 @@ def _slope(config: Configuration, small: bool) -> Property:
         "a pixel's slope in the exact engine is the definition's, in sign and magnitude, and fits, at full width",
         config,
         _label(config),
-        ("turned_generator" if config.turn else "ray_generator",),
+        (*(("turned_generator", "slope_component") if config.turn else ("ray_generator",)), "magnitude"),
         {
             "TURN": int(config.turn),
             "SLOPE_BITS": exact_slope_bits(config),
@@ -539,7 +545,7 @@ def _blend(config: Configuration, small: bool) -> Property:
         "a pixel is golden's blend of what rays saw, with mirrors of half or one of any quarters, at full width",
         config,
         _label(config),
-        ("colour_blend",),
+        ("colour_blend", *(("colour_mix" if mixes(config) else "colour_mean",) if mirrors else ()), "colour_seen"),
         {
             "MIRRORS": mirrors,
             "MIXES": int(mixes(config)),
@@ -598,7 +604,7 @@ def _shares(config: Configuration, small: bool) -> Property:
         "a pixel is golden's blend of what its rays saw one after the other, at full width",
         config,
         _label(config),
-        ("colour_combiner",),
+        ("colour_combiner", "colour_share", "colour_sum"),
         {
             "MATERIALS": int(config.materials),
             "REFLECTIONS": config.reflections,
@@ -619,7 +625,7 @@ def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: in
         "a ray hits a rectangle where that from the mirrored eye, by a division, is within it and beyond the mirror",
         widths,
         f"{coordinate_bits} and {slope_bits} bits, {mirrors} mirrors{', turned' if turned else ''}",
-        ("ray_fold", "ray_tester", "fold_tester"),
+        ("ray_fold", "ray_tester", "fold_tester", "bound_tester"),
         {
             "COORDINATE_BITS": widths.coordinate,
             "SLOPE_BITS": widths.slope,
@@ -637,12 +643,14 @@ def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: in
 
 def _unit_wiring(config: Configuration, small: bool) -> Property:
     generator = "turned_generator" if config.turn else "ray_generator"
+    patterns = ("cell_finder", "divider_step", "pattern_colour") if config.patterns else ()
     return Property(
         "unit-wiring",
         "each block of a unit gets what its own proof takes for given, and of the nearest hit, at full width",
         config,
         _label(config),
-        ("exact_unit", "exact_control"),
+        ("exact_unit", "exact_control", "ray_sequencer", "rect_sequencer", "rect_tester", "nearest_hit", "eye_register",
+         "colour_combiner", "colour_share", "colour_sum", generator, *patterns),
         {
             "PATTERNS": int(config.patterns),
             "REFLECTIONS": config.reflections,
@@ -694,7 +702,7 @@ def _beam_tester(config: Configuration, folded: bool, small: bool) -> Property:
         "a rectangle is hit where the cross-multiplied definition from the mirrored eye says, at full width",
         config,
         f"{_label(config)} {'folded' if folded else 'straight'}",
-        ("fold_tester" if folded else "ray_tester",),
+        ("fold_tester" if folded else "ray_tester", "bound_tester"),
         {
             "FOLDED": int(folded),
             "STAGED": int(is_staged(config)),
@@ -751,7 +759,7 @@ def _fixed(engine: str, alike: bool, small: bool) -> Property:
         "a fixed scene's table gives every rectangle as the memory does that holds the scene's words",
         FixedTable(general, fixed),
         f"{engine}, {'alike' if alike else 'different'}",
-        ("rect_mem", "rect_rom"),
+        ("rect_mem", "rect_slot", "rect_sorter", "rect_rom"),
         {
             "INDEX_BITS": index_bits(fixed),
             "ADDRESS_BITS": address_bits(general.table),

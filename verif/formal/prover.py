@@ -128,7 +128,7 @@ class Property:
         design: the configuration whose Verilog is read; a screen, for the video generator alone; widths, for a
             rectangle test, the processor's host or a bridge alone; or the two places that rectangles may come from.
         label: the design in a few characters.
-        modules: the generated modules that are part of the proof, with all that they instantiate.
+        modules: the generated modules that it is about; all that they instantiate is part of the proof too.
         cut: modules whose outputs become arbitrary.
         any_product: multiplication, but by a constant, becomes an arbitrary function, one for each width of products.
         parameters: of the wrapper.
