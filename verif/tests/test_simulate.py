@@ -4,13 +4,11 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import shutil
-import signal
 import subprocess
 import sys
-import time
+import threading
 from dataclasses import replace
 from pathlib import Path
 
@@ -117,20 +115,27 @@ def test_pictures_of_another_screen_or_engine_are_kept_apart():
 
 
 def test_an_interrupted_run_leaves_the_pictures(tmp_path, monkeypatch):
-    """Those of the run before: Ctrl-C ends the simulator, and what has not begun does not begin."""
+    """Ctrl-C ends the simulator that runs, no other scene begins, and the pictures of the last run stay."""
     design = design_for(SMALL_SCENE, {"screen": "tiny", "units": 8, "rectangles": 3})
     before = tmp_path / design.name / "frame.png"
     with replaced(before.parent) as partial:
         (partial / before.name).write_text("as it was")
     begun = []
+    running, ended = threading.Event(), threading.Event()
 
-    def interrupted(model, bench, job, directory):
+    def run_bench(model, bench, job, directory):
         begun.append(job.scene)
-        os.kill(os.getpid(), signal.SIGINT)
-        time.sleep(3)
+        running.set()
+        ended.wait()
         raise SimulationError("the simulation ended without a result")
 
-    monkeypatch.setattr(simulate, "run_bench", interrupted)
+    def interrupted_wait(*arguments, **named):
+        running.wait()
+        threading.Timer(1, ended.set).start()  # after the pool was told to begin nothing more
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(simulate, "run_bench", run_bench)
+    monkeypatch.setattr(simulate, "wait", interrupted_wait)
     model = Model(design.configuration, "icarus", tmp_path, False, False)
     runs = [replace(design, path=path) for path in (SMALL_SCENE, Path("second.toml"), Path("third.toml"))]
     with pytest.raises(KeyboardInterrupt):
