@@ -8,8 +8,11 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
+from types import CodeType
 from typing import Any
 
+from myhdl import _util, _Waiter
 from myhdl._block import _Block
 from myhdl._simulator import _signals
 
@@ -23,19 +26,22 @@ def elaboration() -> Iterator[None]:
 
     MyHDL asks for the stack at each instance and process, of which it only wants a few frames and their functions'
     names. Python's own answer opens files, and goes through all modules for each frame that has no file: 64 units take
-    twice as long with it, and six times as long under pytest. And MyHDL keeps every signal ever made, and resets them
-    all after each simulation, so that each takes longer than the one before.
+    twice as long with it, and six times as long under pytest. It also reads each process's source anew for each
+    instance, several times. And MyHDL keeps every signal ever made, and resets them all after each simulation, so that
+    each takes longer than the one before.
 
-    `inspect.stack` is replaced for the whole process while this lasts: other threads then get frames without their
-    source. A second elaboration waits for the first one's end.
+    `inspect`'s functions are replaced for the whole process while this lasts: other threads then get frames without
+    their source. A second elaboration waits for the first one's end.
     """
     with _ELABORATING, forgetting():
-        with_source = inspect.stack
-        inspect.stack = _callers
+        before = [(module, name, getattr(module, name)) for module, name, _ in _REPLACED]
+        for module, name, quick in _REPLACED:
+            setattr(module, name, quick)
         try:
             yield
         finally:
-            inspect.stack = with_source
+            for module, name, slow in before:
+                setattr(module, name, slow)
 
 
 @contextmanager
@@ -53,10 +59,44 @@ def elaborated(block: Any, **arguments: Any) -> _Block:
     return block(**arguments)
 
 
-def _callers() -> list[inspect.FrameInfo]:
-    """What `inspect.stack` returns, but for the source."""
+_DEEPEST = 6
+"""Frames that MyHDL looks at, at most."""
+
+
+def _callers(*_: Any) -> list[inspect.FrameInfo]:
+    """Return the first frames of `inspect.stack`, or of the caller's `inspect.getouterframes`, without their source."""
     found, frame = [], sys._getframe()
-    while frame := frame.f_back:
+    while len(found) < _DEEPEST and (frame := frame.f_back):
         code = frame.f_code
         found.append(inspect.FrameInfo(frame, code.co_filename, frame.f_lineno, code.co_name, None, None))
     return found
+
+
+def _code_of(what: Any) -> CodeType | None:
+    """Return the code of a function or of a frame, which all that one `def` makes share."""
+    return getattr(what, "__code__", None) or getattr(what, "f_code", None)
+
+
+def _once(function: Any) -> Any:
+    """Let one of `inspect`'s functions look at each code once."""
+
+    @cache
+    def known(file: str, code: CodeType) -> Any:  # equal code may be in two files
+        return function(code)
+
+    def quick(what: Any) -> Any:
+        code = _code_of(what)
+        return known(code.co_filename, code) if code else function(what)
+
+    return quick
+
+
+_REPLACED = (
+    (inspect, "stack", _callers),
+    (inspect, "getouterframes", _callers),
+    (inspect, "getsourcelines", _once(inspect.getsourcelines)),
+    (inspect, "getsourcefile", _once(inspect.getsourcefile)),
+    (_util, "_dedent", _dedent := cache(_util._dedent)),
+    (_Waiter, "_dedent", _dedent),
+)
+"""Functions that MyHDL calls, and what takes their place."""

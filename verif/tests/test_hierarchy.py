@@ -21,7 +21,7 @@ from myhdl._simulator import _signals
 from raycaster import rtl
 from raycaster.configuration import configure
 from raycaster.convert import write
-from raycaster.convert.elaboration import elaboration
+from raycaster.convert.elaboration import _DEEPEST, elaboration
 from raycaster.convert.hierarchy import HierarchyError, Module, Port, convert_hierarchy
 from raycaster.convert.take_home import FILE_LIST
 from raycaster.convert.write import write_verilog
@@ -1224,12 +1224,16 @@ def test_a_slice_elsewhere_is_no_port_here(tmp_path):
 
 def test_elaboration_leaves_nothing_behind():
     before = inspect.stack
-    slow = [(frame[0], frame[3]) for frame in inspect.stack()]
+    slow = [(frame[0], frame[3]) for frame in inspect.stack()][:_DEEPEST]
+    lines, file = inspect.getsourcelines(swap_low.func), inspect.getsourcefile(swap_low.func)
     known = len(_signals)
     with elaboration():
         assert inspect.stack is not before
         # What MyHDL reads of a frame.
         assert [(frame[0], frame[3]) for frame in inspect.stack()] == slow
+        assert [(frame[0], frame[3]) for frame in inspect.getouterframes(inspect.currentframe())] == slow
+        for _ in range(2):
+            assert (inspect.getsourcelines(swap_low.func), inspect.getsourcefile(swap_low.func)) == (lines, file)
         signal = bit()
         assert _signals[-1] is signal
     assert inspect.stack is before
@@ -1322,6 +1326,7 @@ def test_the_header_says_what_and_never_when(tmp_path):
         assert not re.search(r"\b20\d\d-|(?<!\[)\b\d\d:\d\d|MyHDL|Generated", path.read_text())
 
 
+@pytest.mark.slow
 def test_any_process_writes_the_same_bytes(tmp_path):
     # Python's sets, of which MyHDL makes use, come in another order with another hash seed.
     numbers = ("1", "2", "3", "4")
