@@ -3,19 +3,25 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
 import re
 import shutil
+import subprocess
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import pytest
 
+from raycaster.cli.__main__ import main
 from raycaster.configuration import Configuration
+from raycaster.convert import provenance
 from raycaster.convert.elaboration import forgetting
 from raycaster.options import run_command
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import MODELS_VARIABLE, build_model, run_bench
+from raycaster.verif.leaf import Leaf
 
 ROOT = Path(__file__).parents[2]
 BUILD = ROOT / "build"
@@ -28,24 +34,41 @@ Bench = Callable[..., Path]
 # One store for all tests, for the commands that they run, and for both workers: what one has built all have.
 os.environ.setdefault(MODELS_VARIABLE, str(BUILD / "model"))
 
-SLOW = Path(__file__).with_name("slow.txt")
+WITH_MYHDL = pytest.StashKey[bool]()
+"""Whether a test's leaves are simulated in MyHDL, too."""
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark what `slow.txt` names, and refuse a line of it that is about no test of the files that were collected."""
-    lines = [line for line in SLOW.read_text().splitlines() if not line.startswith("#")]
-    names = {item: item.nodeid.rpartition("verif/tests/")[2] for item in items}
-    for item, name in names.items():
-        said = [line for line in lines if name.startswith(line.lstrip("!"))]
-        if said and not said[-1].startswith("!"):
-            item.add_marker("slow")
-    if not any("::" in argument for argument in config.args):
-        files = {name.partition("::")[0] for name in names.values()}
-        for line in lines:
-            of_it = line.lstrip("!")
-            if of_it.partition("::")[0] in files and not any(name.startswith(of_it) for name in names.values()):
-                raise pytest.UsageError(f"{SLOW.name}: no test begins with {of_it}")
+    """Mark slow parameter sets, and choose the set of each test whose leaves are simulated in MyHDL, too.
+
+    Raises:
+        pytest.UsageError: a mark is about no set of its test, where whole files were collected.
+    """
+    in_myhdl: dict[str, pytest.Item] = {}
+    unused: dict[tuple[str, str], bool] = {}
+    for item in items:
+        test, _, sets = item.nodeid.partition("[")
+        for mark in item.iter_markers("slow_sets"):
+            slow, quick = mark.args, mark.kwargs.get("quick", ())
+            for begin in (*slow, *quick):
+                unused[test, begin] = unused.get((test, begin), True) and not sets.startswith(begin)
+            if sets.startswith(slow or "") and not sets.startswith(tuple(quick)):
+                item.add_marker("slow")
+        # The last one that is not slow.
+        if test not in in_myhdl or not item.get_closest_marker("slow"):
+            in_myhdl[test] = item
+    for item in items:
+        item.stash[WITH_MYHDL] = item is in_myhdl[item.nodeid.partition("[")[0]]
+    if any(unused.values()) and not any("::" in argument for argument in config.args):
+        said = ", ".join(f"{test}: {begin}" for (test, begin), of_none in unused.items() if of_none)
+        raise pytest.UsageError(f"slow_sets: no parameter set begins so: {said}")
+
+
+@pytest.fixture(autouse=True)
+def one_set_in_myhdl(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Simulate MyHDL for one parameter set of each leaf test, the converted Verilog for all."""
+    monkeypatch.setattr(Leaf, "with_myhdl", request.node.stash.get(WITH_MYHDL, True))
 
 
 @pytest.fixture(autouse=True)
@@ -53,6 +76,12 @@ def forgotten_signals() -> Iterator[None]:
     """Those of a test end with it: MyHDL would look at them in each later simulation, which took 40 times as long."""
     with forgetting():
         yield
+
+
+@pytest.fixture
+def names_for_digests(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Digest no design for a test that keeps figures: its name stands for the digest of its Verilog."""
+    monkeypatch.setattr(provenance, "verilog_digest", lambda configuration: configuration.name)
 
 
 @pytest.fixture
@@ -110,6 +139,19 @@ def refuses(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str])
         return error
 
     return refused
+
+
+def called(*words: str, cwd: Path, program: Callable[[list[str]], int | None] = main) -> subprocess.CompletedProcess:
+    """Run a command line in a directory, as a shell would, but in this process, which has everything loaded."""
+    out, err = io.StringIO(), io.StringIO()
+    with (
+        contextlib.chdir(cwd),
+        contextlib.redirect_stdout(out),
+        contextlib.redirect_stderr(err),
+        pytest.raises(SystemExit) as ended,
+    ):
+        run_command(lambda: program(list(words)))
+    return subprocess.CompletedProcess(words, ended.value.code, out.getvalue(), err.getvalue())
 
 
 @pytest.fixture

@@ -6,12 +6,11 @@ from __future__ import annotations
 import json
 import re
 import subprocess
-import sys
 from collections import Counter
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
+from conftest import called
 
 from raycaster.configuration import configure
 from raycaster.convert.write import write_verilog
@@ -38,6 +37,7 @@ INSTANCES = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @families
 def test_modules_and_their_multipliers(family, tmp_path):
     """Each ray unit has two multipliers, no other module has one, and the modules add up to the whole."""
@@ -61,6 +61,7 @@ UNIT = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @families
 def test_what_culling_takes(family, tmp_path):
     """No multiplier, as products are sums, and less than four ray units take."""
@@ -82,6 +83,7 @@ def test_what_culling_takes(family, tmp_path):
     assert taken.registers < 4 * unit.registers
 
 
+@pytest.mark.slow_sets("cycloneive")
 @pytest.mark.parametrize(("family", "multipliers"), [("ecp5", 1), ("cycloneive", 2)])
 def test_wide_multipliers(family, multipliers, tmp_path):
     """9 by 17 bits: one of 18 bits, or two of 9."""
@@ -91,6 +93,7 @@ def test_wide_multipliers(family, multipliers, tmp_path):
     assert measure(wide, FAMILIES[family], tmp_path / "area").multipliers == 4 * multipliers
 
 
+@pytest.mark.slow
 def test_one_more_register_shows(tmp_path, monkeypatch):
     family = FAMILIES["cycloneive"]
     sound = measure(SMALL, family, tmp_path / "sound")
@@ -118,7 +121,7 @@ def test_the_model_foretells_what_is_linear():
     assert model.fitting(replace(chip, elements=119), 320) == 0
 
 
-def test_bridges(tmp_path, monkeypatch, capsys):
+def test_bridges(tmp_path, monkeypatch, capsys, names_for_digests):
     """Each one by itself, out of a design that has it."""
 
     def count(config, family, directory, top):
@@ -140,7 +143,7 @@ FEATURES = {
 }
 
 
-def test_features(tmp_path, monkeypatch, capsys):
+def test_features(tmp_path, monkeypatch, capsys, names_for_digests):
     """Each one alone and all, of a ray unit of the seed engine and of the others as a whole."""
 
     def count(config, family, directory, top):
@@ -150,7 +153,9 @@ def test_features(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(area, "measure", count)
     kept = tmp_path / "features.json"
     area.main(["--features", "--output", str(tmp_path / "area"), "--keep", str(kept)])
-    designs = json.loads(kept.read_text())["figures"]["designs"]
+    outcome = json.loads(kept.read_text())
+    designs = outcome["figures"]["designs"]
+    assert len(outcome["provenance"]["designs"]) == len(designs)
     found = {engine: [tuple(row["options"]) for row in designs if row["engine"] == engine] for engine in FEATURES}
     assert (found, len(designs)) == (FEATURES, 14)
     assert [row["tables"] for row in designs] == [100, 110, 120, 130, *2 * (100, 101, 110, 120, 131)]
@@ -179,7 +184,7 @@ def test_each_pin_has_a_register(tmp_path):
     assert not subprocess.run(call, capture_output=True, text=True, check=True).stderr
 
 
-def test_placing_and_routing_alone(tmp_path, monkeypatch, capsys):
+def test_placing_and_routing_alone(tmp_path, monkeypatch, capsys, names_for_digests):
     """What nextpnr reports is kept, with the seed that it was given."""
     calls = []
 
@@ -255,7 +260,7 @@ def test_every_chip_belongs_to_a_family():
 def test_the_command(tmp_path):
     options = ("--screen", "tiny", "--units", "4", "--rectangles", "1", "--allow-underrun", "--culling", "0")
     options += ("--family", "ecp5")
-    done = command(tmp_path, *options)
+    done = called("area", *options, cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "area: usually 3 min, less where results are kept\n")
     published = json.loads((tmp_path / "build" / "area" / "area.json").read_text())["families"]["ecp5"]
     assert set(published) == {"units", "shared", "unit"}
@@ -271,16 +276,11 @@ def test_the_command(tmp_path):
     ],
 )
 def test_bad_options_get_one_line(tmp_path, options, complaint):
-    done = command(tmp_path, *options)
+    done = called("area", *options, cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr.startswith(complaint)
     assert done.stderr.count("\n") == 1
     assert not any(tmp_path.iterdir())
-
-
-def command(directory: Path, *options: str) -> subprocess.CompletedProcess[str]:
-    call = (sys.executable, "-m", "raycaster.cli", "area", *options)
-    return subprocess.run(call, cwd=directory, capture_output=True, text=True, check=False)
 
 
 def test_a_design_is_counted_once(tmp_path, monkeypatch):

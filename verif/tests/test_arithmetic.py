@@ -135,6 +135,7 @@ def test_array_multiplier(width, count, kept, tmp_path):
         assert outputs == {"product": product % (1 << kept)}, (inputs, repeat())
 
 
+@pytest.mark.slow_sets("F1", "F4")
 @arithmetic
 def test_divider(config, tmp_path):
     leaf = Leaf(
@@ -170,6 +171,7 @@ def test_divider(config, tmp_path):
             assert result["quotient"] == quotient, (dividend, divisor, repeat())
 
 
+@pytest.mark.slow_sets("F1", "F4")
 @arithmetic
 def test_intersection_helper(config, tmp_path):
     width = position_bits(config)

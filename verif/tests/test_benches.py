@@ -40,23 +40,27 @@ def run_with_seed(bench: Bench, *arguments: Any, **options: Any) -> None:
         pytest.fail(f"{error}; {repeat()}")
 
 
+@pytest.mark.slow_sets(quick=["exact"])
 @on_every_engine
 def test_motion(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
     """Changes show in whole frames only; StartScreen and its interrupt."""
     bench("verif.benches.motion_bench", configuration, simulator, scene)
 
 
+@pytest.mark.slow
 def test_motion_full_size(bench: Bench):
     """The same at 640x480."""
     bench("verif.benches.motion_bench", configure(), "verilator", FULL_SCENE)
 
 
+@pytest.mark.slow_sets("beam", "everything", "icarus", "seed")
 @on_every_engine
 def test_registers(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
     """The register map, and what its bits do."""
     run_with_seed(bench, "verif.benches.register_bench", configuration, simulator, scene)
 
 
+@pytest.mark.slow_sets("beam", "everything", "icarus", "seed")
 @on_every_engine
 def test_traffic(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
     """Random traffic and a reset at every moment: each answer, the interrupt, the sync and the picture."""
@@ -65,6 +69,7 @@ def test_traffic(bench: Bench, simulator: str, configuration: Configuration, sce
     run_with_seed(bench, "verif.benches.traffic_bench", configuration, simulator, seeds=seeds)
 
 
+@pytest.mark.slow_sets("beam-pairs", "exact", "icarus", "seed")
 @pytest.mark.parametrize(
     ("simulator", "options"),
     [

@@ -6,13 +6,12 @@ from __future__ import annotations
 import json
 import re
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SMALL_SCENE
+from conftest import SMALL_SCENE, called
 from small_program import write_program
 
 from raycaster.configuration import configure
@@ -61,6 +60,7 @@ def shown(design, sources, tmp_path):
 
 
 # Reset that ends a clock later leaves the pixels at another place among the cycles of the shift clock.
+@pytest.mark.slow_sets("icarus-1", "icarus-2-0")
 @pytest.mark.parametrize(("simulator", "frames", "late_ns"), [("icarus", 2, 0), ("icarus", 1, 20), ("verilator", 2, 0)])
 def test_the_dvi_stream_is_golden(design, shown, simulator, frames, late_ns):
     for frame in shown(frames=frames, simulator=simulator, late_ns=late_ns):
@@ -68,6 +68,7 @@ def test_the_dvi_stream_is_golden(design, shown, simulator, frames, late_ns):
 
 
 # Which of these a button is in, and the way in which it moves, no other shares.
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("buttons", "direction"),
     [
@@ -92,6 +93,7 @@ PROGRAM_STEP = 8
 """World units that the small program moves the camera each frame."""
 
 
+@pytest.mark.slow
 def test_a_processor_on_the_board(tmp_path):
     """Its program says on the serial port what it says, and shows what it shows, moved by the board's buttons."""
     config = configure(engine="exact", screen="tiny", rectangles=4)
@@ -117,6 +119,7 @@ def test_a_processor_on_the_board(tmp_path):
 LINKED = ".blue({}),\n    .green(green),\n    .red({}),\n    .pixel(pixel),\n    .link"
 
 
+@pytest.mark.slow_sets(quick=["flag"])
 @pytest.mark.parametrize(
     ("file", "right", "wrong", "complaint"),
     [
@@ -141,6 +144,7 @@ def test_a_broken_link_is_noticed(design, shown, file, right, wrong, complaint):
         assert not np.array_equal(frame, golden(design))
 
 
+@pytest.mark.slow
 def test_reflections_are_those_asked_for(tmp_path):
     """As if the scene had named them itself."""
     options = {"screen": "tiny", "units": 16, "rectangles": 4}
@@ -200,6 +204,7 @@ def test_too_slow_gets_one_line(tmp_path, monkeypatch, capsys, clk, shift_clk, c
     assert capsys.readouterr().out.count("MISSED") == 1
 
 
+@pytest.mark.slow_sets("verify dvi")
 @pytest.mark.parametrize(
     ("options", "complaint"),
     [
@@ -218,8 +223,7 @@ def test_too_slow_gets_one_line(tmp_path, monkeypatch, capsys, clk, shift_clk, c
 )
 @pytest.mark.parametrize("words", [("bitstream",), ("verify", "dvi")], ids=" ".join)
 def test_bad_options_get_one_line(tmp_path, words, options, complaint):
-    command = (sys.executable, "-m", "raycaster.cli", *words, *options)
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    done = called(*words, *options, cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr.startswith(complaint)
     assert done.stderr.count("\n") == 1

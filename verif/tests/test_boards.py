@@ -77,6 +77,7 @@ _PINS = {
 _STANDARDS = {"lpf": r'^IOBUF PORT "(\S+)" IO_TYPE=\w', "pcf": r"^set_io (\S+) .*# LV", "cst": r'^IO_PORT "(\S+)" \w+='}
 
 
+@pytest.mark.slow_sets(quick=["icebreaker"])
 @every_board
 def test_each_port_has_a_pin_and_a_standard(name, tmp_path):
     """Of the top as Yosys has it, with nothing that it warns of."""
@@ -177,6 +178,7 @@ def test_the_smallest_products_are_left_to_logic():
     assert left_to_logic(text, 4, 20) == ["e"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in BOARDS if name not in ("ulx3s",)])
 def test_a_small_bitstream(name, tmp_path):
     """All the way, within the multipliers that there are; every clock is fast enough."""
@@ -190,6 +192,7 @@ def test_a_small_bitstream(name, tmp_path):
     assert len((tmp_path / "out" / f"{name}.{FLOWS[board.flow].bitstream}").read_bytes()) > 10_000
 
 
+@pytest.mark.slow_sets(quick=["the other"])
 @pytest.mark.parametrize(
     ("right", "wrong"),
     [
@@ -235,6 +238,7 @@ endmodule
 """
 
 
+@pytest.mark.slow_sets(quick=["tang"])
 @pytest.mark.parametrize("name", ["icepi_zero", "colorlight_i9", "tang_nano_20k"])
 def test_the_dvi_stream_is_golden(name, tmp_path):
     board = find_board(name, OpenBoard)

@@ -23,6 +23,7 @@ def small(bus: str):
     return configure(screen="tiny", units=8, rectangles=3, bus=bus)
 
 
+@pytest.mark.slow_sets("apb-verilator", "axi4lite-verilator", "wishbone-icarus", "wishbone-verilator")
 @pytest.mark.parametrize("simulator", SIMULATORS)
 @pytest.mark.parametrize("bus", BRIDGED)
 def test_bus(bench: Bench, bus, simulator):
@@ -31,6 +32,7 @@ def test_bus(bench: Bench, bus, simulator):
     bench("verif.benches.bus_bench", small(bus), simulator, SMALL_SCENE, seeds=(first, first + 1, first + 2))
 
 
+@pytest.mark.slow_sets(quick=["axi4lite-1"])
 @pytest.mark.parametrize("start", [1, 2])
 @pytest.mark.parametrize("bus", BRIDGED)
 def test_random_start(bench: Bench, bus, start):
@@ -39,6 +41,7 @@ def test_random_start(bench: Bench, bus, start):
     bench("sim.frame_bench", small(bus), "verilator", SMALL_SCENE, plusargs=values)
 
 
+@pytest.mark.slow_sets(quick=["axi4lite-s_axi"])
 @pytest.mark.parametrize(
     ("bus", "right", "wrong", "complaint"),
     [

@@ -190,6 +190,7 @@ def test_explanations_are_of_modules_that_are_there(output):
     assert every == there
 
 
+@pytest.mark.slow
 def test_verilator_counts(output):
     """A small design, from the model to the figures."""
     configuration = configure(screen="tiny", units=2, rectangles=1, reflections=0, divider_bits=3)
@@ -256,6 +257,7 @@ def counted(scene: Scene, config: Configuration) -> np.ndarray:
     return counts.reshape(SHAPE)
 
 
+@pytest.mark.slow_sets("options1", "options2")
 @pytest.mark.parametrize(
     "options",
     [

@@ -19,7 +19,7 @@ from itertools import zip_longest
 from pathlib import Path
 
 import pytest
-from conftest import BUILD, ROOT
+from conftest import BUILD, ROOT, called
 from rich.console import Console
 
 from raycaster import outcomes
@@ -60,9 +60,7 @@ def make(*arguments: str, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
 @cache
 def accepts(words: tuple[str, ...]) -> str:
     """What the program says against these words, which it checks before it gives its help."""
-    command = [sys.executable, "-m", "raycaster.cli", *words, "--help"]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    return done.stderr
+    return called(*words, "--help", cwd=ROOT).stderr
 
 
 def test_what_a_command_does_not_take():
@@ -563,6 +561,7 @@ def test_how_designs_grow(tmp_path: Path, monkeypatch):
     assert rows[3]["refused"].startswith("reflections: ")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("break_it", [False, True])
 def test_a_frame_is_timed(tmp_path: Path, monkeypatch, break_it):
     """Of a scene that fills the table; a wrong pixel shows."""

@@ -17,33 +17,48 @@ from raycaster.verif import everything
 class Item:
     """A collected test."""
 
-    def __init__(self, name: str):
-        self.nodeid, self.marks = f"verif/tests/{name}", []
+    def __init__(self, name: str, *marks: pytest.Mark):
+        self.nodeid, self.marks, self.added, self.stash = f"verif/tests/{name}", marks, [], {}
+
+    def iter_markers(self, name: str) -> list[pytest.Mark]:
+        return [mark for mark in self.marks if mark.name == name]
 
     def add_marker(self, mark: str) -> None:
-        self.marks.append(mark)
+        self.added.append(mark)
+
+    def get_closest_marker(self, name: str) -> bool:
+        return name in self.added
 
 
-def marked(tmp_path, monkeypatch, lines: str, *arguments: str) -> list[bool]:
-    """Of three tests, which are slow."""
-    (tmp_path / "slow.txt").write_text(lines)
-    monkeypatch.setattr(conftest, "SLOW", tmp_path / "slow.txt")
-    items = [Item("test_a.py::test_b[1]"), Item("test_a.py::test_b[2]"), Item("test_a.py::test_c")]
+def collected(mark: pytest.MarkDecorator, *arguments: str) -> tuple[list[bool], list[bool]]:
+    """Which of three parameter sets and an unmarked test are slow, and which are simulated in MyHDL, too."""
+    sets = ("a-1", "a-2", "b-1")
+    items = [*(Item(f"test_a.py::test_b[{one}]", mark.mark) for one in sets), Item("test_a.py::test_c")]
     conftest.pytest_collection_modifyitems(SimpleNamespace(args=arguments), items)
-    return [item.marks == ["slow"] for item in items]
+    return [item.added == ["slow"] for item in items], [item.stash[conftest.WITH_MYHDL] for item in items]
 
 
-def test_a_line_is_how_names_begin(tmp_path, monkeypatch):
-    lines = "# why\ntest_a.py::test_b\n!test_a.py::test_b[2\ntest_other.py::test_b\n"
-    assert marked(tmp_path, monkeypatch, lines) == [True, False, False]
+@pytest.mark.parametrize(
+    ("mark", "slow", "in_myhdl"),
+    [
+        (pytest.mark.slow_sets("a"), [True, True, False, False], [False, False, True, True]),
+        (pytest.mark.slow_sets("a", quick=["a-1"]), [False, True, False, False], [False, False, True, True]),
+        (pytest.mark.slow_sets(quick=["a-2"]), [True, False, True, False], [False, True, False, True]),
+        (pytest.mark.slow_sets("b", "a-1"), [True, False, True, False], [False, True, False, True]),
+    ],
+    ids=["some", "some with an exception", "all with an exception", "two"],
+)
+def test_a_mark_is_how_parameter_sets_begin(mark, slow, in_myhdl):
+    """The last set that is not slow is simulated in MyHDL."""
+    assert collected(mark) == (slow, in_myhdl)
 
 
-@pytest.mark.parametrize("line", ["test_a.py::test_d", "!test_a.py::test_b[3"])
-def test_a_line_about_nothing_is_refused(tmp_path, monkeypatch, line):
-    """But where only some tests of a file were asked for."""
-    with pytest.raises(pytest.UsageError, match=r"slow.txt: no test begins with test_a"):
-        marked(tmp_path, monkeypatch, f"{line}\n")
-    assert marked(tmp_path, monkeypatch, f"{line}\n", "verif/tests/test_a.py::test_c") == [False] * 3
+@pytest.mark.parametrize("mark", [pytest.mark.slow_sets("d"), pytest.mark.slow_sets("a", quick=["c"])], ids=["d", "c"])
+def test_a_mark_about_nothing_is_refused(mark):
+    """Tests that were asked for by name may lack some of a test's sets."""
+    with pytest.raises(pytest.UsageError, match=r"slow_sets: no parameter set begins so: \S+test_b: [cd]$"):
+        collected(mark)
+    collected(mark, "verif/tests/test_a.py::test_b[a-1]")
 
 
 def test_all_needs_a_clone(tmp_path, monkeypatch):
@@ -69,7 +84,7 @@ def test_absent():
 
 
 @pytest.fixture
-def run_all(tmp_path, monkeypatch):
+def run_all(tmp_path, monkeypatch, names_for_digests):
     """Runs the command on a small clone; returns its exit code, the tests that ran, and the figures."""
     clone, ran, kept = tmp_path / "clone", tmp_path / "ran", tmp_path / "clone" / "results" / "kept.json"
     tests = clone / "verif" / "tests"

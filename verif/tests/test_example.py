@@ -104,6 +104,7 @@ endmodule
 """
 
 
+@pytest.mark.slow_sets("204061")
 @pytest.mark.parametrize(("colour", "alike"), [("204060", True), ("204061", False)])
 def test_apb_background(colour, alike, tmp_path):
     """In plain Verilog, as it stands beside what `make verilog` writes."""
@@ -123,6 +124,7 @@ def test_apb_background(colour, alike, tmp_path):
     assert done.stdout.split() == [str(clocks), "pixels,", "0" if alike else str(clocks), "others"]
 
 
+@pytest.mark.slow_sets("fault")
 @pytest.mark.parametrize(
     ("simulator", "fault"),
     [("icarus", ""), ("icarus", "255 - "), ("verilator", "")],

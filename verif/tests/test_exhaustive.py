@@ -18,6 +18,7 @@ def run_briefly(bench: Bench, spoil=str) -> exhaustive.Outcome:
     return run(build_bench(bench, spoil), bench, seed())
 
 
+@pytest.mark.slow_sets("divider-f0t-d1", "intersection-f0t-d3")
 @pytest.mark.parametrize("label", ["divider-f0t-d1", "divider-f0n-d2", "intersection-f0t-d3", "intersection-f8n-d2"])
 def test_a_part_of_the_vectors(label):
     outcome = run_briefly(BENCHES[label])
@@ -38,6 +39,7 @@ def test_every_division_is_in_the_full_run():
     assert [bench.total for bench in full if bench.kind == "divider"] == [67_592 * 512] * 6
 
 
+@pytest.mark.slow_sets("divider-f0n-d2", "divider-f0t-d3", "intersection-f1t", "intersection-f4n")
 @pytest.mark.parametrize(
     ("label", "before", "after"),
     [

@@ -7,13 +7,11 @@ import dataclasses
 import itertools
 import json
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT, SMALL_SCENE, Bench
+from conftest import ROOT, SMALL_SCENE, Bench, called
 from rich.console import Console
 
 from raycaster.configuration import Configuration, configure
@@ -254,6 +252,7 @@ def fixed_config(count: int, engine: str, camera: bool, alike: bool = False, **o
     return configure(engine=engine, fixed=fixed, allow_underrun=True, **options)
 
 
+@pytest.mark.slow_sets("2", "7", "8")
 @pytest.mark.parametrize(("engine", "latency"), [("seed", 1), ("beam", 2)])
 @pytest.mark.parametrize(
     ("count", "alike", "options"),
@@ -334,6 +333,7 @@ def test_what_a_row_knows_of_fixed_rectangles(camera):
 # Whole designs --------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow_sets("beam-all", "beam-rects", "exact-rects", "seed-all", "seed-rects")
 @pytest.mark.parametrize("scope", SCOPES)
 @pytest.mark.parametrize("engine", ENGINES)
 def test_no_pixel_changes(bench: Bench, engine, scope):
@@ -343,6 +343,7 @@ def test_no_pixel_changes(bench: Bench, engine, scope):
     assert result["worst_group_cycles"] <= design.configuration.group_cycles
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("engine", "options"),
     [("seed", {"fraction_bits": 2, "rounding": "nearest"}), ("seed", {}), ("exact", {}), ("beam", {})],
@@ -354,6 +355,7 @@ def test_two_reflections(bench: Bench, engine, options):
     bench("sim.frame_bench", design.configuration, "icarus", scene)
 
 
+@pytest.mark.slow_sets("beam", "exact", "seed")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_any_camera_may_look_at_fixed_rectangles(bench: Bench, engine):
     """With the rectangles in a plane with others and at x = 0 that `rects` leaves out."""
@@ -362,12 +364,14 @@ def test_any_camera_may_look_at_fixed_rectangles(bench: Bench, engine):
     bench("verif.benches.camera_bench", design.configuration, "verilator", scene, seeds=tuple(range(24)))
 
 
+@pytest.mark.slow_sets("all")
 @pytest.mark.parametrize("scope", SCOPES)
 def test_what_is_fixed_ignores_writes(bench: Bench, scope):
     design = fix(SMALL_SCENE, {"engine": "exact", "screen": "tiny"}, scope).design
     bench("verif.benches.fixed_bench", design.configuration, "icarus", SMALL_SCENE)
 
 
+@pytest.mark.slow
 def test_nothing_in_sight(bench: Bench, tmp_path):
     path = tmp_path / "nothing.toml"
     path.write_text(
@@ -379,6 +383,7 @@ def test_nothing_in_sight(bench: Bench, tmp_path):
         bench("sim.frame_bench", design.configuration, "icarus", path)
 
 
+@pytest.mark.slow_sets("exact", "seed")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_rectangle_wrongly_left_out_is_caught(bench: Bench, engine):
     """Of one pass only, which is the least that can go wrong."""
@@ -391,6 +396,7 @@ def test_a_rectangle_wrongly_left_out_is_caught(bench: Bench, engine):
         bench("sim.frame_bench", broken, "icarus", SMALL_SCENE)
 
 
+@pytest.mark.slow_sets("beam-all", "beam-rects", "exact", "seed")
 @pytest.mark.parametrize("scope", SCOPES)
 @pytest.mark.parametrize("engine", ENGINES)
 def test_what_is_fixed_has_no_memory(engine, scope, tmp_path):
@@ -403,6 +409,7 @@ def test_what_is_fixed_has_no_memory(engine, scope, tmp_path):
     assert files == again
 
 
+@pytest.mark.slow
 def test_two_boxes_cost_less_than_half(tmp_path):
     """In tables, registers and multipliers. It was a quarter while the general design kept rectangles in registers."""
     scene = ROOT / "examples" / "two_boxes.toml"
@@ -433,6 +440,7 @@ def test_the_least_fraction_that_meets_an_error():
     assert {one.configuration.engine for one in search.candidates(BOXES, {"engine": "beam"}, (), None)} == {"beam"}
 
 
+@pytest.mark.slow
 def test_more_rectangles_than_the_default_has(tmp_path):
     """The general design is then a larger one."""
     scene, text = tmp_path / "many.toml", BOXES.read_text()
@@ -442,6 +450,7 @@ def test_more_rectangles_than_the_default_has(tmp_path):
     assert max(one.configuration.rectangles for one in found if one.scope == "all") <= 12
 
 
+@pytest.mark.slow
 def test_the_smallest_is_kept_and_built(tmp_path, capfd):
     """The whole way, on a small scene and one engine."""
     output = tmp_path / "fit"
@@ -483,8 +492,7 @@ def test_a_choice_for_another_scene_is_refused(tmp_path, monkeypatch):
     ],
 )
 def test_what_cannot_be_found_is_one_line(arguments, complaint):
-    command = [sys.executable, "-m", "raycaster.cli", "fit", str(BOXES), *arguments]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    done = called("fit", str(BOXES), *arguments, cwd=ROOT)
     assert done.returncode == 2
     said = done.stderr.removeprefix("fit: usually 4 min per scene, less where results are kept\n")
     assert re.fullmatch(f"error: .*{complaint}.*\n", said)

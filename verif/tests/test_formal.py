@@ -372,6 +372,31 @@ NOT_FROM_RESET = {"control-runs-on"}
 """The fault shows where a row is abandoned: z3 finds no run of 66 cycles in 15 minutes. Its induction step fails."""
 
 
+@pytest.mark.slow_sets(
+    quick=[
+        "apb",
+        "axi4lite",
+        "blend-exact",
+        "contest-products",
+        "eye-exact",
+        "fixed-rects",
+        "fold-products",
+        "group-safe",
+        "host-transfers",
+        "line-sections",
+        "nearest-depth",
+        "ray-order",
+        "render-counters",
+        "row-setup",
+        "shares-exact",
+        "slope-exact",
+        "turned-walks",
+        "unit-wiring",
+        "video-timing",
+        "walked-products",
+        "wishbone",
+    ]
+)
 @pytest.mark.parametrize(
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
@@ -386,6 +411,32 @@ def test_holds(proof, output):
     assert result.proved, f"{result.outcome}: {result.detail}; trace {result.trace}"
 
 
+@pytest.mark.slow_sets(
+    quick=[
+        "apb-read-again",
+        "axi-answer-dropped",
+        "corner-missed",
+        "distance-turned",
+        "divisor-equal",
+        "edge-missed",
+        "growth-unsigned",
+        "hsync-a-pixel-long",
+        "mirrored-at-half",
+        "never-equal",
+        "not-held",
+        "one-half",
+        "one-too-few-at-full-width",
+        "own-counts-once",
+        "read-again",
+        "slope-a-bit-short",
+        "swept-once",
+        "up-is-down",
+        "verdict-of-the-next",
+        "wishbone-another",
+        "write-lost",
+        "wrong-operand",
+    ]
+)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_fault_is_found(fault, output):
     """A run from reset contradicts the property; a failing induction step would not say that the fault is ever seen."""

@@ -21,12 +21,14 @@ from raycaster.scene import load_scene, packaged_scenes
 PLAIN = packaged_scenes(plain=True)
 
 
+@pytest.mark.slow_sets(quick=["boxes"])
 @pytest.mark.parametrize("scene", PLAIN.values(), ids=PLAIN)
 def test_full_size(bench: Bench, scene):
     """Every scene that needs no more than the default design, as `make sim` shows it."""
     check_full_size(bench, scene, "seed")
 
 
+@pytest.mark.slow_sets("beam", "seed")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_scenes_with_looks(bench: Bench, engine):
     """Every scene whose camera is turned or whose rectangles have looks, small, by one design of each engine."""
@@ -41,11 +43,13 @@ def test_scenes_with_looks(bench: Bench, engine):
         assert not result["underrun"], scene.stem
 
 
+@pytest.mark.slow
 def test_full_size_exact(bench: Bench):
     """As `make sim ENGINE=exact` shows it."""
     check_full_size(bench, ROOT / "scenes" / "mirror_room.toml", "exact")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("rows", "scale", "pixels", "shown"),
     [(240, 1, 1, 640 * 480), (200, 2, 1, 640 * 400), (180, 4, 1, 1280 * 720), (180, 6, 2, 1920 * 1080)],
@@ -77,6 +81,7 @@ def check_full_size(bench: Bench, scene, engine: str) -> dict:
     return result
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ENGINES)
 def test_tiny_in_icarus(engine):
     """On the small screen in Icarus, through the command itself: with no, one and two reflections, and at the edges."""
@@ -91,6 +96,15 @@ def test_tiny_in_icarus(engine):
         assert result["wrong_vs_golden"] == 0
 
 
+@pytest.mark.slow_sets(
+    quick=[
+        "engine=beam-reflections=0",
+        "engine=beam-reflections=4-scale=1",
+        "engine=exact-reflections=0",
+        "engine=exact-reflections=4-materials",
+        "units=2-",
+    ]
+)
 @pytest.mark.parametrize(
     "options",
     [

@@ -463,6 +463,7 @@ def test_row_register(live, tmp_path):
             kept = inputs["given"]
 
 
+@pytest.mark.slow_sets("beam-vga")
 @by_screen
 def test_rect_walker(config, tmp_path):
     """Whole rows, and many beginnings of rows, in which the ways and the bounds advance at different times."""
@@ -785,12 +786,20 @@ def folded(config: Configuration, camera, slope, mirrors) -> dict[str, int]:
     return fields | {"axis": axis, "distance": word(distance, DISTANCE_BITS)}
 
 
+@pytest.mark.slow_sets(
+    quick=[
+        "beam-tiny48-s2-u1-r12-m2-c8-turn",
+        "beam-vga180-s6-u2-r12-m1-c8",
+        "beam-vga240-s2-u1-r12-m2-c8-turn-materials-patterns",
+    ]
+)
 @by_screen
 def test_ray_tester(config, tmp_path):
     """A ray now and then; what walks comes a cycle later, and its slope's magnitudes then, or a cycle after that."""
     check_tester(ray_tester, {}, config, tmp_path)
 
 
+@pytest.mark.slow_sets(quick=["beam-tiny48-s2-u1-r12-m2-c8-turn"])
 @by_depth
 def test_fold_tester(config, tmp_path):
     """A ray now and then; its bounds come a cycle later, and its slope's magnitudes then, or two cycles later."""
@@ -877,6 +886,9 @@ def check_tester(block, ports, config: Configuration, tmp_path) -> None:
             assert fields == [at_mirror, n, e], case
 
 
+@pytest.mark.slow_sets(
+    quick=["beam-vga180-s4-u1-r12-m1-c8-turn", "beam-vga240-s2-u1-r12-m2-c8-turn", "beam-vga240-s2-u1-r12-m4-c8-turn"]
+)
 @pytest.mark.parametrize(
     "config",
     [
@@ -1400,6 +1412,7 @@ def to_edge(random: np.random.Generator, config: Configuration, axis: int, plane
     return found
 
 
+@pytest.mark.slow_sets("beam-tiny48-s2-u1-r12-m0", "beam-vga180")
 @pytest.mark.parametrize(
     "config",
     [
@@ -1524,6 +1537,17 @@ def race(random: np.random.Generator, config: Configuration, slopes) -> tuple[np
     raise AssertionError(f"no ray has two rectangles, or one by a mirror, after {ends} reflections; {repeat()}")
 
 
+@pytest.mark.slow_sets(
+    "beam-tiny48-s1-u1-r3-m1-c8-24",
+    "beam-tiny48-s1-u1-r3-m2-c8-400",
+    "beam-tiny48-s1-u1-r3-m2-c8-turn-200",
+    "beam-tiny48-s1-u1-r5",
+    "beam-tiny48-s2-u1-r8-m2-c8-12",
+    "beam-tiny48-s2-u1-r8-m2-c8-turn-materials-patterns-12",
+    "beam-tiny48-s2-u2-r3",
+    "beam-tiny48-s2-u2-r5",
+    "beam-vga180",
+)
 @pytest.mark.parametrize(
     ("config", "lines"),
     [
@@ -1724,6 +1748,7 @@ def test_beam_pass(mirrors, tmp_path):
         assert {name: outputs[cycle][name] for name in values} == values, case
 
 
+@pytest.mark.slow_sets("beam-tiny48-s1", "beam-tiny48-s2-u2-r3-m2-c8-1")
 @pytest.mark.parametrize(
     ("config", "first", "lines"),
     [

@@ -207,6 +207,7 @@ def leaf_of_tester(config: Configuration, directory) -> Leaf:
     )
 
 
+@pytest.mark.slow_sets("seed-vga240-u1-", "seed-vga240-u320")
 @designs
 def test_group_tester(config, tmp_path):
     """Products as rect_setup makes them, of groups at the screen's borders and in its middle, and edges on the rays."""
@@ -250,6 +251,7 @@ def test_group_tester(config, tmp_path):
     assert seen == {0, 1}
 
 
+@pytest.mark.slow_sets(quick=["exact-vga240-u64", "seed-tiny48"])
 @designs
 def test_group_tester_at_its_limits(config, tmp_path):
     """Any products, at which each comparison is decided by its last bit, one bit or the sign."""
@@ -360,6 +362,7 @@ def any_start(random: np.random.Generator, rows: int, groups: int) -> tuple[int,
             return int(row), int(offset)
 
 
+@pytest.mark.slow_sets("seed-vga240-u1-", "seed-vga240-u320")
 @designs
 def test_group_culler(config, tmp_path):
     """A frame's first group, then others in their order and out of it, with time enough to look ahead or too little."""

@@ -115,6 +115,7 @@ controls = pytest.mark.parametrize(
 )  # fmt: skip
 
 
+@pytest.mark.slow_sets("seed-vga240-u32-r12", "seed-vga240-u32-r32", "seed-vga240-u32-r8")
 @controls
 def test_ray_control(config, tmp_path):
     leaf = control_leaf(ray_control, config, tmp_path)
@@ -288,6 +289,16 @@ def check_ray_unit(leaf: Leaf, config: Configuration, rays: int = 24) -> None:
         assert alive is None or outputs[cycle]["fate_alive"] == alive, (cycle, repeat())
 
 
+@pytest.mark.slow_sets(
+    "seed-tiny48-u16",
+    "seed-vga240-u16-r8-m1-f0t-d2-c8-materials",
+    "seed-vga240-u16-r8-m2-f0t-d2-c8-k0",
+    "seed-vga240-u32-r8-m1-f0t-d1-c8",
+    "seed-vga240-u320",
+    "seed-vga240-u40",
+    "seed-vga240-u5",
+    quick=["seed-vga240-u16-r8-m2-f0t-d2-c8-k0-materials-patterns"],
+)
 @pytest.mark.parametrize(
     "config",
     [
@@ -357,6 +368,14 @@ def remembered(config: Configuration, cycles: list[TraceCycle], usable: list[int
     return [*indices, queue[blends - 1], queue[blends - (slot_length(config) > 1)]]
 
 
+@pytest.mark.slow_sets(
+    "exact-vga240-u1-r4-m2",
+    "exact-vga240-u4-r6-m2",
+    "exact-vga240-u5",
+    "seed-vga240-u1-",
+    "seed-vga240-u4-r5-m2-f0t-d3-c8-k0",
+    "seed-vga240-u5",
+)
 @pytest.mark.parametrize(
     "config",
     [
@@ -531,6 +550,7 @@ def renderer_leaf(config: Configuration, directory) -> Leaf:
     )
 
 
+@pytest.mark.slow_sets("seed-tiny4-u4-r1-m2")
 @pytest.mark.parametrize(
     "config",
     [
@@ -653,6 +673,7 @@ def scene_in_view(random: np.random.Generator, config: Configuration, axis: int)
     raise AssertionError(f"no scene shows where its camera is along {AXES[axis]}; {repeat()}")
 
 
+@pytest.mark.slow_sets("beam-tiny2-s2-u2", "seed")
 @pytest.mark.parametrize(
     "config",
     [
@@ -770,6 +791,14 @@ def check_bus(config: Configuration, stimulus: list[dict[str, int]], outputs: li
     return answers
 
 
+@pytest.mark.slow_sets(
+    "",
+    quick=[
+        "beam-tiny4-s1-u1-r2-m1-c8-turn",
+        "exact-tiny4-u4-r3-m2-c8-turn",
+        "seed-tiny4-u4-r3-m1-f0t-d1-c8-materials-patterns",
+    ],
+)
 @pytest.mark.parametrize(
     "config",
     [
@@ -833,6 +862,7 @@ def test_ray_caster_module(config, tmp_path):
     assert answers["engine"]["fraction_bits"] == config.fraction_bits
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "config",
     [

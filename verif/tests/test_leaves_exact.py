@@ -874,6 +874,7 @@ def held_inputs(camera, background, reflections) -> dict[str, int]:
     return {**two_complement(camera, 9, "camera"), "picture_background": colour, "picture_reflections": reflections}
 
 
+@pytest.mark.slow_sets("exact-vga240-u1-", "exact-vga240-u5")
 @pytest.mark.parametrize(
     "config",
     [

@@ -174,6 +174,9 @@ def aimed_ray(config: Configuration, random: np.random.Generator) -> tuple:
     return origin, slope, table, golden
 
 
+@pytest.mark.slow_sets(
+    "seed-vga240-u32-r4-m1-f0n", "seed-vga240-u32-r4-m1-f0t-d3", "seed-vga240-u32-r4-m1-f1", "seed-vga240-u32-r4-m1-f4"
+)
 @finders
 def test_intersection_finder(config, tmp_path):
     random = np.random.default_rng(seed())
@@ -433,6 +436,7 @@ def test_colour_share(reflections, materials, tmp_path):
         assert outputs[cycle]["missed"] == missed, (hits, repeat())
 
 
+@pytest.mark.slow_sets("1", "8")
 @pytest.mark.parametrize("materials", [False, True])
 @pytest.mark.parametrize("reflections", [0, 1, 2, 4])
 @pytest.mark.parametrize("colour_bits", [1, 4, 8])

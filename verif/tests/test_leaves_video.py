@@ -17,6 +17,7 @@ from raycaster.verif.leaf import Leaf, reset_signal
 from raycaster.verif.seeds import repeat, seed
 
 
+@pytest.mark.slow_sets("160", "5")
 @pytest.mark.parametrize("colour_bits", [1, 4, 8])
 @pytest.mark.parametrize("units", [1, 5, 32, 64, 160, 320])
 def test_line_buffer(units, colour_bits, tmp_path):

@@ -121,6 +121,7 @@ def test_a_frame_is_golden(example, options, tmp_path):
     assert np.array_equal(pixels(tmp_path / "stream.txt", shape, 8), expected)
 
 
+@pytest.mark.slow_sets("wishbone")
 @pytest.mark.parametrize(("bus", "standard"), [("wishbone", "axi-lite"), ("axi4lite", "wishbone")])
 def test_the_map_is_that_of_the_driver(bus, standard, tmp_path):
     """Of a SoC without a processor, whose bus is of another kind: each register is where C's own header has it."""

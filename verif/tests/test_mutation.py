@@ -72,6 +72,7 @@ def outcomes(result: Result) -> dict[str, int]:
     return count_outcomes(result.mutants)
 
 
+@pytest.mark.slow
 def test_every_operand_catches_every_fault(recorded):
     contract = Expectation((), assumptions={"remainder < divisor": "the division's invariant"})
     result = recorded(range(1 << WIDTH)).run(MUTANTS, 1, contract)
@@ -195,6 +196,7 @@ def test_an_explanation_fits_what_it_names():
         assert not Explanation("", **other).fits(mutant)
 
 
+@pytest.mark.slow
 def test_every_module_is_mutated(tmp_path):
     scene = load_scene(SMALL_SCENE)
     files = []
@@ -230,6 +232,7 @@ def test_a_data_file_with_an_unknown_key_is_an_error(tmp_path):
         expectations(path)
 
 
+@pytest.mark.slow
 def test_the_command_reports(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["--module", "ray_mem", "--mutants", "20", "--jobs", "1", "--build", "build"]) == 0

@@ -33,6 +33,7 @@ def gates(*arguments: object, build: Path) -> int:
         return simulate.main()
 
 
+@pytest.mark.slow
 def test_frame(capsys):
     """Every pixel of a scene on the tiny screen, through the command itself; the second time all is found built."""
     build = BUILD / "test" / "netlist"
@@ -52,6 +53,7 @@ def test_frame(capsys):
     assert max(map(len, re.findall(r"\\(\S+)", file.read_text()))) <= 95, "Verilator's waveforms fail with longer names"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("cells", "some"), [("ice40", ("SB_LUT4", "SB_MAC16", "SB_RAM40_4K")), ("gowin", ("LUT4", "ALU", "DFFRE"))]
 )
@@ -90,6 +92,7 @@ def test_ray_unit(unit):
     check_ray_unit(leaf, config, rays=100)
 
 
+@pytest.mark.slow_sets("LUT4", "TRELLIS_FF")
 @pytest.mark.parametrize(
     ("cell", "name", "sound", "broken"),
     [

@@ -13,12 +13,13 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, SMALL_SCENE
+from conftest import ROOT, SMALL_SCENE, called
 
 from raycaster import output
 from raycaster.fit.fixing import fix, show
 from raycaster.output import Console, emptied, printable, replaced
 from raycaster.scene import Scene, load_scene
+from raycaster.sim.simulator import MODELS_VARIABLE
 
 HOSTILE = "[bold]x[/nope]\x1b[31m :smile: [link=http://x]y\x9b2J\u202e\nz"
 """A name that is broken markup, holds control sequences, and has two lines."""
@@ -86,7 +87,7 @@ def test_a_scene_file_has_a_name_for_its_outputs(tmp_path: Path, name: str, comm
     (build / "sim").mkdir(parents=True)
     (build / "thesis").touch()
     options = TINY if command[0] in ("sim", "trace") else ()
-    done = raycaster(command[0], name, *command[1:], *options, cwd=tmp_path)
+    done = called(command[0], name, *command[1:], *options, cwd=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith(f"error: {printable(name)}: expected a name")
     assert done.stderr.count("\n") == 1
@@ -107,7 +108,7 @@ def test_a_users_directory_is_not_replaced(tmp_path: Path, words: tuple[str, ...
     for directory in (tmp_path / "mine", tmp_path / "de2"):
         directory.mkdir()
         (directory / "thesis").touch()
-    done = raycaster(*words, cwd=tmp_path)
+    done = called(*words, cwd=tmp_path)
     assert done.returncode == 2
     assert "has files in it" in done.stderr.splitlines()[-1]
     assert (tmp_path / "mine" / "thesis").exists()
@@ -142,7 +143,7 @@ def test_names_in_tables(hostile_scene: Path, capsys):
 )
 def test_commands_show_text_as_it_is(hostile_scene: Path, words: tuple[str, ...]):
     """No command that takes a name or a path ends in a traceback or sends a control character to the terminal."""
-    done = raycaster(*words[0].split(), hostile_scene.name, *words[1:], cwd=hostile_scene.parent)
+    done = called(*words[0].split(), hostile_scene.name, *words[1:], cwd=hostile_scene.parent)
     said = done.stdout + done.stderr
     assert said
     assert "Traceback" not in said
@@ -185,9 +186,10 @@ def test_every_console_is_the_projects():
     ],
     ids=" ".join,
 )
-def test_what_the_system_refuses_is_one_line(tmp_path: Path, words: tuple[str, ...]):
+def test_what_the_system_refuses_is_one_line(tmp_path: Path, words: tuple[str, ...], monkeypatch):
+    monkeypatch.delenv(MODELS_VARIABLE)
     (tmp_path / "file").touch()
-    done = raycaster(*words, cwd=tmp_path, env=os.environ | {"RAYCASTER_MODELS": ""})
+    done = called(*words, cwd=tmp_path)
     assert done.returncode == 2, done.stderr
     assert done.stderr.startswith("error: ")
     assert done.stderr.count("\n") == 1

@@ -167,10 +167,12 @@ def written(config, tmp_path) -> Path:
     return tmp_path / "verilog"
 
 
+@pytest.mark.slow_sets("seed-tiny48-u1", "seed-tiny48-u2-r12", "seed-tiny48-u2-r9")
 def test_ports_are_those_of_the_verilog(written):
     check(written)
 
 
+@pytest.mark.slow_sets("seed-tiny48-u1")
 def test_interfaces(written, config):
     calls = tcl(written)
     kinds = {call[1]: call[2:] for call in calls if call[0] == "add_interface"}
@@ -196,6 +198,7 @@ def test_interfaces(written, config):
     assert 1 << address_width - 1 <= last < 1 << address_width
 
 
+@pytest.mark.slow_sets("seed-tiny48-u1")
 def test_files_are_those_of_the_file_list(written):
     calls = tcl(written)
     sources = (written / FILE_LIST).read_text().split()
@@ -207,6 +210,7 @@ def test_files_are_those_of_the_file_list(written):
     assert {call[1] for call in calls if call[0] == "add_fileset_file"} == set(sources)
 
 
+@pytest.mark.slow_sets("seed-tiny48-u1", "seed-tiny48-u2-r", quick=["seed-tiny48-u2-r2"])
 def test_software_gets_the_configuration(written, config):
     macros = {call[1].rpartition(".")[2]: call[2] for call in tcl(written) if call[0] == "set_module_assignment"}
     assert macros["RECTANGLES"] == str(config.rectangles)

@@ -107,6 +107,7 @@ def test_pins_that_are_known_otherwise(name, pins):
     assert find_board(name, QuartusBoard).pins.items() >= pins.items()
 
 
+@pytest.mark.slow_sets(quick=["de1_soc", "de2_115"])
 @pytest.mark.parametrize(
     ("name", "more"),
     [*((name, {}) for name in BOARDS), ("de2", {"colour_bits": 3}), ("de10_lite", {"colour_bits": 8})],
@@ -224,6 +225,7 @@ def test_a_description_is_missing(tmp_path):
         load_board(tmp_path)
 
 
+@pytest.mark.slow
 def test_a_project_is_replaced_as_a_whole(tmp_path):
     board = find_board("de10_lite", QuartusBoard)
     directory = tmp_path / "project"
@@ -247,6 +249,7 @@ source [lindex $argv 0]
 """
 
 
+@pytest.mark.slow_sets("de10_lite", "de2_115")
 @every_board
 def test_constraints_are_tcl_of_these_ports(name, tmp_path):
     board = find_board(name, QuartusBoard)
@@ -375,6 +378,7 @@ endmodule
 """
 
 
+@pytest.mark.slow
 def test_a_board_shows_what_the_system_does(tmp_path):
     directory = tmp_path / "project"
     screen = write(find_board("de10_lite", QuartusBoard), directory).screen_geometry
@@ -445,6 +449,7 @@ def test_quartus_fails(command, tmp_path):
     assert "so far so good" in log.read_text()
 
 
+@pytest.mark.slow
 def test_quartus_fails_without_a_word(command, tmp_path):
     stand_in(tmp_path, "exit 3")
     code, _, err = command()
@@ -452,6 +457,7 @@ def test_quartus_fails_without_a_word(command, tmp_path):
     assert err[0].endswith("quartus.log: exit code 3")
 
 
+@pytest.mark.slow
 def test_quartus_takes_too_long(command, tmp_path, monkeypatch):
     stand_in(tmp_path, "sleep 60")
     monkeypatch.setattr(quartus, "TIMEOUT", 0.5)

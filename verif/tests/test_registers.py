@@ -8,10 +8,10 @@ import json
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from conftest import called
 from systemrdl.node import RegNode
 
 from raycaster.configuration import configure
@@ -126,8 +126,7 @@ def test_the_verilog_decodes_what_the_map_says(tmp_path):
     [(("--rectangles", "33"), "error: rectangles: "), (("--rectangles", "x"), "error: rectangles: ")],
 )
 def test_bad_options_get_one_line(tmp_path, options, complaint):
-    command = (sys.executable, "-m", "raycaster.cli", "registers", *options)
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    done = called("registers", *options, cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr.startswith(complaint)
     assert done.stderr.count("\n") == 1

@@ -247,6 +247,7 @@ def test_options_make_the_configuration_again(options):
 SMALL = configure(screen="tiny", units=1, rectangles=1, reflections=0, allow_underrun=True)
 
 
+@pytest.mark.slow_sets("cases", "cells", "condition", "left")
 @pytest.mark.parametrize(
     "point",
     [
@@ -268,6 +269,7 @@ def test_a_command_repeats_its_point(point, tmp_path):
     assert json.loads(done.stdout) == point.compute()
 
 
+@pytest.mark.slow_sets("words7")
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [
@@ -663,6 +665,7 @@ def small_extent(cases, probed_cases, probed, **others) -> Extent:
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_small_report(tmp_path, monkeypatch):
     """Everything in it once, simulations included; cells are invented."""
 

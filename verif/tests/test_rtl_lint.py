@@ -44,6 +44,7 @@ def findings(tmp_path: Path, body: str, decorator: str = "always_comb") -> list[
     return check(source)
 
 
+@pytest.mark.slow
 def test_the_hardware_is_clean():
     files = sorted(RTL.rglob("*.py"))
     assert len(files) > 20

@@ -13,7 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, SMALL_SCENE
+from conftest import ROOT, SMALL_SCENE, called
 from PIL import Image
 
 from raycaster.configuration import configure
@@ -69,6 +69,7 @@ def test_one_scene(build, scenes, monkeypatch):
     assert "was built before" in _sim(*SMALL_OPTIONS, build=build).stdout
 
 
+@pytest.mark.slow
 def test_two_scenes(build, tmp_path):
     """One picture has both."""
     other = tmp_path / "other.toml"
@@ -215,7 +216,7 @@ def test_mistakes(build, tmp_path, text, options, complaint):
     scene = tmp_path / "mine.toml"
     if text is not None:
         scene.write_text(text)
-    ran = _sim(scene, *options, build=build)
+    ran = called("sim", "--build", str(build), str(scene), *options, cwd=ROOT)
     assert ran.returncode == 2
     assert complaint in ran.stderr
     assert ran.stderr.startswith("error: ")
@@ -239,10 +240,11 @@ def test_a_scene_chooses_what_it_needs(tmp_path):
     assert chosen(TURNED + "mirror = 0") == ("exact", ("turn", "materials"))
 
 
+@pytest.mark.slow
 def test_two_scenes_of_one_name(build, scenes, tmp_path):
     """They would overwrite each other."""
     shutil.copy(scenes / "floor.toml", tmp_path)
-    ran = _sim(scenes / "floor.toml", tmp_path / "floor.toml", build=build)
+    ran = called("sim", str(scenes / "floor.toml"), str(tmp_path / "floor.toml"), cwd=tmp_path)
     assert ran.returncode == 2
     assert "same file name" in ran.stderr
 
@@ -256,7 +258,7 @@ def test_a_packaged_scene_from_anywhere(tmp_path):
 
 
 def test_no_such_scene(tmp_path):
-    ran = _sim("mirror_rooms", build=tmp_path, cwd=tmp_path)
+    ran = called("sim", "mirror_rooms", cwd=tmp_path)
     assert ran.returncode == 2
     assert re.fullmatch(
         r"error: mirror_rooms: no such file, and none of the packaged scenes \(did you mean mirror_room\?\)\n",

@@ -177,6 +177,7 @@ def test_a_feature_of_the_library_is_compiled_alone(tmp_path, own_models, monkey
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_another_shell_finds_the_model(tmp_path, own_models, monkeypatch):
     """Whatever else is on its path."""
     assert build_model(TINY, "icarus", build=tmp_path).fresh

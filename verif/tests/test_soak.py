@@ -54,6 +54,7 @@ def test_the_catalogue_has_what_a_design_shows():
     assert all(len(case.scene.rect) <= 12 for case in catalogue(LOOKS))
 
 
+@pytest.mark.slow
 def test_soak():
     """A handful at full size."""
     build = BUILD / "test" / "soak"
@@ -68,6 +69,7 @@ def test_soak():
     assert all(result["pixels"] == 640 * 480 and result["wrong_vs_golden"] == 0 for result in results)
 
 
+@pytest.mark.slow
 def test_the_exact_engine_draws_the_stiff_catalogue():
     """On the small screen; `make soak STIFF=1 ENGINE=exact` does it at full size."""
     build = BUILD / "test" / "stiff"
@@ -99,6 +101,7 @@ def test_only_what_rounds_is_compared_twice(engine, capsys):
     assert row[1:3] == [engine, "3"] and ("30" in row) == (engine == "seed")
 
 
+@pytest.mark.slow
 def test_a_wrong_scene_shrinks(tmp_path):
     """A design that swaps the bounds on one axis loses rectangles, and one is enough to show it."""
     files = []

@@ -27,6 +27,7 @@ FIRST_FRAME = 1
 """The first that shows the scene."""
 
 
+@pytest.mark.slow_sets(quick=["exact"])
 @pytest.mark.parametrize(
     ("simulator", "options", "scene", "buttons"),
     [
@@ -73,6 +74,7 @@ def test_a_program_runs(simulator, options, scene, buttons, output, tmp_path):
         assert (frames[number] != frames[number - 1]).any() == moves, number
 
 
+@pytest.mark.slow_sets("memory", "serial-port", "torn-commit")
 @pytest.mark.parametrize(
     ("module", "right", "wrong", "complaint"),
     [
@@ -121,6 +123,7 @@ def test_picorv32_is_said_to_be_missing(monkeypatch):
         picorv32.picorv32_source()
 
 
+@pytest.mark.slow
 def test_a_recorded_game(capsys, tmp_path):
     """The firmware's own pictures, on the small screen."""
     pytest.importorskip("ziglang", reason="the extra firmware is not installed")

@@ -74,6 +74,7 @@ PYTHON = re.compile(r"`|\b(?:None|True|False|config|self)\b|\b[a-z_]\w*\.[a-z_]"
 """What no comment in Verilog has: names in backticks, words of Python, attributes."""
 
 
+@pytest.mark.slow_sets("beam-vga180", "exact-tiny48-u2", "exact-vga", "seed-vga")
 @configurations
 def test_tools_have_nothing_to_say(config: Configuration, tmp_path):
     directory = tmp_path / "taken home"
@@ -145,6 +146,7 @@ def test_lists_and_template_work_from_anywhere(prefix, tmp_path):
     assert done.stdout.splitlines() == [f"VERILOG_FILE:{path}" for path in files], done.stderr
 
 
+@pytest.mark.slow
 def test_every_waiver_is_needed(tmp_path):
     waivers = re.findall(r'^lint_off -rule (\w+) -file "(.*?)"(?: -match "(.*)")?$', WAIVERS.read_text(), re.M)
     assert len(waivers) == WAIVERS.read_text().count("lint_off")
@@ -186,6 +188,7 @@ def fusesoc(folder: Path, *target: str) -> subprocess.CompletedProcess[str]:
     return run(folder, *command, HOME=str(folder), XDG_DATA_HOME=str(folder), XDG_CONFIG_HOME=str(folder))
 
 
+@pytest.mark.slow_sets("verilator")
 @pytest.mark.parametrize("tool", ["icarus", "verilator"])
 def test_fusesoc_simulates(core, tool):
     done = fusesoc(core, "sim", "--tool", tool)
@@ -193,6 +196,7 @@ def test_fusesoc_simulates(core, tool):
     assert "PASS: " in done.stdout
 
 
+@pytest.mark.slow_sets("apb", "wishbone")
 @pytest.mark.parametrize("bus", BRIDGED)
 def test_fusesoc_simulates_each_bus(bus, tmp_path):
     write_verilog(replace(SMALL, bus=bus), tmp_path / "cores" / "verilog")

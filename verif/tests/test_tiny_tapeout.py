@@ -34,6 +34,7 @@ def show(design, files: list[Path], output: Path, simulator: str = "verilator") 
     run_bench(model, "raycaster.verif.benches.tiny_tapeout_bench", job, output)
 
 
+@pytest.mark.slow_sets("beam", "icarus-exact")
 @pytest.mark.parametrize(
     ("simulator", "options"),
     [
@@ -50,6 +51,7 @@ def test_a_frame_is_golden(simulator, options, tmp_path, output):
     show(design, write_project(design, tmp_path / "project"), output, simulator)
 
 
+@pytest.mark.slow_sets(quick=["colours"])
 @pytest.mark.parametrize(
     ("right", "wrong"),
     [
@@ -72,6 +74,7 @@ def test_a_wrong_pin_is_noticed(right, wrong, tmp_path, output):
         show(design, files, output, "icarus")
 
 
+@pytest.mark.slow
 def test_the_gates_show_the_same(tmp_path, output, capsys):
     """What is counted is a netlist that draws the picture, with as many registers as were counted."""
     kept = tmp_path / "kept.json"

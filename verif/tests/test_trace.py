@@ -145,6 +145,16 @@ FAULTS = {
 }
 
 
+@pytest.mark.slow_sets(
+    quick=[
+        "beam-colour_mean",
+        "beam-fold_tester",
+        "exact-rect_tester",
+        "seed-divider",
+        "seed-ray_mem",
+        "seed-video_generator",
+    ]
+)
 @pytest.mark.parametrize(
     ("engine", "edit"),
     [pytest.param(engine, edit, id=f"{engine}-{edit[0]}") for engine, edits in FAULTS.items() for edit in edits],

@@ -27,6 +27,9 @@ def broken(directory: Path, module: str, right: str, wrong: str) -> list[Path]:
     return files
 
 
+@pytest.mark.slow_sets(
+    "answered-after-reset", "live-in-mid-frame", "rectangles-too-early", "unmapped-aliases", "waits-in-a-burst"
+)
 @pytest.mark.parametrize(
     ("module", "right", "wrong", "complaint"),
     [
@@ -89,6 +92,7 @@ def test_a_clock_that_rests_too_long_is_noticed(bench: Bench, tmp_path, module, 
         bench("verif.benches.traffic_bench", SMALL, "icarus", seeds=(1, 2), verilog=files, defines=GATED)
 
 
+@pytest.mark.slow_sets("2", "3", "4")
 @pytest.mark.parametrize("start", [1, 2, 3, 4])
 def test_random_start(bench: Bench, start):
     """Registers and memories start with random values, and nothing of them is seen after reset."""

@@ -4,15 +4,13 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from collections import Counter
 from pathlib import Path
 
 import pytest
 from cocotb.handle import ArrayObject
 from cocotb.types import Range
-from conftest import BUILD
+from conftest import BUILD, called
 
 from raycaster.configuration import configure
 from raycaster.sim.job import Job
@@ -96,6 +94,7 @@ def test_a_register_weighs_as_much_as_its_bits():
     assert bits_of(Memory(16, 32)) == 512
 
 
+@pytest.mark.slow
 def test_one_that_hangs_is_told(tmp_path: Path):
     """Lines above the picture are counted no more, once the count is where it never is."""
     files = []
@@ -116,8 +115,7 @@ def test_one_that_hangs_is_told(tmp_path: Path):
     ],
 )
 def test_bad_options_get_one_line(tmp_path, options, complaint):
-    call = (sys.executable, "-m", "raycaster.cli", "verify", "upsets", *options)
-    done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, check=False)
+    done = called("verify", "upsets", *options, cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr.startswith(complaint)
     assert done.stderr.count("\n") == 1

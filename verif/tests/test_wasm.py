@@ -28,6 +28,7 @@ def program(tmp_path, monkeypatch):
     return compiled
 
 
+@pytest.mark.slow_sets("wasm32-wasi")
 @pytest.mark.parametrize("target", [FREESTANDING, WASI])
 def test_is_called_function_by_function(program, target):
     path = program("30", target)
@@ -40,6 +41,7 @@ def test_is_called_function_by_function(program, target):
     assert ("_initialize" in exports) == (target == WASI)
 
 
+@pytest.mark.slow
 def test_compiles_once(program):
     first = program("30")
     before = first.stat().st_mtime_ns

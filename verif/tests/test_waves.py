@@ -169,6 +169,7 @@ def wave(request, tmp_path_factory) -> tuple[Design, Ray, Waves, list[Path]]:
     return design, ray, Waves(waves), files
 
 
+@pytest.mark.slow_sets("beam", "seed")
 def test_window_has_its_rows_alone(wave):
     """From when the first is computed until the last has been shown."""
     design, _, waves, _ = wave

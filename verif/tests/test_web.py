@@ -200,6 +200,7 @@ def test_hashes_equal_golden(page, site):
     assert tour_of(page, MODELS[0].name, name, cameras) == expected
 
 
+@pytest.mark.slow
 def test_a_hundred_hashes_equal_golden(page, whole_site):
     """Over five scenes that need all that a design can have."""
     site, _ = whole_site
@@ -212,12 +213,14 @@ def test_a_hundred_hashes_equal_golden(page, whole_site):
         assert tour_of(page, "walk-looks", name, cameras) == expected, name
 
 
+@pytest.mark.slow
 def test_the_size(whole_site):
     site, size = whole_site
     assert {path.stem for path in (site / "models").iterdir()} == {model.name for model in MODELS} | {"golden"}
     assert size <= MOST_BYTES
 
 
+@pytest.mark.slow
 def test_the_game_is_the_native_one(page, whole_site):
     site, _ = whole_site
     held = load(DEMO)[:40]
@@ -244,6 +247,7 @@ def test_the_game_is_the_native_one(page, whole_site):
     assert len(set(expected)) > 10
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fraction_bits", [0, 4])
 def test_the_engines_side_by_side(page, whole_site, fraction_bits):
     site, _ = whole_site
@@ -261,6 +265,7 @@ def test_the_engines_side_by_side(page, whole_site, fraction_bits):
     assert state["differs"] == np.any(perfect != rounded, axis=2).sum() > 0
 
 
+@pytest.mark.slow
 def test_frames_are_timed(page, whole_site, monkeypatch):
     """In the browser and natively, as a positive number of milliseconds; and the page shows some."""
     monkeypatch.setattr(speed, "SCENES", ("boxes",))

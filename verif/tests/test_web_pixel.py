@@ -155,6 +155,7 @@ def random_pixels(config: Configuration, number: int) -> list[tuple[int, int]]:
     return rng.integers((screen.columns, screen.rows), size=(PIXELS, 2)).tolist()
 
 
+@pytest.mark.slow_sets("seed")
 @of_each
 def test_taps_have_what_golden_has(engine, scenes):
     config, machine = DESIGNS[engine], hardware(engine)
@@ -225,6 +226,7 @@ def assert_told(bounce: dict, ray: Ray, number: int, context: str) -> int:
     return len(tried)
 
 
+@pytest.mark.slow_sets("seed")
 @of_each
 def test_a_life_is_what_golden_has(engine, scenes, page):
     config, machine, facts = DESIGNS[engine], hardware(engine), tap_facts(DESIGNS[engine])

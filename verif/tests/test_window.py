@@ -29,6 +29,7 @@ def unseen(monkeypatch):
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
 
 
+@pytest.mark.slow
 def test_the_game_is_played(unseen, tmp_path, capsys):
     pytest.importorskip("ziglang", reason="the extra firmware is not installed")
     shot = tmp_path / "shot.png"
@@ -43,6 +44,7 @@ def test_the_game_is_played(unseen, tmp_path, capsys):
 
 
 # Two clocks a pixel, and one; with a camera that does not turn, and one that does.
+@pytest.mark.slow_sets("beam-False", "exact")
 @pytest.mark.parametrize(("engine", "turn"), [("exact", True), ("beam", False), ("beam", True)])
 def test_a_walk_is_judged(engine, turn):
     """What is shown while the camera moves is held against the scene that its registers hold."""
@@ -72,6 +74,7 @@ def test_a_walk_is_judged(engine, turn):
     assert judge.wrong == judge.all_wrong == 1
 
 
+@pytest.mark.slow_sets("2")
 @pytest.mark.parametrize("pixels", [1, 2])
 def test_a_camera_looks_around(tmp_path, capsys, pixels):
     """To the right, ahead, to the left and ahead again, by the design that the walk has."""
