@@ -470,8 +470,8 @@ def _parse(arguments: argparse.Namespace, options: Mapping[str, Any]) -> Point:
     return (TimePoint if kind == "time" else HitsPoint)(view, config)
 
 
-def main() -> None:
-    """The command."""
+def main(argv: Sequence[str] | None = None) -> None:
+    """Compute a point and print it, as JSON."""
     parser = argparse.ArgumentParser(prog="python -m raycaster.report.points", description=__doc__)
     parser.add_argument("kind", choices=("picture", "condition", "cells", "left", "time", "cases", "hits"))
     parser.add_argument(
@@ -480,7 +480,7 @@ def main() -> None:
     )
     parser.add_argument("--step", type=int, default=0, help="of what is left out")
     add_configuration_options(parser)
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(argv)
     print(json.dumps(_parse(arguments, given_options(arguments)).compute(), indent=1))
 
 

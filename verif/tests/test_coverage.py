@@ -257,13 +257,12 @@ def counted(scene: Scene, config: Configuration) -> np.ndarray:
     return counts.reshape(SHAPE)
 
 
-@pytest.mark.slow_sets("options1", "options2")
 @pytest.mark.parametrize(
     "options",
     [
         {"divider_bits": 2},
-        {"divider_bits": 2, "culling": False},
-        {"divider_bits": 2, "culling": False, "fraction_bits": 3},
+        pytest.param({"divider_bits": 2, "culling": False}, marks=pytest.mark.slow),
+        pytest.param({"divider_bits": 2, "culling": False, "fraction_bits": 3}, marks=pytest.mark.slow),
         {"engine": "exact", "culling": True},
         {"engine": "exact", "culling": False},
         {"engine": "beam", "units": None, "rectangles": 12, "scale": 1, "allow_underrun": False},

@@ -492,7 +492,7 @@ def test_unknown_property():
     assert "no-such is none of video-timing" in done.stderr
 
 
-def test_what_was_proved_is_not_proved_again(output, monkeypatch):
+def test_what_was_proved_is_not_proved_again(output, monkeypatch, names_for_digests):
     """Until its Verilog or its property changes, or it is asked for; what is kept says what was not proved."""
     monkeypatch.setattr("raycaster.verif.formal.prove.PROOFS", [HOST])
     kept = output / "kept.json"

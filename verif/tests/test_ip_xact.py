@@ -31,10 +31,11 @@ def small(bus: str) -> Configuration:
     return configure(screen="tiny", units=2, rectangles=3, allow_underrun=True, bus=bus)
 
 
-@pytest.fixture(params=BUS_PORTS)
-def written(request, tmp_path) -> tuple[str, Path]:
-    write_verilog(small(request.param), tmp_path / "verilog")
-    return request.param, tmp_path / "verilog"
+@pytest.fixture(params=BUS_PORTS, scope="module")
+def written(request, tmp_path_factory) -> tuple[str, Path]:
+    directory = tmp_path_factory.mktemp("ip_xact") / "verilog"
+    write_verilog(small(request.param), directory)
+    return request.param, directory
 
 
 def read(directory: Path) -> Component:

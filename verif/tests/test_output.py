@@ -214,7 +214,9 @@ def test_a_full_disk(tmp_path: Path, monkeypatch, refuses):
 
 
 @pytest.mark.parametrize("unbuffered", ["", "1"])
-@pytest.mark.parametrize("words", [(), ("--help",), ("scenes",), ("completion", "bash"), ("verilog",)])
+@pytest.mark.parametrize(
+    "words", [(), ("--help",), ("scenes",), ("completion", "bash"), ("verilog", "SCREEN=tiny", "ENGINE=exact")]
+)
 def test_standard_output_that_takes_nothing(tmp_path: Path, words: tuple[str, ...], unbuffered: str):
     given = {"cwd": tmp_path, "env": os.environ | {"PYTHONUNBUFFERED": unbuffered}, "capture_output": False}
     with open("/dev/full", "w") as full:

@@ -156,15 +156,16 @@ def check(directory: Path) -> None:
     assert declared_ports(tcl(directory)) == verilog_ports(directory)
 
 
-@pytest.fixture(params=CONFIGURATIONS, ids=lambda config: config.name)
+@pytest.fixture(params=CONFIGURATIONS, ids=lambda config: config.name, scope="module")
 def config(request) -> Configuration:
     return request.param
 
 
-@pytest.fixture
-def written(config, tmp_path) -> Path:
-    write_verilog(config, tmp_path / "verilog")
-    return tmp_path / "verilog"
+@pytest.fixture(scope="module")
+def written(config, tmp_path_factory) -> Path:
+    directory = tmp_path_factory.mktemp("component") / "verilog"
+    write_verilog(config, directory)
+    return directory
 
 
 @pytest.mark.slow_sets("seed-tiny48-u1", "seed-tiny48-u2-r12", "seed-tiny48-u2-r9")

@@ -25,6 +25,7 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
+from conftest import called
 from distributed import Client
 from rich.console import Console
 
@@ -269,7 +270,6 @@ def test_a_command_repeats_its_point(point, tmp_path):
     assert json.loads(done.stdout) == point.compute()
 
 
-@pytest.mark.slow_sets("words7")
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [
@@ -280,14 +280,20 @@ def test_a_command_repeats_its_point(point, tmp_path):
         (("points", "cells", "ray_unit", "--units", "7"), "error: units: 7 does not divide"),
         (("report",), "error: scenes: has no scene files; run this in the project's directory"),
         (("report", "--scheduler", "nowhere"), "error: scheduler: no Dask scheduler answers at nowhere"),
-        (("report", "--scheduler", "tcp://127.0.0.1:1"), "error: scheduler: no Dask scheduler answers at tcp://127"),
+        pytest.param(
+            ("report", "--scheduler", "tcp://127.0.0.1:1"),
+            "error: scheduler: no Dask scheduler answers at tcp://127",
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_what_is_wrong_gets_one_line(tmp_path, words, complaint):
     module, *rest = words
-    program = "raycaster.report.points" if module == "points" else "raycaster.cli"
-    call = [sys.executable, "-m", program, *(rest if module == "points" else words)]
-    done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, check=False)
+    if module == "points":
+        done = called(*rest, cwd=tmp_path, program=points.main)
+    else:  # what Dask begins ends with a process of its own
+        call = [sys.executable, "-m", "raycaster.cli", *words]
+        done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert done.stderr.startswith(complaint)
     assert done.stderr.count("\n") == 1
