@@ -21,7 +21,9 @@ from raycaster.tools import find_program
 LEFT_OUT = {
     "make test": "what runs this, too",
     ".venv/bin/pre-commit install": "it would change this clone",
-    ".venv/bin/python -m pytest -q verif/tests/test_leaves_dimmer.py": "the page has this test, the clone has not",
+    ".venv/bin/python -m pytest -q verif/tests/leaves/engine/test_colour_dimmer.py": (
+        "the page has this test, the clone has not"
+    ),
 }
 """By command, why it is not run."""
 

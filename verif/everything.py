@@ -176,7 +176,7 @@ def tested_sources(root: Path) -> tuple[str, dict[str, str]]:
         path = root / name
         if not path.is_file() or path.suffix in PAGES or name.startswith("results/"):
             continue
-        if path.parent == root / TESTS.relative_to(TESTS.parents[1]) and path.match("test_*.py"):
+        if root / TESTS.relative_to(TESTS.parents[1]) in path.parents and path.match("test_*.py"):
             files[path.name] = hashlib.sha256(path.read_bytes()).hexdigest()
         else:
             found.update(name.encode() + b"\0" + path.read_bytes())

@@ -12,6 +12,7 @@ import subprocess
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from raycaster.cli.__main__ import main
@@ -22,6 +23,7 @@ from raycaster.options import run_command
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import MODELS_VARIABLE, build_model, run_bench
 from raycaster.verif.leaf import Leaf
+from raycaster.verif.seeds import repeat, seed
 
 ROOT = Path(__file__).parents[2]
 BUILD = ROOT / "build"
@@ -59,7 +61,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if test not in in_myhdl or not item.get_closest_marker("slow"):
             in_myhdl[test] = item
     for item in items:
-        item.stash[WITH_MYHDL] = item is in_myhdl[item.nodeid.partition("[")[0]]
+        item.stash[WITH_MYHDL] = "/leaves/" not in item.nodeid or item is in_myhdl[item.nodeid.partition("[")[0]]
     if any(unused.values()) and not any("::" in argument for argument in config.args):
         said = ", ".join(f"{test}: {begin}" for (test, begin), of_none in unused.items() if of_none)
         raise pytest.UsageError(f"slow_sets: no parameter set begins so: {said}")
@@ -76,6 +78,13 @@ def forgotten_signals() -> Iterator[None]:
     """Those of a test end with it: MyHDL would look at them in each later simulation, which took 40 times as long."""
     with forgetting():
         yield
+
+
+@pytest.fixture
+def random(request: pytest.FixtureRequest) -> np.random.Generator:
+    """Random numbers, the same for each test; the report of one that fails says how to repeat it."""
+    request.node.add_report_section("setup", "random numbers", repeat())
+    return np.random.default_rng(seed())
 
 
 @pytest.fixture

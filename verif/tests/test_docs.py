@@ -137,7 +137,7 @@ def test_the_module_that_the_page_adds(tmp_path: Path, monkeypatch):
     """`docs/extend.md` has a module and its leaf test: they do what it says, by the project's own rules."""
     page = (ROOT / "docs/extend.md").read_text()
     module, _, leaf = re.findall(r"^```python\n(.*?)^```", page, re.M | re.S)
-    texts = {"rtl/engine/colour_dimmer.py": module, "verif/tests/test_leaves_dimmer.py": leaf}
+    texts = {"rtl/engine/colour_dimmer.py": module, "verif/tests/leaves/engine/test_colour_dimmer.py": leaf}
     for place, text in texts.items():
         for rule in (["check"], ["format", "--check"]):
             command = [sys.executable, "-m", "ruff", *rule, "--stdin-filename", ROOT / place, "-"]
@@ -150,7 +150,7 @@ def test_the_module_that_the_page_adds(tmp_path: Path, monkeypatch):
         monkeypatch.setitem(sys.modules, name, importlib.util.module_from_spec(spec))
         spec.loader.exec_module(sys.modules[name])
     assert rtl_lint.check(tmp_path / "colour_dimmer.py") == []
-    sys.modules["test_leaves_dimmer"].test_colour_dimmer(tmp_path)
+    sys.modules["test_colour_dimmer"].test_colour_dimmer(tmp_path)
 
 
 def draw_anew(verilog: list[Path] | None = None) -> dict[str, list[tuple[str, str]]]:

@@ -18,7 +18,7 @@ class Item:
     """A collected test."""
 
     def __init__(self, name: str, *marks: pytest.Mark):
-        self.nodeid, self.marks, self.added, self.stash = f"verif/tests/{name}", marks, [], {}
+        self.nodeid, self.marks, self.added, self.stash = f"verif/tests/leaves/{name}", marks, [], {}
 
     def iter_markers(self, name: str) -> list[pytest.Mark]:
         return [mark for mark in self.marks if mark.name == name]
@@ -49,8 +49,13 @@ def collected(mark: pytest.MarkDecorator, *arguments: str) -> tuple[list[bool], 
     ids=["some", "some with an exception", "all with an exception", "two"],
 )
 def test_a_mark_is_how_parameter_sets_begin(mark, slow, in_myhdl):
-    """The last set that is not slow is simulated in MyHDL."""
+    """The last set that is not slow is simulated in MyHDL; a test that is no leaf test decides for itself."""
     assert collected(mark) == (slow, in_myhdl)
+    others = [Item("test_b.py::test_b[1]"), Item("test_b.py::test_b[2]")]
+    for other in others:
+        other.nodeid = other.nodeid.replace("leaves/", "")
+    conftest.pytest_collection_modifyitems(SimpleNamespace(args=()), others)
+    assert all(other.stash[conftest.WITH_MYHDL] for other in others)
 
 
 @pytest.mark.parametrize("mark", [pytest.mark.slow_sets("d"), pytest.mark.slow_sets("a", quick=["c"])], ids=["d", "c"])

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from conftest import BUILD, SMALL_SCENE
-from test_leaves_engine import check_ray_unit, ray_unit_leaf
+from engine_vectors import check_ray_unit, ray_unit_leaf
 
 from raycaster.configuration import configure
 from raycaster.errors import UserError
@@ -84,12 +84,12 @@ def unit(tmp_path_factory) -> tuple:
     return leaf, config, synthesise(leaf.verilog, directory / "netlist", top="ray_unit")
 
 
-def test_ray_unit(unit):
+def test_ray_unit(unit, random):
     leaf, config, made = unit
     assert made.cells["LUT4"] > 500
     assert made.cells["TRELLIS_FF"] > 200
     leaf.verilog = made.files
-    check_ray_unit(leaf, config, rays=100)
+    check_ray_unit(leaf, config, random, rays=100)
 
 
 @pytest.mark.slow_sets("LUT4", "TRELLIS_FF")
@@ -101,7 +101,7 @@ def test_ray_unit(unit):
         ("TRELLIS_FF", "z_buffer_i.found_colour", 'CEMUX("CE")', 'CEMUX("1")'),
     ],
 )
-def test_broken_cell_is_noticed(unit, tmp_path, cell, name, sound, broken):
+def test_broken_cell_is_noticed(unit, tmp_path, random, cell, name, sound, broken):
     """One cell of hundreds that is not what it was makes wrong pixels."""
     leaf, config, made = unit
     *models, file = made.files
@@ -112,7 +112,7 @@ def test_broken_cell_is_noticed(unit, tmp_path, cell, name, sound, broken):
     changed.write_text(text.replace(chosen, chosen.replace(sound, broken)))
     leaf.verilog = [*models, changed]
     with pytest.raises(AssertionError, match=r"ray_unit, cycle \d+: Verilog .*, MyHDL "):
-        check_ray_unit(leaf, config)
+        check_ray_unit(leaf, config, random)
 
 
 SMALL = """

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: MIT
+"""Leaf tests of `beam_caster`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+
+import numpy as np
+import pytest
+from beam_vectors import beam_config, pixels_of, race, word
+from hard_scenes import pixel_word, traced_scene
+from vectors import config_id, ports
+
+from raycaster.engines.beam import AIM_LATENCY, SETUP_LATENCY, beam_latency, start_cycles
+from raycaster.golden.exact import ExactModel
+from raycaster.golden.random_world import random_basis, random_looks
+from raycaster.golden.rays import primary_slopes
+from raycaster.rtl.beam.beam_caster import beam_caster
+from raycaster.rtl.common.interfaces import Picture, Rects
+from raycaster.rtl.common.records import camera_of, shown_of
+from raycaster.rtl.common.widths import factor_bits, signed
+from raycaster.scene import UNTURNED
+from raycaster.verif.leaf import Leaf, sorted_rect
+
+
+@pytest.mark.slow_sets(
+    "beam-tiny48-s1-u1-r3-m1-c8-24",
+    "beam-tiny48-s1-u1-r3-m2-c8-400",
+    "beam-tiny48-s1-u1-r3-m2-c8-turn-200",
+    "beam-tiny48-s1-u1-r5",
+    "beam-tiny48-s2-u1-r8-m2-c8-12",
+    "beam-tiny48-s2-u1-r8-m2-c8-turn-materials-patterns-12",
+    "beam-tiny48-s2-u2-r3",
+    "beam-tiny48-s2-u2-r5",
+    "beam-vga180",
+)
+@pytest.mark.parametrize(
+    ("config", "lines"),
+    [
+        (beam_config(screen="tiny", rectangles=1, reflections=0, colour_bits=4), 24),
+        (beam_config(screen="tiny", rectangles=3, reflections=1, scale=1), 24),
+        # Small enough for every rectangle to matter in every pass.
+        (beam_config(screen="tiny", rectangles=3, reflections=2, scale=1), 400),
+        (beam_config(screen="tiny", rectangles=8, reflections=2), 12),
+        (beam_config(screen="tiny", rectangles=5, reflections=3, scale=1), 60),
+        (
+            beam_config(screen="tiny", rectangles=5, reflections=4, scale=1, turn=True, materials=True, patterns=True),
+            24,
+        ),
+        (beam_config(screen="tiny", rectangles=5, reflections=4, pixels=2), 24),
+        (beam_config(rows=180, rectangles=5, reflections=1), 4),
+        (beam_config(screen="tiny", rectangles=3, reflections=2, scale=1, turn=True), 200),
+        (beam_config(screen="tiny", rectangles=3, reflections=1, scale=1, materials=True, patterns=True), 24),
+        (beam_config(screen="tiny", rectangles=8, reflections=2, turn=True, materials=True, patterns=True), 12),
+        (beam_config(screen="tiny", rectangles=2, reflections=0, scale=1, materials=True, patterns=True), 24),
+        (beam_config(screen="tiny", rectangles=1, reflections=0, colour_bits=4, pixels=2), 12),
+        (beam_config(screen="tiny", rectangles=3, reflections=2, pixels=2), 40),
+        (beam_config(rows=180, scale=6, rectangles=5, reflections=1, pixels=2), 4),
+        (beam_config(screen="tiny", rectangles=3, reflections=2, pixels=2, turn=True, patterns=True), 24),
+    ],
+    ids=config_id,
+)
+def test_beam_caster(config, lines, tmp_path, random):
+    """Whole rows of scenes in which a ray of the row meets mirrors and edges."""
+    leaf = Leaf(beam_caster, lambda: ports(
+        "clk reset start_line next_column", row_slope=signed(factor_bits(config)), camera=camera_of(config),
+        picture=Picture(), rects=Rects(config), pixel=shown_of(config), config=config
+    ), tmp_path)  # fmt: skip
+    slopes, basis, horizon_row = primary_slopes(config.screen_geometry), UNTURNED, config.screen_geometry.horizon_row
+    # Of a camera that turns, the rectangles are set up for each lane, and once more.
+    turns = range(config.pixels + 1)
+    sweeps = (
+        [AIM_LATENCY - 3 + (SETUP_LATENCY + config.rectangles - 1) * turn for turn in turns] if config.turn else [0]
+    )
+    # Until no column is on its way, whatever the registers started from.
+    stimulus, expected, fates = [{"reset": 1}] * beam_latency(config), {}, set()
+    flat = [horizon_row + slope for slope in (-3, -1, 1, 3)]
+    for number in range(lines):
+        if config.turn:
+            basis = random_basis(random)
+            slopes = primary_slopes(config.screen_geometry, basis)
+        row = int(random.choice([0, len(slopes) - 1, *flat, *random.integers(len(slopes), size=4)]))
+        if number % 8:
+            camera, table, column = race(random, config, slopes[row])
+            background, reflections = random.integers(256, size=3), config.reflections
+            columns = column + 1 + int(random.integers(4))
+            line = slopes[row, : columns + columns % config.pixels]
+        else:
+            camera, table, background, reflections, _ = traced_scene(random, config, random.permutation(slopes[row]))
+            line = slopes[row]
+        if config.materials:
+            table = random_looks(random, table)
+        traced = ExactModel().trace(table, camera, background, line, reflections)
+        fates |= {tuple(int(winner[column] >= 0) for winner in traced.winners) for column in range(len(line))}
+        vectors = np.concatenate([camera, *(basis if config.turn else ())]).tolist()
+        held = {f"camera_{name}": value for name, value in zip(camera_of(config).layout, vectors, strict=True)}
+        held |= {"reset": 0, "start_line": 0, "next_column": 0}
+        held |= {"picture_reflections": reflections} if config.reflections else {}
+        held["picture_background"] = int.from_bytes(bytes(background.astype(np.uint8)))
+        held["rects_usable"] = sum(1 << int(index) for index in np.flatnonzero(table.visible))
+        if number % 16 == 4:
+            # Reset ends what a line has begun.
+            begun = int(random.integers(config.rectangles + 2))
+            stimulus += [{**held, "start_line": 1}, *[held] * begun, {**held, "reset": 1}]
+            stimulus += [held] * beam_latency(config)
+        stimulus += [{**held, "start_line": 1}, held, held]
+        held["row_slope"] = word(horizon_row - row, factor_bits(config))
+        given = {sweep + 3 + index: index for sweep in sweeps for index in np.flatnonzero(table.visible)}
+        for cycle in range(3, start_cycles(config) + int(random.integers(4))):
+            rect = sorted_rect(table, given[cycle], "rects_rect", config) if cycle in given else {}
+            stimulus.append({**held, **rect})
+        for colours in traced.colours.reshape(-1, config.pixels, 3):
+            stimulus += [held] * int(random.random() < 0.5 * (config.scale == 1 and number % 8 == 0))
+            expected[len(stimulus) + beam_latency(config)] = (
+                [pixel_word(config, colour) for colour in colours],
+                (camera, table.corners),
+            )
+            stimulus.append({**held, "next_column": 1})
+        stimulus += [held] * beam_latency(config)
+    outputs = leaf.run_both([*stimulus, {}], settled=min(expected))
+    assert len(fates) >= config.reflections + 2
+    for cycle, (pixels, case) in expected.items():
+        channels = [outputs[cycle][f"pixel_{name}"] for name in ("red", "green", "blue")]
+        assert pixels_of(config, channels) == pixels, (cycle, case)

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: MIT
+"""Leaf tests of `colour_blend`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+
+from fractions import Fraction
+
+import pytest
+from beam_vectors import beam_config
+from vectors import config_id, ports
+
+from raycaster.configuration import CHANNEL_BITS
+from raycaster.engines.beam import blend_latency, mixes
+from raycaster.rtl.beam.colour_blend import colour_blend
+from raycaster.rtl.common.interfaces import Picture
+from raycaster.rtl.common.records import Pixel, seen_of
+from raycaster.rtl.common.widths import RGB_BITS, unsigned
+from raycaster.verif.leaf import Leaf
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        beam_config(colour_bits=6),
+        beam_config(reflections=0),
+        beam_config(reflections=2),
+        beam_config(reflections=4, colour_bits=6),
+        beam_config(reflections=1, materials=True),
+        beam_config(reflections=2, materials=True, colour_bits=6),
+        beam_config(reflections=4, materials=True),
+        beam_config(reflections=0, materials=True),
+    ],
+    ids=config_id,
+)
+def test_colour_blend(config, tmp_path, random):
+    """What comes after a ray that found nothing is background, and weighs as much as the mirrors before it say."""
+    rays, record = config.reflections + 1, seen_of(config)
+    leaf = Leaf(colour_blend, lambda: ports(
+        "clk", seen=unsigned(rays * len(record.word)), picture=Picture(), pixel=Pixel(config.colour_bits),
+        config=config
+    ), tmp_path)  # fmt: skip
+    stimulus, expected = [], []
+    latency, background, reflections = blend_latency(config), 0x123456, 0
+    for number in range(3000):
+        if number % 100 == 0:
+            background, reflections = int(random.integers(1 << RGB_BITS)), number // 100 % rays
+        found = (random.random(rays) < 0.8).astype(int).tolist()
+        colours = [int(random.integers(1 << RGB_BITS)) for _ in found]
+        mirrors = [int(random.integers(5)) if mixes(config) else 2 for _ in found]
+        rows = zip(found, mirrors, colours, strict=True)
+        fields = [dict(zip(("found", "mirror", "colour"), one, strict=True)) for one in rows]
+        stimulus.append({
+            "picture_background": background, **({"picture_reflections": reflections} if rays > 1 else {}),
+            "seen": sum(record.pack(one) << i * len(record.word) for i, one in enumerate(fields)),
+        })  # fmt: skip
+        seen = [colour if all(found[: i + 1]) else background for i, colour in enumerate(colours)]
+        pixel = []
+        for low in (16, 8, 0):
+            channels = [Fraction(colour >> low & 255) for colour in seen[: reflections + 1]]
+            value = channels.pop()
+            for own, quarters in reversed(list(zip(channels, mirrors, strict=False))):
+                value = ((4 - quarters) * own + quarters * value) / 4
+            pixel.append(int(value) >> CHANNEL_BITS - config.colour_bits)
+        expected.append(pixel)
+    outputs = leaf.run_both([*stimulus, *[{}] * latency], settled=latency)
+    for number, (colour, output) in enumerate(zip(expected, outputs[latency:], strict=True)):
+        if number % 100 < 100 - latency:  # of the others the background has changed on the way
+            assert [output[f"pixel_{channel}"] for channel in ("red", "green", "blue")] == colour, number

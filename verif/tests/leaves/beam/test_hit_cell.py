@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: MIT
+"""Leaf tests of `hit_cell`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from beam_vectors import beam_config
+from vectors import LAST, any_place, config_id, ports
+
+from raycaster.engines.beam import CELL_LATENCY
+from raycaster.rtl.beam.hit_cell import hit_cell
+from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, signed, steepest_slope, turn_bits, unsigned
+from raycaster.verif.leaf import Leaf
+
+
+@pytest.mark.parametrize("config", [beam_config(screen="tiny", patterns=True, turn=True, reflections=2)], ids=config_id)
+def test_hit_cell(config, tmp_path, random):
+    """The cell of a coordinate (E + T) +- D n / e within the world, many of them at a cell's edge."""
+    slope_bits, numerator_bits, turn_width = exact_slope_bits(config), eye_bits(config) - 1, turn_bits(config)
+    leaf = Leaf(hit_cell, lambda: ports(
+        "clk back odd", turn=signed(turn_width), eye=unsigned(9), slope=signed(slope_bits + 1),
+        numerator=unsigned(numerator_bits), denominator=unsigned(slope_bits), cell_size=unsigned(3)
+    ), tmp_path)  # fmt: skip
+    far, steepest = (1 << turn_width - 1) - 1, steepest_slope(config)
+    stimulus, expected = [{}], {}
+    while len(stimulus) < 8000:
+        turn, eye, back = int(random.integers(-far, far + 1)), any_place(random), int(random.integers(2))
+        goal = 8 * int(random.integers(64)) + int(random.choice([-1, 0, 0, 1]))
+        e = int(random.choice([1, 3, steepest, random.integers(1, steepest + 1)]))
+        way = (goal - eye - turn) * (-1 if back else 1) * e + int(random.integers(-1, 2))
+        slope = int(random.choice([1, way, random.integers(1, steepest + 1)])) * (1 if way > 0 else -1) or 1
+        slope = int(np.clip(slope, -steepest, steepest))
+        n = min(abs(way // slope), (1 << numerator_bits) - 1)
+        place = eye + turn + Fraction((-1 if back else 1) * slope * n, e)
+        if not 0 <= place <= LAST or not n:
+            continue
+        cell = int(random.integers(8))
+        stimulus[-1] |= {"turn": turn % (1 << turn_width), "eye": eye, "back": back, "numerator": n, "denominator": e,
+                         "cell_size": cell}  # fmt: skip
+        expected[len(stimulus) - 1 + CELL_LATENCY - 1] = int(place // (8 << cell)) % 2
+        stimulus.append({"slope": slope % (1 << slope_bits + 1)})
+    outputs = leaf.run_both([*stimulus, *[{}] * CELL_LATENCY], settled=min(expected))
+    for cycle, odd in expected.items():
+        assert outputs[cycle]["odd"] == odd, stimulus[cycle - CELL_LATENCY + 1 :][:2]

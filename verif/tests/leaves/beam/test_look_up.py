@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+"""Leaf tests of `look_up`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+
+import pytest
+from beam_vectors import any_facets, beam_config
+from vectors import ports
+
+from raycaster.rtl.beam.look_up import look_up
+from raycaster.rtl.common.records import Sight, facet_of, seen_of, winner_of
+from raycaster.rtl.common.widths import index_bits, unsigned
+from raycaster.verif.leaf import Leaf
+
+
+@pytest.mark.parametrize("looks", [{}, {"materials": True, "patterns": True}], ids=["plain", "looks"])
+def test_look_up(looks, tmp_path, random):
+    """Of each rectangle what it looks like, of a pattern the colour of the cell; between its steps it keeps that."""
+    config = beam_config(screen="tiny", rectangles=5, **looks)
+    leaf = Leaf(look_up, lambda: ports(
+        "clk step", facets=unsigned(config.rectangles * len(facet_of(config).word)),
+        sight=Sight(index_bits(config)) if config.patterns else winner_of(config), seen=seen_of(config), config=config
+    ), tmp_path)  # fmt: skip
+    stimulus, expected, kept = [], [], None
+    for _ in range(400):
+        facets, side_by_side = any_facets(random, config)
+        sight = {"valid": int(random.integers(2)), "index": int(random.integers(config.rectangles))}
+        sight |= {name: int(random.integers(2)) for name in ("odd_u", "odd_v") if config.patterns}
+        step = int(random.random() < 0.8) if kept else 1
+        stimulus.append({"step": step, "facets": side_by_side} | {f"sight_{name}": v for name, v in sight.items()})
+        if step:
+            facet = facets[sight["index"]]
+            kept = {"seen_found": sight["valid"], "seen_colour": facet["colour"]}
+            if config.patterns:
+                odd_u, odd_v = sight["odd_u"], sight["odd_v"]
+                second = (False, (odd_u + odd_v) % 2, odd_v, odd_u)[facet["kind"]]
+                kept["seen_colour"] = facet["colour_2" if second else "colour"]
+            if config.materials:
+                kept["seen_mirror"] = facet["mirror"]
+        expected.append(kept)
+    outputs = leaf.run_both([*stimulus, {"step": 0}], settled=1)
+    for output, wanted in zip(outputs[1:], expected, strict=True):
+        assert {name: output[name] for name in wanted} == wanted

@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: MIT
+"""Leaf tests of `ray_tester`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+
+import pytest
+from beam_vectors import by_screen, check_tester
+
+from raycaster.rtl.beam.ray_tester import ray_tester
+
+
+@pytest.mark.slow_sets(
+    quick=[
+        "beam-tiny48-s2-u1-r12-m2-c8-turn",
+        "beam-vga180-s6-u2-r12-m1-c8",
+        "beam-vga240-s2-u1-r12-m2-c8-turn-materials-patterns",
+    ]
+)
+@by_screen
+def test_ray_tester(config, tmp_path, random):
+    """A ray now and then; what walks comes a cycle later, and its slope's magnitudes then, or a cycle after that."""
+    check_tester(ray_tester, {}, config, tmp_path, random)

@@ -1,0 +1,445 @@
+# SPDX-License-Identifier: MIT
+"""Vectors and exact arithmetic for leaf tests of the beam engine's blocks."""
+
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from math import gcd
+
+import numpy as np
+import pytest
+from hard_scenes import sharpened, verdict
+from vectors import AXES, LAST, any_place, config_id, ports
+
+from raycaster.configuration import WORLD_SIZE, Configuration, configure
+from raycaster.engines.beam import TESTER_LATENCY, fold_lead, is_staged, slope_at
+from raycaster.golden.exact import ExactModel
+from raycaster.golden.random_world import random_basis, random_camera, random_rectangles
+from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.rtl.common.interfaces import Direction, Slope
+from raycaster.rtl.common.records import Signs, candidate_of, facet_of, stride_of, walk_of
+from raycaster.rtl.common.widths import (
+    DISTANCE_BITS,
+    bit,
+    exact_slope_bits,
+    fold_bits,
+    index_bits,
+    steepest_slope,
+    turn_bits,
+    unsigned,
+    walk_bits,
+)
+from raycaster.verif.leaf import Leaf
+
+P, Q = (1, 0, 1), (2, 2, 0)
+"""By the axis of a plane: p is y unless the plane is on y, q is z unless it is on z."""
+
+WALK = ("way_p", "low_p", "high_p", "low_q", "high_q")
+
+CANDIDATE = ("valid", "at_mirror", "numerator", "denominator", "index")
+
+
+def beam_config(*, reflections: int = 1, **options) -> Configuration:
+    """A design; for a leaf test also one that has too many reflections to set up a line in its blanking."""
+    return replace(configure(engine="beam", reflections=0, **options), reflections=reflections)
+
+
+def word(value: int, bits: int) -> int:
+    """A number as its port has it."""
+    return int(value) % (1 << bits)
+
+
+def number(value: int, bits: int) -> int:
+    """What a port of two's complement says."""
+    return value - (1 << bits) if value >> (bits - 1) else value
+
+
+by_screen = pytest.mark.parametrize(
+    "config",
+    [
+        beam_config(reflections=0, rows=200, scale=1),
+        beam_config(reflections=1, rows=180),
+        beam_config(reflections=2, rows=240),
+        beam_config(reflections=2, screen="tiny"),
+        beam_config(reflections=1, rows=180, turn=True),
+        beam_config(reflections=2, rows=240, turn=True, materials=True, patterns=True),
+        beam_config(reflections=2, screen="tiny", turn=True),
+        beam_config(reflections=1, rows=180, scale=6, pixels=2),
+        beam_config(reflections=1, rows=180, scale=6, pixels=2, turn=True),
+        beam_config(reflections=1, screen="tiny", pixels=2, turn=True),
+    ],
+    ids=config_id,
+)
+
+
+def direction_ports(name: str, config: Configuration, slope) -> dict[str, int]:
+    width = exact_slope_bits(config) + 1
+    return {f"{name}_{axis}": word(value, width) for axis, value in zip(AXES, slope, strict=True)}
+
+
+def pixels_of(config: Configuration, channels: list[int]) -> list[int]:
+    """The pixels of a clock, the left one first, as words of what their red, green and blue ports have."""
+    bits = config.colour_bits
+    lanes = [[channel >> bits * lane & (1 << bits) - 1 for channel in channels] for lane in range(config.pixels)]
+    return [(red << bits | green) << bits | blue for red, green, blue in lanes]
+
+
+def products(table: Rectangles, index: int, camera, slope) -> dict[str, int]:
+    """What cross-multiplication compares, and the distance and way_q."""
+    axis = int(table.axes[index])
+    low, high = (bound[index].astype(object) - camera for bound in (table.low, table.high))
+    n, e = int(low[axis]), int(slope[axis])
+    p, q = P[axis], Q[axis]
+    return {
+        "distance": n,
+        "way_p": n * int(slope[p]),
+        "way_q": n * int(slope[q]),
+        "low_p": int(low[p]) * e,
+        "high_p": int(high[p]) * e,
+        "low_q": int(low[q]) * e,
+        "high_q": int(high[q]) * e,
+    }
+
+
+def flat_tables(random: np.random.Generator, count: int) -> Rectangles:
+    """Rectangles that all have a plane; corners of the world are common."""
+    corners = np.array([[[any_place(random) for _ in AXES] for _ in range(2)] for _ in range(count)])
+    axis = random.integers(3, size=count)
+    corners[np.arange(count), 1, axis] = corners[np.arange(count), 0, axis]
+    return Rectangles(corners, random.integers(256, size=(count, 3)).astype(np.uint8), random.random(count) < 0.8)
+
+
+def row_slopes(random: np.random.Generator, config: Configuration, columns: int) -> tuple[np.ndarray, np.ndarray]:
+    """The slope of a column that a lane takes so many steps from, and what a step adds."""
+    screen = config.screen_geometry
+    row, column = int(random.integers(screen.rows)), int(random.integers(screen.columns - columns * config.pixels + 1))
+    basis = np.array(random_basis(random) if config.turn else np.eye(3), dtype=np.int64)
+    factors = [screen.view_distance, column - screen.centre_column, screen.horizon_row - row]
+    return factors @ basis, config.pixels * basis[1]
+
+
+def beam_rays(random: np.random.Generator, config: Configuration, count: int, most: int | None = None):
+    """Tables, rectangles of them to look at, cameras, slopes and mirrors (axis and plane, as the ray meets them).
+
+    As the engine meets them, and as extreme as its widths allow. most: mirrors, if not as many as there can be.
+    """
+    most = config.reflections if most is None else most
+    steepest, view = steepest_slope(config), config.screen_geometry.view_distance
+    powers = 1 << np.arange(steepest.bit_length())
+    for _ in range(count):
+        table = random_rectangles(random, count=8, closed=True)
+        camera = random_camera(random, table).astype(np.int64)
+        # Of a power of two its one bit counts, and of ways that a small one divides the lowest bits.
+        extremes = [0, view, steepest, random.choice(powers), *random.integers([4, 16, 16, steepest])]
+        slope = random.choice(extremes, 3) * random.choice([-1, 1], 3)
+        if not config.turn:
+            slope[0] = view
+        wanted = int(random.integers(most + 1))
+        mirrors: list[tuple[int, int]] = []
+        met = Fraction(0)
+        for _ in range(20):
+            if len(mirrors) == wanted:
+                break
+            axis, plane = int(random.integers(3)), any_place(random)
+            eye, turned = seen_from(camera, slope, mirrors)
+            if mirrors and random.random() < 0.3:
+                # From corner to corner the image runs as far away as it can.
+                axis, plane = mirrors[-1][0], LAST - mirrors[-1][1]
+            elif mirrors and random.random() < 0.6:
+                # Where the last one was met, if that is on a whole coordinate of this axis too.
+                plane = coordinate(eye, turned, met, axis)
+            elif turned[axis] and random.random() < 0.6:
+                plane = coordinate(eye, turned, time_ahead(random, eye, turned, met, axis), axis)
+            if not turned[axis]:
+                continue
+            t = Fraction(int(plane - eye[axis]), int(turned[axis]))
+            # A corner has a mirror on each of its axes.
+            if t > met or (t == met and mirrors and axis not in met_last(camera, slope, mirrors)):
+                met = t
+                mirrors.append((axis, plane))
+        eye, turned = seen_from(camera, slope, mirrors)
+        chosen = random.choice(np.flatnonzero(table.visible), 4)
+        for index in chosen:
+            axis, corners = int(table.axes[index]), table.corners.copy()
+            if turned[axis] and random.random() < 0.8:
+                # A third plane may be in the mirrors' corner.
+                t = met if random.random() < 0.4 else time_ahead(random, eye, turned, met, axis)
+                corners[index, :, axis] = coordinate(eye, turned, t, axis)
+                table = Rectangles(corners, table.colours, table.enabled)
+            table = sharpened(random, table, int(index), eye, turned, mirrors[-1] if mirrors else None)
+        yield table, set(chosen.tolist()), camera, slope, mirrors
+
+
+def time_ahead(random: np.random.Generator, eye, turned, met: Fraction, axis: int) -> Fraction:
+    """When a ray is on its way from a mirror out of the world; often at a whole coordinate of two axes at once."""
+    exits = ((LAST * (slope > 0) - place, slope) for place, slope in zip(eye.tolist(), turned.tolist(), strict=True))
+    left = min(Fraction(way, slope) for way, slope in exits if slope)
+    t = met + max(left - met, 0) * Fraction(int(random.integers(1, 65)), 64)
+    if random.random() < 0.6:
+        parts = int(np.gcd(turned[axis], turned[random.choice(OTHER_AXES[axis])]))
+        t = Fraction(round(t * parts), parts)
+    return t
+
+
+def coordinate(eye, turned, t: Fraction, axis: int) -> int:
+    """Where a ray is then; the world's last one where it has left."""
+    return int(np.clip(int(eye[axis] + int(turned[axis]) * t), 0, LAST))
+
+
+def seen_from(camera, slope, mirrors) -> tuple[np.ndarray, np.ndarray]:
+    """The camera and the slope, mirrored."""
+    eye, turned = np.array(camera), np.array(slope)
+    for axis, plane in mirrors:
+        eye[axis], turned[axis] = 2 * plane - eye[axis], -turned[axis]
+    return eye, turned
+
+
+def met_last(camera, slope, mirrors) -> list[int]:
+    """The axes of the mirrors that a ray met in the point that it left last."""
+    times = []
+    for number, (axis, plane) in enumerate(mirrors):
+        eye, turned = seen_from(camera, slope, mirrors[:number])
+        times.append(Fraction(int(plane - eye[axis]), int(turned[axis])))
+    return [axis for t, (axis, _) in zip(times, mirrors, strict=True) if t == times[-1]]
+
+
+def image_of(config: Configuration, camera, slope, mirrors) -> dict[str, int]:
+    """The image of the room, by its definition: x - E = +-(X - E) + T, where the room's x is the mirrored camera's."""
+    eye, _ = seen_from(camera, slope, mirrors)
+    met = met_last(camera, slope, mirrors)
+    fields = {f"met_{name}": int(axis in met) for axis, name in enumerate(AXES)}
+    fields |= {f"back_{name}": sum(axis == mirror for mirror, _ in mirrors) % 2 for axis, name in enumerate(AXES)}
+    moved = zip(AXES, eye, camera, strict=True)
+    return fields | {f"turn_{name}": word(int(there) - int(here), turn_bits(config)) for name, there, here in moved}
+
+
+def folded(config: Configuration, camera, slope, mirrors) -> dict[str, int]:
+    """The fold of a ray in that image."""
+    eye, turned = seen_from(camera, slope, mirrors)
+    turn = [int(value) for value in eye - camera]
+    fields = image_of(config, camera, slope, mirrors)
+    back = [fields[f"back_{name}"] for name in AXES]
+    for letter, others in (("p", P), ("q", Q)):
+        for axis, other in enumerate(others):
+            flip = back[axis] != back[other]
+            sign = -1 if flip else 1
+            added = turn[other] * int(slope[axis]) - sign * turn[axis] * int(slope[other]) + flip
+            fields[f"{letter}_{AXES[axis]}"] = word(added, fold_bits(config))
+    axis, plane = mirrors[-1] if mirrors else (0, int(camera[0]))
+    distance = plane - int(camera[axis])
+    fields |= {f"border_{name}": word(distance * int(slope[c]), walk_bits(config)) for c, name in enumerate(AXES)}
+    fields["mirror_back"] = int(turned[axis] < 0)
+    return fields | {"axis": axis, "distance": word(distance, DISTANCE_BITS)}
+
+
+def check_tester(block, fields, config: Configuration, tmp_path, random: np.random.Generator) -> None:
+    """Rays with mirrors where there is a port for their fold, and otherwise rays from the camera."""
+    slope_bits, lead = exact_slope_bits(config), fold_lead(config) if fields else 0
+    strobes = ("step_way", "step_bounds", "step_slope")
+    leaf = Leaf(block, lambda: ports(
+        "clk", **{strobe: bit() for strobe in strobes}, facet=facet_of(config), walk=walk_of(config), signs=Signs(),
+        slope=Slope(slope_bits), **{name: port.twin() for name, port in fields.items()},
+        index=unsigned(index_bits(config)), hit=candidate_of(config), staged=is_staged(config)
+    ), tmp_path)  # fmt: skip
+    stimulus, expected, seen = [], {}, set()
+    # Of more mirrors fewer are in one point.
+    count, most = (3600 * max(1, config.reflections - 1), None) if fields else (1500, 0)
+    for table, chosen, camera, slope, mirrors in beam_rays(random, config, count, most):
+        if bool(mirrors) != bool(fields):
+            continue
+        fold = {f"fold_{name}": value for name, value in folded(config, camera, slope, mirrors).items()}
+        eye, turned = seen_from(camera, slope, mirrors)
+        for index in chosen:
+            now = products(table, index, camera, slope)
+            bounds = {f"walk_{name}": word(now[name], walk_bits(config)) for name in WALK if name != "way_p"}
+            way_q = {"walk_way_q" if config.turn else "facet_way_q": word(now["way_q"], walk_bits(config))}
+            facet = {
+                "facet_usable": int(random.random() < 0.9),
+                "facet_axis": int(table.axes[index]),
+                "facet_distance": word(now["distance"], DISTANCE_BITS),
+            }
+            if config.patterns:
+                facet["facet_cell"] = int(random.integers(8))
+            ways = {"walk_way_p": word(now["way_p"], walk_bits(config)), **way_q}
+            # Between its strobes a stage keeps what it has.
+            case_stimulus: list[dict[str, int]] = [dict.fromkeys(strobes, 0) for _ in range(lead + 3)]
+            case_stimulus[0] |= facet | (fold if fields else {})
+            case_stimulus[lead] |= {f"signs_d{axis}": int(part < 0) for axis, part in zip(AXES, slope, strict=True)}
+            case_stimulus[lead if fields else 1] |= ways
+            case_stimulus[lead + 1] |= bounds
+            case_stimulus[lead + slope_at(config)] |= {f"slope_d{AXES[c]}": abs(int(slope[c])) for c in range(3)}
+            # Any of the design's rectangles, of which the table has fewer.
+            number = int(random.integers(config.rectangles))
+            case_stimulus[lead + 2] |= {"index": number}
+            # What comes without its strobe is another ray's.
+            case_stimulus[lead + 1] |= {f"signs_d{axis}": int(random.integers(2)) for axis in AXES}
+            case_stimulus[lead + 2] |= {name: int(random.integers(1 << walk_bits(config))) for name in bounds}
+            for cycle, strobe in enumerate(strobes, lead):
+                case_stimulus[cycle] |= {strobe: 1}
+            start = len(stimulus) + lead
+            stimulus += case_stimulus
+            mirror, met = mirrors[-1] if mirrors else None, met_last(camera, slope, mirrors)
+            hit, n, e = verdict(table, index, eye, turned, mirror, met)
+            at_mirror = hit and not verdict(table, index, eye, turned, mirror)[0]
+            seen.add((len(met), hit, at_mirror))
+            case = table.corners[index].tolist(), camera, slope, mirrors
+            expected[start + TESTER_LATENCY] = facet, hit and bool(facet["facet_usable"]), at_mirror, n, e, number, case
+    outputs = leaf.run_both([*stimulus, dict.fromkeys(strobes, 0)], settled=lead + TESTER_LATENCY)
+    # With no mirror; with one, and two in one point, where a third plane may be too. Three in one point hide the rest.
+    assert len([case for case in seen if case[0] < 3]) == (3 * min(config.reflections, 2) if fields else 2)
+    assert ((3, False, False) in seen) == (config.reflections > 2 and bool(fields))
+    for cycle, (facet, hit, at_mirror, n, e, number, case) in expected.items():
+        output = outputs[cycle]
+        assert output["hit_valid"] == hit, case
+        assert output["hit_index"] == number, case
+        if config.patterns:
+            assert (output["hit_axis"], output["hit_cell"]) == (facet["facet_axis"], facet["facet_cell"]), case
+        if hit:
+            found = [output[f"hit_{name}"] for name in ("at_mirror", "numerator", "denominator")]
+            assert found == [at_mirror, n, e], case
+
+
+@cache
+def candidate_limits(config: Configuration) -> tuple[int, int]:
+    """The greatest numerator and denominator."""
+    candidate = candidate_of(config)
+    return tuple((1 << len(signal)) - 1 for signal in (candidate.numerator, candidate.denominator))
+
+
+def any_candidate(random: np.random.Generator, config: Configuration) -> tuple[int, int, int, int, int]:
+    """valid, at_mirror, numerator, denominator, index; equal fractions in other terms are common."""
+    most = candidate_limits(config)
+    if random.random() < 0.4:
+        n, e, times = int(random.integers(1, 4)), int(random.integers(1, 4)), int(random.integers(1, 60))
+        n, e = n * times, e * times
+    else:
+        n, e = (int(random.choice([1, limit, random.integers(1, limit)])) for limit in most)
+    return int(random.random() < 0.8), int(random.integers(2)), n, e, int(random.integers(config.rectangles))
+
+
+def close_candidates(random: np.random.Generator, config: Configuration) -> tuple:
+    """Two whose products with the other's denominator are large, and differ by two at most."""
+    most, most_below = candidate_limits(config)
+    # Of denominators far wider than numerators few have such a pair, and are long to find.
+    if random.random() < 0.9:
+        most_below = min(most, most_below)
+    while True:
+        apart, *below = map(int, [random.integers(-2, 3), *random.integers(most_below // 2, most_below, size=2)])
+        if gcd(*below) > 1:
+            continue
+        first = -apart * pow(below[1], -1, below[0]) % below[0]
+        first += below[0] * int(random.integers(most // below[0] + 1))
+        second = (first * below[1] + apart) // below[0]
+        if 0 < first <= most and 0 < second <= most:
+            indices = map(int, random.integers(config.rectangles, size=2))
+            corners = map(int, random.integers(2, size=2))
+            return tuple((1, *one) for one in zip(corners, (first, second), below, indices, strict=True))
+
+
+def candidate_ports(config: Configuration, name: str, candidate) -> dict[str, int]:
+    fields = dict(zip(CANDIDATE, candidate, strict=True))
+    if config.patterns:
+        fields |= {"axis": fields["index"] % 3, "cell": fields["index"] % 8}
+    return {f"{name}_{field}": value for field, value in fields.items()}
+
+
+def fraction_of(candidate) -> Fraction:
+    _, _, numerator, denominator, _ = candidate
+    return Fraction(numerator, denominator)
+
+
+def any_facets(random: np.random.Generator, config: Configuration) -> tuple[list[dict[str, int]], int]:
+    """Fields of facets, and all of them side by side."""
+    record = facet_of(config)
+    facets = [
+        {name: int(random.integers(1 << bits)) for name, bits in record.layout.items()}
+        for _ in range(config.rectangles)
+    ]
+    return facets, sum(record.pack(facet) << i * len(record.word) for i, facet in enumerate(facets))
+
+
+def opened(random: np.random.Generator, corners: np.ndarray, axis: int, plane: int, eye, turned) -> Fraction:
+    """Make a rectangle one that a ray hits near two of its edges, and say when."""
+    corners[:, axis] = plane
+    t = Fraction(int(plane - eye[axis]), int(turned[axis]))
+    for u in OTHER_AXES[axis]:
+        point = eye[u] + int(turned[u]) * t
+        edge = int(np.clip(int(point) + int(random.choice([-1, 0, 0, 1])), 0, LAST))
+        side = LAST if edge < point or (edge == point and random.random() < 0.5) else 0
+        corners[:, u] = random.permutation([edge, side if random.random() < 0.7 else (any_place(random) + side) // 2])
+    return t
+
+
+def race(random: np.random.Generator, config: Configuration, slopes) -> tuple[np.ndarray, Rectangles, int]:
+    """A camera, a table, and a ray that meets mirrors near their edges, and at its end two rectangles almost at once,
+    or one that stands by the last mirror."""
+    count, before_centre = config.rectangles, config.screen_geometry.centre_column - 1
+    ends = int(random.integers(min(config.reflections + 1, count), size=2).max())
+    by_mirror = ends > 0 and random.random() < 0.25
+    # A camera that turns looks at more places from which a second mirror is out of reach.
+    for _ in range(5000):
+        camera, table = random.integers(WORLD_SIZE, size=3), flat_tables(random, count)
+        corners, order = table.corners.copy(), random.permutation(count)
+        # The last column whose rays run down along y is the one that tells its sign from the next one's.
+        column = before_centre if random.random() < 0.1 else int(random.integers(len(slopes), size=2).min())
+        # After two mirrors and more the lowest bits count where a small odd slope reaches an edge exactly.
+        if ends >= 2 and random.random() < 0.5:
+            column = before_centre + 1 + int(random.choice([-3, -1, 1, 3]))
+        mirrors: list[tuple[int, int]] = []
+        times = [Fraction(0)]
+        for bounce in range(ends + 1):
+            eye, turned = seen_from(camera, slopes[column], mirrors)
+            axis = int(random.choice(np.flatnonzero(turned)))
+            t = time_ahead(random, eye, turned, times[-1], axis)
+            if bounce >= 2 and by_mirror:
+                t = times[-1]
+            elif bounce >= 2:
+                # It may meet the one before the last again, which then is the other of the two.
+                again, first = mirrors[-2]
+                t = max(times[-1], Fraction(int(first - eye[again]), int(turned[again])))
+            plane = coordinate(eye, turned, t, axis)
+            if bounce >= 2:
+                plane = min(max(plane + int(random.integers(-1, 2)), 0), LAST)
+            times.append(opened(random, corners[order[bounce]], axis, plane, eye, turned))
+            mirrors.append((axis, plane))
+        if ends + 1 < count:
+            axis = int(random.choice(np.flatnonzero(turned)))
+            plane = coordinate(eye, turned, times[-2 if by_mirror else -1], axis) + int(random.integers(-1, 2))
+            opened(random, corners[order[ends + 1]], axis, min(max(plane, 0), LAST), eye, turned)
+        table = Rectangles(corners, table.colours, np.ones(count, dtype=bool))
+        traced = ExactModel().trace(table, camera, (0, 0, 0), slopes[column : column + 1], ends, keep=True)
+        if traced.bounces[-1].hits.sum() >= min(1 if by_mirror else 2, count):
+            return camera, table, column
+    raise AssertionError(f"no ray has two rectangles, or one by a mirror, after {ends} reflections")
+
+
+def row_signals(config: Configuration) -> dict[str, object]:
+    """Through which a lane, and each of its passes, get a row that was set up."""
+    return {
+        "start_line": bit(),
+        "load": unsigned(config.rectangles),
+        "start": walk_of(config),
+        "aim": Direction(exact_slope_bits(config) + 1),
+        "facets": unsigned(config.rectangles * len(facet_of(config).word)),
+        "growths": unsigned(config.rectangles * len(stride_of(config).word)),
+    }
+
+
+def row_ports(config: Configuration, table: Rectangles, camera, slopes) -> tuple[dict[str, int], list[dict[str, int]]]:
+    """What their ports hold in a row, and what else the cycles get in which it begins.
+
+    slopes: of the lane's first column, and of the next one to the right.
+    """
+    facet, growth = facet_of(config), stride_of(config)
+    begin: list[dict[str, int]] = [{"start_line": 1}]
+    facets = growths = 0
+    for index in range(config.rectangles):
+        now, then = (products(table, index, camera, slope) for slope in slopes)
+        seen = {"usable": 1, "axis": table.axes[index], "distance": now["distance"], "way_q": now["way_q"]}
+        seen["colour"] = int.from_bytes(bytes(table.colours[index]))
+        more = {name: config.pixels * (then[name] - now[name]) for name in WALK}
+        facets |= facet.pack(seen) << index * len(facet.word)
+        growths |= growth.pack(more) << index * len(growth.word)
+        begin.append({f"start_{name}": word(now[name], walk_bits(config)) for name in WALK} | {"load": 1 << index})
+    held = direction_ports("aim", config, slopes[0])
+    return held | {"facets": facets, "growths": growths, "start_line": 0, "load": 0}, begin

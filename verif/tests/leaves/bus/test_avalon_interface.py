@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+"""Leaf tests of `avalon_interface`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+
+from __future__ import annotations
+
+import pytest
+from scene_vectors import EVERY_BIT, sized
+from vectors import ports
+
+from raycaster.registers import address_bits
+from raycaster.rtl.bus.avalon_interface import avalon_interface
+from raycaster.rtl.common.interfaces import AvalonPort, Picture, Progress, SceneBus
+from raycaster.rtl.common.widths import CYCLE_BITS, WORD_BITS, unsigned
+from raycaster.sim.register_model import Agent
+from raycaster.verif.leaf import Leaf
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        sized(12),
+        sized(1, reflections=0, fraction_bits=8, rounding="nearest", divider_bits=3, colour_bits=4),
+        sized(32, reflections=2, units=320, rows=200),
+        sized(2, engine="exact", turn=True, patterns=True),
+        sized(2, engine="beam", materials=True),
+    ],
+    ids=lambda config: config.name,
+)
+def test_avalon_interface(config, tmp_path, random):
+    width = address_bits(config.rectangles)
+    leaf = Leaf(avalon_interface, lambda: ports(
+        "clk reset irq bad_rectangle", avs_s0=AvalonPort(width), bus=SceneBus(width),
+        camera_readback=unsigned(WORD_BITS), rect_readback=unsigned(WORD_BITS), picture=Picture(),
+        progress=Progress(), config=config
+    ), tmp_path)  # fmt: skip
+    agent = Agent(config)
+    registers = [register.address for name, register in agent.registers.items() if "rectangle" not in name]
+    control = agent.registers["control"]
+    stimulus = []
+    row = group = 0
+    committing = False
+    for cycle in range(7500):
+        # Now and then what stands a little above, or below, what stood.
+        row, group = (max(0, value + int(random.integers(-9, 10))) % (1 << CYCLE_BITS) for value in (row, group))
+        if random.random() < 0.05:
+            row = int(random.choice([0, 1, random.integers(1 << CYCLE_BITS), (1 << CYCLE_BITS) - 1]))
+            group = int(random.integers(1 << int(random.integers(1, CYCLE_BITS + 1))))
+        # Then so many frames without a reset that the counter's upper bits change.
+        busy_bus = cycle < 3000
+        address = int(random.choice([*registers, control.address, int(random.integers(1 << width))]))
+        # Ones and zeros in what is cleared by ones, and often a commit.
+        data = int(random.choice([0, 1, 2, 4, 6, 0x303, 0x102, EVERY_BIT, random.integers(1 << WORD_BITS)]))
+        transfer = random.choice(["read", "write", "none"], p=[0.4, 0.4, 0.2])
+        # Often while a commit is on its way.
+        reset = random.random() < (0.1 if committing else 0.003)
+        committing = transfer == "write" and address == control.address
+        stimulus.append(
+            {
+                "reset": int(cycle < 2 or (busy_bus and reset)),
+                "avs_s0_address": address,
+                "avs_s0_read": int(transfer == "read"),
+                "avs_s0_write": int(transfer == "write"),
+                "avs_s0_writedata": data,
+                "avs_s0_byteenable": int(random.choice([0, 1, 2, 4, 8, 15, 15, 15])),
+                "camera_readback": int(random.integers(1 << WORD_BITS)),
+                "rect_readback": int(random.integers(1 << WORD_BITS)),
+                "bad_rectangle": int(random.random() < 0.3),
+                "progress_start_screen": int(random.random() < (0.05 if busy_bus else 0.95)),
+                "progress_busy": int(random.integers(2)),
+                "progress_underrun": int(random.random() < 0.05),
+                "progress_row_cycles": row,
+                "progress_group_cycles": group,
+            }
+        )
+    outputs = leaf.run_both(stimulus, settled=1)
+    for cycle, (inputs, output) in enumerate(zip(stimulus, outputs, strict=True)):
+        if cycle:
+            assert output["avs_s0_waitrequest"] == stimulus[cycle - 1]["reset"], cycle
+            assert output == agent.outputs(inputs), cycle
+        agent.clock(inputs)

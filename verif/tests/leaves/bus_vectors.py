@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: MIT
+"""An Avalon-MM agent, and what leaf tests of bridges share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from vectors import any_word
+
+from raycaster.buses import BUSES
+from raycaster.rtl.bus.buses import BRIDGES
+from raycaster.rtl.common.interfaces import AvalonPort
+from raycaster.rtl.common.widths import LANES, bit
+from raycaster.verif.leaf import Leaf, reset_signal
+
+ADDRESS_BITS = 6
+
+CYCLES = 1500
+
+agents = pytest.mark.parametrize(("patience", "latency"), [(0.0, 2), (0.3, 4), (0.8, 7)])
+"""How often the agent makes wait, and how many cycles it takes for an answer at most."""
+
+
+class Agent:
+    """An Avalon-MM agent that makes wait and answers at random."""
+
+    def __init__(self, random: np.random.Generator, patience: float, latency: int):
+        self._random, self._patience, self._latency = random, patience, latency
+        self._due = None  # cycles until a read that was taken is answered
+        self.word = self.waits = self.answers = 0
+
+    def drive(self) -> dict[str, int]:
+        """What it drives in this cycle; readdata changes with an answer only."""
+        self.answers = int(self._due == 0)
+        self._due = None if self._due in (None, 0) else self._due - 1
+        self.waits = int(self._random.random() < self._patience)
+        if self.answers:
+            self.word = any_word(self._random)
+        return {"avm_m0_readdata": self.word, "avm_m0_readdatavalid": self.answers, "avm_m0_waitrequest": self.waits}
+
+    def take(self) -> None:
+        """It takes a read in this cycle; the answer comes two cycles later at the earliest."""
+        self._due = int(self._random.integers(1, self._latency))
+
+
+def any_lanes(random: np.random.Generator) -> int:
+    return int(random.integers(1 << LANES))
+
+
+def any_byte_address(random: np.random.Generator) -> int:
+    """Whichever of a word's bytes it says, it is the word's."""
+    return int(random.integers(4 << ADDRESS_BITS))
+
+
+def bridge_leaf(name: str, directory: Path) -> Leaf:
+    bridge = BRIDGES[name]
+    return Leaf(
+        bridge.block,
+        lambda: {
+            "clk": bit(),
+            "reset": reset_signal(),
+            BUSES[name].port: bridge.interface(ADDRESS_BITS),
+            "avm_m0": AvalonPort(ADDRESS_BITS),
+        },
+        directory,
+    )
+
+
+def check(leaf: Leaf, stimulus: list[dict[str, int]], expected: list[dict[str, int]]) -> None:
+    """Whatever a model expects, and in no cycle anything unknown after the reset."""
+    for cycle, (output, wanted) in enumerate(zip(leaf.run_both(stimulus, settled=1), expected, strict=True)):
+        for name, value in wanted.items():
+            assert output[name] == value, f"{name} is {output[name]}, expected {value}, cycle {cycle}"

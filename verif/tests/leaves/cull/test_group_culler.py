@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: MIT
+"""Leaf tests of `group_culler`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from cull_vectors import designs, hit_mask, scenes, with_edges_on_rays
+from fates import margin_of, may_hit_mask
+from vectors import AXES, ports
+
+from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationError, configure
+from raycaster.engines.engine import SETUP_LATENCY
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.rtl.common.interfaces import Place, Rects
+from raycaster.rtl.common.records import Point
+from raycaster.rtl.common.widths import unsigned
+from raycaster.rtl.cull.group_culler import group_culler
+from raycaster.verif.leaf import Leaf, sorted_rect
+
+
+@pytest.mark.parametrize(
+    ("options", "culls", "name"),
+    [
+        ({}, True, "seed-vga240-u32-r12-m1-f0t-d1-c8"),
+        ({"culling": "0"}, False, "seed-vga240-u32-r12-m1-f0t-d1-c8-k0"),
+        ({"engine": "exact"}, False, "exact-vga240-u4-r12-m1-c8"),
+        ({"engine": "exact", "culling": "1"}, True, "exact-vga240-u4-r12-m1-c8-k1"),
+        ({"engine": "beam"}, False, "beam-vga240-s2-u1-r12-m1-c8"),
+    ],
+)
+def test_which_designs_cull(options, culls, name):
+    config = configure(**options)
+    assert config.culling is culls
+    assert config.name == name
+    # The worst case is the same, so the choice is free.
+    assert config.group_cycles == configure(**{**options, "culling": None}).group_cycles
+
+
+def test_the_beam_engine_does_not_cull():
+    with pytest.raises(ConfigurationError, match=r"^culling: the beam engine takes all rectangles at once; leave it"):
+        configure(engine="beam", culling="1")
+
+
+def seen_rect(table: Rectangles, index: int) -> dict[str, int]:
+    """What the table shows of a rectangle to who listens."""
+    return sorted_rect(table, index, "rects_rect")
+
+
+def any_rect(random: np.random.Generator, table: Sequence[dict[str, int]]) -> dict[str, int]:
+    """Something on the table's port, which is no one's unless it was fetched."""
+    shown, index = (int(random.integers(len(table))) for _ in range(2))
+    return {**table[shown], "rects_index": index}
+
+
+def closest_calls(
+    config: Configuration, drafts: Sequence[Rectangles], camera, places: Sequence[tuple[int, int]]
+) -> Rectangles:
+    """Of each rectangle the draft that an error in a product's lowest bits would decide otherwise in one of the groups.
+
+    All drafts have the same planes.
+    """
+    slopes, margin = primary_slopes(config.screen_geometry), margin_of(config)
+    first = np.array([slopes[row, offset * config.units] for row, offset in places]).astype(int)
+    ends = np.stack([first, first + [0, config.units, 0]])
+    corners = []
+    for index, axis in enumerate(drafts[0].axes):
+        u = list(OTHER_AXES[axis])
+        e, across = ends[..., [axis]], ends[..., u]
+        distances = []
+        for draft in drafts:
+            way = np.sign(e) * (draft.low[index, axis] - camera[axis]) * across
+            above = way - (draft.low[index, u] - margin - camera[u]) * abs(e)
+            below = (draft.high[index, u] + margin - camera[u]) * abs(e) - way
+            # Of each bound the end that misses it by less; of the bounds the one that decides, if no other does too.
+            least, other, *_ = np.sort(np.concatenate([above.max(axis=0), below.max(axis=0)], axis=1), axis=1).T
+            distances.append(np.where(other >= 0, abs(least), WORLD_SIZE**2).min())
+        corners.append(drafts[int(np.argmin(distances))].corners[index])
+    return Rectangles(np.array(corners), drafts[0].colours, drafts[0].enabled)
+
+
+def any_start(random: np.random.Generator, rows: int, groups: int) -> tuple[int, int]:
+    """A group but the frame's first: often one that differs from that in a single bit, or the end of such a row."""
+    while True:
+        # The last rows are those below the horizon.
+        any_row, last_row = random.integers(rows), rows - 1 - random.integers(rows // 4)
+        row = random.choice([0, 1 << int(random.integers(rows.bit_length())), any_row, last_row, last_row])
+        offset = random.choice([0, groups - 1, 1 << int(random.integers(groups.bit_length())), random.integers(groups)])
+        if 0 < row * groups + offset < rows * groups and offset < groups:
+            return int(row), int(offset)
+
+
+@pytest.mark.slow_sets("seed-vga240-u1-", "seed-vga240-u320")
+@designs
+def test_group_culler(config, tmp_path, random):
+    """A frame's first group, then others in their order and out of it, with time enough to look ahead or too little."""
+    leaf = Leaf(group_culler, lambda: ports(
+        "clk reset_ray_caster start_group done", place=Place(config), camera=Point(), rects=Rects(config),
+        may_hit=unsigned(config.rectangles), config=config
+    ), tmp_path)  # fmt: skip
+    count, groups, rows = config.rectangles, config.groups, config.screen_geometry.rows
+    latency = config.facts.rect_latency
+    every = (1 << count) - 1
+    stimulus, expected, fates = [], {}, set()
+
+    for (camera, drawn), _ in zip(scenes(random, config), range(max(6, 600 // count)), strict=False):
+        start = any_start(random, rows, groups)
+        first = start[0] * groups + start[1]
+        run = [divmod(number, groups) for number in range(first, min(first + 9, rows * groups))]
+        drafts = [with_edges_on_rays(random, config, drawn, camera, run) for _ in range(8)]
+        table = closest_calls(config, drafts, camera, run)
+        shown = [seen_rect(table, index) for index in range(count)]
+        scene = {f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)}
+        quiet = {**scene, "reset_ray_caster": 0, "start_group": 0, "done": 0, "rects_fetch": 0}
+        place, predicted, known = (0, 0), None, False
+        for number in range(12):
+            here = {**quiet, "place_row": place[0], "place_column_offset": place[1]}
+            answer = may_hit_mask(config, table, camera, *place) if predicted == place else every
+            assert hit_mask(config, table, camera, *place) & ~answer == 0
+            fates.add((known, predicted == place, answer == every))
+            # The second cycle of reset; then the group's time, in which the answer holds to the next one's first cycle.
+            stimulus.append({**here, "reset_ray_caster": 1})
+            begun = len(stimulus)
+            stimulus += [here, {**here, "start_group": 1}]
+            for index in range(count) if number == 0 else ():
+                stimulus.append({**here, **any_rect(random, shown), "rects_fetch": 1, "rects_index": index})
+                stimulus += [{**here, **any_rect(random, shown)}] * (latency - 1)
+                stimulus.append({**here, **any_rect(random, shown), **shown[index]})
+            time = count + SETUP_LATENCY + int(random.integers(3))
+            if random.random() < 0.05:
+                time = int(random.integers(3, count + SETUP_LATENCY))
+            # What is on the table's port and was not fetched is nobody's.
+            stimulus += [{**here, **any_rect(random, shown)} for _ in range(time - 1)]
+            # A frame of which not even that is done has taught nothing.
+            abandoned = random.random() < 0.05
+            stimulus.append({**here, "reset_ray_caster": 1, "done": int(not abandoned)})
+            expected |= dict.fromkeys(range(begun, len(stimulus)), (answer, place, camera, table))
+
+            following = (place[0], place[1] + 1) if place[1] < groups - 1 else (place[0] + 1, 0)
+            predicted = following if known and time >= count + SETUP_LATENCY else None
+            known = known or (number == 0 and not abandoned)
+            place = following
+            if abandoned or place[0] == rows:
+                place = any_start(random, rows, groups) if random.random() < 0.5 else run[random.integers(len(run))]
+            if number == 1:
+                # As if the frame had come to where the rectangles' edges are.
+                place = start[0] if start[1] else start[0] - 1, (start[1] - 1) % groups
+                place = (1, 0) if place == (0, 0) else place
+    outputs = leaf.run_both(stimulus, settled=min(expected))
+    for cycle, (answer, place, camera, table) in expected.items():
+        case = cycle, place, camera.tolist(), table.corners.tolist()
+        assert outputs[cycle]["may_hit"] == answer, case
+    assert {(True, True, False), (True, False, True), (False, False, True)} <= fates

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: MIT
+"""Scenes for leaf tests of culling."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from vectors import AXES, any_place, config_id
+
+from raycaster.configuration import WORLD_SIZE, Configuration, configure
+from raycaster.golden.engines import model_of
+from raycaster.golden.random_world import random_camera, random_rectangles
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import OTHER_AXES, Rectangles
+
+
+def culling_config(**options) -> Configuration:
+    return configure(**{"culling": True, "allow_underrun": True} | options)
+
+
+def hit_mask(config: Configuration, table: Rectangles, camera, row: int, offset: int) -> int:
+    """What golden's primary rays of the group hit."""
+    slopes = primary_slopes(config.screen_geometry)[row, offset * config.units : (offset + 1) * config.units]
+    traced = model_of(config).trace(table, camera, (0, 0, 0), slopes, 0, keep=True)
+    return sum(int(hit) << index for index, hit in enumerate(traced.bounces[0].hits.any(axis=1)))
+
+
+def scenes(random: np.random.Generator, config: Configuration):
+    """Camera and table, of which all rectangles are enabled and have a plane; some touch the rays at a group's ends."""
+    while True:
+        table = random_rectangles(random, config.rectangles, closed=None if config.rectangles >= 7 else False)
+        camera = np.asarray(random_camera(random, table))
+        if random.random() < 0.3:
+            camera = np.array([any_place(random) for _ in AXES])
+        corners = table.corners.copy()
+        corners[~table.visible, 1, 0] = corners[~table.visible, 0, 0]
+        yield camera, Rectangles(corners, table.colours, np.ones(len(table), dtype=bool))
+
+
+def with_edges_on_rays(
+    random: np.random.Generator, config: Configuration, table: Rectangles, camera, places: Sequence[tuple[int, int]]
+) -> Rectangles:
+    """Many of the rectangles get an edge where a ray at an end of one of the groups meets their plane, or next to it.
+
+    places: of groups, each a row and a number in it.
+    """
+    slopes = primary_slopes(config.screen_geometry)
+    corners = table.corners.copy()
+    for index in range(len(table)):
+        axis = int(table.axes[index])
+        row, offset = places[int(random.integers(len(places)))]
+        first = [int(d) for d in slopes[row, offset * config.units]]
+        end = [first[0], first[1] + int(random.choice([0, config.units - 1, config.units])), first[2]]
+        if random.random() < 0.6 and end[axis]:
+            u, v = (int(other) for other in random.permutation(OTHER_AXES[axis]))
+            met = camera[u] + end[u] * (corners[index, 0, axis] - camera[axis]) // end[axis]
+            if random.random() < 0.7:
+                # So that this edge alone decides.
+                corners[index, :, v] = 0, WORLD_SIZE - 1
+            corners[index, random.integers(2), u] = np.clip(met + random.integers(-2, 3), 0, WORLD_SIZE - 1)
+    return Rectangles(corners, table.colours, table.enabled)
+
+
+designs = pytest.mark.parametrize(
+    "config",
+    [
+        culling_config(),
+        culling_config(units=20, rectangles=4, fraction_bits=4, rounding="nearest", rows=200),
+        culling_config(units=1, rectangles=3),
+        culling_config(units=320, rectangles=2),
+        culling_config(screen="tiny", units=16, rectangles=32, divider_bits=3),
+        culling_config(engine="exact"),
+        culling_config(engine="exact", units=64, rectangles=1),
+        culling_config(engine="exact", screen="tiny", units=2, rectangles=9),
+    ],
+    ids=config_id,
+)

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: MIT
+"""Leaf tests of `rect_sequencer`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+
+import pytest
+from exact_vectors import exact_config
+from vectors import ports
+
+from raycaster.rtl.common.widths import index_bits, unsigned
+from raycaster.rtl.engine.rect_sequencer import rect_sequencer
+from raycaster.verif.leaf import Leaf
+
+
+@pytest.mark.parametrize("slot_cycles", [1, 3, 9])
+@pytest.mark.parametrize("count", [1, 5, 12])
+def test_rect_sequencer(count, slot_cycles, tmp_path, random):
+    config = exact_config(rectangles=count)
+    leaf = Leaf(rect_sequencer, lambda: ports(
+        "clk reset_ray_caster start_ray early_out fetch fetched starting", wanted=unsigned(count),
+        index=unsigned(index_bits(config)), slot_cycles=slot_cycles, config=config
+    ), tmp_path)  # fmt: skip
+    stimulus, expected = [], []
+
+    def drive(reset, start, mask, current=None, first=False, early_out=0):
+        """A cycle in which `current` is at hand."""
+        stimulus.append({"reset_ray_caster": reset, "start_ray": start, "wanted": mask, "early_out": early_out})
+        expected.append((current, first))
+
+    every = (1 << count) - 1
+    for number in range(60):
+        mask = every if number % 7 == 0 else int(random.integers(1 << count)) & int(random.integers(1 << count))
+        if number % 3 == 1:
+            mask = 1 << number // 3 % count
+        if number % 5 == 0:
+            drive(1, 0, mask)
+        for _ in range(int(random.integers(1, 3))):
+            drive(0, 0, mask)
+        drive(0, 1, mask)
+        slots = []
+        for index in range(count):
+            if mask >> index & 1:
+                # Some end early, in any cycle of their slot.
+                last = int(random.integers(slot_cycles)) if random.random() < 0.3 else slot_cycles - 1
+                ends = last < slot_cycles - 1
+                slots += [(index, cycle == 0, int(ends and cycle == last)) for cycle in range(last + 1)]
+        # Only a reset comes before the end.
+        for current, first, early_out in slots[: int(random.integers(len(slots) + 1))] if number % 5 == 4 else slots:
+            drive(0, 0, mask, current, first, early_out)
+        if number % 5 != 4:
+            drive(0, 0, mask)
+    outputs = leaf.run_both(stimulus, settled=4)
+    held_by_memory = None
+    for cycle, (output, (current, first)) in enumerate(zip(outputs, expected, strict=True)):
+        if cycle >= 4 and not stimulus[cycle]["reset_ray_caster"]:
+            assert (bool(output["fetched"]), bool(output["starting"])) == (current is not None, first), (cycle,)
+            assert current is None or held_by_memory == current, cycle
+        if output["fetch"]:
+            held_by_memory = output["index"]

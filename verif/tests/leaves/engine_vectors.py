@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: MIT
+"""Designs, stimuli and monitors for leaf tests of blocks that trace whole rays."""
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+from unittest import mock
+
+import numpy as np
+from hard_scenes import edged, pixel_of, pixel_word, rectangles_in_view, traced_scene, tracer
+from vectors import AXES, ports
+
+from raycaster.configuration import WORLD_SIZE, Configuration, configure
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import Rectangles
+from raycaster.rtl.common.interfaces import Picture, Place, RayFate, Steps
+from raycaster.rtl.common.records import Pixel, Point, rect_of
+from raycaster.rtl.common.widths import unit_bits, unsigned
+from raycaster.rtl.seed.ray_unit import ray_unit
+from raycaster.screens import BEAM_SCREENS, SCREENS, Screen, Span
+from raycaster.verif.leaf import Leaf, sorted_rect, trace_cycles
+
+SMALL_SCREEN = Screen(
+    columns=16,
+    rows=4,
+    horizon_row=3,
+    doubling=2,
+    horizontal=Span(32, 8, 24, 20, active_high=False),
+    vertical=Span(8, 1, 2, 2, active_high=True),
+)
+"""Small enough that MyHDL's simulator shows a whole frame in seconds."""
+
+
+def small_config(screen: Screen = SMALL_SCREEN, **options) -> Configuration:
+    """A configuration for a screen that no name stands for."""
+    beam = options.get("engine") == "beam"
+    screen = replace(screen, clocks_per_pixel=1) if beam else screen
+    with mock.patch.dict(BEAM_SCREENS if beam else SCREENS, {("tiny", screen.rows): screen}):
+        config = configure(screen="tiny", rows=screen.rows, **options)
+        shown = screen.scaled(config.scale)
+        # Looked up once, and kept from here on.
+        assert config.screen_geometry == (shown if config.pixels == 1 else shown.paired())
+    return config
+
+
+def any_config(**options) -> Configuration:
+    return configure(**{"allow_underrun": True} | options)
+
+
+def visible_indices(table: Rectangles) -> list[int]:
+    return [int(index) for index in np.flatnonzero(table.visible)]
+
+
+def usable_mask(table: Rectangles) -> int:
+    return sum(1 << index for index in visible_indices(table))
+
+
+def colour_word(colour) -> int:
+    return int.from_bytes(bytes(np.asarray(colour, dtype=np.uint8)))
+
+
+def fate_of(config: Configuration, golden, table: Rectangles) -> dict[str, Any]:
+    """What the control is told of a group that golden has traced: the keyword arguments of `trace_cycles`."""
+    if not (config.culling or config.materials):
+        return {}
+    behind = {
+        (number, index)
+        for number, bounce in enumerate(golden.bounces)
+        for index in range(len(bounce.numerators))
+        if not np.any(bounce.alive & (bounce.numerators[index] * bounce.denominators[index] > 0))
+    }
+    winners = np.array(golden.winners)
+    ended = np.logical_or.accumulate((winners < 0) | (table.mirrors[winners] == 0))
+    return {"behind": behind, "lost": next(iter(np.flatnonzero(ended.all(axis=1))), None)}
+
+
+def rects_shown(config: Configuration, cycle, table: Rectangles) -> dict[str, int]:
+    """What the control and the memory show all units in a cycle."""
+    inputs = {}
+    if cycle.current is not None:
+        inputs |= sorted_rect(table, cycle.current, "rect", config)
+    if cycle.offered is not None:
+        inputs |= sorted_rect(table, cycle.offered, "offered", config)
+    return inputs
+
+
+def unrelated_inputs(random: np.random.Generator, config: Configuration) -> dict[str, int]:
+    """What a unit reads in one step only, the pixel's place and the plane, as it may be in the other cycles."""
+    return {
+        "place_row": int(random.integers(config.screen_geometry.rows)),
+        "place_column_offset": int(random.integers(config.groups)),
+        "rect_axis": int(random.integers(3)),
+        "rect_position": int(random.integers(WORLD_SIZE)),
+    }
+
+
+def ray_unit_leaf(config: Configuration, directory) -> Leaf:
+    return Leaf(ray_unit, lambda: ports(
+        "clk", steps=Steps(), place=Place(config), column_base=unsigned(unit_bits(config)), camera=Point(),
+        rect=rect_of(config), offered=rect_of(config), picture=Picture(), pixel=Pixel(config.colour_bits),
+        fate=RayFate(), config=config
+    ), directory)  # fmt: skip
+
+
+def check_ray_unit(leaf: Leaf, config: Configuration, random: np.random.Generator, rays: int = 24) -> None:
+    """Rays through a unit as its control leads them: MyHDL, Verilog and golden."""
+    slopes = primary_slopes(config.screen_geometry)
+    rows, columns, _ = slopes.shape
+    stimulus, results, told = [], [], []
+    # How many mirrors a ray meets: none, one, and all that it may.
+    fates, every_fate = set(), set(range(config.reflections + 2))
+    while len(results) < rays or fates != every_fate:
+        row = int(random.choice([0, 1, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))
+        column = int(random.choice([0, 1, columns // 2, columns - 1, random.integers(columns)]))
+        camera, table, background, reflections, golden = traced_scene(random, config, slopes[row, column][None])
+        fate = sum(int(winner[0]) >= 0 for winner in golden.winners)
+        if len(results) >= rays and fate in fates:
+            continue
+        fates.add(fate)
+        held = {
+            "place_row": row,
+            "place_column_offset": column // config.units,
+            "column_base": column % config.units,
+            "picture_background": colour_word(background),
+            **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
+        }
+        fated = fate_of(config, golden, table)
+        for cycle in trace_cycles(config, visible_indices(table), reflections, **fated):
+            inputs = {**held, **cycle.steps, **rects_shown(config, cycle, table)}
+            if config.culling or config.materials:
+                told.append((len(stimulus), cycle.towards, cycle.alive))
+            if not cycle.steps["steps_screen_to_ray"] and not cycle.steps["steps_find_intersection"]:
+                inputs |= unrelated_inputs(random, config)
+            stimulus.append(inputs)
+        case = f"row {row}, column {column}, camera {camera}, corners {table.corners.tolist()}"
+        results.append((len(stimulus), pixel_word(config, golden.colours[0]), case))
+        # done: the pixel stands, whatever comes.
+        stimulus.append({**dict.fromkeys(stimulus[-1], 0), "picture_background": held["picture_background"]})
+    outputs = leaf.run_both(stimulus, settled=results[0][0])
+    for cycle, pixel, case in results:
+        assert pixel_of(config, outputs[cycle]) == pixel, case
+    for cycle, towards, alive in told:
+        assert towards is None or outputs[cycle].get("fate_towards", towards) == towards, cycle
+        assert alive is None or outputs[cycle]["fate_alive"] == alive, cycle
+
+
+def monitored(outputs: list[dict[str, int]], config: Configuration) -> list[np.ndarray]:
+    """The frames that a monitor sees, as rows of pixel words; it samples where its clock has risen.
+
+    Of two pixels in a clock, the left one is in the low half of each colour. With a clock a pixel that is before each
+    clock, where outputs are recorded.
+    """
+    every_cycle = config.screen_geometry.clocks_per_pixel == 1
+    horizontal, vertical = config.screen_geometry.horizontal, config.screen_geometry.vertical
+    words, shift = [], config.colour_bits
+    for before, output in pairwise(outputs):
+        if output["vga_clk"] and (every_cycle or not before["vga_clk"]) and output["vga_blank_n"]:
+            for low in range(0, shift * config.pixels, shift):
+                red, green, blue = (output[f"vga_{channel}"] >> low & (1 << shift) - 1 for channel in "rgb")
+                words.append((red << shift | green) << shift | blue)
+    size = horizontal.visible * vertical.visible
+    return [
+        np.array(words[start : start + size]).reshape(vertical.visible, horizontal.visible)
+        for start in range(0, len(words) - size + 1, size)
+    ]
+
+
+def golden_words(config: Configuration, colours: np.ndarray) -> np.ndarray:
+    screen = config.screen_geometry
+    words = [pixel_word(config, colour) for colour in colours.reshape(-1, 3)]
+    return np.array(words).reshape(screen.rows, screen.columns)
+
+
+def doubled(config: Configuration, words: np.ndarray) -> np.ndarray:
+    return words.repeat(config.screen_geometry.doubling, axis=0).repeat(config.screen_geometry.doubling, axis=1)
+
+
+def start_screen_cycle(screen: Screen) -> int:
+    """Cycles from the end of reset to the first StartScreen."""
+    return (screen.vertical.blank - screen.doubling) * screen.line_cycles
+
+
+TINY_SCREEN = Screen(
+    columns=8,
+    rows=2,
+    horizon_row=1,
+    doubling=2,
+    horizontal=Span(16, 8, 24, 20, active_high=False),
+    vertical=Span(4, 1, 2, 2, active_high=True),
+)
+"""With many frames in little time."""
+
+
+def scene_in_view(random: np.random.Generator, config: Configuration, axis: int) -> tuple:
+    """Camera, table, background, reflections and the picture; most show several colours and a plane of this axis, and
+    are another picture from a camera one unit away along it."""
+    slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
+    anything = random.random() < 0.2
+    for _ in range(2000):
+        camera = random.integers(WORLD_SIZE, size=3) // [random.choice([1, 2]), 1, 1]
+        table = rectangles_in_view(random, camera, slopes, config.rectangles, None if anything else axis)
+        enabled = random.random(config.rectangles) < 0.7
+        enabled[0] |= not anything
+        table = Rectangles(table.corners, table.colours, enabled)
+        background = random.integers(256, size=3)
+        reflections = int(random.integers(config.reflections + 1))
+        trace = tracer(config, background=background, reflections=reflections)
+        ray = slopes[random.integers(len(slopes))][None]
+        table = edged(random, config, trace(table, camera=camera, slopes=ray), table)
+        words = golden_words(config, trace(table, camera=camera, slopes=slopes).colours)
+        beside = camera ^ (np.arange(3) == axis)
+        moved = golden_words(config, trace(table, camera=beside, slopes=slopes).colours)
+        if anything or (
+            len(np.unique(words)) > 1 and axis in table.axes[table.visible] and not np.array_equal(moved, words)
+        ):
+            return camera, table, background, reflections, words
+    raise AssertionError(f"no scene shows where its camera is along {AXES[axis]}")

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: MIT
+"""Leaf tests of `rect_mem`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scene_vectors import CYCLES, EVERY_BIT, label, random_bus, rectangle_words, sized
+from vectors import ports
+
+from raycaster.registers import address_bits, register_map
+from raycaster.rtl.common.interfaces import Rects, SceneBus
+from raycaster.rtl.common.widths import WORD_BITS, unsigned
+from raycaster.rtl.scene.rect_mem import rect_mem
+from raycaster.sim.register_model import Table
+from raycaster.verif.leaf import Leaf, sorted_rect
+
+
+def bits_of(flags) -> int:
+    return sum(int(flag) << index for index, flag in enumerate(flags))
+
+
+def almost_flat(random: np.random.Generator) -> tuple[int, ...]:
+    """The words of an enabled rectangle whose corners differ by one bit in each coordinate, or in none of an axis."""
+    first = int(random.integers(1 << WORD_BITS))
+    second = first ^ int(random.integers(1 << WORD_BITS)) & ~register_map(1)["rectangle[0].corner_0"].implemented
+    for field in register_map(1)["rectangle[0].corner_0"].fields.values():
+        if random.random() < 0.75:
+            second ^= 1 << field.lsb + int(random.integers(field.width))
+    surface = int(random.integers(1 << 27)) | register_map(1)["rectangle[0].surface"].pack(enable=1)
+    return first, second, surface, int(random.integers(1 << WORD_BITS))
+
+
+def table_stimulus(random: np.random.Generator, table: Table, rectangles: int) -> list[dict[str, int]]:
+    """Rectangles written one after the other, in part too, at random and to neighbouring addresses; others whole, then
+    read, and shown; others whole, again and again, with commits and frames in between."""
+    stimulus = [{**random_bus(random, [0]), "reset": 1}] * 2
+    last = 1 << address_bits(rectangles)
+    written = list(table.words)
+    # Many rectangles take their time.
+    while len(stimulus) < (CYCLES * 5 if rectangles <= 4 else CYCLES):
+        _, words = rectangle_words(random)
+        slot, size = int(random.integers(rectangles)), len(table.names)
+        data = words[int(random.integers(len(words)))]
+        addresses = written[size * slot : size * (slot + 1)]
+        idle = {"bus_write": 0, "bus_commit": 0, "bus_go_live": 0, "bus_mask": EVERY_BIT, "reset": 0}
+        if random.random() < 0.25:
+            # The shadow's, the pending and the live rectangle are each in one of three places.
+            for _, data in zip(range(8), words, strict=False):
+                for address, word in zip(addresses, data, strict=False):
+                    stimulus.append({**idle, "bus_write": 1, "bus_address": address, "bus_data": word})
+                stimulus += [{**idle, "bus_address": addresses[0], "bus_data": 0}] * 2
+                show = {name: int(random.random() < 0.5) for name in ("bus_commit", "bus_go_live")}
+                stimulus.append({**stimulus[-1], **show, "reset": int(random.random() < 0.05)})
+            continue
+        if random.random() < 0.5:
+            if random.random() < 0.8:
+                data = almost_flat(random)
+            for address, word in zip(addresses, data, strict=False):
+                stimulus.append({**idle, "bus_write": 1, "bus_address": address, "bus_data": word})
+            stimulus += [{**idle, "bus_address": address, "bus_data": 0} for address in addresses]
+            stimulus[-2]["bus_commit"] = stimulus[-1]["bus_go_live"] = 1
+            continue
+        for address, word in zip(written[size * slot : size * (slot + 1)], data, strict=False):
+            bus = random_bus(random, [address] * 8 + [address ^ 1, int(random.integers(last))], word)
+            stimulus.append({**bus, "reset": int(random.random() < 0.01)})
+        stimulus.append({**random_bus(random, [int(random.integers(last))]), "reset": 0})
+    return stimulus
+
+
+def fill_places(random: np.random.Generator, table: Table) -> list[dict[str, int]]:
+    """A reset, and writes that reach all places of all slots, so that a memory which starts unknown is known."""
+    idle = random_bus(random, [0]) | {"bus_write": 0, "bus_commit": 0, "bus_go_live": 0, "reset": 0}
+    writes = [
+        {**idle, "bus_write": 1, "bus_address": address, "bus_data": int(random.integers(1 << WORD_BITS))}
+        for address in table.words
+    ]
+    commit, go_live = {**idle, "bus_commit": 1}, {**idle, "bus_go_live": 1}
+    return [{**idle, "reset": 1}, *writes, idle, commit, *writes, idle, commit, go_live, *writes, idle, idle, idle]
+
+
+@pytest.mark.slow_sets("2", "3-", "32")
+@pytest.mark.parametrize(
+    ("rectangles", "options"),
+    [
+        *((rectangles, {"engine": engine}) for rectangles in (1, 2, 3, 12, 32) for engine in ("seed", "beam")),
+        (3, {"engine": "beam", "materials": True}), (2, {"engine": "exact", "patterns": True}),
+        (3, {"engine": "seed", "materials": True, "patterns": True}),
+    ],
+    ids=lambda value: label(value) if isinstance(value, dict) else str(value),
+)  # fmt: skip
+def test_rect_mem(rectangles, options, tmp_path, random):
+    config = sized(rectangles, **options)
+    latency = config.facts.rect_latency
+    leaf = Leaf(rect_mem, lambda: ports(
+        "clk reset bad_rectangle", bus=SceneBus(address_bits(rectangles)), readback=unsigned(WORD_BITS),
+        rects=Rects(config), config=config
+    ), tmp_path)  # fmt: skip
+    table = Table(config)
+    filling = fill_places(random, table)
+    stimulus = filling + table_stimulus(random, table, rectangles)
+    for cycle, inputs in enumerate(stimulus):
+        stimulus[cycle] = inputs | {
+            "rects_fetch": int(cycle < len(filling) or random.random() < 0.6),
+            "rects_index": int(random.integers(rectangles)),
+        }
+        # A commit is asked for by a write of another word in the cycle before it.
+        if inputs["bus_commit"] and cycle:
+            stimulus[cycle - 1]["bus_write"] = 0
+    outputs = leaf.run_both(stimulus, settled=len(filling))
+    # What was asked for, and what is at the port; with a latency of two it is in between for a cycle.
+    presented, on_the_way = None, None
+    checked, bad = 0, False
+    for cycle, (inputs, output) in enumerate(zip(stimulus, outputs, strict=True)):
+        live, shadow = table.rectangles("live"), table.rectangles("shadow")
+        if cycle >= len(filling):
+            word = table.words.get(inputs["bus_address"])
+            expected = {
+                "readback": word.shadow if word else 0,
+                "bad_rectangle": int(bad),
+                "rects_usable": bits_of(live.visible),
+            }
+            if presented is not None:
+                checked += 1
+                expected |= presented
+            assert {name: output[name] for name in expected} == expected, cycle
+        if latency == 2:
+            presented = on_the_way
+        if inputs["rects_fetch"]:
+            presentable = live.visible[inputs["rects_index"]]
+            on_the_way = sorted_rect(live, inputs["rects_index"], "rects_rect", config) if presentable else None
+        if latency == 1:
+            presented = on_the_way
+        # It is known a cycle after the shadow.
+        bad = bool(np.any(shadow.enabled & (shadow.axes < 0))) and not inputs["reset"]
+        table.clock(inputs)
+    assert checked > 50

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: MIT
+"""Register accesses and looks for leaf tests of the scene memories."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from raycaster.configuration import Configuration, configure
+from raycaster.golden.random_world import random_looks, random_rectangles
+from raycaster.golden.world import Rectangles
+from raycaster.registers import register_map
+from raycaster.rtl.common.widths import WORD_BITS
+from raycaster.sim.register_model import AXES, COLOURS
+
+CYCLES = 500
+
+
+def label(options) -> str:
+    """A design's options as a test's name has them."""
+    return "-".join([options["engine"], *(name for name in options if name != "engine")])
+
+
+EVERY_BIT = (1 << WORD_BITS) - 1
+
+MASKS = (0, 0xFF, 0xFF00, 0xFF0000, 0xFF000000, 0xFFFF, EVERY_BIT, EVERY_BIT, EVERY_BIT)
+
+
+def sized(rectangles: int, **options) -> Configuration:
+    return configure(rectangles=rectangles, allow_underrun=True, **options)
+
+
+def random_bus(random: np.random.Generator, addresses: list[int], data: int | None = None) -> dict[str, int]:
+    return {
+        "bus_write": int(random.random() < 0.7),
+        "bus_commit": int(random.random() < 0.15),
+        "bus_go_live": int(random.random() < 0.15),
+        "bus_address": int(random.choice(addresses)),
+        "bus_data": int(random.choice([0, EVERY_BIT, random.integers(1 << WORD_BITS)]) if data is None else data),
+        "bus_mask": int(random.choice(MASKS)),
+    }
+
+
+def rectangle_words(random: np.random.Generator) -> tuple[Rectangles, list[tuple[int, ...]]]:
+    """Rectangles, some of them none, and their words with something in the bits that do not exist."""
+    registers = register_map(1)
+    point, surface, pattern = (registers[f"rectangle[0].{name}"] for name in ("corner_0", "surface", "pattern"))
+    table = random_looks(random, random_rectangles(random, 12))
+    words = []
+    for index, corners in enumerate(table.corners):
+        first, second = (
+            point.pack(**dict(zip(AXES, map(int, corner), strict=True)))
+            | int(random.integers(1 << WORD_BITS)) & ~point.implemented
+            for corner in corners
+        )
+        channels, channels_2 = (
+            dict(zip(COLOURS, map(int, colours[index]), strict=True)) for colours in (table.colours, table.colours_2)
+        )
+        # 4 and all that is more are the same.
+        mirror = int(random.integers(4, 8) if table.mirrors[index] == 4 else table.mirrors[index])
+        cell = int(table.cells[index]).bit_length() - 4
+        words.append(
+            (
+                first,
+                second,
+                surface.pack(enable=int(table.enabled[index]), mirror=mirror, **channels),
+                pattern.pack(kind=int(table.kinds[index]), cell=cell, **channels_2),
+            )
+        )
+    return table, words

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: MIT
+"""Leaf tests of `ray_caster`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from engine_vectors import any_config, colour_word, fate_of, usable_mask, visible_indices
+from fates import may_hit_mask
+from hard_scenes import pixel_word, traced_scene, tracer
+from vectors import AXES, config_id, ports
+
+from raycaster.configuration import Configuration
+from raycaster.engines.engine import SETUP_LATENCY
+from raycaster.golden.random_world import random_basis
+from raycaster.golden.rays import primary_slopes
+from raycaster.rtl.common.interfaces import Picture, Place, Rects
+from raycaster.rtl.common.records import camera_of
+from raycaster.rtl.common.widths import pixel_bits, unsigned
+from raycaster.rtl.system.ray_caster import ray_caster
+from raycaster.scene import UNTURNED
+from raycaster.verif.leaf import Leaf, TraceCycle, slot_length, sorted_rect, trace_cycles
+
+
+def place_after(config: Configuration, place: tuple[int, int]) -> tuple[int, int]:
+    """The row and the group that follow in a frame."""
+    row, offset = place
+    return (row, offset + 1) if offset < config.groups - 1 else (row + 1, 0)
+
+
+def places_before(random: np.random.Generator, config: Configuration, place: tuple[int, int]) -> list[tuple[int, int]]:
+    """Groups that a frame comes by on its way to this one: its first, at times its second, mostly the one before this.
+
+    The rows between are abandoned.
+    """
+    row, offset = place
+    before = (row, offset - 1) if offset else (row - 1, config.groups - 1)
+    second = [(0, 1)] * int(random.random() < 0.2)
+    return [(0, 0), *second, *([before] if random.random() < 0.8 else [])]
+
+
+def remembered(config: Configuration, cycles: list[TraceCycle], usable: list[int]) -> list[int]:
+    """The rectangle that the memory holds in each cycle of a trace, in that of done and in the next.
+
+    The control fetches one for each slot and each pass, whether anybody waits for it or not; where none is left, the
+    lowest.
+    """
+    queue = [*usable, *[0] * len(cycles)]
+    held, blends, indices = 0, 0, []
+    for before, cycle in pairwise([None, *cycles]):
+        if cycle.current is not None:
+            held = cycle.current
+        elif blends:
+            held = queue[blends - 1]
+        elif before is not None and (before.current is not None or before.steps["steps_screen_to_ray"]):
+            held = 0
+        blends = blends + 1 if cycle.steps["steps_add_colour"] else 0
+        indices.append(held)
+    # A slot of one cycle is over in that of done.
+    return [*indices, queue[blends - 1], queue[blends - (slot_length(config) > 1)]]
+
+
+@pytest.mark.slow_sets(
+    "exact-vga240-u1-r4-m2",
+    "exact-vga240-u4-r6-m2",
+    "exact-vga240-u5",
+    "seed-vga240-u1-",
+    "seed-vga240-u4-r5-m2-f0t-d3-c8-k0",
+    "seed-vga240-u5",
+)
+@pytest.mark.parametrize(
+    "config",
+    [
+        any_config(units=1, rectangles=4, reflections=1, divider_bits=3),
+        any_config(units=2, rectangles=8, reflections=2, fraction_bits=4, rounding="nearest", divider_bits=3),
+        any_config(units=5, rectangles=5, reflections=1, fraction_bits=1, divider_bits=2, colour_bits=4),
+        any_config(engine="exact", units=1, rectangles=4, reflections=2),
+        any_config(engine="exact", units=2, rectangles=8, reflections=1),
+        any_config(engine="exact", units=5, rectangles=7, reflections=0, colour_bits=4),
+        any_config(units=4, rectangles=6, reflections=2, divider_bits=1, culling=False),
+        any_config(engine="exact", units=4, rectangles=6, reflections=2, culling=True),
+        any_config(units=2, rectangles=6, reflections=2, divider_bits=3, materials=True, patterns=True),
+        any_config(units=4, rectangles=5, reflections=2, divider_bits=3, materials=True, culling=False),
+        any_config(engine="exact", units=2, rectangles=6, reflections=2, materials=True),
+        any_config(engine="exact", units=4, rectangles=6, reflections=1, turn=True, culling=True),
+    ],
+    ids=config_id,
+)
+def test_ray_caster(config, tmp_path, random):
+    """Of either engine: pixels, and the cycle in which they are done.
+
+    Where groups are culled, a group comes after others of its frame, in which its rectangles were tested or not.
+    """
+    leaf = Leaf(ray_caster, lambda: ports(
+        "clk reset_ray_caster enable done", place=Place(config), camera=camera_of(config), picture=Picture(),
+        rects=Rects(config), pixels=unsigned(config.units * pixel_bits(config)), config=config
+    ), tmp_path)  # fmt: skip
+    predicts = config.culling and not config.turn
+    stimulus, results, shown, culled = [], [], {}, 0
+    for _ in range((160 if config.engine == "exact" else 80) if config.units == 1 else 12):
+        basis = random_basis(random) if config.turn else UNTURNED
+        groups = primary_slopes(config.screen_geometry, basis)
+        groups = groups.reshape(len(groups), config.groups, config.units, 3)
+        last = int(random.integers(1, len(groups))), int(random.integers(config.groups))
+        camera, table, background, reflections, _ = traced_scene(random, config, groups[last])
+        trace = tracer(config, camera=camera, background=background, reflections=reflections)
+        usable = visible_indices(table)
+        scene = {
+            "picture_background": colour_word(background),
+            "picture_reflections": reflections,
+            "rects_usable": usable_mask(table),
+            **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
+        }
+        if config.turn:
+            for name, vector in zip(("forward", "right", "up"), basis, strict=True):
+                scene |= {f"camera_{name}_{axis}": part for axis, part in zip(AXES, vector, strict=True)}
+        rects = {index: sorted_rect(table, index, "rects_rect", config) for index in usable}
+        following, at_hand = None, 0
+        places = [*places_before(random, config, last), last] if config.culling else [last]
+        for place in places:
+            golden = trace(table, slopes=groups[place])
+            fate = fate_of(config, golden, table)
+            if predicts and place == following:
+                mask = may_hit_mask(config, table, camera, *place)
+                fate["may_hit"] = [index for index in usable if mask >> index & 1]
+                culled += len(usable) - len(fate["may_hit"])
+            held = {**scene, "place_row": place[0], "place_column_offset": place[1]}
+            if place == places[0]:
+                stimulus.append({**held, "reset_ray_caster": 1, "enable": 1})
+            stimulus.append({**held, **rects.get(at_hand, {}), "reset_ray_caster": 1, "enable": 1})
+            stimulus += [{**held, "reset_ray_caster": 0, "enable": 0}] * int(random.integers(3))
+            stimulus.append({**held, "reset_ray_caster": 0, "enable": 1})
+            cycles = trace_cycles(config, usable, reflections, **fate)
+            *indices, at_hand = remembered(config, cycles, usable)
+            shown |= {len(stimulus) + number: index for number, index in enumerate(indices) if number}
+            for index in indices:
+                rect = rects.get(index, {})
+                stimulus.append({**held, **rect, "reset_ray_caster": 0, "enable": int(random.integers(2))})
+            # In a frame the cycle of done is the first of a reset.
+            stimulus[-1]["reset_ray_caster"] = int(place != last)
+            colours = [pixel_word(config, colour) for colour in golden.colours]
+            case = f"group {place} of {places}, camera {camera}, corners {table.corners.tolist()}"
+            results.append((len(stimulus) - 1, colours, case))
+            # In the first the rectangles are copied; the others test them if they take long enough.
+            tests = place != (0, 0) and len(cycles) >= config.rectangles + SETUP_LATENCY
+            following = place_after(config, place) if tests else None
+        stimulus.append({})
+        results.append((len(stimulus) - 1, *results[-1][1:]))
+    outputs = leaf.run_both(stimulus, settled=results[0][0])
+    width = pixel_bits(config)
+    done = {cycle for cycle, *_ in results}
+    for cycle, colours, case in results:
+        assert outputs[cycle]["done"], case
+        assert outputs[cycle - 1]["done"] == (cycle - 1 in done), case
+        units = [outputs[cycle]["pixels"] >> width * unit & (1 << width) - 1 for unit in range(config.units)]
+        assert units == colours, case
+    for cycle, index in shown.items():
+        before = next(past for past in range(cycle - 1, -1, -1) if outputs[past]["rects_fetch"])
+        assert outputs[before]["rects_index"] == index, f"cycle {cycle}: it fetched another rectangle"
+    assert bool(culled) == predicts, "some groups were to be culled"

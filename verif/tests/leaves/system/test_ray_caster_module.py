@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: MIT
+"""Leaf tests of `ray_caster_module`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from engine_vectors import (
+    SMALL_SCREEN,
+    TINY_SCREEN,
+    doubled,
+    golden_words,
+    monitored,
+    scene_in_view,
+    small_config,
+    start_screen_cycle,
+)
+from hard_scenes import rectangles_in_view, tracer, with_looks
+from vectors import AXES, config_id, ports
+
+from raycaster.configuration import WORLD_SIZE, Configuration
+from raycaster.golden.engines import model_of
+from raycaster.golden.random_world import random_basis
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import Rectangles
+from raycaster.program import basis_fields
+from raycaster.registers import register_map
+from raycaster.rtl.system.ports import module_ports
+from raycaster.rtl.system.ray_caster_module import ray_caster_module
+from raycaster.scene import UNTURNED, Basis
+from raycaster.screens import Span
+from raycaster.sim.register_model import RegisterFile, Request
+from raycaster.verif.leaf import Leaf
+
+LONG_BLANKING = replace(SMALL_SCREEN, horizontal=Span(32, 8, 24, 44, active_high=False))
+"""In which a beam engine whose camera turns sets up a line."""
+
+
+def without_one(random: np.random.Generator, config: Configuration, scene: tuple) -> tuple:
+    """The scene without one of the rectangles that its picture shows, if it shows any."""
+    camera, table, background, reflections, words = scene
+    slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
+    for index in random.permutation(np.flatnonzero(table.visible)):
+        less = Rectangles(table.corners, table.colours, table.enabled & (np.arange(len(table)) != index))
+        trace = tracer(config, camera=camera, background=background, reflections=reflections)
+        left = golden_words(config, trace(less, slopes=slopes).colours)
+        if not np.array_equal(left, words):
+            return camera, less, background, reflections, left
+    return scene
+
+
+class Bus:
+    """Writes the stimulus of a bus master, and remembers when the answer to each read comes."""
+
+    def __init__(self, config: Configuration):
+        self.config, self.registers = config, register_map(config.rectangles)
+        self.stimulus: list[dict[str, int]] = []
+        self.reads: dict[str, int] = {}
+        self._idle = {"avs_s0_write": 0, "avs_s0_read": 0}
+
+    def wait(self, cycles: int, **signals: int) -> None:
+        self.stimulus += [{**self._idle, **signals}] * cycles
+
+    def write(self, name: str, **fields: int) -> None:
+        transfer = {"avs_s0_address": self.registers[name].address, "avs_s0_byteenable": 15}
+        transfer["avs_s0_writedata"] = self.registers[name].pack(**{key: int(value) for key, value in fields.items()})
+        self.stimulus.append({**self._idle, **transfer, "avs_s0_write": 1})
+
+    def write_word(self, name: str, word: int, lanes: int) -> None:
+        """Any word, in some of its bytes."""
+        transfer = {"avs_s0_address": self.registers[name].address, "avs_s0_writedata": word}
+        self.stimulus.append({**self._idle, **transfer, "avs_s0_byteenable": lanes, "avs_s0_write": 1})
+
+    def read(self, name: str) -> None:
+        self.reads[name] = len(self.stimulus) + 2
+        self.stimulus.append({**self._idle, "avs_s0_address": self.registers[name].address, "avs_s0_read": 1})
+
+    def write_scene(
+        self, camera, background, reflections: int, table: Rectangles, run: bool = True, basis: Basis = UNTURNED
+    ) -> None:
+        self.write("camera", **dict(zip(AXES, camera, strict=True)))
+        if self.config.turn:
+            for name, fields in basis_fields(basis):
+                self.write(name, **fields)
+        self.write("background", **dict(zip(("red", "green", "blue"), background, strict=True)))
+        for index, (corners, colour, enabled) in enumerate(
+            zip(table.corners, table.colours, table.enabled, strict=True)
+        ):
+            for number, corner in enumerate(corners):
+                self.write(f"rectangle[{index}].corner_{number}", **dict(zip(AXES, corner, strict=True)))
+            channels, channels_2 = (
+                dict(zip(("red", "green", "blue"), one, strict=True)) for one in (colour, table.colours_2[index])
+            )
+            if self.config.patterns:
+                cell = int(table.cells[index]).bit_length() - 4
+                self.write(f"rectangle[{index}].pattern", kind=table.kinds[index], cell=cell, **channels_2)
+            self.write(f"rectangle[{index}].surface", enable=enabled, mirror=table.mirrors[index], **channels)
+        self.write("control", run=run, commit=1, reflections=reflections)
+
+
+def check_bus(config: Configuration, stimulus: list[dict[str, int]], outputs: list[dict[str, int]]) -> int:
+    """Hold the bus against the registers' model in every cycle; returns how many reads were answered."""
+    model, inputs, answers = RegisterFile(config), {}, 0
+    for cycle, (given, output) in enumerate(zip(stimulus, outputs, strict=True)):
+        inputs |= given
+        if cycle >= 2:
+            expected = {"avs_s0_waitrequest": model.agent.waiting, "avs_s0_readdatavalid": model.agent.answer[0]}
+            assert {name: output[name] for name in expected} == expected, cycle
+            if output["avs_s0_readdatavalid"]:
+                model.check_answer(output["avs_s0_readdata"])
+                answers += 1
+        reads, writes = inputs["avs_s0_read"], inputs["avs_s0_write"]
+        word = inputs["avs_s0_writedata"] if writes else None
+        request = Request(inputs.get("avs_s0_address", 0), word, inputs.get("avs_s0_byteenable", 0))
+        model.clock(bool(inputs["reset"]), request if reads or writes else None)
+    return answers
+
+
+@pytest.mark.slow_sets(
+    "",
+    quick=[
+        "beam-tiny4-s1-u1-r2-m1-c8-turn",
+        "exact-tiny4-u4-r3-m2-c8-turn",
+        "seed-tiny4-u4-r3-m1-f0t-d1-c8-materials-patterns",
+    ],
+)
+@pytest.mark.parametrize(
+    "config",
+    [
+        small_config(units=4, rectangles=3, reflections=1),
+        small_config(units=4, rectangles=2, reflections=2, fraction_bits=4, rounding="nearest", colour_bits=4),
+        small_config(units=2, rectangles=5, reflections=0, divider_bits=3, colour_bits=6),
+        small_config(engine="beam", rectangles=3, reflections=1, scale=1),
+        small_config(engine="beam", rectangles=2, reflections=2, scale=2, colour_bits=4),
+        small_config(units=4, rectangles=3, reflections=1, materials=True, patterns=True),
+        small_config(engine="exact", units=4, rectangles=3, reflections=2, turn=True, materials=True, patterns=True),
+        small_config(
+            LONG_BLANKING, engine="beam", rectangles=2, reflections=1, scale=1, turn=True, materials=True, patterns=True
+        ),
+    ],
+    ids=config_id,
+)
+def test_ray_caster_module(config, tmp_path, random):
+    """Two scenes over the bus, one shown after the other; each output of each cycle, and each pixel."""
+    screen = config.screen_geometry
+    bus = Bus(config)
+    pictures = []
+    bus.wait(2, reset=1)
+    bus.wait(3, reset=0)
+    for _ in range(2):
+        # Most of what is random cannot be told from a wall.
+        for _ in range(1000):
+            camera = random.integers(WORLD_SIZE, size=3) // [2, 1, 1]
+            basis = random_basis(random) if config.turn else UNTURNED
+            slopes = primary_slopes(screen, basis).reshape(-1, 3)
+            table = with_looks(random, config, rectangles_in_view(random, camera, slopes, config.rectangles))
+            background = random.integers(256, size=3)
+            colours = model_of(config).trace(table, camera, background, slopes, config.reflections).colours
+            if len(np.unique(colours, axis=0)) > min(config.rectangles, 3):
+                break
+        else:
+            raise AssertionError(f"no scene shows more than {min(config.rectangles, 3)} colours")
+        pictures.append(golden_words(config, colours))
+        bus.write_scene(camera, background, config.reflections, table, basis=basis)
+        # To the cycle after the next StartScreen.
+        so_far = len(bus.stimulus) - 2 - start_screen_cycle(screen) - 1
+        bus.wait(-so_far % screen.frame_cycles)
+    bus.wait(screen.frame_cycles - 50)
+    for name in ("status", "cycles", "engine", "size"):
+        bus.read(name)
+    bus.wait(60)
+    leaf = Leaf(ray_caster_module, lambda: ports("", **module_ports(config), config=config), tmp_path)
+    outputs = leaf.run_both(bus.stimulus, settled=2)
+
+    frames = monitored(outputs[2:], config)
+    assert len(frames) == 2
+    for number, (frame, picture) in enumerate(zip(frames, pictures, strict=True)):
+        assert np.array_equal(frame, doubled(config, picture)), f"frame {number}"
+    answers = {}
+    assert check_bus(config, bus.stimulus, outputs) == len(bus.reads)
+    for name, cycle in bus.reads.items():
+        answers[name] = bus.registers[name].unpack(outputs[cycle]["avs_s0_readdata"])
+    assert answers["status"] == {"busy": 0, "underrun": 0, "bad_rectangle": 0, "frame": 2}
+    assert answers["cycles"]["group"] <= config.group_cycles
+    assert answers["size"] == {"units": config.units, "rectangles": config.rectangles, "rows": config.rows}
+    assert answers["engine"]["fraction_bits"] == config.fraction_bits
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "config",
+    [
+        small_config(TINY_SCREEN, units=2, rectangles=3, reflections=1, divider_bits=2),
+        small_config(TINY_SCREEN, engine="beam", rectangles=3, reflections=1, scale=2),
+    ],
+    ids=config_id,
+)
+def test_ray_caster_module_scenes(config, tmp_path, random):
+    """A scene a frame over the bus, which is never idle: words are read back, and written in part.
+
+    Some frames are black, as the module does not run.
+    """
+    screen = config.screen_geometry
+    bus = Bus(config)
+    bus.wait(2, reset=1)
+    bus.wait(3, reset=0)
+    pictures = []
+
+    def traffic(until: int) -> None:
+        while len(bus.stimulus) < until:
+            name = str(random.choice([name for name in bus.registers if name != "control"]))
+            if random.random() < 0.6:
+                bus.read(name)
+            else:
+                bus.write_word(name, int(random.integers(1 << 32)), int(random.choice([1, 2, 4, 8, 3, 12, 15])))
+
+    for number in range(40):
+        scene = scene_in_view(random, config, number % 3)
+        if number % 4 == 3:
+            scene = without_one(random, config, scene)
+        camera, table, background, reflections, words = scene
+        run = random.random() < 0.9
+        pictures.append(words * run)
+        start = 2 + start_screen_cycle(screen) + number * screen.frame_cycles
+        # Whatever is committed before the scene is never shown; whatever is written after it waits for a commit.
+        traffic(start - screen.frame_cycles + int(random.integers(10, 400)))
+        bus.write("control", run=1, commit=1, reflections=0)
+        bus.read("status")
+        traffic(start - int(random.integers(50, 290)))
+        bus.write_scene(camera, background, reflections, table, run)
+        traffic(start + 1)
+    bus.wait(screen.frame_cycles)
+    leaf = Leaf(ray_caster_module, lambda: ports("", **module_ports(config), config=config), tmp_path)
+    outputs = leaf.run_both(bus.stimulus, settled=2)
+    assert check_bus(config, bus.stimulus, outputs) > 1000
+    frames = monitored(outputs[2:], config)
+    assert len(frames) == len(pictures)
+    for number, (frame, picture) in enumerate(zip(frames, pictures, strict=True)):
+        assert np.array_equal(frame, doubled(config, picture)), f"frame {number}"

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: MIT
+"""Leaf tests of `ray_caster_renderer`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from engine_vectors import (
+    TINY_SCREEN,
+    colour_word,
+    doubled,
+    golden_words,
+    monitored,
+    scene_in_view,
+    small_config,
+    start_screen_cycle,
+    usable_mask,
+)
+from hard_scenes import pixel_word
+from vectors import AXES, config_id, ports
+
+from raycaster.configuration import Configuration
+from raycaster.golden.engines import model_of
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import Rectangles
+from raycaster.rtl.common.interfaces import Picture, Progress, Rects, vga_of
+from raycaster.rtl.common.records import Point
+from raycaster.rtl.system.ray_caster_module import RENDERERS
+from raycaster.rtl.system.ray_caster_renderer import ray_caster_renderer
+from raycaster.screens import Screen, Span
+from raycaster.verif.leaf import Leaf, sorted_rect, trace_cycles
+
+COARSE = Screen(
+    columns=8,
+    rows=2,
+    horizon_row=1,
+    doubling=4,
+    horizontal=Span(32, 8, 48, 40, active_high=False),
+    vertical=Span(8, 1, 2, 2, active_high=True),
+    clocks_per_pixel=1,
+    distance=50,
+)
+"""With a clock a pixel, and half the slope ahead."""
+
+
+def renderer_leaf(config: Configuration, directory) -> Leaf:
+    return Leaf(RENDERERS.get(config.engine, ray_caster_renderer), lambda: ports(
+        "clk reset", picture=Picture(), camera=Point(), rects=Rects(config), progress=Progress(), vga=vga_of(config),
+        config=config
+    ), directory)  # fmt: skip
+
+
+@pytest.mark.slow_sets("seed-tiny4-u4-r1-m2")
+@pytest.mark.parametrize(
+    "config",
+    [
+        small_config(units=4, rectangles=1, reflections=1, colour_bits=8, culling=False),
+        small_config(units=2, rectangles=1, reflections=0, fraction_bits=4, rounding="nearest", culling=False),
+        small_config(units=4, rectangles=1, reflections=2, divider_bits=3, colour_bits=2, culling=False),
+        small_config(units=4, rectangles=1, reflections=2, colour_bits=4),
+        small_config(COARSE, units=4, rectangles=1, reflections=1, culling=False),
+        # 16 groups of 27 cycles, of which a row of 336 has time for twelve.
+        small_config(
+            units=1, rectangles=1, reflections=0, fraction_bits=8, divider_bits=1, allow_underrun=True, culling=False
+        ),
+    ],
+    ids=config_id,
+)
+def test_ray_caster_renderer(config, tmp_path, random):
+    """One rectangle, so that the memory's answer never changes; the first frame shows none, the third is black."""
+    screen = config.screen_geometry
+    camera = np.array([100, 200, 100])
+    # At twice the distance of the viewing rectangle, a column is two units wide, and a row two high.
+    table = Rectangles(
+        np.array([[(301, 511, 104), (301, 192, 100)]]),
+        random.integers(1, 256, size=(1, 3)).astype(np.uint8),
+        np.ones(1, dtype=bool),
+    )
+    background = random.integers(1, 256, size=3)
+    scene = {
+        "picture_background": colour_word(background),
+        "picture_reflections": config.reflections,
+        **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
+        **sorted_rect(table, 0, "rects_rect"),
+    }
+    start, frame = start_screen_cycle(screen), screen.frame_cycles
+    # From the cycle after each StartScreen on, the next scene.
+    stimulus = [{**scene, "reset": 1}] * 2 + [{"reset": 0, "picture_run": 1, "rects_usable": 0}] * (start + 1 + frame)
+    stimulus += [{"rects_usable": 1}] * frame + [{"picture_run": 0}] * (frame // 2)
+    # What the control asks the memory for is known from the first group on.
+    outputs = renderer_leaf(config, tmp_path).run_both(stimulus, settled=2 + start + 6)[2:]
+
+    slopes = primary_slopes(screen).reshape(-1, 3)
+    colours = model_of(config).trace(table, camera, background, slopes, config.reflections).colours
+    golden = golden_words(config, colours)
+    assert len(set(golden.flat)) > 1, "the rectangle was to have an edge in view"
+    empty = np.full_like(golden, pixel_word(config, background))
+    group = len(trace_cycles(config, [0], config.reflections)) + 3
+    assert group == config.group_cycles
+    groups_in_time = min(config.groups, (screen.row_cycles - 1) // group)
+    shown = golden.copy()
+    # Columns that were not written in time keep what that half of the buffer held: the empty scene's.
+    shown[:, groups_in_time * config.units :] = empty[:, groups_in_time * config.units :]
+    frames = monitored(outputs, config)
+    assert len(frames) == 2
+    assert np.array_equal(frames[0], doubled(config, empty))
+    assert np.array_equal(frames[1], doubled(config, shown))
+    assert (groups_in_time < config.groups) == config.allow_underrun
+
+    assert not any(output[f"vga_{channel}"] for output in outputs[start + 2 * frame + 1 :] for channel in "rgb")
+
+    strobes = [cycle for cycle, output in enumerate(outputs) if output["progress_start_screen"]]
+    assert strobes == [start, start + frame, start + 2 * frame]
+    late = [cycle for cycle, output in enumerate(outputs) if output["progress_underrun"]]
+    rows = [start + frame + row * screen.row_cycles for row in range(1, screen.rows + 1)]
+    assert late == (rows if config.allow_underrun else [])
+    in_second = outputs[start + frame + 1 : start + 2 * frame]
+    busy = sum(output["progress_busy"] for output in in_second)
+    if config.culling:
+        # In the first two groups nothing is known yet.
+        assert 2 * group < busy < screen.rows * config.groups * group / 2
+        return
+    if not config.allow_underrun:
+        assert (
+            max(output["progress_row_cycles"] for output in in_second if output["progress_busy"])
+            == config.groups * group
+        )
+        assert busy == screen.rows * config.groups * group
+        times = [output["progress_group_cycles"] for output in in_second]
+        finished = [before for before, after in pairwise(times) if after < before]
+        assert finished == [group] * screen.rows * config.groups
+    assert max(output["progress_group_cycles"] for output in in_second) == group
+
+
+LONG_LINE = replace(TINY_SCREEN, horizontal=Span(16, 8, 24, 60, active_high=False))
+"""In which two pixels a clock leave time to set up a line."""
+
+
+@pytest.mark.slow_sets("beam-tiny2-s2-u2", "seed")
+@pytest.mark.parametrize(
+    "config",
+    [
+        small_config(TINY_SCREEN, units=2, rectangles=1, reflections=1, divider_bits=1),
+        small_config(TINY_SCREEN, engine="beam", rectangles=1, reflections=1, scale=1),
+        small_config(LONG_LINE, engine="beam", rectangles=1, reflections=1, pixels=2),
+    ],
+    ids=config_id,
+)
+def test_ray_caster_renderer_scenes(config, tmp_path, random):
+    """A scene a frame, of one rectangle, wherever it may stand, and once disabled; of either renderer."""
+    screen = config.screen_geometry
+    scenes = [scene_in_view(random, config, number % 3) for number in range(50 if config.engine == "beam" else 30)]
+    camera, table, background, reflections, words = next(scene for scene in scenes if len(np.unique(scene[-1])) > 1)
+    disabled = Rectangles(table.corners, table.colours, np.zeros(1, dtype=bool))
+    empty = golden_words(config, np.broadcast_to(background, (words.size, 3)))
+    scenes.insert(0, (camera, disabled, background, reflections, empty))
+    stimulus = [{"reset": 1, "picture_run": 1}] * 2
+    start = start_screen_cycle(screen)
+    for number, (camera, table, background, reflections, _) in enumerate(scenes):
+        scene = {
+            "reset": 0,
+            "picture_background": colour_word(background),
+            "picture_reflections": reflections,
+            "rects_usable": usable_mask(table),
+            **{f"camera_{axis}": int(value) for axis, value in zip(AXES, camera, strict=True)},
+        }
+        if table.axes[0] >= 0:
+            scene |= sorted_rect(table, 0, "rects_rect")
+        # From the cycle after each StartScreen on, the next scene.
+        stimulus += [scene] * (screen.frame_cycles if number else start + 1 + screen.frame_cycles)
+    stimulus += [{"picture_run": 0}] * screen.frame_cycles
+    shown = len(stimulus) - 2
+    if config.engine == "beam":
+        # A reset right after a row was announced, which must not begin in the blanking that follows.
+        stimulus += [{"picture_run": 1}] * (screen.doubling * screen.line_cycles + 2)
+        stimulus += [{"reset": 1}] * 2 + [{"reset": 0}] * 3 * screen.line_cycles
+    stimulus += [{"reset": 1}] * 2
+    outputs = renderer_leaf(config, tmp_path).run_both(stimulus, settled=2 + start + 6)[2:]
+    assert not any(output["progress_busy"] for output in outputs[shown:])
+    frames = monitored(outputs[:shown], config)
+    assert len(frames) >= len(scenes)
+    for number, (frame, (_, table, _, _, words)) in enumerate(zip(frames, scenes, strict=False)):
+        assert np.array_equal(frame, doubled(config, words)), (number, table.corners.tolist())

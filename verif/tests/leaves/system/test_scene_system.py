@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+"""Leaf tests of `scene_system`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+
+import numpy as np
+from engine_vectors import (
+    TINY_SCREEN,
+    doubled,
+    golden_words,
+    monitored,
+    scene_in_view,
+    small_config,
+    start_screen_cycle,
+)
+from vectors import ports
+
+from raycaster.configuration import WORLD_SIZE
+from raycaster.golden.engines import model_of
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import Rectangles
+from raycaster.rtl.system.camera_axis import STEP
+from raycaster.rtl.system.ports import scene_system_ports
+from raycaster.rtl.system.reset_release import HOLD_CYCLES
+from raycaster.rtl.system.scene_player import BUTTONS
+from raycaster.rtl.system.scene_system import scene_system
+from raycaster.scene import Camera, Rectangle, Scene
+from raycaster.verif.leaf import Leaf
+
+
+def test_scene_system(tmp_path, random):
+    """A scene that loads itself, and the camera that buttons move from frame to frame."""
+    config = small_config(TINY_SCREEN, units=2, rectangles=3, reflections=1, divider_bits=2)
+    screen = config.screen_geometry
+    slopes = primary_slopes(screen).reshape(-1, 3)
+    frames, ready = 15, 5
+    start = ready + 2 + HOLD_CYCLES  # the first cycle without reset
+    for _ in range(2000):
+        camera, table, background, *_ = scene_in_view(random, config, 0)
+        table = Rectangles(table.corners, table.colours, np.ones(config.rectangles, dtype=bool))
+        holds = np.repeat(random.integers(1 << len(BUTTONS), size=frames // 3), 3)
+        positions = walk(camera, holds)
+        pictures = [
+            model_of(config).trace(table, position, background, slopes, config.reflections).colours
+            for position in positions
+        ]
+        # Most of what is random looks the same from everywhere.
+        if len({picture.tobytes() for picture in pictures}) > frames // 2:
+            break
+    else:
+        raise AssertionError("no walk shows another picture in most frames")
+    scene = Scene(
+        reflections=config.reflections,
+        background=tuple(map(int, background)),
+        camera=Camera(position=tuple(map(int, camera))),
+        rect=tuple(
+            Rectangle(corners=corners, colour="#{:02x}{:02x}{:02x}".format(*colour))
+            for corners, colour in zip(table.corners.tolist(), table.colours, strict=True)
+        ),
+    )
+    stimulus = [{"ready": 0, "buttons": 0}] * ready
+    for number, held in enumerate(holds):
+        # Until the cycle after StartScreen, where they count.
+        until = start + start_screen_cycle(screen) + number * screen.frame_cycles + 2
+        stimulus += [{"ready": 1, "buttons": int(held)}] * (until - len(stimulus))
+    stimulus += [{"ready": 1, "buttons": 0}] * screen.frame_cycles
+    leaf = Leaf(scene_system, lambda: ports("", **scene_system_ports(config), config=config, scene=scene), tmp_path)
+    shown = monitored(leaf.run_both(stimulus, settled=ready)[start:], config)
+    assert len(shown) == frames
+    for number, (frame, picture) in enumerate(zip(shown, pictures, strict=True)):
+        assert np.array_equal(frame, doubled(config, golden_words(config, picture))), f"frame {number}"
+
+
+def walk(camera: np.ndarray, holds: np.ndarray) -> list[np.ndarray]:
+    """Where the camera is in each frame, with these buttons held at the StartScreen of each."""
+    position, positions = camera, []
+    for held in holds:
+        positions.append(position)
+        forward, back, left, right, up, down = (held >> place & 1 for place in range(len(BUTTONS)))
+        target = position + STEP * np.array([forward - back, right - left, up - down])
+        position = np.where((target >= 0) & (target < WORLD_SIZE), target, position)
+    return positions

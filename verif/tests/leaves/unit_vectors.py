@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: MIT
+"""Vectors for leaf tests of the parts of a ray unit."""
+
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+
+from raycaster.configuration import Configuration, configure
+
+
+def any_config(**options) -> Configuration:
+    return configure(**{"rectangles": 4, "allow_underrun": True} | options)
+
+
+def plain_shares(hits: list[tuple[bool, int]]) -> list[Fraction]:
+    """How much what each ray saw counts: a mirror passes its quarters on, a miss and the last hit pass on nothing."""
+    shares, left = [], Fraction(1)
+    for number, (found, quarters) in enumerate(hits):
+        passed_on = Fraction(quarters, 4) if found and number < len(hits) - 1 else Fraction(0)
+        shares.append(left * (1 - passed_on))
+        left *= passed_on
+    return shares
+
+
+def cases(random: np.random.Generator, run_time: int, one_ray: list) -> list[tuple]:
+    """What each ray of a pixel may be: all that there is, or some where that is too much."""
+    if len(one_ray) ** (run_time + 1) <= 1000:
+        return list(product(one_ray, repeat=run_time + 1))
+    return [tuple(one_ray[i] for i in random.integers(len(one_ray), size=run_time + 1)) for _ in range(300)]

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: MIT
+"""Leaf tests of `video_generator`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+
+from dataclasses import replace
+
+import pytest
+from vectors import ports
+
+from raycaster.configuration import Configuration, configure
+from raycaster.rtl.common.interfaces import Scan, Vga
+from raycaster.rtl.common.records import Pixel
+from raycaster.rtl.video.video_generator import video_generator
+from raycaster.screens import SCREENS, Screen, Span
+from raycaster.verif.leaf import Leaf
+
+
+def video_model(
+    screen: Screen, lead: int, at_start: bool, cycle: int, colours: list[tuple[int, int, int]]
+) -> dict[str, int]:
+    """Every output, from the number of cycles since reset alone; `colours` are those at the inputs so far."""
+    pixels = screen.pixels_per_clock
+    line = [part // pixels for part in (screen.horizontal.visible, screen.horizontal.front, screen.horizontal.sync)]
+    horizontal = Span(*line, screen.horizontal.back // pixels, active_high=screen.horizontal.active_high)
+    vertical, doubling = screen.vertical, screen.doubling
+
+    def position(pixel: int) -> tuple[int, int]:
+        line, x = divmod(pixel, horizontal.total)
+        return x - horizontal.blank, line % vertical.total - vertical.blank
+
+    clocks = screen.clocks_per_pixel
+    pixel, clock = divmod(cycle, clocks)
+    x, y = position(pixel)
+    line_start = x == -horizontal.blank and clock == 0
+    column = x + lead
+    in_columns = 0 <= column < horizontal.visible
+    announced = column % doubling == (0 if at_start else doubling - 1)
+    outputs = {
+        "scan_start_screen": line_start and y == -doubling,
+        "scan_start_row": line_start and y >= 0 and y % doubling == 0,
+        "scan_visible_line": in_columns,
+        "scan_next_column": in_columns and clock == clocks - 1 and announced,
+        # With a clock a pixel it is the clock inverted, and the bench looks while that is low.
+        "vga_clk": clock == clocks - 1,
+        "vga_sync_n": 0,
+    }
+    hs = vs = visible = False
+    if pixel > 0:
+        # The outputs are a pixel behind.
+        x, y = position(pixel - 1)
+        hs = horizontal.front <= x + horizontal.blank < horizontal.front + horizontal.sync
+        # Vertical sync waits for the next horizontal sync to begin.
+        line = y + vertical.blank - (x + horizontal.blank < horizontal.front)
+        vs = vertical.front <= line < vertical.front + vertical.sync
+        visible = x >= 0 and y >= 0
+    outputs |= {"vga_hs": hs == horizontal.active_high, "vga_vs": vs == vertical.active_high, "vga_blank_n": visible}
+    shown = colours[clocks * pixel - 1] if visible else (0, 0, 0)
+    outputs |= dict(zip(("vga_r", "vga_g", "vga_b"), shown, strict=True))
+    return {name: int(value) for name, value in outputs.items()}
+
+
+SMALL_SCREENS = {
+    "both-low": Screen(4, 3, 1, 2, Span(8, 1, 2, 1, active_high=False), Span(6, 1, 1, 2, active_high=False)),
+    "both-high": Screen(3, 4, 1, 2, Span(6, 3, 1, 2, active_high=True), Span(8, 2, 1, 1, active_high=True)),
+    "mixed": Screen(5, 2, 1, 1, Span(5, 2, 3, 4, active_high=False), Span(2, 1, 2, 1, active_high=True)),
+    "threefold": Screen(2, 2, 1, 3, Span(6, 1, 2, 2, active_high=True), Span(6, 1, 1, 3, active_high=False)),
+    "tiny": SCREENS["tiny", 48],
+}
+
+ONE_CLOCK = {
+    "one-clock": (replace(SMALL_SCREENS["both-low"], clocks_per_pixel=1), 0, False),
+    "a-clock-early": (replace(SMALL_SCREENS["threefold"], clocks_per_pixel=1), 1, False),
+    "early": (replace(SMALL_SCREENS["mixed"], clocks_per_pixel=1), 9, True),
+    "early-doubled": (replace(SMALL_SCREENS["both-high"], clocks_per_pixel=1), 5, True),
+    "early-threefold": (replace(SMALL_SCREENS["threefold"], clocks_per_pixel=1), 4, True),
+    "pairs": (
+        Screen(10, 2, 1, 1, Span(10, 2, 4, 6, active_high=True), Span(2, 1, 2, 1, active_high=False), 1).paired(),
+        5,
+        True,
+    ),
+}
+"""Screens, how many pixel clocks before their turn the columns are announced, and whether in their first clock."""
+
+
+@pytest.mark.parametrize("colour_bits", [1, 8])
+@pytest.mark.parametrize("name", [*SMALL_SCREENS, *ONE_CLOCK])
+def test_video_generator(name, colour_bits, tmp_path, random):
+    screen, lead, at_start = ONE_CLOCK.get(name) or (SMALL_SCREENS[name], 0, False)
+    channels = ("pixel_red", "pixel_green", "pixel_blue")
+    width = colour_bits * screen.pixels_per_clock
+    leaf = Leaf(video_generator, lambda: ports(
+        "clk reset", scan=Scan(), pixel=Pixel(width), vga=Vga(width), screen=screen, lead=lead, at_start=at_start
+    ), tmp_path)  # fmt: skip
+    large = screen.frame_cycles > 10_000
+    # Three frames; or one that reset ended early, at a pixel's second half, and then a few lines of the second.
+    lengths = [screen.frame_cycles + 500] if large else [3 * screen.frame_cycles + 7, screen.frame_cycles // 2 | 1, 60]
+    stimulus, positions = [], []
+    for length in lengths:
+        for cycle in (None, None, *range(length)):
+            colours = dict(zip(channels, map(int, random.integers(1 << width, size=3)), strict=True))
+            stimulus.append({**colours, "reset": int(cycle is None)})
+            positions.append(cycle)
+    outputs = leaf.run_both(stimulus, settled=1)
+    colours = []
+    for number, (cycle, inputs) in enumerate(zip(positions, stimulus, strict=True)):
+        if cycle == 0:
+            colours = []
+        colours.append(tuple(inputs[channel] for channel in channels))
+        if cycle is not None:
+            expected = video_model(screen, lead, at_start, cycle, colours)
+            assert outputs[number] == expected, f"{cycle} cycles after reset"
+
+
+def standard(config: Configuration) -> tuple[tuple[int, ...], tuple[int, ...], bool, bool]:
+    """What makes a video mode: pixels of a line, lines of a frame, and whether the syncs are active high."""
+    horizontal, vertical = config.screen_geometry.horizontal, config.screen_geometry.vertical
+    return (
+        (horizontal.visible, horizontal.front, horizontal.sync, horizontal.back),
+        (vertical.visible, vertical.front, vertical.sync, vertical.back),
+        horizontal.active_high,
+        vertical.active_high,
+    )
+
+
+@pytest.mark.parametrize(
+    ("rows", "mode"),
+    [
+        (240, ((640, 16, 96, 48), (480, 10, 2, 33), False, False)),
+        (200, ((640, 16, 96, 48), (400, 12, 2, 35), False, True)),
+    ],
+)
+def test_the_full_screens_are_the_standard_modes(rows, mode):
+    assert standard(configure(rows=rows)) == mode
