@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 from conftest import ROOT, SMALL_SCENE, Bench, called
 from rich.console import Console
+from scene_vectors import fixed_config
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import configure
 from raycaster.convert.write import write_verilog
 from raycaster.design import design_for
 from raycaster.engines import ENGINES
@@ -29,13 +30,8 @@ from raycaster.golden.engines import model_of
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.beam.beam_caster import known_facet, known_growth
-from raycaster.rtl.common.interfaces import Rects
-from raycaster.rtl.common.widths import bit, index_bits
-from raycaster.rtl.scene.rect_rom import rect_rom
 from raycaster.scene import Camera, Rectangle, Scene, dump_scene, load_scene
 from raycaster.sim.simulator import SimulationError
-from raycaster.tools import run_yosys
-from raycaster.verif.leaf import Leaf
 from raycaster.verif.seeds import repeat, seed
 
 BOXES = ROOT / "scenes" / "boxes.toml"
@@ -228,81 +224,6 @@ def test_a_scene_of_one_rectangle_that_nobody_sees(tmp_path):
     for scope, engine in itertools.product(SCOPES, ENGINES):
         config = fix(path, {"engine": engine, "screen": "tiny"}, scope).design.configuration
         assert config.rectangles == 1
-
-
-# Leaves ---------------------------------------------------------------------------------------------------------------
-
-
-def fixed_config(count: int, engine: str, camera: bool, alike: bool = False, **options: bool) -> Configuration:
-    """A design of random fixed rectangles, of which the axis is the same for all where they are alike."""
-    random = np.random.default_rng(seed())
-    rectangles = tuple(
-        FixedRectangle(1 if alike else int(axis), *map(int, random.integers(512, size=5)), int(colour))
-        for axis, colour in zip(random.integers(3, size=count), random.integers(1 << 24, size=count), strict=True)
-    )
-    if options:
-        looks = zip(*(random.integers(most, size=count).tolist() for most in (5, 4, 6, 1 << 24)), strict=True)
-        names = ("mirror", "kind", "cell", "colour_2")
-        rectangles = tuple(
-            dataclasses.replace(one, **dict(zip(names, look, strict=True)))
-            for one, look in zip(rectangles, looks, strict=True)
-        )
-    eye = tuple(random.integers(512, size=3).tolist()) if camera else None
-    fixed = FixedScene(rectangles, (2 * (1 << count) - 1 >> 1,) * 2, eye, 0 if camera else None)
-    return configure(engine=engine, fixed=fixed, allow_underrun=True, **options)
-
-
-@pytest.mark.slow_sets("2", "7", "8")
-@pytest.mark.parametrize(("engine", "latency"), [("seed", 1), ("beam", 2)])
-@pytest.mark.parametrize(
-    ("count", "alike", "options"),
-    [
-        *((count, count == 12, {}) for count in (1, 2, 7, 8, 12, 32)),
-        (7, False, {"materials": True}),
-        (3, False, {"patterns": True}),
-        (8, True, {"materials": True, "patterns": True}),
-    ],
-)  # fmt: skip
-def test_rect_rom(count, alike, options, engine, latency, tmp_path):
-    config = fixed_config(count, engine, False, alike, **options)
-    leaf = Leaf(rect_rom, lambda: {"clk": bit(), "rects": Rects(config), "config": config}, tmp_path)
-    random = np.random.default_rng(seed())
-    stimulus = [
-        {"rects_index": int(random.integers(count)), "rects_fetch": int(random.integers(2))} for _ in range(300)
-    ]
-    outputs = leaf.run_both(stimulus, settled=8)
-    looks = {"materials": ("mirror",), "patterns": ("kind", "cell", "colour_2")}
-    left_out = [name for option, names in looks.items() if option not in options for name in names]
-    fields = [field.name for field in dataclasses.fields(FixedRectangle) if field.name not in left_out]
-    assert set(outputs[-1]) == {f"rects_rect_{name}" for name in fields}
-    held, late = None, None
-    for cycle, (inputs, output) in enumerate(zip(stimulus, outputs, strict=True)):
-        shown = held if latency == 1 else late
-        if cycle >= 8 and shown is not None:
-            for name in fields:
-                assert output[f"rects_rect_{name}"] == config.fixed.column(name)[shown], (cycle, name, repeat())
-        late = held
-        if inputs["rects_fetch"]:
-            held = inputs["rects_index"]
-    assert held is not None
-
-
-@pytest.mark.parametrize("engine", ["seed", "beam"])
-def test_rect_rom_has_no_registers_for_what_is_alike(engine, tmp_path):
-    """With all rectangles on one axis its two bits are no registers; a single rectangle needs none at all."""
-    for count, alike in ((12, True), (1, False)):
-        config = fixed_config(count, engine, False, alike)
-        directory = tmp_path / str(count)
-        directory.mkdir()
-        Leaf(rect_rom, lambda config=config: {"clk": bit(), "rects": Rects(config), "config": config}, directory)
-        run_yosys(directory, "alike", ["read_verilog rect_rom.v", "synth -top rect_rom", "tee -o stat.txt stat"])
-        kinds = re.findall(r"^ +(\d+) .*_DFF\w*_|\$_DFF\w*_ +(\d+)", (directory / "stat.txt").read_text(), re.M)
-        registers = sum(int(number) for pair in kinds for number in pair if number)
-        columns = [config.fixed.column(field.name) for field in dataclasses.fields(FixedRectangle)]
-        most = sum(varying_bits(column).bit_count() for column in columns)
-        held = index_bits(config) if engine == "beam" and count > 1 else 0
-        assert registers <= most + held, repeat()
-        assert (registers > 0) == (count > 1)
 
 
 @pytest.mark.parametrize("camera", [False, True])

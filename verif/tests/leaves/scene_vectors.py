@@ -3,14 +3,18 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 
 from raycaster.configuration import Configuration, configure
+from raycaster.fixed import FixedRectangle, FixedScene
 from raycaster.golden.random_world import random_looks, random_rectangles
 from raycaster.golden.world import Rectangles
 from raycaster.registers import register_map
 from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.sim.register_model import AXES, COLOURS
+from raycaster.verif.seeds import seed
 
 CYCLES = 500
 
@@ -67,3 +71,22 @@ def rectangle_words(random: np.random.Generator) -> tuple[Rectangles, list[tuple
             )
         )
     return table, words
+
+
+def fixed_config(count: int, engine: str, camera: bool, alike: bool = False, **options: bool) -> Configuration:
+    """A design of random fixed rectangles, of which the axis is the same for all where they are alike."""
+    random = np.random.default_rng(seed())
+    rectangles = tuple(
+        FixedRectangle(1 if alike else int(axis), *map(int, random.integers(512, size=5)), int(colour))
+        for axis, colour in zip(random.integers(3, size=count), random.integers(1 << 24, size=count), strict=True)
+    )
+    if options:
+        looks = zip(*(random.integers(most, size=count).tolist() for most in (5, 4, 6, 1 << 24)), strict=True)
+        names = ("mirror", "kind", "cell", "colour_2")
+        rectangles = tuple(
+            dataclasses.replace(one, **dict(zip(names, look, strict=True)))
+            for one, look in zip(rectangles, looks, strict=True)
+        )
+    eye = tuple(random.integers(512, size=3).tolist()) if camera else None
+    fixed = FixedScene(rectangles, (2 * (1 << count) - 1 >> 1,) * 2, eye, 0 if camera else None)
+    return configure(engine=engine, fixed=fixed, allow_underrun=True, **options)

@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: MIT
+"""Leaf tests of `ones_count`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+
+from __future__ import annotations
+
+from raycaster.rtl.common.widths import unsigned
+from raycaster.rtl.dvi.ones_count import ones_count
+from raycaster.verif.leaf import Leaf
+
+
+def test_ones_count(tmp_path):
+    leaf = Leaf(ones_count, lambda: {"bits": unsigned(8), "count": unsigned(4)}, tmp_path)
+    outputs = leaf.run_both([{"bits": bits} for bits in range(256)])
+    assert [output["count"] for output in outputs] == [bits.bit_count() for bits in range(256)]
