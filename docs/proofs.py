@@ -80,7 +80,7 @@ def _proofs(module: str) -> tuple[str, str]:
 
 def _tested() -> set[str]:
     """The tests' names, without what they begin with."""
-    found = (re.findall(r"^def test_(\w+)\(", path.read_text(), re.MULTILINE) for path in TESTS.glob("test_*.py"))
+    found = (re.findall(r"^def test_(\w+)\(", path.read_text(), re.MULTILINE) for path in TESTS.rglob("test_*.py"))
     return set().union(*found)
 
 

@@ -130,7 +130,8 @@ def test_all_is_resumed(run_all, tmp_path, capsys):
     assert len(run_all()[1]) == 5
     # A page is no source, and a change in a file of tests is one of its tests alone.
     (tmp_path / "clone" / "page.md").write_text("changed")
-    tests = tmp_path / "clone" / "verif" / "tests"
+    tests = tmp_path / "clone" / "verif" / "tests" / "leaves"
+    tests.mkdir()
     (tests / "test_more.py").write_text(TESTS.replace("quick", "more"))
     code, ran, figures = run_all()
     assert sorted(ran) == ["long", "more0", "more1", "more2", "wrong"]
