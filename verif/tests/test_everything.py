@@ -99,6 +99,9 @@ def run_all(tmp_path, monkeypatch, names_for_digests):
     subprocess.run(["git", "init", "-q", str(clone)], check=True)
     monkeypatch.setattr(everything.ensure_tools, "ensure", lambda tool: None)
     monkeypatch.setattr(everything, "TESTS", tests)
+    # Each run starts two interpreters, which load no plugins that they have no use for.
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
+    monkeypatch.setenv("PYTEST_PLUGINS", "xdist.plugin")
     monkeypatch.setenv("RAN", str(ran))
     monkeypatch.setenv("MENDED", str(tmp_path / "mended"))
 
