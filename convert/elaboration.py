@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib
 import inspect
 import sys
 import threading
@@ -12,7 +13,6 @@ from functools import cache
 from types import CodeType
 from typing import Any
 
-from myhdl import _util, _Waiter
 from myhdl._block import _Block
 from myhdl._simulator import _signals
 
@@ -91,12 +91,13 @@ def _once(function: Any) -> Any:
     return quick
 
 
+_UTIL, _WAITER = map(importlib.import_module, ("myhdl._util", "myhdl._Waiter"))
 _REPLACED = (
     (inspect, "stack", _callers),
     (inspect, "getouterframes", _callers),
     (inspect, "getsourcelines", _once(inspect.getsourcelines)),
     (inspect, "getsourcefile", _once(inspect.getsourcefile)),
-    (_util, "_dedent", _dedent := cache(_util._dedent)),
-    (_Waiter, "_dedent", _dedent),
+    (_UTIL, "_dedent", _dedent := cache(_UTIL._dedent)),
+    (_WAITER, "_dedent", _dedent),
 )
 """Functions that MyHDL calls, and what takes their place."""
