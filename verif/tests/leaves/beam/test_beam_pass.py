@@ -16,6 +16,7 @@ from raycaster.rtl.common.widths import bit, steepest_slope
 from raycaster.verif.leaf import Leaf
 
 
+@pytest.mark.slow_sets("1")
 @pytest.mark.parametrize("mirrors", [0, 1, 2])
 def test_beam_pass(mirrors, tmp_path, random):
     """The rectangle that a ray meets after so many mirrors, in rows of which a set-up knows the products."""
