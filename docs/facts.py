@@ -52,12 +52,12 @@ def seed_steps() -> str:
     return table(["from", "to", "cycles"], ([f"`{start}`", f"`{end}`", cycles] for start, end, cycles in lines))
 
 
-def exact_cycles() -> str:
+def exact_cycles(*, light: bool) -> str:
     """The fewest units, and their cycles, by reflections and rectangles."""
     rows = []
     for reflections in range(3):
         for rectangles in (12, 32):
-            config = configure(engine="exact", reflections=reflections, rectangles=rectangles)
+            config = configure(engine="exact", reflections=reflections, rectangles=rectangles, light=light)
             rows.append([reflections, rectangles, config.units, config.group_cycles, config.group_budget])
     return table(["reflections", "rectangles", "units, the fewest", "a group, worst case", "a group may take"], rows)
 
@@ -167,7 +167,8 @@ def facts() -> dict[str, str]:
         "options": options(),
         "seed_cycles": seed_cycles(),
         "seed_steps": seed_steps(),
-        "exact_cycles": exact_cycles(),
+        "exact_cycles": exact_cycles(light=False),
+        "light_cycles": exact_cycles(light=True),
         "beam_screens": beam_screens(),
         "beam_latencies": beam_latencies(),
         "register_overview": register_overview(),
@@ -181,6 +182,7 @@ def facts() -> dict[str, str]:
         "exact_latency": str(configure(engine="exact").pass_latency),
         "turned_slope_bits": str(exact_slope_bits(configure(engine="exact", turn=True))),
         "pattern_latency": str(exact.PATTERN_LATENCY),
+        "aim_cycles": str(exact.AIM_CYCLES),
         "group": str(default.group_cycles),
         "budget": str(default.group_budget),
         "row": f"{default.screen_geometry.row_cycles:,}",

@@ -12,11 +12,11 @@ from typing import Any
 
 from rich.table import Table
 
-from raycaster.configuration import COORDINATE_BITS, MOST_RECTANGLES, WORLD_SIZE, Configuration, configure
+from raycaster.configuration import COORDINATE_BITS, LOOKS, MOST_RECTANGLES, WORLD_SIZE, Configuration, configure
 from raycaster.design import Design, design_for
 from raycaster.errors import UserError
 from raycaster.fit.choice import kept_choice
-from raycaster.fit.unneeded import covered, label, seen, unreachable, without_mirrors
+from raycaster.fit.unneeded import at_the_edge, covered, label, needed, unreachable, without_mirrors
 from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
 from raycaster.golden.world import Rectangles
 from raycaster.output import Console
@@ -130,19 +130,25 @@ def fix(path: Path, options: Mapping[str, Any], scope: str) -> Fixing:
     reasons = _reasons(general, scope)
     # An engine has at least one rectangle, and tests primary rays against it.
     tested = sorted(set(range(len(scene.rect))) - set.intersection(*map(set, reasons))) or [0]
-    primary, *reflected = (sum(1 << at for at, index in enumerate(tested) if index not in one) for one in reasons)
-    fixed = FixedScene(tuple(fixed_rectangle(scene.rect[index]) for index in tested), (primary or 1, *reflected))
+    primary, *others = (sum(1 << at for at, index in enumerate(tested) if index not in one) for one in reasons)
+    reflected, shadows = others[:reflections], others[reflections:]
+    rectangles = tuple(fixed_rectangle(scene.rect[index]) for index in tested)
+    fixed = FixedScene(rectangles, (primary or 1, *reflected), shadows=tuple(shadows))
     if scope == "all":
         background = int.from_bytes(bytes(scene.background), "big")
-        fixed = replace(fixed, camera=scene.camera.position, background=background, basis=scene.camera.basis)
-    kept = {name: getattr(general.configuration, name) for name in ("engine", "rows", "turn", "materials", "patterns")}
+        light = scene.light and (*scene.light.position, scene.light.quarters)
+        fixed = replace(
+            fixed, camera=scene.camera.position, background=background, basis=scene.camera.basis, light=light
+        )
+    kept = {name: getattr(general.configuration, name) for name in ("engine", "rows", *LOOKS)}
     given = {**options, **kept, "reflections": reflections, "fixed": fixed}
     design = Design(path, scene, configure(**given), reflections)
     return Fixing(design, general, tuple(_omissions(design, general, fixed, reasons)))
 
 
 def _reasons(general: Design, scope: str) -> list[dict[int, str]]:
-    """For the primary ray and each reflection: why a rectangle is not tested, by its index."""
+    """Reasons why a rectangle is not tested, by its index: for the primary ray and each reflection, and with a light
+    for the shadow rays of each of these."""
     scene, reflections = general.scene, general.reflections
     rectangles = Rectangles.of_scene(scene)
     within = {index: f"lies within {label(scene, other)}" for index, other in covered(rectangles).items()}
@@ -154,11 +160,17 @@ def _reasons(general: Design, scope: str) -> list[dict[int, str]]:
         dict.fromkeys(after, "nothing is a mirror") | dict.fromkeys(one, "at x = 0, and no ray runs that way") | within
         for after, one in zip(ended, behind, strict=True)
     ]
+    edge = dict.fromkeys(at_the_edge(rectangles), "at the world's edge, and shades nothing") | within
+    shadows = [dict.fromkeys(after, "nothing is a mirror") | edge for after in ended * general.configuration.light]
     if scope == "all":
-        everything = dict.fromkeys(range(len(scene.rect)), "no ray of the picture meets it first")
-        for one, met in zip(reasons, seen(general.configuration, scene, reflections), strict=True):
-            one |= {index: reason for index, reason in everything.items() if index not in met | set(one)}
-    return reasons
+        met, shading = needed(general.configuration, scene, reflections)
+        for every, kept, reason in (
+            (reasons, met, "no ray of the picture meets it first"),
+            (shadows, shading or [set() for _ in shadows], "it shades nothing that is not shaded without it"),
+        ):
+            for one, indices in zip(every, kept, strict=True):
+                one.update(dict.fromkeys(set(range(len(scene.rect))) - indices - set(one), reason))
+    return reasons + shadows
 
 
 def fixed_rectangle(rectangle: Rectangle) -> FixedRectangle:
@@ -197,7 +209,7 @@ def _omissions(
     yield Omission("sorter of corners", "constants are in order")
     if fixed.camera:
         yield Omission("memory of camera and background", "they are constants")
-    yield from _rectangles(scene, reasons)
+    yield from _rectangles(scene, reasons, bool(fixed.shadows))
     if spare := large.rectangles - len(scene.rect):
         yield Omission(f"{spare} of {large.rectangles} entries for rectangles", f"the scene has {len(scene.rect)}")
     if large.reflections > small.reflections:
@@ -207,8 +219,11 @@ def _omissions(
     yield from _constant_fields(small, fixed)
 
 
-def _rectangles(scene: Scene, reasons: Sequence[Mapping[int, str]]) -> Iterator[Omission]:
-    passes = ("of primary rays", "of the reflection", "of the second reflection")
+def _rectangles(scene: Scene, reasons: Sequence[Mapping[int, str]], with_shadows: bool) -> Iterator[Omission]:
+    passes = ["of primary rays", *(f"of the {which}reflection" for which in ("", "second ", "third ", "fourth "))]
+    if with_shadows:
+        passes = passes[: len(reasons) // 2]
+        passes += [f"for shadows {one}" for one in passes]
     nowhere = set.intersection(*map(set, reasons))
     for index in sorted(nowhere):
         yield Omission(label(scene, index), reasons[0][index])

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden.engines import model_of
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
@@ -62,10 +62,17 @@ def without_mirrors(rectangles: Rectangles, reflections: int) -> list[set[int]]:
     return [set()] + reflections * [set() if mirrored else set(range(len(rectangles)))]
 
 
-def seen(config: Configuration, scene: Scene, reflections: int) -> list[set[int]]:
-    """Rectangles that some ray of the picture meets first, by the golden model of the very engine.
+def at_the_edge(rectangles: Rectangles) -> set[int]:
+    """Rectangles in a plane at the world's edge: none has a point strictly between two points of the world."""
+    planes = rectangles.low[np.arange(len(rectangles)), rectangles.axes]
+    return set(np.flatnonzero(rectangles.visible & ((planes == 0) | (planes == WORLD_SIZE - 1))).tolist())
 
-    Without the others every ray meets what it met before, as the nearest of fewer rectangles is the same one.
+
+def needed(config: Configuration, scene: Scene, reflections: int) -> tuple[list[set[int]], list[set[int]]]:
+    """Rectangles that decide a pixel of the picture, by the golden model of the very engine.
+
+    Without the others every ray meets what it met before, as the nearest of fewer rectangles is the same one; and each
+    point that has a shadow keeps one of the rectangles that cast it.
 
     Args:
         config: the engine, its fraction and rounding, and the screen; not the number of rectangles.
@@ -73,13 +80,18 @@ def seen(config: Configuration, scene: Scene, reflections: int) -> list[set[int]
         reflections: those that are shown.
 
     Returns:
-        For the primary ray and each reflection, their indices.
+        For the primary ray and each reflection, the indices of those that a ray meets first, and of those that shade
+        it, which is empty without a light.
     """
     slopes = primary_slopes(config.screen_geometry, scene.camera.basis).reshape(-1, 3)
     traced = model_of(config).trace(
-        Rectangles.of_scene(scene), scene.camera.position, scene.background, slopes, reflections
+        Rectangles.of_scene(scene), scene.camera.position, scene.background, slopes, reflections, light=scene.light
     )
-    return [set(np.unique(winners).tolist()) - {-1} for winners in traced.winners]
+    met, shades = (
+        [set(np.unique(indices).tolist()) - {-1} for indices in every]
+        for every in (traced.winners, [shading.shades for shading in traced.shadings])
+    )
+    return met, shades
 
 
 def label(scene: Scene, index: int) -> str:

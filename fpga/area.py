@@ -106,10 +106,6 @@ def with_units(config: Configuration, units: int) -> Configuration:
     return replace(config, units=units, allow_underrun=True)
 
 
-FEATURES = ("turn", "materials", "patterns")
-"""Switches of the configuration that a design has more hardware with."""
-
-
 def feature_designs() -> list[tuple[str, str, dict[str, Any]]]:
     """Of each engine the design without a feature, with each one alone, and with all: its module, engine and options.
 
@@ -117,9 +113,8 @@ def feature_designs() -> list[tuple[str, str, dict[str, Any]]]:
     """
     designs = []
     for engine in ENGINES.values():
-        offered = [name for name in FEATURES if name != "turn" or engine.turns]
         top = "ray_unit" if engine.divides else TOP
-        for chosen in ([], *([name] for name in offered), offered):
+        for chosen in ([], *([name] for name in engine.looks), engine.looks):
             designs.append((top, engine.name, dict.fromkeys(chosen, 1)))
     return designs
 

@@ -111,8 +111,8 @@ def candidates(
     Raises:
         UserError: the scene or the options are not good.
     """
-    turned = load_scene(path).camera.turned
-    fitting = [name for name, engine in ENGINES.items() if engine.turns or not turned]
+    scene = load_scene(path)
+    fitting = [name for name, engine in ENGINES.items() if not scene.lacks(engine.looks)]
     for engine in (options["engine"],) if "engine" in options else fitting:
         for chosen, wrong in _arithmetic(engine, path, options, error):
             general = general_design(path, chosen)

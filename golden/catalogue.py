@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from raycaster.configuration import WORLD_SIZE
-from raycaster.scene import Camera, Rectangle, Scene
+from raycaster.scene import Camera, Light, Rectangle, Scene
 
 LAST = WORLD_SIZE - 1
 MIDDLE = WORLD_SIZE // 2
@@ -38,7 +38,7 @@ class Case:
 
 
 def catalogue(looks: Collection[str] = ()) -> list[Case]:
-    """All cases that need no more than these of turn, materials and patterns.
+    """All cases that need no more than these of the options `LOOKS`.
 
     Every scene has at most 12 rectangles, and two reflections; a design that has more may show it with more.
     """
@@ -51,13 +51,12 @@ def catalogue(looks: Collection[str] = ()) -> list[Case]:
 
 
 _Look = Mapping[str, Any]
-_Entry = tuple[str, str, Corner | Camera, Sequence[Corners | tuple[Corners, _Look]]]
-"""A rectangle may have a look: what a scene file says beside its corners and colour."""
+_Rectangles = Sequence[Corners | tuple[Corners, _Look]]
+_Entry = tuple[str, str, Corner | Camera, _Rectangles, *tuple[Light, ...]]
+"""A rectangle may have a look: what a scene file says beside its corners and colour. There is at most one light."""
 
 
-def _case(
-    name: str, strain: str, camera: Corner | Camera, rectangles: Sequence[Corners | tuple[Corners, _Look]]
-) -> Case:
+def _case(name: str, strain: str, camera: Corner | Camera, rectangles: _Rectangles, *lights: Light) -> Case:
     looked: list[tuple[Any, Any]] = [one if isinstance(one[1], Mapping) else (one, {}) for one in rectangles]
     coloured = [
         Rectangle(corners=corners, colour=_PALETTE[index % len(_PALETTE)], **look)
@@ -65,7 +64,10 @@ def _case(
     ]
     if not isinstance(camera, Camera):
         camera = Camera(position=camera)
-    return Case(name, strain, Scene(title=f"{name}: {strain}", reflections=2, camera=camera, rect=tuple(coloured)))
+    scene = Scene(
+        title=f"{name}: {strain}", reflections=2, camera=camera, rect=tuple(coloured), light=next(iter(lights), None)
+    )
+    return Case(name, strain, scene)
 
 
 def _plane(axis: int, position: int, low: tuple[int, int] = (0, 0), high: tuple[int, int] = (LAST, LAST)) -> Corners:
@@ -407,7 +409,73 @@ def _surfaces() -> Iterator[_Entry]:
     ]  # fmt: skip
 
 
+def _lights() -> Iterator[_Entry]:
+    """The light in planes, on edges, in corners, behind slits, and where it is seen edge-on."""
+    camera = (0, MIDDLE, 128)
+
+    def light(x: int, y: int, z: int, shade: float = 0.25) -> Light:
+        return Light(position=(x, y, z), shade=shade)
+
+    box = _box((200, 220, 0), (260, 300, 100))
+    for name, strain, place in (
+        ("in_a_plane", "the light in the plane of a wall that it grazes", (300, 0, 300)),
+        ("on_a_face", "the light on a face of a box", (200, 250, 50)),
+        ("on_an_edge", "the light on an edge of a box", (200, 220, 60)),
+        ("in_a_corner", "the light in a corner of a box", (200, 220, 100)),
+        ("in_the_world_corner", "the light in the room's corner", (0, 0, LAST)),
+        ("at_the_camera", "no shadow is seen from the light", camera),
+        ("beside_the_camera", "shadows a unit wide", (0, MIDDLE + 1, 128)),
+        ("in_a_box", "a closed box around the light", (230, 260, 50)),
+    ):
+        yield f"light_{name}", strain, camera, [*_WORLD, *box], light(*place)
+    yield "light_outside", "a closed box around the camera", (230, 260, 50), [*_WORLD, *box], light(400, 100, 400)
+    for width in (0, 1, 2):
+        slit = [_plane(2, 200, high=(LAST, MIDDLE)), _plane(2, 200, low=(0, MIDDLE + width))]
+        name = ("closed", "one", "two")[width]
+        strain = f"a slit of {width} units in a ceiling"
+        yield f"light_slit_{name}", strain, camera, [*_WORLD, *slit], light(250, MIDDLE, LAST)
+    yield "light_line", "lines and points cast shadows", camera, [
+        *_WORLD, ((200, 200, 60), (200, 300, 60)), ((220, MIDDLE, 0), (220, MIDDLE, 200)),
+        ((240, 280, 90), (240, 280, 90)),
+    ], light(230, 250, 200)  # fmt: skip
+    yield (
+        "light_a_unit_above", "a receiver seen edge-on by the light", camera,
+        [_FLOOR, _BACK, *box[:4]], light(100, 200, 1),
+    )  # fmt: skip
+    yield (
+        "light_on_the_floor", "the light in the receiver's plane", camera,
+        [_FLOOR, _BACK, *box[:4]], light(100, 200, 0),
+    )  # fmt: skip
+    yield (
+        "light_behind", "the light on the other side of what is seen", camera,
+        [_plane(0, 300), _FLOOR], light(400, 256, 200),
+    )  # fmt: skip
+    yield "light_coplanar", "rectangles of one plane do not shade each other", camera, [
+        _plane(2, 0, (0, 0), (300, LAST)), _plane(2, 0, (200, 0), (LAST, LAST)), _plane(2, 50, (200, 200), (300, 300)),
+        _BACK,
+    ], light(250, 250, 300, 0)  # fmt: skip
+    yield "light_two_layers", "one shadow within another", camera, [
+        *_WORLD, _plane(2, 100, (150, 150), (350, 350)), _plane(2, 150, (200, 200), (300, 300)),
+    ], light(250, 250, LAST, 0.75)  # fmt: skip
+    mirrors = [(_plane(1, 100), {"mirror": 1.0}), (_plane(1, 400), {"mirror": 0.75}), (_FLOOR, {"mirror": 0.0})]
+    yield "light_no_image", "two facing mirrors, whose images of the light do not light", camera, [
+        *mirrors, *box, (_BACK, {"mirror": 0.0}),
+    ], light(150, 250, 300)  # fmt: skip
+    yield "light_in_a_mirror", "the light in a mirror's plane", camera, [*mirrors, *box, _BACK], light(150, 100, 300)
+    yield "light_through_a_corner", "rays from the light through the edges of walls that meet", (100, 250, 200), [
+        _plane(0, 300, (0, 0), (140, LAST)), _plane(1, 140, (100, 0), (300, LAST)), _plane(0, 400), _plane(1, 400),
+        _FLOOR,
+    ], light(200, 40, 300)  # fmt: skip
+    yield "light_turned", "shadows behind a camera's back", Camera(position=(300, 250, 150), yaw=160, pitch=-30), [
+        *_WORLD, *_box((100, 200, 0), (160, 260, 120)),
+    ], light(250, 100, 400)  # fmt: skip
+    diagonal = Camera(position=(MIDDLE, MIDDLE, MIDDLE), yaw=45, pitch=45)
+    yield "light_diagonal", "shadows along diagonals of pixels", diagonal, [
+        *_WORLD, *_box((300, 300, 300), (340, 340, 340)),
+    ], light(MIDDLE, MIDDLE, MIDDLE - 1)  # fmt: skip
+
+
 _FAMILIES = (
     _grazing, _parallel, _camera_on, _boxes, _extreme_coordinates, _quotients, _close_planes, _slits, _shared, _thin,
-    _mirror_edges, _facing, _corners, _turned, _surfaces,
+    _mirror_edges, _facing, _corners, _turned, _surfaces, _lights,
 )  # fmt: skip

@@ -15,8 +15,9 @@ from numpy.typing import ArrayLike
 from raycaster.configuration import LOOKS
 from raycaster.golden.colour import blend, hit_colours
 from raycaster.golden.rays import primary_slopes
+from raycaster.golden.shadows import Shading, shade
 from raycaster.golden.world import Rectangles
-from raycaster.scene import UNTURNED, Basis, Scene
+from raycaster.scene import UNTURNED, Basis, Light, Scene
 from raycaster.screens import Screen
 
 
@@ -103,7 +104,10 @@ class Trace:
     """int64 (rays,): index of the rectangle hit, -1 for none and after what does not mirror."""
 
     seen: tuple[np.ndarray, ...]
-    """uint8 (rays, 3): the colour of what was hit, the background for none."""
+    """uint8 (rays, 3): the colour of what was hit, in the light or in the dark; the background for none."""
+
+    shadings: tuple[Shading, ...]
+    """How the light meets the points; empty without a light."""
 
     points: tuple[np.ndarray, ...]
     """int64 (rays, 3): where it hit, in world units times the denominator; of the seed engine's misses, where they
@@ -137,6 +141,7 @@ class Model(ABC):
         slopes: ArrayLike,
         reflections: int,
         *,
+        light: Light | None = None,
         keep: bool = False,
     ) -> Trace:
         """Follow rays to their last reflection.
@@ -147,15 +152,25 @@ class Model(ABC):
             background: red, green, blue.
             slopes: int (rays, 3); only their ratios count.
             reflections: 0 or more.
+            light: what casts shadows; None lights everything.
             keep: also return every intermediate value: some 100 bytes per ray, rectangle and bounce.
         """
         slope = np.array(np.asarray(slopes).T, dtype=np.int64, order="C")
         origin = np.array(np.broadcast_to(np.asarray(camera), slope.T.shape).T, dtype=np.int64, order="C")
-        met = list(islice(self.meetings(rectangles, origin, slope, keep=keep), reflections + 1))
+        met, shadings, seen = [], [], []
+        for meeting in islice(self.meetings(rectangles, origin, slope, keep=keep), reflections + 1):
+            colours = hit_colours(rectangles, background, *meeting[:3])
+            if light:
+                # The slope is still that of the ray that hit: the next one is asked for after this.
+                shading = shade(rectangles, light, *meeting[:3], slope.T)
+                dark = (meeting[0] >= 0) & ~shading.lit
+                colours[dark] = light.quarters * colours[dark].astype(np.int64) >> 2
+                shadings.append(shading)
+            met.append(meeting)
+            seen.append(colours)
         winners, points, denominators, bounces = zip(*met, strict=True)
-        seen = tuple(hit_colours(rectangles, background, *meeting[:3]) for meeting in met)
         colours = blend(seen, [rectangles.mirrors[winner] for winner in winners])
-        return Trace(colours, winners, seen, points, denominators, bounces if keep else ())
+        return Trace(colours, winners, tuple(seen), tuple(shadings), points, denominators, bounces if keep else ())
 
     def picture(
         self,
@@ -166,6 +181,7 @@ class Model(ABC):
         reflections: int,
         *,
         basis: Basis = UNTURNED,
+        light: Light | None = None,
     ) -> np.ndarray:
         """The picture of a table of rectangles; the arguments are those of `trace` and `primary_slopes`.
 
@@ -173,7 +189,7 @@ class Model(ABC):
             uint8 (rows, columns, 3).
         """
         slopes = primary_slopes(screen, basis)
-        traced = self.trace(rectangles, camera, background, slopes.reshape(-1, 3), reflections)
+        traced = self.trace(rectangles, camera, background, slopes.reshape(-1, 3), reflections, light=light)
         return traced.colours.reshape(slopes.shape)
 
     def render(self, scene: Scene, screen: Screen, reflections: int | None = None) -> np.ndarray:
@@ -194,4 +210,6 @@ class Model(ABC):
             raise ValueError(f"a design without {' and '.join(lacking)} does not draw this scene")
         reflections = scene.reflections if reflections is None else reflections
         camera, rectangles = scene.camera, Rectangles.of_scene(scene)
-        return self.picture(screen, rectangles, camera.position, scene.background, reflections, basis=camera.basis)
+        return self.picture(
+            screen, rectangles, camera.position, scene.background, reflections, basis=camera.basis, light=scene.light
+        )

@@ -10,7 +10,7 @@ import numpy as np
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.golden.world import Rectangles
-from raycaster.scene import BASIS_SCALE, CELLS, PATTERNS, Basis, Camera
+from raycaster.scene import BASIS_SCALE, CELLS, PATTERNS, Basis, Camera, Light
 from raycaster.screens import VIEW_DISTANCE
 
 EXTREMES = (0, 1, 255, 256, 510, 511)
@@ -53,6 +53,17 @@ def random_camera(rng: np.random.Generator, rectangles: Rectangles) -> np.ndarra
     corners = rectangles.corners.reshape(-1, 3)
     near = corners[rng.integers(len(corners), size=3), [0, 1, 2]]
     return np.where(rng.random(3) < 0.4, near, rng.integers(WORLD_SIZE, size=3))
+
+
+def random_light(rng: np.random.Generator, rectangles: Rectangles, camera: np.ndarray) -> Light:
+    """A light of any shade: anywhere, in planes and on edges, close to one of them, or at the camera."""
+    position = random_camera(rng, rectangles)
+    if rng.random() < 0.1:
+        position = camera
+    elif rng.random() < 0.3:
+        position = np.clip(position + rng.integers(-1, 2, 3), 0, WORLD_SIZE - 1)
+    x, y, z = position.tolist()
+    return Light(position=(x, y, z), shade=int(rng.integers(4)) / 4)
 
 
 def random_slopes(rng: np.random.Generator, rays: int) -> np.ndarray:

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from raycaster.configuration import COORDINATE_BITS, Rounding
+from raycaster.engines import SEED
 from raycaster.golden.model import Bounce, Meeting, Model
 from raycaster.golden.world import OTHER_AXES, Rectangles
 
@@ -32,7 +33,7 @@ class SeedModel(Model):
     rounding: Rounding = "truncate"
     """Rounding of quotients."""
 
-    looks: Collection[str] = field(default=("materials", "patterns"), kw_only=True)
+    looks: Collection[str] = field(default=SEED.looks, kw_only=True)
 
     def meetings(
         self, rectangles: Rectangles, origin: np.ndarray, slope: np.ndarray, *, keep: bool

@@ -93,7 +93,7 @@ def look_around(design: Design, frames: int, build: Path, output: Path, console:
                 raise SimulationError("the design shows no scene")
             perfect = ExactModel().picture(
                 config.screen_geometry, live.rectangles, live.camera, live.background, live.reflections,
-                basis=live.basis,
+                basis=live.basis, light=live.light,
             )  # fmt: skip
             wrong += count_wrong(frame.picture, shown(perfect, config))
             Image.fromarray(frame.picture).save(output / f"frame_{number:04}.png")

@@ -84,7 +84,7 @@ class Judge:
     def _count(self, picture: np.ndarray, scene: LiveScene) -> int:
         perfect = ExactModel().picture(
             self._config.screen_geometry, scene.rectangles, scene.camera, scene.background, scene.reflections,
-            basis=scene.basis,
+            basis=scene.basis, light=scene.light,
         )  # fmt: skip
         return count_wrong(picture, shown(perfect, self._config))
 
@@ -232,7 +232,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     console = Console()
     options = given_options(arguments)
     engine = ENGINES.get(options.get("engine", FASTEST["engine"]))
-    defaults = FASTEST | ({"turn": True} if engine and engine.turns else {})
+    defaults = FASTEST | ({"turn": True} if engine and "turn" in engine.looks else {})
     if arguments.scene:
         design = design_for(arguments.scene, options, defaults)
         config, program, walker = design.configuration, None, Walker(design.shown, design.configuration)

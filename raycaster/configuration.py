@@ -15,6 +15,7 @@ from pydantic.fields import FieldInfo
 from raycaster.buses import BUSES, OWN
 from raycaster.complaints import refusal
 from raycaster.engines import ENGINES, SEED, Engine
+from raycaster.engines.engine import LOOKS
 from raycaster.errors import UserError, listed
 from raycaster.fixed import FixedScene
 from raycaster.screens import COORDINATE_BITS, Screen
@@ -28,9 +29,6 @@ MOST_REFLECTIONS = 4
 
 CHANNEL_BITS = 8
 """Bits a colour channel has until it leaves for the monitor."""
-
-LOOKS = ("turn", "materials", "patterns")
-"""Options that add to what scenes may show."""
 
 SLOW_HZ = 50_000_000
 """A clock that designs meet on the chips of the boards without registers on long wires."""
@@ -95,6 +93,9 @@ class Options:
     patterns: bool | None = Field(
         None, description="rectangles with a pattern of two colours, 1 or 0: 1 where the scene has them"
     )
+    light: bool | None = Field(
+        None, description="a point light and exact shadows, 1 or 0 (exact): 1 where the scene has one"
+    )
     bus: BusName = Field(OWN, description=f"what the registers are behind: {listed(BUSES)}")
     fixed: FixedScene | None = Field(None, description="what of a scene is built in")
 
@@ -122,6 +123,7 @@ class Configuration:
         turn: whether the camera turns.
         materials: whether rectangles mirror more or less than half.
         patterns: whether rectangles have patterns.
+        light: whether a point light casts shadows.
         bus: the name of the bus.
         fixed: what of a scene is built in.
     """
@@ -143,6 +145,7 @@ class Configuration:
     turn: bool
     materials: bool
     patterns: bool
+    light: bool
     bus: str
     fixed: FixedScene | None = None
 
@@ -165,6 +168,13 @@ class Configuration:
     def passes(self) -> tuple[int, ...]:
         """For the primary ray and each reflection, which rectangles are tested, as a mask."""
         return self.fixed.passes if self.fixed else (self.reflections + 1) * ((1 << self.rectangles) - 1,)
+
+    @property
+    def shadows(self) -> tuple[int, ...]:
+        """For each pass, the rectangles that are tested from the light, as a mask; empty without a light."""
+        if not self.light:
+            return ()
+        return self.fixed.shadows if self.fixed else self.passes
 
     @property
     def capacity(self) -> int | None:
@@ -265,6 +275,10 @@ def decided(options: Options) -> Configuration:
         raise ValueError(f"fixed: is for {len(fixed.passes) - 1} reflections, not {options.reflections}")
     rows = _rows(options, engine)
     scale = _scale(options, engine, rows)
+    for look, reason in engine.lacks.items():
+        if getattr(options, look):
+            others = " or ".join(f"ENGINE={other.name}" for other in ENGINES.values() if look not in other.lacks)
+            raise ValueError(f"{look}: {reason}; choose {others}")
     engine.refuse(options)
     config = Configuration(
         engine=options.engine,
@@ -284,6 +298,7 @@ def decided(options: Options) -> Configuration:
         turn=bool(options.turn),
         materials=bool(options.materials),
         patterns=bool(options.patterns),
+        light=bool(options.light),
         bus=options.bus,
         fixed=fixed,
     )

@@ -17,6 +17,7 @@ NEEDED_FOR = {
     "turn": "a camera that turns",
     "materials": "rectangles that mirror more or less than half",
     "patterns": "rectangles with patterns",
+    "light": "a light",
 }
 """What an option of a configuration gives to a scene."""
 
@@ -55,8 +56,7 @@ def packaged_for(options: Mapping[str, Any]) -> list[Path]:
     """The packaged scenes that hardware with these options shows: those that need nothing which it lacks."""
     lacking = {name for name in NEEDED_FOR if str(options.get(name)) in ("0", "False")}
     engine = ENGINES.get(str(options.get("engine")))
-    if engine and not engine.turns:
-        lacking.add("turn")
+    lacking.update(engine.lacks if engine else ())
     return [
         path
         for path in packaged_scenes().values()
@@ -67,7 +67,7 @@ def packaged_for(options: Mapping[str, Any]) -> list[Path]:
 def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, Any] | None = None) -> Design:
     """Read a scene and choose its hardware: what is not given of rows, reflections and looks is the scene's.
 
-    A camera that is turned chooses the exact engine, where no engine is given.
+    A scene that the default engine cannot show chooses the exact engine, where no engine is given.
 
     Args:
         path: the scene file.
@@ -85,16 +85,18 @@ def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, An
             raise UserError(f"{path}: rows: 180 rows need the beam engine; give ENGINE=beam, or ROWS=240 or 200")
         chosen["rows"] = scene.rows
     chosen.setdefault("reflections", scene.reflections)
-    if scene.camera.turned:
+    needed = scene.lacks(())
+    if scene.lacks(SEED.looks):
         chosen.setdefault("engine", EXACT.name)
     try:
-        configuration = configure(**dict.fromkeys(scene.lacks(()), True) | chosen)
+        configuration = configure(**dict.fromkeys(needed, True) | chosen)
     except ConfigurationError as error:
         option, _, reason = str(error).partition(": ")
-        if option != "turn" or "turn" in chosen:
+        if option not in needed or option in chosen:
             raise
-        angle = next(name for name in ("yaw", "pitch", "roll") if getattr(scene.camera, name))
-        raise ConfigurationError(f"{path}: camera.{angle}: {reason}") from None
+        if option == "turn":
+            option = "camera." + next(name for name in ("yaw", "pitch", "roll") if getattr(scene.camera, name))
+        raise ConfigurationError(f"{path}: {option}: {reason}") from None
     if lacking := scene.lacks(configuration.looks):
         raise UserError(f"{path}: the scene needs {NEEDED_FOR[lacking[0]]}; leave {lacking[0].upper()} out")
     load_scene(path, configuration.rectangles)  # refuses more rectangles than that

@@ -40,6 +40,9 @@ class FixedScene:
         camera: x, y, z, or None where it is live.
         background: 24 bits, or None where it is live; it goes with the camera.
         basis: forward, right and up of the fixed camera, times 256.
+        shadows: for each pass, which rectangles may shade what it hits, as in passes; empty without a light.
+        light: x, y, z of the fixed light and its shade in quarters, or None where there is none; it goes with the
+            camera.
     """
 
     rectangles: tuple[FixedRectangle, ...]
@@ -49,12 +52,18 @@ class FixedScene:
     basis: tuple[tuple[int, int, int], tuple[int, int, int], tuple[int, int, int]] = (
         (256, 0, 0), (0, 256, 0), (0, 0, 256),
     )  # fmt: skip
+    shadows: tuple[int, ...] = ()
+    light: tuple[int, int, int, int] | None = None
 
     @property
     def camera_fields(self) -> dict[str, int]:
         """The fixed camera's position and basis, as its record names them."""
         vectors = zip(("", "forward_", "right_", "up_"), (self._eye, *self.basis), strict=True)
-        return {f"{name}{axis}": part for name, vector in vectors for axis, part in zip("xyz", vector, strict=True)}
+        fields = {f"{name}{axis}": part for name, vector in vectors for axis, part in zip("xyz", vector, strict=True)}
+        if self.light:
+            fields |= dict(zip(("light_x", "light_y", "light_z", "light_shade"), self.light, strict=True))
+            fields["light_on"] = 1
+        return fields
 
     @property
     def scope(self) -> str:

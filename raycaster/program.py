@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from raycaster.configuration import Configuration
 from raycaster.registers import register_map
-from raycaster.scene import Basis, Rectangle, Scene
+from raycaster.scene import Basis, Light, Rectangle, Scene
 
 
 def rectangle_fields(index: int, rectangle: Rectangle, config: Configuration) -> Iterator[tuple[str, dict[str, int]]]:
@@ -32,6 +32,12 @@ def basis_fields(basis: Basis) -> Iterator[tuple[str, dict[str, int]]]:
         yield name, dict(zip("xyz", parts, strict=True))
 
 
+def light_fields(light: Light | None) -> Iterator[tuple[str, dict[str, int]]]:
+    """The register of the light and its fields."""
+    where = dict(zip("xyz", light.position, strict=True)) | {"shade": light.quarters} if light else {}
+    yield "light", {**where, "on": int(light is not None)}
+
+
 def scene_fields(scene: Scene, config: Configuration) -> Iterator[tuple[str, dict[str, int]]]:
     """The registers of a whole scene and their fields; entries of the table that it leaves are disabled.
 
@@ -44,6 +50,8 @@ def scene_fields(scene: Scene, config: Configuration) -> Iterator[tuple[str, dic
     yield "camera", dict(zip("xyz", scene.camera.position, strict=True))
     if config.turn:
         yield from basis_fields(scene.camera.basis)
+    if config.light:
+        yield from light_fields(scene.light)
     for index, rectangle in enumerate(scene.rect if config.table else ()):
         yield from rectangle_fields(index, rectangle, config)
     for index in range(len(scene.rect), config.table):

@@ -168,6 +168,7 @@ Rows = Annotated[
     Literal[240, 200, 180], _Check(_choice, "must be 240, 200 or 180", {"choices": (240, 200, 180), "whole": True})
 ]
 Angle = Annotated[float, _Check(_angle, "must be an angle in degrees, -360..360", {"largest": 360})]
+Shade = Annotated[float, _Check(_choice, "must be 0, 0.25, 0.5 or 0.75", {"choices": (0, 0.25, 0.5, 0.75)})]
 Mirror = Annotated[float, _Check(_choice, "must be 0, 0.25, 0.5, 0.75 or 1", {"choices": (0, 0.25, 0.5, 0.75, 1)})]
 if TYPE_CHECKING:
     PatternName = str
@@ -211,6 +212,18 @@ class Camera(_Strict):
     def turned(self) -> bool:
         """Whether the view is along anything but x, or not upright."""
         return self.basis != UNTURNED
+
+
+class Light(_Strict):
+    """A point light: what it reaches keeps its colour, all else keeps `shade` of it."""
+
+    position: Point
+    shade: Shade = 0.5
+
+    @property
+    def quarters(self) -> int:
+        """The colour that is left in the dark, in quarters: 0..3."""
+        return int(4 * self.shade)
 
 
 class Rectangle(_Strict):
@@ -262,21 +275,23 @@ class Scene(_Strict):
     reflections: Annotated[int, _integer(0, MOST_REFLECTIONS)] = 1
     background: Colour = (0, 0, 0)
     camera: Camera
+    light: Light | None = None
     rect: Annotated[
         tuple[Rectangle, ...], _Check(_items, "must be one or more tables, each headed [[rect]]", {"count": None})
     ]
 
     @property
     def needs(self) -> dict[str, bool]:
-        """By option of a configuration, what of turn, materials and patterns its picture needs."""
+        """Options of a configuration that add to what scenes may show, and whether the picture needs them."""
         return {
             "turn": self.camera.turned,
             "materials": any(rectangle.mirror != Rectangle.model_fields["mirror"].default for rectangle in self.rect),
             "patterns": any(rectangle.pattern != "plain" for rectangle in self.rect),
+            "light": self.light is not None,
         }
 
     def lacks(self, looks: Collection[str]) -> list[str]:
-        """What its picture needs beside these of turn, materials and patterns."""
+        """The options that the picture needs, apart from these."""
         return [name for name, is_needed in self.needs.items() if is_needed and name not in looks]
 
 
@@ -375,6 +390,8 @@ def dump_scene(scene: Scene) -> str:
             if getattr(scene.camera, name)
         ),
     ]
+    if scene.light:
+        lines += ["[light]", f"position = {list(scene.light.position)}", f"shade = {scene.light.shade}"]
     for rectangle in scene.rect:
         lines.append("[[rect]]")
         if rectangle.name:
@@ -437,7 +454,8 @@ def _expected(details: ErrorDetails) -> str:
         case "missing" as kind:
             return COMPLAINTS[kind]
         case "extra_forbidden" as kind:
-            table = {1: Scene, 2: Camera, 3: Rectangle}[len(details["loc"])]
+            table = {"camera": Camera, "light": Light, "rect": Rectangle}.get(str(details["loc"][0]), Scene)
+            table = table if len(details["loc"]) > 1 else Scene
             return COMPLAINTS[kind].format(keys=", ".join(table.model_fields))
         case "value_error":
             expected = str(details.get("ctx", {}).get("error"))

@@ -89,7 +89,7 @@ def _culling(what: Extent, scenes: Sequence[View], directory: Path, sweep: Sweep
     points = {}
     for engine in what.culled:
         for scene in scenes:
-            if scene.scene.camera.turned and not ENGINES[engine].turns:
+            if scene.scene.lacks(ENGINES[engine].looks):
                 continue
             for culling in (False, True):
                 options = {"engine": engine, "screen": what.screen, "culling": culling}

@@ -194,7 +194,12 @@ def _perfect(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, T
     """The slopes of a picture, int64 (rows, columns, 3), and the exact trace, which one after the other ask for."""
     slopes = primary_slopes(_screen(screen, scene.rows), scene.camera.basis)
     perfect = ExactModel().trace(
-        Rectangles.of_scene(scene), scene.camera.position, scene.background, slopes.reshape(-1, 3), reflections
+        Rectangles.of_scene(scene),
+        scene.camera.position,
+        scene.background,
+        slopes.reshape(-1, 3),
+        reflections,
+        light=scene.light,
     )
     return slopes, perfect
 
@@ -273,8 +278,8 @@ def leaving_out(view: View, engine: str) -> Iterator[tuple[str, Configuration]]:
     own = design_for(Path(view.source), {"engine": engine}).configuration
     options: dict[str, Any] = {
         "engine": engine, "rows": own.rows, "rectangles": max(RECTANGLES, len(scene.rect)), "allow_underrun": True,
-        "reflections": GENERAL_REFLECTIONS, "turn": own.facts.turns, "materials": True, "patterns": True,
-        "culling": False,
+        "reflections": GENERAL_REFLECTIONS, "culling": False,
+        **dict.fromkeys(own.facts.looks, True),
     }  # fmt: skip
     yield "any scene", configure(**options)
     for what, one in (
@@ -283,14 +288,17 @@ def leaving_out(view: View, engine: str) -> Iterator[tuple[str, Configuration]]:
         ("turned camera", {"turn": own.turn}),
         ("mirrors' strengths", {"materials": own.materials}),
         ("patterns", {"patterns": own.patterns}),
+        ("light", {"light": own.light}),
     ):
         options |= one
         yield what, configure(**options)
     every = (1 << len(scene.rect)) - 1
-    fixed = FixedScene(tuple(map(fixed_rectangle, scene.rect)), (every,) * (scene.reflections + 1))
+    passes = (every,) * (scene.reflections + 1)
+    fixed = FixedScene(tuple(map(fixed_rectangle, scene.rect)), passes, shadows=passes if own.light else ())
     yield "registers of rectangles", configure(**options, fixed=fixed)
     background = int.from_bytes(bytes(scene.background), "big")
-    fixed = replace(fixed, camera=scene.camera.position, background=background, basis=scene.camera.basis)
+    light = scene.light and (*scene.light.position, scene.light.quarters)
+    fixed = replace(fixed, camera=scene.camera.position, background=background, basis=scene.camera.basis, light=light)
     yield "registers of the camera", configure(**options, fixed=fixed)
     yield (
         "hidden rectangles",

@@ -60,7 +60,8 @@ class Viewer:
             return self.shown(np.zeros((self.screen.rows, self.screen.columns, 3), dtype=np.uint8))
         return self.shown(
             self.model.picture(
-                self.screen, scene.rectangles, scene.camera, scene.background, scene.reflections, basis=scene.basis
+                self.screen, scene.rectangles, scene.camera, scene.background, scene.reflections, basis=scene.basis,
+                light=scene.light,
             )
         )  # fmt: skip
 

@@ -11,7 +11,7 @@ import numpy as np
 from raycaster.configuration import Configuration
 from raycaster.golden.world import Rectangles
 from raycaster.registers import Register, register_map
-from raycaster.scene import UNTURNED, Basis
+from raycaster.scene import UNTURNED, Basis, Light
 
 AXES = "xyz"
 COLOURS = ("red", "green", "blue")
@@ -99,7 +99,7 @@ class Table:
 
 def camera_registers(config: Configuration) -> dict[str, Register]:
     """Those of a design's camera, by name."""
-    names = ("camera", *(VECTORS if config.turn else ()))
+    names = ("camera", *(VECTORS if config.turn else ()), *("light",) * config.light)
     return {name: register_map(config.rectangles)[name] for name in names}
 
 
@@ -125,10 +125,18 @@ class CameraWords(dict[str, Word]):
     @property
     def basis(self) -> Basis:
         """The live one: forward, right and up."""
-        if len(self) == 1:
+        if VECTORS[0] not in self:
             return UNTURNED
         forward, right, up = (self._vector(name, 1 << 9) for name in VECTORS)
         return forward, right, up
+
+    @property
+    def light(self) -> Light | None:
+        """The live one, None where everything is lit."""
+        fields = self._registers["light"].unpack(self["light"].live) if "light" in self else {"on": 0}
+        if not fields["on"]:
+            return None
+        return Light(position=(fields["x"], fields["y"], fields["z"]), shade=fields["shade"] / 4)
 
     def _vector(self, name: str, sign_bit: int = 0) -> tuple[int, int, int]:
         fields = self._registers[name].unpack(self[name].live)
@@ -161,6 +169,7 @@ class Agent:
                 "turn": int(config.turn),
                 "materials": int(config.materials),
                 "patterns": int(config.patterns),
+                "light": int(config.light),
             },
             "size": {
                 "units": config.units, "rectangles": config.rectangles, "rows": config.rows,
@@ -288,6 +297,7 @@ class LiveScene:
     camera: tuple[int, ...]
     basis: Basis
     rectangles: Rectangles
+    light: Light | None = None
 
 
 def read_live(config: Configuration, control: Word, background: Word, camera: CameraWords, table: Table) -> LiveScene:
@@ -301,6 +311,7 @@ def read_live(config: Configuration, control: Word, background: Word, camera: Ca
         background=tuple(colours[colour] for colour in COLOURS),
         camera=camera.position,
         basis=camera.basis,
+        light=camera.light,
         rectangles=table.rectangles("live"),
     )
 

@@ -23,6 +23,7 @@ from rich.text import Text
 from raycaster.configuration import Configuration
 from raycaster.convert.provenance import Provenance
 from raycaster.design import Design, packaged_for
+from raycaster.engines import SEED
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
 from raycaster.options import (
@@ -37,7 +38,7 @@ from raycaster.outcomes import Check, Published, add_keep_option, keep, scope_of
 from raycaster.outcomes import Outcome as Kept
 from raycaster.outcomes import table as markdown
 from raycaster.output import Console, check_replaceable, printable, put, replaced
-from raycaster.scene import load_scene, packaged_scenes
+from raycaster.scene import Scene, load_scene, packaged_scenes
 from raycaster.sim.contact_sheet import write_contact_sheet
 from raycaster.sim.job import Job
 from raycaster.sim.netlist import LIBRARIES, Netlist, find_yosys, synthesise
@@ -98,13 +99,9 @@ def plan_runs(
         # Units and reflections are the scene's business then.
         defaults = {name: value for name, value in defaults.items() if name == "screen"}
     paths = list(paths)
-    special = {path: scene.reflections for path in paths if any((scene := load_scene(path)).needs.values())}
-    # Scenes that need more than usual are few of a kind: they share hardware, or most of the time goes into building.
-    shared = {} if scope or len(special) < 2 else {"reflections": max(special.values())}
+    shared = {} if scope else _shared({path: load_scene(path) for path in paths})
     runs = [
-        design_of(
-            path, options, scope, console or Console(quiet=True), **{**(shared if path in special else {}), **defaults}
-        )
+        design_of(path, options, scope, console or Console(quiet=True), **(shared.get(path, {}) | dict(defaults)))
         for path in paths
     ]
     seen: dict[str, Path] = {}
@@ -112,6 +109,23 @@ def plan_runs(
         if (other := seen.setdefault(run.name, run.path)) != run.path:
             raise UserError(f"{run.path}: has the same file name as {other}, so their pictures would share a directory")
     return runs
+
+
+def _shared(scenes: Mapping[Path, Scene]) -> dict[Path, dict[str, Any]]:
+    """Hardware for the scenes that need more than usual, by their paths.
+
+    They are few of a kind. So those that the default engine can show share a design, and so do the others: otherwise
+    most of the time would go into building.
+    """
+    found: dict[Path, dict[str, Any]] = {}
+    special = {path: scene for path, scene in scenes.items() if scene.lacks(())}
+    for shown in (True, False):
+        group = {path: scene for path, scene in special.items() if (not scene.lacks(SEED.looks)) == shown}
+        if len(group) > 1:
+            needed = {look: True for scene in group.values() for look in scene.lacks(())}
+            most = max(scene.reflections for scene in group.values())
+            found |= {path: {"reflections": most, **needed} for path in group}
+    return found
 
 
 def simulate(run: Design, model: Model, sim: Path, progress: Path) -> Outcome:

@@ -87,6 +87,17 @@ static bool is_in_world(struct raycaster_point point) {
     return point.x <= MOST(CAMERA__X) && point.y <= MOST(CAMERA__Y) && point.z <= MOST(CAMERA__Z);
 }
 
+static enum raycaster_error write_light(const struct raycaster *device, uint32_t word) {
+    if (device->built_in == RAYCASTER_SCENE_BUILT_IN) {
+        return RAYCASTER_FIXED;
+    }
+    if (!device->light) {
+        return RAYCASTER_NOT_IN_HARDWARE;
+    }
+    WRITE(device, light, word);
+    return RAYCASTER_OK;
+}
+
 static enum raycaster_error check_index(const struct raycaster *device, unsigned index) {
     if (device->built_in != RAYCASTER_NOTHING_BUILT_IN) {
         return RAYCASTER_FIXED;
@@ -134,7 +145,7 @@ const char *raycaster_error_text(enum raycaster_error error) {
     case RAYCASTER_NOT_IN_HARDWARE:
         return "the hardware was generated without it";
     case RAYCASTER_NO_SUCH_LOOK:
-        return "no such mirror, pattern or size of cells";
+        return "no such mirror, pattern, size of cells or shade";
     }
     return "unknown error";
 }
@@ -166,6 +177,7 @@ enum raycaster_error raycaster_probe(struct raycaster *device, volatile uint32_t
     device->turn = GET(engine, ENGINE__TURN) != 0;
     device->materials = GET(engine, ENGINE__MATERIALS) != 0;
     device->patterns = GET(engine, ENGINE__PATTERNS) != 0;
+    device->light = GET(engine, ENGINE__LIGHT) != 0;
     return RAYCASTER_OK;
 }
 
@@ -288,6 +300,21 @@ enum raycaster_error raycaster_set_basis(const struct raycaster *device, const s
     WRITE(device, right, vector_word(basis->right));
     WRITE(device, up, vector_word(basis->up));
     return RAYCASTER_OK;
+}
+
+enum raycaster_error raycaster_set_light(
+    const struct raycaster *device, struct raycaster_point position, unsigned quarters) {
+    if (!is_in_world(position)) {
+        return RAYCASTER_OUTSIDE_WORLD;
+    }
+    if (quarters > MOST(LIGHT__SHADE)) {
+        return RAYCASTER_NO_SUCH_LOOK;
+    }
+    return write_light(device, PUT_POINT(position, LIGHT) | PUT(quarters, LIGHT__SHADE) | RAY_CASTER__LIGHT__ON_bm);
+}
+
+enum raycaster_error raycaster_clear_light(const struct raycaster *device) {
+    return write_light(device, 0);
 }
 
 enum raycaster_error raycaster_set_background(const struct raycaster *device, struct raycaster_colour colour) {

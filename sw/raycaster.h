@@ -69,6 +69,7 @@ struct raycaster {
     bool turn;      // its camera turns
     bool materials; // its rectangles have mirrors of their own
     bool patterns;  // its rectangles have patterns
+    bool light;     // it has a light, which casts shadows
 };
 
 // A place in the world, each coordinate 0 to 511: x is depth, y is side to side, z is height.
@@ -143,6 +144,14 @@ struct raycaster_basis raycaster_turned(int yaw, int pitch, int roll);
 
 // Turn the camera. RAYCASTER_NOT_IN_HARDWARE: it looks along x. RAYCASTER_OUTSIDE_WORLD: a component is too large.
 enum raycaster_error raycaster_set_basis(const struct raycaster *device, const struct raycaster_basis *basis);
+
+// Put the light somewhere, with `quarters` of each colour left in the dark: 0 (black) to 3. RAYCASTER_NOT_IN_HARDWARE:
+// everything is lit.
+enum raycaster_error raycaster_set_light(
+    const struct raycaster *device, struct raycaster_point position, unsigned quarters);
+
+// Take the light away: everything is lit.
+enum raycaster_error raycaster_clear_light(const struct raycaster *device);
 
 enum raycaster_error raycaster_set_background(const struct raycaster *device, struct raycaster_colour colour);
 

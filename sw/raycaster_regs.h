@@ -20,7 +20,7 @@ extern "C" {
 #define RAY_CASTER__VERSION__MINOR_bm 0xffff
 #define RAY_CASTER__VERSION__MINOR_bp 0
 #define RAY_CASTER__VERSION__MINOR_bw 16
-#define RAY_CASTER__VERSION__MINOR_reset 0x5
+#define RAY_CASTER__VERSION__MINOR_reset 0x6
 #define RAY_CASTER__VERSION__MAJOR_bm 0xffff0000
 #define RAY_CASTER__VERSION__MAJOR_bp 16
 #define RAY_CASTER__VERSION__MAJOR_bw 16
@@ -48,6 +48,9 @@ extern "C" {
 #define RAY_CASTER__ENGINE__DIVIDER_BITS_bm 0x3000
 #define RAY_CASTER__ENGINE__DIVIDER_BITS_bp 12
 #define RAY_CASTER__ENGINE__DIVIDER_BITS_bw 2
+#define RAY_CASTER__ENGINE__LIGHT_bm 0x4000
+#define RAY_CASTER__ENGINE__LIGHT_bp 14
+#define RAY_CASTER__ENGINE__LIGHT_bw 1
 #define RAY_CASTER__ENGINE__REFLECTIONS_bm 0x70000
 #define RAY_CASTER__ENGINE__REFLECTIONS_bp 16
 #define RAY_CASTER__ENGINE__REFLECTIONS_bw 3
@@ -199,6 +202,28 @@ extern "C" {
 #define RAY_CASTER__UP__Z_bw 10
 #define RAY_CASTER__UP__Z_reset 0x100
 
+// reg - ray_caster::light
+#define RAY_CASTER__LIGHT__X_bm 0x1ff
+#define RAY_CASTER__LIGHT__X_bp 0
+#define RAY_CASTER__LIGHT__X_bw 9
+#define RAY_CASTER__LIGHT__X_reset 0x0
+#define RAY_CASTER__LIGHT__Y_bm 0x3fe00
+#define RAY_CASTER__LIGHT__Y_bp 9
+#define RAY_CASTER__LIGHT__Y_bw 9
+#define RAY_CASTER__LIGHT__Y_reset 0x0
+#define RAY_CASTER__LIGHT__Z_bm 0x7fc0000
+#define RAY_CASTER__LIGHT__Z_bp 18
+#define RAY_CASTER__LIGHT__Z_bw 9
+#define RAY_CASTER__LIGHT__Z_reset 0x0
+#define RAY_CASTER__LIGHT__SHADE_bm 0x18000000
+#define RAY_CASTER__LIGHT__SHADE_bp 27
+#define RAY_CASTER__LIGHT__SHADE_bw 2
+#define RAY_CASTER__LIGHT__SHADE_reset 0x0
+#define RAY_CASTER__LIGHT__ON_bm 0x80000000
+#define RAY_CASTER__LIGHT__ON_bp 31
+#define RAY_CASTER__LIGHT__ON_bw 1
+#define RAY_CASTER__LIGHT__ON_reset 0x0
+
 // reg - ray_caster::rectangle::corner
 #define RAY_CASTER__RECTANGLE__CORNER__X_bm 0x1ff
 #define RAY_CASTER__RECTANGLE__CORNER__X_bp 0
@@ -281,7 +306,8 @@ typedef struct __attribute__ ((__packed__)) {
     uint32_t forward;
     uint32_t right;
     uint32_t up;
-    uint8_t RESERVED_38_3f[0x8];
+    uint32_t light;
+    uint8_t RESERVED_3c_3f[0x4];
     ray_caster__rectangle_t rectangle[12];
 } ray_caster_t;
 

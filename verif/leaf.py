@@ -371,7 +371,8 @@ def step_names(config: Configuration) -> list[str]:
     return [
         name
         for name in vars(Steps())
-        if config.facts.divides or config.patterns or name not in ("load_divider", "store_quotient")
+        if (config.facts.divides or config.patterns or name not in ("load_divider", "store_quotient"))
+        and (config.light or name not in ("aim", "from_light", "write_shadow"))
     ]
 
 

@@ -13,6 +13,7 @@ from raycaster.golden.random_world import (
     ROOM,
     random_camera,
     random_grid,
+    random_light,
     random_looks,
     random_rectangles,
 )
@@ -34,7 +35,7 @@ def random_scene(seed: int, rectangles: int, reflections: int, looks: Collection
         seed: equal seeds make equal scenes.
         rectangles: at most so many, 1 or more.
         reflections: at most so many.
-        looks: of turn, materials and patterns, those that it may have; the rest of it is the same without them.
+        looks: the options of `LOOKS` that it may need; the rest of it is the same without them.
     """
     rng = np.random.default_rng(seed)
     style = style_of(seed)
@@ -46,11 +47,13 @@ def random_scene(seed: int, rectangles: int, reflections: int, looks: Collection
         camera = random_camera(rng, table)
     angles = _angles(rng) if "turn" in looks else {}
     table = random_looks(rng, table)
+    light = random_light(rng, table, camera) if "light" in looks and rng.random() < 0.9 else None
     return Scene(
         title=f"{style} of seed {seed}",
         reflections=bounces,
         background=background,
         camera=Camera(position=tuple(camera.tolist()), **angles),
+        light=light,
         rect=tuple(
             Rectangle.model_validate({"corners": pair, "colour": tuple(colour), **_look(table, index, looks)})
             for index, (pair, colour) in enumerate(zip(corners.tolist(), colours, strict=True))

@@ -112,8 +112,10 @@ def _build(model: Model, build: Path) -> tuple[bytes, dict[str, Any]]:
 
 def _settings(*, test: bool) -> dict[str, Any]:
     """What the page knows of the rest of the project."""
-    scenes = {name: path.read_text() for name, path in packaged_scenes().items()}
-    plain = [name for name, path in packaged_scenes().items() if not load_scene(path).camera.turned]
+    shown = {name: load_scene(path) for name, path in packaged_scenes().items()}
+    # No design of the page has a light.
+    scenes = {name: packaged_scenes()[name].read_text() for name, scene in shown.items() if not scene.light}
+    plain = [name for name in scenes if not shown[name].camera.turned]
     keys = {name: [BROWSER_KEYS.get(key, key) for key in held] for name, held in (WALK_KEYS | TURN_KEYS).items()}
     return {
         "test": test,

@@ -9,6 +9,7 @@ from raycaster.configuration import Configuration
 from raycaster.debug.probes.ray import AXES, Event, Place, Probe, Ray, Value, fields
 from raycaster.debug.probes.units import SIGNS, UnitProbes, slope_signs, surface
 from raycaster.debug.waves import Samples
+from raycaster.output import printable
 from raycaster.rtl.common.records import Signs, mirror_of, surface_of
 
 SURFACE = ("axis", "position", "colour")
@@ -33,6 +34,32 @@ def fraction(ray: Ray, place: Place) -> Sequence[Value] | None:
     if place.index < 0 or not ray.of_rectangle(place, "hits"):
         return None
     return ray.of_rectangle(place, "numerators"), ray.of_rectangle(place, "denominators")
+
+
+def lighting(ray: Ray, place: Place) -> Sequence[Value] | None:
+    """Whether the light reaches what the ray has hit, and otherwise why not; nothing for a miss."""
+    if ray.winner(place.bounce) < 0 or not ray.scene.light or not ray.alive(place.bounce):
+        return None
+    shading = ray.golden.shadings[place.bounce]
+    if not shading.facing[0]:
+        return ("on the dark side",)
+    shades = int(shading.shades[0])
+    return (f"shaded by {shades} {printable(ray.scene.rect[shades].name)}".rstrip() if shades >= 0 else "lit",)
+
+
+def hardware_lighting(ray: Ray, place: Place, facing: int, shaded: int) -> Sequence[Value]:
+    """The same of the unit, which knows no rectangle: golden's words where they mean the same."""
+    found = "on the dark side" if not facing else "shaded" if shaded else "lit"
+    golden = lighting(ray, place)
+    return golden if golden and str(golden[0]).startswith(found) else (found,)
+
+
+def shadow_slope(ray: Ray, place: Place) -> Sequence[Value] | None:
+    """Magnitudes of the slope of the ray from the light; nothing for a miss."""
+    if ray.winner(place.bounce) < 0 or not ray.scene.light or not ray.alive(place.bounce):
+        return None
+    point, e = ray.golden.points[place.bounce][0], int(ray.golden.denominators[place.bounce][0])
+    return [abs(int(n) - e * light) for n, light in zip(point, ray.scene.light.position, strict=True)]
 
 
 class ExactProbes(UnitProbes):
@@ -74,5 +101,15 @@ class ExactProbes(UnitProbes):
                 lambda ray, place: fraction(ray, Place(place.bounce, ray.nearest(place))), late=1),
             Probe("nearest", kept, "write", lambda ray, place: surface(ray, ray.nearest(place)), late=1,
                 colour=(2,), shown=False),
+            *(self._light_probes() if self.config.light else []),
             *self.last_probes(kept[-1]),
         ]  # fmt: skip
+
+    def _light_probes(self) -> list[Probe]:
+        """The ray from the light, and what became of it."""
+        shadow = f"{self.unit}.shadow_ray_i"
+        facing, shaded = f"{shadow}.facing", f"{self.unit}.shadow_register_i.shaded"
+        return [
+            Probe("slope from the light", fields(shadow, "shadow_slope", SIGNS), "blend", shadow_slope, parts=AXES),
+            Probe("light", (facing, shaded), "blend", lighting, decode=hardware_lighting, module="shadow_register"),
+        ]

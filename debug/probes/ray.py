@@ -234,7 +234,10 @@ class Ray:
             # Golden's are the shorter ones then; the hardware's are as long as of any other basis.
             slopes = slopes * BASIS_SCALE
         arguments = self.rectangles, self.scene.camera.position, self.scene.background, slopes, design.reflections
-        self.true, self.golden = (model.trace(*arguments, keep=True) for model in (ExactModel(), model_of(self.config)))
+        self.true, self.golden = (
+            model.trace(*arguments, light=self.scene.light, keep=True)
+            for model in (ExactModel(), model_of(self.config))
+        )
 
     @property
     def reflections(self) -> int:

@@ -162,6 +162,7 @@ class UnitProbes(Description):
             *(f"{self.sequencer}.{name}" for name in ("done", "rects_fetch", "rects_index")),
             *(f"{self.sequencer}.steps_{name}" for name in steps),
             f"{self.control}.steps_write_z_buf",
+            *[f"{self.control}.steps_from_light"] * self.config.light,
             *(f"{VIDEO}.{name}" for name in ("x", "y", "pixel_end")),
         ]
 
@@ -192,9 +193,11 @@ class UnitProbes(Description):
         events = [Event("start", start, Place(0)), Event("ray", start, Place(0))]
         bounce, at_hand = 0, None
         tried: list[tuple[int, int]] = []
+        # What is tested from the light is no rectangle of the ray's.
+        from_light = values.get(f"{self.control}.steps_from_light", [0] * len(samples.times_ns))
         for cycle in range(start, len(samples.times_ns)):
             ends = values[f"{step}_add_colour"][cycle] == 1
-            if values[f"{step}_find_intersection"][cycle] and at_hand is not None:
+            if values[f"{step}_find_intersection"][cycle] and at_hand is not None and not from_light[cycle]:
                 tried.append((cycle, at_hand))
             if values[f"{self.sequencer}.rects_fetch"][cycle]:
                 at_hand = values[f"{self.sequencer}.rects_index"][cycle]

@@ -7,7 +7,7 @@ The blocks in `raycaster.rtl.beam` take their latencies from here.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from raycaster.engines.engine import SETUP_LATENCY, SMALLEST_CELL_BITS, Engine
 from raycaster.screens import BEAM_SCREENS, COORDINATE_BITS, Screen
@@ -134,6 +134,7 @@ class Beam(Engine):
     screens = BEAM_SCREENS
     rect_latency = 2
     line_buffered = False
+    lacks: ClassVar = {"light": "the beam engine would need some 72 more products for each ray of a clock"}
 
     def scales(self, screen: Screen) -> tuple[int, ...]:
         """All that the monitor has pixels for, the finest first."""

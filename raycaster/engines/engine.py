@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from raycaster.configuration import Configuration, Options
 
 
+LOOKS = ("turn", "materials", "patterns", "light")
+"""Options that add to what scenes may show."""
+
 SMALLEST_CELL_BITS = 3
 """log2 of the size of a pattern's smallest cell, in world units."""
 
@@ -34,7 +37,7 @@ class Engine(ABC):
         screens: those that it can fill, by name and rows.
         rect_latency: cycles from `fetch` to the rectangle.
         margin: how far outside a rectangle's bounds a primary ray may pass that hits it, in world units.
-        turns: whether its camera turns.
+        lacks: the options of `LOOKS` that it refuses, each with the reason.
         divides: whether it forms quotients, which have a fraction and are rounded.
         line_buffered: whether units fill a line buffer ahead of the monitor, group after group.
     """
@@ -47,9 +50,14 @@ class Engine(ABC):
     screens: ClassVar[Mapping[tuple[str, int], Screen]] = SCREENS
     rect_latency: ClassVar[int] = 1
     margin: ClassVar[int] = 0
-    turns: ClassVar[bool] = True
+    lacks: ClassVar[Mapping[str, str]] = {}
     divides: ClassVar[bool] = False
     line_buffered: ClassVar[bool] = True
+
+    @property
+    def looks(self) -> tuple[str, ...]:
+        """The options of `LOOKS` that a design can have."""
+        return tuple(look for look in LOOKS if look not in self.lacks)
 
     def scales(self, screen: Screen) -> tuple[int, ...]:
         """The resolution scales that it offers on a screen, the default first."""
@@ -61,11 +69,6 @@ class Engine(ABC):
         Raises:
             ValueError: `option: why, and what to do instead`.
         """
-        if options.turn and not self.turns:
-            raise ValueError(
-                f"turn: the {self.name} engine measures depth along x, so its camera cannot turn; "
-                "choose ENGINE=exact or ENGINE=beam"
-            )
         if not self.divides:
             if options.fraction_bits:
                 raise ValueError(f"fraction_bits: the {self.name} engine has none, not {options.fraction_bits}")

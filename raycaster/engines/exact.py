@@ -18,6 +18,10 @@ PATTERN_LATENCY = 6
 """Cycles until the cells of a pattern are known, of u and of v: a dividend, and three cycles of two bits each."""
 
 
+AIM_CYCLES = 4
+"""Cycles from the end of a pass to the start of the pass from the light: the shadow ray, a component per cycle."""
+
+
 class Exact(LineBufferedEngine):
     """Units that test a rectangle a clock."""
 
@@ -46,3 +50,8 @@ class Exact(LineBufferedEngine):
     def pass_latency(self, config: Configuration) -> int:
         """The test's stages after the slot, depth compared, ray stored; the cells of a pattern come before that."""
         return WRITE_AT + 2 + (PATTERN_LATENCY if config.patterns else 0)
+
+    def group_cycles(self, config: Configuration) -> int:
+        """A pass from the light follows each pass."""
+        shadows = sum(mask.bit_count() for mask in config.shadows)
+        return super().group_cycles(config) + shadows + len(config.shadows) * (AIM_CYCLES + self.pass_latency(config))

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from raycaster.engines.engine import LineBufferedEngine
 
@@ -32,7 +32,11 @@ class Seed(LineBufferedEngine):
     name, code = "seed", 0
     colour, marker = "#D55E00", "o"
     usual_build = "30 s"
-    margin, turns, divides = 1, False, True
+    margin, divides = 1, True
+    lacks: ClassVar = {
+        "turn": "the seed engine measures depth along x, so its camera cannot turn",
+        "light": "the seed engine rounds the points from which shadows would be cast",
+    }
 
     def culls(self, options: Options) -> bool:
         """Its slots are long enough to be worth it; a fixed scene has left out what it does not need."""

@@ -27,6 +27,7 @@ def engine_word(config: Configuration) -> int:
         turn=int(config.turn),
         materials=int(config.materials),
         patterns=int(config.patterns),
+        light=int(config.light),
     )
 
 
@@ -100,7 +101,7 @@ def avalon_interface(
     frame = unsigned(frame_bits)
     sticky_underrun, sticky_bad = bit(), bit()
     slowest_row, slowest_group = unsigned(CYCLE_BITS), unsigned(CYCLE_BITS)
-    at_camera = bit()
+    at_camera, at_light = bit(), bit() if config.light else tied(0, 1)
     irq_enable, irq_pending = bit(), bit()
 
     control_memory = scene_word(
@@ -141,6 +142,13 @@ def avalon_interface(
     def decode():
         select_control.next = bus.address == control_address
         written_ones.next = bus.data & bus.mask
+
+    if config.light:
+        light_address = tied(registers["light"].address, len(bus.address))
+
+        @always_comb
+        def find_light():
+            at_light.next = bus.address == light_address
 
     if config.turn:
         up_address = tied(registers["up"].address, len(bus.address))
@@ -234,7 +242,7 @@ def avalon_interface(
             read_data.next[irq_bit] = irq_pending
         elif bus.address == background_address:
             read_data.next = background_word
-        elif at_camera:
+        elif at_camera or at_light:
             read_data.next = camera_readback
 
     @always_seq(clk.posedge, reset=reset)

@@ -7,6 +7,7 @@ What a class says of its attributes stands above those ports in Verilog.
 from typing import ClassVar
 
 from raycaster.configuration import Configuration
+from raycaster.engines.exact import AIM_CYCLES
 from raycaster.rtl.common.records import rect_of
 from raycaster.rtl.common.widths import (
     CYCLE_BITS,
@@ -185,12 +186,32 @@ class Steps(Interface):
         reset_colour: begin a new pixel.
         add_colour: add the colour that the ray saw.
         store_ray: keep the reflected ray.
+        aim: a bit for each cycle in which a shadow ray is computed, one after the other.
+        from_light: the ray that is tested is the shadow ray.
+        write_shadow: keep the shadow at hand.
     """
 
     def __init__(self):
         self.screen_to_ray, self.initial_ray, self.find_intersection = (bit() for _ in range(3))
         self.load_divider, self.store_quotient, self.reset_z_buf, self.write_z_buf = (bit() for _ in range(4))
         self.reset_colour, self.add_colour, self.store_ray = (bit() for _ in range(3))
+        self.aim = unsigned(AIM_CYCLES)
+        self.from_light, self.write_shadow = bit(), bit()
+
+
+class ShadowPass(Interface):
+    """How the pass from the light follows each pass of the rays; see `shadow_sequencer`.
+
+    Attributes:
+        traced: all rectangles that the present pass wants have been tested.
+        awaited: the rays wait until the light has been looked for.
+        comes_next: the pass from the light is the next one.
+        start: strobe; the next cycle begins the pass from the light.
+        stop: strobe; whatever is still to be tested decides nothing.
+    """
+
+    def __init__(self):
+        self.traced, self.awaited, self.comes_next, self.start, self.stop = (bit() for _ in range(5))
 
 
 class RayFate(Interface):
@@ -200,10 +221,12 @@ class RayFate(Interface):
         towards: it has hit mirrors at every bounce before, and runs towards the plane that find_intersection started on
             in the cycle before; where a control ends rectangles early.
         alive: what it has hit since reset_z_buf, and at every bounce before, are mirrors.
+        in_question: the light may reach the point that it hit: it is on the right side, and nothing that was tested
+            since steps.aim is between them.
     """
 
     def __init__(self):
-        self.towards, self.alive = bit(), bit()
+        self.towards, self.alive, self.in_question = bit(), bit(), bit()
 
 
 class GroupFate(Interface):
@@ -212,11 +235,12 @@ class GroupFate(Interface):
     Attributes:
         any_towards: fate.towards of at least one unit.
         any_alive: fate.alive of at least one unit.
+        any_in_question: fate.in_question of at least one unit.
         may_hit: a bit for each rectangle, 1 where a primary ray may hit it.
     """
 
     def __init__(self, config: Configuration):
-        self.any_towards, self.any_alive = bit(), bit()
+        self.any_towards, self.any_alive, self.any_in_question = bit(), bit(), bit()
         self.may_hit = unsigned(config.rectangles)
 
 

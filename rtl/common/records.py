@@ -19,6 +19,7 @@ from raycaster.rtl.common.widths import (
     KIND_BITS,
     MIRROR_BITS,
     RGB_BITS,
+    SHADE_BITS,
     WIDE_BITS,
     exact_slope_bits,
     eye_bits,
@@ -203,16 +204,27 @@ class Point(Record):
 
 
 class Camera(Record):
-    """Where all rays start, a `Point`, and with a camera that turns its basis: forward, right and up, times 256."""
+    """The point from which all rays start, a `Point`, and what the picture is taken with.
 
-    def __init__(self, turn: bool = False):
+    A camera that turns has its basis: forward, right and up, times 256. With a light it has light_x, light_y, light_z,
+    the eye of all shadow rays; light_on, low where everything is lit; and light_shade, how many quarters of a colour
+    are left in the dark.
+    """
+
+    def __init__(self, turn: bool = False, light: bool = False):
         basis = (f"{vector}_{axis}" for vector in ("forward", "right", "up") for axis in "xyz")
-        super().__init__(Point().layout | dict.fromkeys(basis, Signed(BASIS_BITS * turn)))
+        position = {f"light_{axis}": COORDINATE_BITS * light for axis in "xyz"}
+        super().__init__(
+            Point().layout
+            | dict.fromkeys(basis, Signed(BASIS_BITS * turn))
+            | position
+            | {"light_shade": SHADE_BITS * light, "light_on": int(light)}
+        )
 
 
 def camera_of(config: Configuration) -> Camera:
     """One of a design's."""
-    return Camera(config.turn)
+    return Camera(config.turn, config.light)
 
 
 class Origin(Record):

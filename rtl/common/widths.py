@@ -26,6 +26,9 @@ BASIS_BITS = 10
 MIRROR_BITS = 3
 """How much a rectangle mirrors, in quarters: 0..4."""
 
+SHADE_BITS = 2
+"""How much of a colour is left in the dark, in quarters: 0..3."""
+
 REFLECTION_BITS = 3
 """How many reflections a scene asks for."""
 
@@ -76,6 +79,14 @@ def steepest_slope(config: Configuration) -> int:
 def exact_slope_bits(config: Configuration) -> int:
     """Magnitude of the steepest slope on the screen, for the engines that need no more."""
     return steepest_slope(config).bit_length()
+
+
+def light_slope_bits(config: Configuration) -> int:
+    """Magnitude of the slope of a ray from the light.
+
+    S = e (P - L) with P and L in the world, so it is at most 511 times the steepest slope.
+    """
+    return ((WORLD_SIZE - 1) * steepest_slope(config)).bit_length()
 
 
 def eye_bits(config: Configuration) -> int:

@@ -20,7 +20,7 @@ def ends_early(config: Configuration) -> bool:
 
 @block
 def ray_sequencer(
-    clk, reset_ray_caster, enable, picture, rects, steps, in_flight, fate, early_out, done, slot_cycles,
+    clk, reset_ray_caster, enable, picture, rects, steps, in_flight, fate, shadow_pass, early_out, done, slot_cycles,
     config: Configuration,
 ):  # fmt: skip
     """Cycle through the usable rectangles once per ray, for the primary ray and each reflection, then raise done.
@@ -28,6 +28,8 @@ def ray_sequencer(
     A new rectangle starts every `slot_cycles` cycles: steps.find_intersection. When nothing is in flight after the last
     rectangle, BLEND follows, and then the next ray. In a fixed scene each ray has the rectangles that it may hit there,
     the primary ray and each reflection its own, instead of the usable ones.
+
+    With `config.light` a pass of the same kind follows each pass, before BLEND, where shadow_pass asks for it.
 
     Culling leaves out rectangles and rays that cannot change a pixel, and is correct where its signals are valid in
     time:
@@ -50,12 +52,13 @@ def ray_sequencer(
         picture: `Picture`; only reflections is read: 0 to `config.reflections`, still while rendering.
         rects: `Rects`; index and fetch are outputs. usable holds still from the cycle that reads enable; rect is not
             read.
-        steps: output `Steps`, except load_divider, store_quotient and write_z_buf, which the control derives from
-            in_flight.
+        steps: output `Steps`, except load_divider, store_quotient, write_z_buf and those of shadows, which the control
+            derives from in_flight.
         in_flight: unsigned output; bit i is set i + 1 cycles after a rectangle's steps.find_intersection, and the last
             bit is that of the last cycle that a rectangle needs.
         fate: `GroupFate`; may_hit and any_alive are read. any_towards is left to the control, which derives early_out
             from it.
+        shadow_pass: `ShadowPass`; traced is an output, and the rest is read, with `config.light`.
         early_out: flag, `EARLY_OUT_AT` cycles after steps.find_intersection; no ray runs towards that rectangle. Tied
             to 0 where rectangles are not ended early.
         done: output flag; all rays have been traced. High until reset_ray_caster.
@@ -67,14 +70,17 @@ def ray_sequencer(
     state = Signal(RayState.IDLE)
     bounce = unsigned(REFLECTION_BITS)
     start_ray, fetched, starting = bit(), bit(), bit()
+    traced = bit()
+    passed, restart, stop = (bit(), bit(), bit()) if config.light else (traced, start_ray, reset_ray_caster)
     wanted = unsigned(config.rectangles)
     if config.fixed:
         first, *reflected = config.passes
         masks = tuple(reflected + [0] * ((1 << REFLECTION_BITS) - len(reflected)))
+        shadow_masks = tuple([*config.shadows] + [0] * ((1 << REFLECTION_BITS) - len(config.shadows)))
         wanted_next = unsigned(config.rectangles)
 
     sequencer = rect_sequencer(
-        clk=clk, reset_ray_caster=reset_ray_caster, start_ray=start_ray, wanted=wanted, early_out=early_out,
+        clk=clk, reset_ray_caster=stop, start_ray=restart, wanted=wanted, early_out=early_out,
         index=rects.index, fetch=rects.fetch, fetched=fetched, starting=starting, slot_cycles=slot_cycles,
         config=config,
     )  # fmt: skip
@@ -82,6 +88,19 @@ def ray_sequencer(
     @always_comb
     def see_start():
         start_ray.next = steps.screen_to_ray or steps.add_colour
+
+    @always_comb
+    def see_end():
+        traced.next = (state == RayState.TRACE) and (not fetched) and (in_flight[write_at:] == 0)
+
+    if config.light:
+
+        @always_comb
+        def wait_for_light():
+            shadow_pass.traced.next = traced
+            passed.next = traced and not shadow_pass.awaited
+            restart.next = start_ray or shadow_pass.start
+            stop.next = reset_ray_caster or shadow_pass.stop
 
     @always(clk.posedge)
     def advance():
@@ -94,7 +113,7 @@ def ray_sequencer(
             bounce.next = 0
             state.next = RayState.TRACE
         elif state == RayState.TRACE:
-            if (not fetched) and (in_flight[write_at:] == 0):
+            if passed:
                 state.next = RayState.BLEND
         elif state == RayState.BLEND:
             if bounce == picture.reflections:
@@ -118,7 +137,7 @@ def ray_sequencer(
 
     @always(clk.posedge)
     def follow():
-        if reset_ray_caster:
+        if stop:
             in_flight.next = 0
         else:
             in_flight.next[write_at + 1 : 1] = in_flight[write_at:]
@@ -128,10 +147,28 @@ def ray_sequencer(
 
     # While a ray is traced, the next one is a reflection, which may hit any rectangle.
     if config.fixed:
+        if config.light:
+            after_this, from_light = unsigned(config.rectangles), unsigned(config.rectangles)
 
-        @always_comb
-        def look_ahead():
-            wanted_next.next = masks[bounce]
+            @always_comb
+            def look_after():
+                after_this.next = masks[bounce]
+
+            @always_comb
+            def look_from_light():
+                from_light.next = shadow_masks[bounce]
+
+            @always_comb
+            def look_ahead():
+                wanted_next.next = after_this
+                if shadow_pass.comes_next:
+                    wanted_next.next = from_light
+
+        else:
+
+            @always_comb
+            def look_ahead():
+                wanted_next.next = masks[bounce]
 
         @always_comb
         def choose_wanted():

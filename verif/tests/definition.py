@@ -9,6 +9,7 @@ from fractions import Fraction
 from math import floor
 
 from raycaster.golden.world import Rectangles
+from raycaster.scene import Light
 
 Vector = Sequence[int | Fraction]
 
@@ -30,7 +31,7 @@ class Stop:
     """That the nearest is met in the point where the ray starts."""
 
     colour: tuple[int, ...]
-    """What is seen there."""
+    """The colour that is seen there, in the light or in the dark."""
 
     quarters: int
     """How much of it is a mirror; 0 where nothing is hit."""
@@ -63,7 +64,32 @@ def colour_at(table: Rectangles, index: int, point: Vector) -> tuple[int, ...]:
     return tuple((table.colours_2 if odd else table.colours)[index].tolist())
 
 
-def follow(table: Rectangles, background: Sequence[int], camera: Vector, slope: Vector, reflections: int) -> list[Stop]:
+def is_lit(table: Rectangles, light: Vector, index: int, point: Vector, slope: Vector) -> bool:
+    """Whether the light reaches the point that a ray of this slope hit on a rectangle."""
+    axis = plane_of(table, index)
+    if not (light[axis] - point[axis]) * -slope[axis] > 0:
+        return False
+    for other in range(len(table)):
+        across = plane_of(table, other)
+        if across is None or point[across] == light[across]:
+            continue
+        first, second = table.corners[other].tolist()
+        t = Fraction(first[across] - light[across]) / (point[across] - light[across])
+        passed = [from_light + (to - from_light) * t for from_light, to in zip(light, point, strict=True)]
+        sides = zip(first, passed, second, strict=True)
+        if 0 < t < 1 and all(min(a, b) <= at <= max(a, b) for i, (a, at, b) in enumerate(sides) if i != across):
+            return False
+    return True
+
+
+def follow(
+    table: Rectangles,
+    background: Sequence[int],
+    camera: Vector,
+    slope: Vector,
+    reflections: int,
+    light: Light | None = None,
+) -> list[Stop]:
     """Every stop of a ray, until it has made its reflections, hits nothing or meets what does not mirror."""
     origin, slope, met, path = [Fraction(c) for c in camera], [Fraction(d) for d in slope], None, []
     for _ in range(reflections + 1):
@@ -74,7 +100,10 @@ def follow(table: Rectangles, background: Sequence[int], camera: Vector, slope: 
             return [*path, Stop(met, points, -1, False, tuple(background), 0)]
         winner = distances.index(nearest)
         quarters = int(table.mirrors[winner])
-        path.append(Stop(met, points, winner, nearest == 0, colour_at(table, winner, points[winner]), quarters))
+        colour = colour_at(table, winner, points[winner])
+        if light and not is_lit(table, light.position, winner, points[winner], slope):
+            colour = tuple(floor(channel * Fraction(light.shade)) for channel in colour)
+        path.append(Stop(met, points, winner, nearest == 0, colour, quarters))
         if quarters == 0:
             return path
         axis = plane_of(table, winner)

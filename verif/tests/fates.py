@@ -11,7 +11,7 @@ import numpy as np
 from raycaster.configuration import Configuration
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.common.interfaces import GroupFate, Picture, Rects, Steps
+from raycaster.rtl.common.interfaces import GroupFate, Picture, Rects, ShadowPass, Steps
 from raycaster.rtl.common.records import rect_of, surface_of
 from raycaster.rtl.common.widths import bit, unsigned
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
@@ -23,7 +23,7 @@ def control_leaf(function: Callable, config: Configuration, directory: Path) -> 
     write_at = slot_length(config) + 3 if config.facts.divides else 2
     arguments = {"offered": partial(rect_of if config.facts.divides else surface_of, config)}
     if function is ray_sequencer:
-        arguments = {"in_flight": lambda: unsigned(write_at + 1), "early_out": bit}
+        arguments = {"in_flight": lambda: unsigned(write_at + 1), "early_out": bit, "shadow_pass": ShadowPass}
     return Leaf(
         function,
         lambda: {

@@ -58,7 +58,7 @@ def worlds(draw: st.DrawFn, lowest: int = 0, highest: int = WORLD_SIZE - 1) -> W
 def engine_options(engine: Engine) -> dict[str, st.SearchStrategy]:
     """Options that an engine takes, beside those that every engine takes."""
     found: dict[str, st.SearchStrategy] = {"screen": st.sampled_from(sorted({name for name, _ in engine.screens}))}
-    if engine.turns:
+    if "turn" in engine.looks:
         found["turn"] = st.booleans()
     if not engine.line_buffered:
         return found | {"scale": st.sampled_from([1, 2, 4])}

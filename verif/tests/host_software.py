@@ -73,7 +73,7 @@ class RayCaster(ctypes.Structure):
                 "colour_bits",
             )
         ),
-        *((name, ctypes.c_bool) for name in ("nearest", "turn", "materials", "patterns")),
+        *((name, ctypes.c_bool) for name in ("nearest", "turn", "materials", "patterns", "light")),
     ]  # fmt: skip
 
 

@@ -138,9 +138,11 @@ def test_bridges(tmp_path, monkeypatch, capsys, names_for_digests):
 
 FEATURES = {
     "seed": [(), ("materials",), ("patterns",), ("materials", "patterns")],
-    "exact": [(), ("turn",), ("materials",), ("patterns",), ("turn", "materials", "patterns")],
+    "exact": [
+        (), ("turn",), ("materials",), ("patterns",), ("light",), ("turn", "materials", "patterns", "light"),
+    ],
     "beam": [(), ("turn",), ("materials",), ("patterns",), ("turn", "materials", "patterns")],
-}
+}  # fmt: skip
 
 
 def test_features(tmp_path, monkeypatch, capsys, names_for_digests):
@@ -148,7 +150,7 @@ def test_features(tmp_path, monkeypatch, capsys, names_for_digests):
 
     def count(config, family, directory, top):
         assert (family.name, top) == ("ecp5", "ray_unit" if config.engine == "seed" else "ray_caster_module")
-        return Area(100 + config.turn + 10 * config.materials + 20 * config.patterns, 7, 0, 3, 0)
+        return Area(100 + config.turn + 10 * config.materials + 20 * config.patterns + 40 * config.light, 7, 0, 3, 0)
 
     monkeypatch.setattr(area, "measure", count)
     kept = tmp_path / "features.json"
@@ -157,11 +159,27 @@ def test_features(tmp_path, monkeypatch, capsys, names_for_digests):
     designs = outcome["figures"]["designs"]
     assert len(outcome["provenance"]["designs"]) == len(designs)
     found = {engine: [tuple(row["options"]) for row in designs if row["engine"] == engine] for engine in FEATURES}
-    assert (found, len(designs)) == (FEATURES, 14)
-    assert [row["tables"] for row in designs] == [100, 110, 120, 130, *2 * (100, 101, 110, 120, 131)]
+    assert (found, len(designs)) == (FEATURES, 15)
+    assert [row["tables"] for row in designs] == [
+        100,
+        110,
+        120,
+        130,
+        100,
+        101,
+        110,
+        120,
+        140,
+        171,
+        100,
+        101,
+        110,
+        120,
+        131,
+    ]
     shown = capsys.readouterr().out
     assert "seed MATERIALS=1 PATTERNS=1" in shown
-    assert shown.count("+31.0%") == 2
+    assert (shown.count("+71.0%"), shown.count("+31.0%")) == (1, 1)
 
 
 def test_each_pin_has_a_register(tmp_path):

@@ -14,13 +14,13 @@ import pytest
 from conftest import BUILD, ROOT, SMALL_SCENE, Bench
 
 from raycaster.configuration import Configuration, configure
-from raycaster.engines import ENGINES
+from raycaster.engines import ENGINES, EXACT
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import SimulationError, build_model, run_bench
 from raycaster.verif.seeds import repeat, seed
 
 TRAFFIC_SEEDS = {"verilator": 2, "icarus": 1}
-EVERYTHING = {"turn": True, "materials": True, "patterns": True}
+EVERYTHING = dict.fromkeys(EXACT.looks, True)
 FULL_SCENE = ROOT / "scenes" / "mirror_room.toml"
 DESIGNS = [
     *(pytest.param("verilator", configure(engine=engine, screen="tiny"), FULL_SCENE, id=engine) for engine in ENGINES),

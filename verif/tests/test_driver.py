@@ -7,6 +7,7 @@ import ctypes
 import re
 import shutil
 import subprocess
+from itertools import product
 
 import numpy as np
 import pytest
@@ -29,12 +30,12 @@ from tcl import run_tcl
 
 from raycaster.configuration import configure
 from raycaster.convert.take_home import TOP
-from raycaster.engines import ENGINES
+from raycaster.engines import ENGINES, EXACT
 from raycaster.golden.engines import model_of
 from raycaster.golden.world import Rectangles
 from raycaster.program import scene_words
 from raycaster.registers import register_map
-from raycaster.scene import PATTERNS, UNTURNED, Camera, load_scene
+from raycaster.scene import PATTERNS, UNTURNED, Camera, Light, load_scene
 from raycaster.verif.seeds import repeat, seed
 
 ERRORS = enumerators(SOFTWARE / "raycaster.h", "raycaster_error")
@@ -75,6 +76,7 @@ def error(number: int) -> str:
         ),
         configure(engine="beam", rectangles=3, rows=180),
         configure(engine="exact", turn=True, patterns=True),
+        configure(engine="exact", light=True),
         configure(engine="beam", materials=True),
     ],
     ids=lambda config: config.name,
@@ -84,7 +86,7 @@ def test_probe_reads_what_the_design_is(library, config):
         found = probed(library)
     for name in (
         "units", "rows", "rectangles", "reflections", "scale", "fraction_bits", "divider_bits", "colour_bits", "turn",
-        "materials", "patterns",
+        "materials", "patterns", "light",
     ):  # fmt: skip
         assert getattr(found, name) == getattr(config, name), name
     assert found.engine == config.facts.code
@@ -255,7 +257,7 @@ def test_what_is_built_in_is_not_set(library, registers, built_in, camera):
 @pytest.fixture
 def everything(library):
     """The registers of a design that has all that scenes may need, and its handle."""
-    model = Registers(configure(engine="exact", screen="tiny", turn=True, materials=True, patterns=True))
+    model = Registers(configure(engine="exact", screen="tiny", **dict.fromkeys(EXACT.looks, True)))
     with attached(library, model):
         yield model, ctypes.byref(probed(library))
 
@@ -313,7 +315,29 @@ def test_looks_that_the_hardware_does_not_have(library, registers, device):
     assert error(library.raycaster_set_mirror(handle, 0, 1)) == "NOT_IN_HARDWARE"
     assert error(library.raycaster_set_pattern(handle, 0, 1, 8, WHITE)) == "NOT_IN_HARDWARE"
     assert error(library.raycaster_set_basis(handle, ctypes.byref(Turned.of(UNTURNED)))) == "NOT_IN_HARDWARE"
+    assert error(library.raycaster_set_light(handle, Point(1, 2, 3), 2)) == "NOT_IN_HARDWARE"
+    assert error(library.raycaster_clear_light(handle)) == "NOT_IN_HARDWARE"
     assert not registers.written
+
+
+def test_a_light(library, everything):
+    model, handle = everything
+    assert shown(library, model, handle).light is None
+    for position, quarters in product(((0, 0, 0), (511, 0, 1), (7, 300, 511)), range(4)):
+        assert library.raycaster_set_light(handle, Point(*position), quarters) == 0
+        assert shown(library, model, handle).light == Light(position=position, shade=quarters / 4)
+    written = len(model.written)
+    for axis in range(3):
+        outside = Point(*(512 * (axis == other) for other in range(3)))
+        assert error(library.raycaster_set_light(handle, outside, 0)) == "OUTSIDE_WORLD"
+    assert error(library.raycaster_set_light(handle, Point(0, 0, 0), 4)) == "NO_SUCH_LOOK"
+    assert len(model.written) == written
+    assert library.raycaster_clear_light(handle) == 0
+    assert shown(library, model, handle).light is None
+    model.say("engine", fixed=2)
+    fixed = ctypes.byref(probed(library))
+    assert error(library.raycaster_set_light(fixed, Point(1, 2, 3), 2)) == "FIXED"
+    assert error(library.raycaster_clear_light(fixed)) == "FIXED"
 
 
 def test_a_camera_turns(library, everything):

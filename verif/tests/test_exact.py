@@ -16,6 +16,7 @@ from raycaster.golden.random_world import (
     random_basis,
     random_camera,
     random_grid,
+    random_light,
     random_looks,
     random_rectangles,
     random_slopes,
@@ -53,15 +54,16 @@ def anywhere(rng):
 @pytest.mark.parametrize("world", [corner_worlds, anywhere])
 def test_traces_as_fractions_do(world, reflections):
     rng = np.random.default_rng([seed(), reflections])
-    longest, patterned, ended, in_corners = 0, 0, 0, Counter()
+    longest, patterned, ended, in_corners, shaded = 0, 0, 0, Counter(), Counter()
     for number in range(TABLES):
         table, camera, slopes = world(rng)
         if rng.random() < 0.6:
             table = random_looks(rng, table)
-        trace = ExactModel().trace(table, camera, BACKGROUND, slopes, reflections, keep=True)
+        light = random_light(rng, table, camera) if rng.random() < 0.7 else None
+        trace = ExactModel().trace(table, camera, BACKGROUND, slopes, reflections, light=light, keep=True)
         for ray, slope in enumerate(slopes.tolist()):
-            context = f"table {number}, ray {ray}: camera {camera.tolist()}, slope {slope}; {repeat()}"
-            path = follow(table, BACKGROUND, camera.tolist(), slope, reflections)
+            context = f"table {number}, ray {ray}: camera {camera.tolist()}, slope {slope}, {light}; {repeat()}"
+            path = follow(table, BACKGROUND, camera.tolist(), slope, reflections, light)
             winners = [stop.winner for stop in path] + [-1] * (reflections + 1 - len(path))
             assert [int(winner[ray]) for winner in trace.winners] == winners, context
             assert [seen[ray].tolist() for seen in trace.seen[: len(path)]] == [list(s.colour) for s in path], context
@@ -76,12 +78,15 @@ def test_traces_as_fractions_do(world, reflections):
                         assert stored == point, f"rectangle {index}, {context}"
             assert not any(bounce.alive[ray] for bounce in trace.bounces[len(path) :]), context
             assert trace.colours[ray].tolist() == pixel(path), context
+            for shading, stop in zip(trace.shadings, path, strict=False):
+                shaded[bool(shading.lit[ray]), stop.winner >= 0] += 1
             longest = max(longest, sum(stop.winner >= 0 for stop in path))
             ended += path[-1].quarters == 0 and path[-1].winner >= 0
             patterned += any(table.kinds[stop.winner] and stop.winner >= 0 for stop in path)
             in_corners += Counter(len(stop.met) for stop in path if stop.corner)
     assert longest == reflections + 1, f"no ray made all its reflections; {repeat()}"
-    assert min(ended, patterned) > TABLES, f"few rays ended early or met patterns; {repeat()}"
+    assert min(shaded[True, True], shaded[False, True]) > TABLES, f"few points in the light or in the dark; {repeat()}"
+    assert min(ended, patterned) > 0, f"no ray ended early or met a pattern; {repeat()}"
     if world is corner_worlds:
         # Of two planes with one reflection, and of three with two.
         assert set(in_corners) == set(range(1, min(reflections, 2) + 1)), f"{in_corners}; {repeat()}"

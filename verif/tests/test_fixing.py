@@ -22,16 +22,18 @@ from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.fit.choice import keep_choice, kept_choice
 from raycaster.fit.fixing import FIT, SCOPES, configuration_of, design_of, fix, fixed_rectangle
-from raycaster.fit.unneeded import covered, seen, unreachable, without_mirrors
+from raycaster.fit.unneeded import at_the_edge, covered, needed, unreachable, without_mirrors
 from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
 from raycaster.fpga import fit as search
 from raycaster.fpga.cells import FAMILIES, measure
 from raycaster.golden.engines import model_of
+from raycaster.golden.exact import ExactModel
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.beam.beam_caster import known_facet, known_growth
 from raycaster.scene import Camera, Rectangle, Scene, dump_scene, load_scene
 from raycaster.sim.simulator import SimulationError
+from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.seeds import repeat, seed
 
 BOXES = ROOT / "scenes" / "boxes.toml"
@@ -100,7 +102,7 @@ def test_what_is_seen_is_enough(engine):
     """Without the others the picture is the same; without any of these it is not."""
     config = configure(engine=engine, screen="tiny", allow_underrun=True)
     scene = load_scene(BOXES)
-    met = set().union(*seen(config, scene, 1))
+    met = set().union(*needed(config, scene, 1)[0])
     model = model_of(config)
     picture = model.render(scene, config.screen_geometry, 1)
 
@@ -127,11 +129,31 @@ def test_random_cameras_need_nothing_that_was_left_out():
             config = configure(engine=engine, screen="tiny", reflections=reflections, allow_underrun=True)
             table = Rectangles.of_scene(scene)
             within, behind = set(covered(table)), unreachable(table, reflections)
-            met = seen(config, scene, reflections)
+            met, _ = needed(config, scene, reflections)
             for one, never in zip(met, behind, strict=True):
                 assert not one & (within | never), repeat()
                 left_out += len(within | never)
     assert left_out > 300
+
+
+def test_shadows_need_no_more():
+    """Random lights: without what is neither seen nor shades, and from the light without the edge, nothing changes."""
+    random = np.random.default_rng(seed())
+    config = configure(engine="exact", screen="tiny", reflections=1, materials=True, light=True, allow_underrun=True)
+    shading, at_edge = 0, 0
+    for number in range(20):
+        scene = random_scene(int(random.integers(1 << 30)), 12, 1, ("materials", "light"))
+        met, shades = needed(config, scene, 1)
+        kept = set().union(*met, *shades)
+        if scene.light is None or not kept:
+            continue
+        edge = at_the_edge(Rectangles.of_scene(scene))
+        assert not edge & set().union(*shades), (number, repeat())
+        shading, at_edge = shading + len(set().union(*shades)), at_edge + len(edge)
+        fewer = scene.model_copy(update={"rect": tuple(scene.rect[index] for index in sorted(kept))})
+        pictures = [ExactModel().render(one, config.screen_geometry) for one in (scene, fewer)]
+        assert np.array_equal(*pictures), (number, repeat())
+    assert min(shading, at_edge) > 5, repeat()
 
 
 # What is built --------------------------------------------------------------------------------------------------------
@@ -256,10 +278,13 @@ def test_what_a_row_knows_of_fixed_rectangles(camera):
 
 @pytest.mark.slow_sets("beam-all", "beam-rects", "exact-rects", "seed-all", "seed-rects")
 @pytest.mark.parametrize("scope", SCOPES)
-@pytest.mark.parametrize("engine", ENGINES)
-def test_no_pixel_changes(bench: Bench, engine, scope):
-    design = fix(BOXES, {"engine": engine, "screen": "tiny"}, scope).design
-    result = json.loads((bench("sim.frame_bench", design.configuration, "icarus", BOXES) / "result.json").read_text())
+@pytest.mark.parametrize(
+    ("engine", "scene"), [*((engine, BOXES) for engine in ENGINES), ("exact", ROOT / "scenes" / "lamplight.toml")],
+    ids=[*ENGINES, "light"],
+)  # fmt: skip
+def test_no_pixel_changes(bench: Bench, engine, scene, scope):
+    design = fix(scene, {"engine": engine, "screen": "tiny"}, scope).design
+    result = json.loads((bench("sim.frame_bench", design.configuration, "icarus", scene) / "result.json").read_text())
     assert result["wrong_vs_golden"] == 0
     assert result["worst_group_cycles"] <= design.configuration.group_cycles
 

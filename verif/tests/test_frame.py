@@ -31,12 +31,13 @@ def test_full_size(bench: Bench, scene):
 @pytest.mark.slow_sets("beam", "seed")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_scenes_with_looks(bench: Bench, engine):
-    """Every scene whose camera is turned or whose rectangles have looks, small, by one design of each engine."""
+    """Every scene that needs more than the default design, small, by one design of each engine."""
     scenes = [path for path in packaged_for({"engine": engine}) if path.stem not in PLAIN]
     assert len(scenes) >= (2 if engine == "seed" else 8)
     # As few units as meet the row budget, which are soon compiled.
-    size = {"units": 16} if engine == "seed" else {"turn": True}
-    design = configure(engine=engine, screen="tiny", reflections=2, materials=True, patterns=True, **size)
+    size = {"units": 16} if engine == "seed" else {}
+    looks = dict.fromkeys(ENGINES[engine].looks, True)
+    design = configure(engine=engine, screen="tiny", reflections=2, **looks, **size)
     for scene in scenes:
         result = json.loads((bench("sim.frame_bench", design, "verilator", scene) / "result.json").read_text())
         assert (result["pixels"], result["wrong_vs_golden"]) == (128 * 96, 0), scene.stem
@@ -121,6 +122,9 @@ def test_tiny_in_icarus(engine):
         {"engine": "exact", "reflections": 4},
         {"engine": "exact", "reflections": 4, "materials": True},
         {"engine": "exact", "reflections": 0, "rectangles": 1, "colour_bits": 4},
+        {"engine": "exact", "reflections": 0, "light": True},
+        {"engine": "exact", "reflections": 4, "light": True, "culling": True},
+        {"engine": "exact", "reflections": 2, "light": True, "turn": True, "materials": True, "patterns": True},
         {"engine": "exact", "rectangles": 32, "units": 16},
         {"engine": "beam", "reflections": 2, "scale": 1},
         {"engine": "beam", "reflections": 3, "materials": True, "scale": 1},
@@ -138,6 +142,8 @@ def test_configurations(bench: Bench, tmp_path, options):
     scene = f"reflections = {options.get('reflections', 1)}\n{SMALL_SCENE.read_text()}"
     if options.get("rectangles") == 1:
         scene = scene[: scene.index("[[rect]]", scene.index("[[rect]]") + 1)]
+    if options.get("light"):
+        scene += "[light]\nposition = [60, 100, 300]\nshade = 0.25\n"
     path = tmp_path / "scene.toml"
     path.write_text(scene)
     configuration = configure(screen="tiny", **{"rectangles": 3} | options)

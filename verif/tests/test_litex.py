@@ -138,7 +138,7 @@ def test_the_map_is_that_of_the_driver(bus, standard, tmp_path):
         for name, value in told["constants"].items()
         if name.endswith("_offset")
     }
-    assert len(offsets) == 14 + 3 * 4
+    assert len(offsets) == 15 + 3 * 4
     members = {name: re.sub(r"^rectangle_(\d+)_", r"rectangle[\1].", name) for name in offsets}
     lines = "".join(f'printf("%zu\\n", offsetof(ray_caster_t, {member}));' for member in members.values())
     headers = "".join(f"#include <{name}>\n" for name in ("stddef.h", "stdio.h", "raycaster_regs.h"))

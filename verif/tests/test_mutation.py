@@ -201,7 +201,7 @@ def test_every_module_is_mutated(tmp_path):
     scene = load_scene(SMALL_SCENE)
     files = []
     for engine, rich in product(ENGINES, (True, False)):
-        looks = {"turn": rich and ENGINES[engine].turns, "materials": rich, "patterns": rich}
+        looks = dict.fromkeys(ENGINES[engine].looks, rich)
         config = configure(engine=engine, units=1, rectangles=5, reflections=2, allow_underrun=True, **looks)
         files += write_scene_system(config, scene, tmp_path / config.name)
     files += write_system(config, tmp_path / "processor")

@@ -105,12 +105,13 @@ def test_each_register_and_field_has_a_text():
     assert all(field.get_property("desc") for node in registers for field in node.fields())
     shadowed = {node.inst_name for node in registers if node.get_property("desc").startswith("Shadowed")}
     assert shadowed == {
-        "control", "background", "camera", "forward", "right", "up", "corner_0", "corner_1", "surface", "pattern",
+        "control", "background", "camera", "forward", "right", "up", "light", "corner_0", "corner_1", "surface",
+        "pattern",
     }  # fmt: skip
 
 
 def test_the_verilog_decodes_what_the_map_says(tmp_path):
-    config = configure(engine="exact", turn=True, screen="tiny", units=1, rectangles=3, allow_underrun=True)
+    config = configure(engine="exact", turn=True, light=True, screen="tiny", units=1, rectangles=3, allow_underrun=True)
     write_verilog(config, tmp_path / "verilog")
     text = "".join((tmp_path / "verilog" / f"{name}.v").read_text() for name in ("avalon_interface", "camera_mem"))
     found = {

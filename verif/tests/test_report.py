@@ -29,7 +29,7 @@ from conftest import called
 from distributed import Client
 from rich.console import Console
 
-from raycaster.configuration import configure
+from raycaster.configuration import LOOKS, configure
 from raycaster.errors import UserError
 from raycaster.fpga.cells import Area
 from raycaster.golden import errors as golden_errors
@@ -549,8 +549,8 @@ def test_what_is_left_out_step_by_step():
     view = View.of(str(ROOT / "scenes" / "corners.toml"))
     steps = dict(leaving_out(view, "exact"))
     first, *_, last = steps.values()
-    assert first.looks == ("turn", "materials", "patterns") and first.reflections == 2 and first.rectangles == 12
-    assert steps["patterns"].looks == () and steps["patterns"].fixed is None
+    assert first.looks == LOOKS and first.reflections == 2 and first.rectangles == 12
+    assert steps["light"].looks == () and steps["light"].fixed is None
     assert steps["registers of rectangles"].fixed.camera is None
     assert steps["registers of the camera"].fixed.camera == view.scene.camera.position
     assert len(steps["registers of the camera"].fixed.rectangles) == len(view.scene.rect) > len(last.fixed.rectangles)

@@ -26,10 +26,12 @@ corners = [[0, 0, 0], [511, 511, 0]]
 colour = "#c8c8b4"
 """
 CAMERA = "[camera]\nposition = [20, 256, 100]\n"
+LIGHT = "[light]\nposition = [1, 2, 3]\n"
 RECT = GOOD[GOOD.index("[[rect]]") :]
 SINGLE = RECT.replace("[[rect]]", "[rect]")
 CORNERS = "[[0, 0, 0], [511, 511, 0]]"
-TOP_KEYS = "title, rows, reflections, background, camera, rect"
+TOP_KEYS = "title, rows, reflections, background, camera, light, rect"
+LIGHT_KEYS = "position, shade"
 CAMERA_KEYS = "position, yaw, pitch, roll"
 TWOS = "2" * 54 + " (Expected '=' after a key in a key/value pair)"
 RECT_KEYS = "corners, colour, name, mirror, pattern, colour2, cell"
@@ -106,6 +108,15 @@ def test_rows_that_a_file_may_ask_for(tmp_path, rows):
         ("[20, 256, 100]", "[20, 256]", "camera.position: must be a point, [x, y, z], not [20, 256]"),
         ("[20, 256, 100]", "[1, 2, 3, 4]", "camera.position: must be a point, [x, y, z], not [1, 2, 3, 4]"),
         (CAMERA, "", "camera: is missing"),
+        (CAMERA, CAMERA + "[light]\n", "light.position: is missing"),
+        (CAMERA, CAMERA + LIGHT.replace("3", "512"), "light.position[2]: must be a whole number 0..511, not 512"),
+        (CAMERA, CAMERA + LIGHT + "shade = 1\n", "light.shade: must be 0, 0.25, 0.5 or 0.75, not 1"),
+        (
+            CAMERA,
+            CAMERA + LIGHT + "dim = 1\n",
+            f"light.dim: is not a key of scene files; the keys here are {LIGHT_KEYS}",
+        ),
+        (CAMERA, "light = 3\n" + CAMERA, "light: must be a table, not 3"),
         (CAMERA, "[camera]\n", "camera.position: is missing"),
         ("[camera]\nposition = [20, 256, 100]", "[[camera]]", "camera: must be a table, not [{}]"),
         (
@@ -198,10 +209,13 @@ def test_reads_angles_and_looks(tmp_path):
     first, second = scene.rect
     assert (first.quarters, first.kind, first.cell_code, first.colour2) == (1, 3, 4, (1, 2, 3))
     assert (second.quarters, second.kind, second.cell, second.colour2) == (4, 0, 32, None)
-    assert scene.needs == {"turn": True, "materials": True, "patterns": True}
+    assert scene.needs == {"turn": True, "materials": True, "patterns": True, "light": False}
     plain = load_scene(write(tmp_path, GOOD))
-    assert (plain.needs, plain.rect[0].quarters) == (dict.fromkeys(("turn", "materials", "patterns"), False), 2)
+    assert (plain.needs, plain.rect[0].quarters) == (dict.fromkeys(plain.needs, False), 2)
     assert scene.lacks(("turn", "patterns")) == ["materials"]
+    lit = load_scene(write(tmp_path, changed(CAMERA, CAMERA + LIGHT)))
+    assert (lit.needs["light"], lit.light.position, lit.light.quarters) == (True, (1, 2, 3), 2)
+    assert load_scene(write(tmp_path, dump_scene(lit))) == lit
     path = write(tmp_path, dump_scene(scene))
     assert load_scene(path) == scene
 

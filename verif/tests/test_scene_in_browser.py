@@ -17,6 +17,7 @@ import test_scene
 from conftest import ROOT
 from playwright.sync_api import Page
 
+from raycaster.configuration import LOOKS
 from raycaster.scene import Camera, Scene, SceneError, load_scene, packaged_scenes
 from raycaster.verif.seeds import repeat, seed
 from raycaster.web.browser import browser_page
@@ -34,6 +35,9 @@ position = [20, 256, 100]
 yaw = 30
 pitch = -12.5
 roll = 0.0
+[light]
+position = [1, 2, 300]
+shade = 0.75
 [[rect]]
 corners = [[0, 0, 0], [511, 511, 0]]
 colour = "#c8c8b4"
@@ -113,6 +117,7 @@ def _as_told(scene: Scene) -> dict[str, object]:
         "reflections": scene.reflections,
         "background": list(scene.background),
         "camera": {"position": list(camera.position), "yaw": camera.yaw, "pitch": camera.pitch, "roll": camera.roll},
+        "light": scene.light and {"position": list(scene.light.position), "quarters": scene.light.quarters},
         "rect": [
             {
                 "name": rectangle.name,
@@ -184,7 +189,8 @@ def test_packaged_scenes(in_browser):
     told = in_browser(path.read_text(encoding="utf-8") for path in scenes.values())
     for path, result in zip(scenes.values(), told, strict=True):
         assert result == {"scene": _as_told(load_scene(path)), "error": None}, path
-    assert {tuple(result["scene"]["needs"].values()) for result in told} >= {(True,) * 3, (False,) * 3}
+    needs = [result["scene"]["needs"] for result in told]
+    assert all({one[look] for one in needs} == {True, False} for look in LOOKS)
 
 
 def _mistakes() -> list[tuple[str, str]]:

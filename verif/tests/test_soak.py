@@ -25,7 +25,7 @@ from raycaster.sim.simulator import SimulationError, build_model, convert, run_b
 from raycaster.verif.random_scenes import STYLES, random_scene
 from raycaster.verif.soak.soak import show
 
-LOOKS = ("turn", "materials", "patterns")
+LOOKS = ("turn", "materials", "patterns", "light")
 SMALL = configure(screen="tiny", units=8, rectangles=4, reflections=2, divider_bits=3)
 
 

@@ -34,7 +34,8 @@ OPTIONS = {
     name + ending: {"engine": name, **size, **looks}
     for ending, looks in (("", {}), ("-looks", LOOKS))
     for name, size in SIZES.items()
-}
+} | {"exact-light": {"engine": "exact", "light": "1", "units": "8"}}
+LIGHT = "[light]\nposition = [20, 100, 250]\n"
 PIXEL = (48, 2)
 """Column and row: the post hides the wall there, and mirrors it."""
 
@@ -42,7 +43,12 @@ PIXEL = (48, 2)
 @cache
 def design(engine: str) -> Design:
     """A small scene on a small screen; Icarus builds it at once."""
-    return design_for(SCENE, {"screen": "tiny", "rectangles": "3", **OPTIONS[engine]})
+    scene = SCENE
+    if "light" in OPTIONS[engine]:
+        scene = BUILD / "test" / "tall_light.toml"
+        scene.parent.mkdir(parents=True, exist_ok=True)
+        scene.write_text(SCENE.read_text() + LIGHT)
+    return design_for(scene, {"screen": "tiny", "rectangles": "3", **OPTIONS[engine]})
 
 
 def recorded(engine: str, directory: Path, edit: tuple[str, str, str] | None = None) -> Waves:

@@ -281,7 +281,9 @@ def test_settings_are_json(site):
     """What the page is told is one assignment."""
     text = (site / "settings.js").read_text()
     settings = json.loads(text.removeprefix("Object.assign(RayCaster, ").removesuffix(");\n"))
-    assert set(settings["scenes"]) == set(packaged_scenes())
+    lit = {name for name, path in packaged_scenes().items() if load_scene(path).light}
+    assert len(lit) >= 5, "no design of the page has a light"
+    assert set(settings["scenes"]) == set(packaged_scenes()) - lit
 
 
 def test_nothing_to_keep_is_refused(tmp_path):

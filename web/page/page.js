@@ -17,6 +17,7 @@ const counted = (count, noun) => `${count.toLocaleString("en")} ${noun}${count =
 function readScene(text, name, rectangles) {
   const { scene, error } = RayCasterScene.read(text, name, RayCaster.schema, rectangles);
   if (error) throw new Error(error);
+  if (scene.needs.light) throw new Error(`${name}: light: no design of this page has one; remove the table [light]`);
   const { yaw, pitch, roll } = scene.camera;
   return { ...scene, basis: RayCasterScene.basis(yaw, pitch, roll) };
 }

@@ -171,13 +171,14 @@ const RayCasterScene = (() => {
   }
 
   function built(contents, schema) {
-    const { background, camera, rect, ...rest } = filled(contents, schema.model, schema);
+    const { background, camera, light, rect, ...rest } = filled(contents, schema.model, schema);
     const usual = resolve(schema.model.properties.rect.items, schema).properties;
     const turned = basis(camera.yaw, camera.pitch, camera.roll).flat().join() !== UNTURNED.flat().join();
     return {
       ...rest,
       background: channels(background),
       camera,
+      light: light && { position: light.position, quarters: 4 * light.shade },
       rect: rect.map(({ name, corners, colour, mirror, pattern, colour2, cell }) => ({
         name,
         corners,
@@ -191,6 +192,7 @@ const RayCasterScene = (() => {
         turn: turned,
         materials: rect.some(({ mirror }) => mirror !== usual.mirror.default),
         patterns: rect.some(({ pattern }) => pattern !== usual.pattern.default),
+        light: light !== null,
       },
     };
   }
@@ -202,8 +204,8 @@ const RayCasterScene = (() => {
    * @param {object} schema what web/scene_schema.py makes
    * @param {number} [rectangles] how many the hardware holds
    * @returns {{scene: ?object, error: ?string}} one of both is null. The scene: title, rows, reflections, background,
-   *   camera {position, yaw, pitch, roll}, rect [{name, corners, colour, quarters, kind, cell, colour2}] and
-   *   needs {turn, materials, patterns}; colours are [r, g, b], quarters the mirror's 0..4, kind the registers' code.
+   *   camera {position, yaw, pitch, roll}, light {position, quarters} or null, rect [{name, corners, colour, quarters,
+   *   kind, cell, colour2}] and needs {turn, materials, patterns, light}; colours are [r, g, b], quarters the mirror's 0..4, kind the registers' code.
    */
   function read(source, name, schema, rectangles = Infinity) {
     const refuse = (complaint) => ({ scene: null, error: `${name}: ${complaint}` });

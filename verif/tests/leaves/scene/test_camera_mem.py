@@ -19,14 +19,15 @@ from raycaster.sim.register_model import AXES, CameraWords
 from raycaster.verif.leaf import Leaf
 
 
-@pytest.mark.parametrize("turn", [False, True])
-def test_camera_mem(turn, tmp_path, random):
-    config = sized(12, engine="exact", turn=turn)
+@pytest.mark.parametrize("light", [False, True], ids=["no light", "light"])
+@pytest.mark.parametrize("turn", [False, True], ids=["not turned", "turned"])
+def test_camera_mem(turn, light, tmp_path, random):
+    config = sized(12, engine="exact", turn=turn, light=light)
     leaf = Leaf(camera_mem, lambda: ports(
         "clk reset", bus=SceneBus(address_bits(12)), readback=unsigned(WORD_BITS), camera=camera_of(config),
         config=config
     ), tmp_path)  # fmt: skip
-    addresses = [register_map(12)[name].address for name in ("camera", "forward", "right", "up")]
+    addresses = [register_map(12)[name].address for name in ("camera", "forward", "right", "up", "light")]
     position = register_map(12)["camera"]
     neighbours = [address ^ 1 << place for address in addresses for place in range(address_bits(12))]
     stimulus = []
@@ -37,7 +38,7 @@ def test_camera_mem(turn, tmp_path, random):
         stimulus.append({**bus, "reset": int(cycle == 0 or random.random() < 0.01)})
     outputs = leaf.run_both(stimulus, settled=1)
     model = CameraWords(config)
-    bases = set()
+    bases, lights = set(), set()
     for cycle, (inputs, output) in enumerate(zip(stimulus, outputs, strict=True)):
         if cycle:
             expected = {f"camera_{axis}": value for axis, value in zip(AXES, model.position, strict=True)}
@@ -47,6 +48,10 @@ def test_camera_mem(turn, tmp_path, random):
                 for name, vector in zip(("forward", "right", "up"), model.basis, strict=True):
                     # A negative component is its bits.
                     expected |= {f"camera_{name}_{axis}": part % 1024 for axis, part in zip(AXES, vector, strict=True)}
+            if light:
+                live = register_map(12)["light"].unpack(model["light"].live)
+                expected |= {f"camera_light_{name}": value for name, value in live.items()}
+                lights.add(tuple(live.values()))
             assert {name: output[name] for name in expected} == expected, cycle
             assert set(output) == {*expected, "readback"}
             bases.add(model.basis)
@@ -57,3 +62,4 @@ def test_camera_mem(turn, tmp_path, random):
                 word.clock(inputs, inputs["bus_address"] == address)
     assert UNTURNED in bases
     assert (len(bases) > 50) == turn
+    assert (len(lights) > 50) == light

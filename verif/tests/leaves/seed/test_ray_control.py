@@ -9,9 +9,8 @@ from vectors import config_id
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.golden.world import Rectangles
-from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.seed.ray_control import ray_control
-from raycaster.verif.leaf import sorted_rect, trace_cycles
+from raycaster.verif.leaf import sorted_rect, step_names, trace_cycles
 
 controls = pytest.mark.parametrize(
     "config",
@@ -59,7 +58,7 @@ def test_ray_control(config, tmp_path, random):
         fate = random_fate(random, usable, reflections, number)
         # What is not usable is not visited, whatever the mask has for it.
         held["fate_may_hit"] = mask_of(fate["may_hit"]) | int(random.integers(1 << count)) & ~mask
-        quiet = ({f"steps_{name}": 0 for name in vars(Steps()) if name != "initial_ray"} | {"done": 0}, None, None)
+        quiet = ({f"steps_{name}": 0 for name in step_names(config) if name != "initial_ray"} | {"done": 0}, None, None)
         for _ in range(2):
             drive({**held, "reset_ray_caster": 1, "enable": int(random.integers(2))})
         for _ in range(int(random.integers(3))):

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+"""The colour of a point in the light or in the dark."""
+
+from myhdl import always_comb, block, instances
+
+from raycaster.configuration import CHANNEL_BITS
+from raycaster.rtl.common.records import Colour
+from raycaster.rtl.common.widths import unsigned
+
+
+@block
+def shade_colour(colour, dark, shade, shaded):
+    """Leave so many quarters of each channel in the dark, rounded down. Combinational.
+
+    Args:
+        colour: `Colour` in the light.
+        dark: flag; the light does not reach the point.
+        shade: unsigned, 2 bits; what is left in the dark, in quarters.
+        shaded: unsigned output, 24 bits; red, green and blue of the point.
+    """
+    channels = (colour.red, colour.green, colour.blue)
+    products = [unsigned(CHANNEL_BITS + 2) for _ in channels]
+    red, green, blue = products
+    seen = Colour()
+    dim = seen.joined(red=red(CHANNEL_BITS + 2, 2), green=green(CHANNEL_BITS + 2, 2), blue=blue(CHANNEL_BITS + 2, 2))
+
+    @always_comb
+    def multiply():
+        red.next = shade * colour.red
+        green.next = shade * colour.green
+        blue.next = shade * colour.blue
+
+    @always_comb
+    def choose():
+        shaded.next = colour.word
+        if dark:
+            shaded.next = dim
+
+    return instances()

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: MIT
+"""Whether anything is between the light and the point that a ray hit."""
+
+from myhdl import always, always_comb, block, instances
+
+from raycaster.configuration import COORDINATE_BITS
+from raycaster.rtl.common.widths import bit, unsigned
+
+
+@block
+def shadow_register(clk, steps, hit, numerator, denominator, found_slope, shaded):
+    """Keep whether the shadow ray hits anything strictly between the light and the hit point P.
+
+    The ray meets P at t = 1 / e, and a rectangle at t = numerator / denominator: before P where numerator * e <
+    denominator.
+
+    Args:
+        clk: the clock.
+        steps: `Steps`; only aim and write_shadow are read.
+        hit: flag; the shadow ray hits the rectangle. Read with steps.write_shadow.
+        numerator: unsigned; at most the size of the world where hit is high. Read with steps.write_shadow.
+        denominator: unsigned; read with steps.write_shadow.
+        found_slope: unsigned; e. Read with steps.write_shadow.
+        shaded: output flag; there was a hit before P since steps.aim. Valid from the cycle after steps.write_shadow.
+    """
+    distance = unsigned(COORDINATE_BITS)
+    reached = unsigned(COORDINATE_BITS + len(found_slope))
+    in_between = bit()
+
+    # A distance from the light to a plane, both of which are in the world.
+    @always_comb
+    def narrow():
+        distance.next = numerator[COORDINATE_BITS:]
+
+    @always_comb
+    def multiply():
+        reached.next = distance * found_slope
+
+    @always_comb
+    def compare():
+        in_between.next = hit and (reached < denominator)
+
+    @always(clk.posedge)
+    def keep():
+        if steps.aim[0]:
+            shaded.next = False
+        elif steps.write_shadow and in_between:
+            shaded.next = True
+
+    return instances()

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: MIT
+"""When the light is looked for."""
+
+from myhdl import Signal, always, always_comb, block, enum, instances
+
+from raycaster.engines.exact import AIM_CYCLES
+from raycaster.rtl.common.widths import bit, unsigned
+
+ShadowState = enum("WAIT", "AIM", "TEST")
+
+
+@block
+def shadow_sequencer(clk, reset_ray_caster, shadow_pass, any_in_question, aim, from_light):
+    """Follow each pass of the rays with a pass from the light, where any unit has a point that it may reach.
+
+    When shadow_pass.traced says that a pass is over, the units compute their shadow rays, in the cycles of aim. The
+    pass from the light begins in the cycle after the last of these. It ends with its last rectangle, or as soon as no
+    point is in question any more: each then has its shadow, and shadow_pass.stop drops the tests under way.
+
+    Args:
+        clk: the clock.
+        reset_ray_caster: flag; synchronous reset to idle.
+        shadow_pass: `ShadowPass`; traced is read, and the rest is driven.
+        any_in_question: flag; `GroupFate`'s, read in the last cycle of aim and in each cycle of the pass from the
+            light. So it must be known in the cycle after a steps.write_shadow.
+        aim: output, as in `Steps`.
+        from_light: output, as in `Steps`; high from the cycle after aim until the pass is over.
+    """
+    last = AIM_CYCLES - 1
+
+    state = Signal(ShadowState.WAIT)
+    cycle = unsigned(AIM_CYCLES)
+    aimed, decided = bit(), bit()
+
+    @always(clk.posedge)
+    def advance():
+        if reset_ray_caster:
+            state.next = ShadowState.WAIT
+        elif state == ShadowState.WAIT:
+            cycle.next = 1
+            if shadow_pass.traced:
+                state.next = ShadowState.AIM
+        elif state == ShadowState.AIM:
+            cycle.next[AIM_CYCLES:1] = cycle[last:]
+            cycle.next[0] = False
+            if aimed:
+                state.next = ShadowState.WAIT
+                if any_in_question:
+                    state.next = ShadowState.TEST
+        elif shadow_pass.traced:
+            state.next = ShadowState.WAIT
+
+    @always_comb
+    def see_end():
+        aimed.next = cycle[last]
+        decided.next = (state == ShadowState.TEST) and not any_in_question
+
+    @always_comb
+    def operate():
+        aim.next = 0
+        if state == ShadowState.AIM:
+            aim.next = cycle
+        from_light.next = state == ShadowState.TEST
+
+    # The rays go on in the last cycle of either.
+    @always_comb
+    def ask():
+        shadow_pass.awaited.next = state != ShadowState.TEST
+        if (state == ShadowState.AIM) and aimed and not any_in_question:
+            shadow_pass.awaited.next = False
+        shadow_pass.comes_next.next = (state == ShadowState.WAIT) or ((state == ShadowState.AIM) and not aimed)
+        shadow_pass.start.next = (state == ShadowState.AIM) and aimed and any_in_question
+        shadow_pass.stop.next = decided and not shadow_pass.traced
+
+    return instances()

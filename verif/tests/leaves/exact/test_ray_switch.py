@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""The choice between a unit's own ray and its shadow ray."""
+
+from __future__ import annotations
+
+import pytest
+
+from raycaster.configuration import configure
+from raycaster.rtl.common.interfaces import Eye, Slope
+from raycaster.rtl.common.records import Signs, camera_of, mirror_of
+from raycaster.rtl.common.widths import bit, exact_slope_bits, eye_bits, light_slope_bits
+from raycaster.rtl.exact.ray_switch import ray_switch
+from raycaster.verif.leaf import Leaf
+
+
+@pytest.mark.parametrize("reflections", [1, 2])
+def test_ray_switch(reflections, tmp_path, random):
+    """All of one ray, or all of the other, which has left no mirror."""
+    config = configure(engine="exact", reflections=reflections, light=True, allow_underrun=True)
+    leaf = Leaf(
+        ray_switch,
+        lambda: {
+            "from_light": bit(),
+            "camera": camera_of(config),
+            "eye": Eye(eye_bits(config)),
+            "signs": Signs(),
+            "slope": Slope(exact_slope_bits(config)),
+            "mirror": mirror_of(config),
+            "shadow_signs": Signs(),
+            "shadow_slope": Slope(light_slope_bits(config)),
+            "tested_eye": Eye(eye_bits(config)),
+            "tested_signs": Signs(),
+            "tested_slope": Slope(light_slope_bits(config)),
+            "tested_mirror": mirror_of(config),
+        },
+        tmp_path,
+    )
+    stimulus = [
+        {name: int(random.integers(1 << member.width)) for name, member in leaf.given.items()} for _ in range(200)
+    ]
+    outputs = leaf.run_both(stimulus)
+    for inputs, output in zip(stimulus, outputs, strict=True):
+        if inputs["from_light"]:
+            wanted = {f"tested_eye_{axis}": inputs[f"camera_light_{axis}"] for axis in "xyz"}
+            wanted |= {f"tested_{part}": inputs[f"shadow_{part}"] for part in output_parts()} | {
+                "tested_mirror_active": 0
+            }
+        else:
+            wanted = {f"tested_eye_{axis}": inputs[f"eye_{axis}"] for axis in "xyz"}
+            wanted |= {f"tested_{part}": inputs[part] for part in output_parts()}
+            mirror = [name for name in output if name.startswith("tested_mirror_")]
+            wanted |= {name: inputs[name.removeprefix("tested_")] for name in mirror}
+        assert {name: output[name] for name in wanted} == wanted, inputs
+
+
+def output_parts() -> list[str]:
+    """The outputs that both rays have under one name."""
+    return [f"{record}_d{axis}" for record in ("signs", "slope") for axis in "xyz"]

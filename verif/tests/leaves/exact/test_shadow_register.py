@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+"""Whether anything is between the light and a point, against fractions."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from raycaster.configuration import WORLD_SIZE, configure
+from raycaster.rtl.common.interfaces import Steps
+from raycaster.rtl.common.widths import bit, exact_slope_bits, eye_bits, light_slope_bits, unsigned
+from raycaster.rtl.exact.shadow_register import shadow_register
+from raycaster.verif.leaf import Leaf
+
+CYCLES = 2000
+
+
+@pytest.mark.parametrize("turn", [False, True], ids=["not turned", "turned"])
+def test_shadow_register(turn, tmp_path, random):
+    """Hits before the point, in it, beyond it, and next to it by one unit of either product."""
+    config = configure(engine="exact", turn=turn, light=True)
+    leaf = Leaf(
+        shadow_register,
+        lambda: {
+            "clk": bit(),
+            "steps": Steps(),
+            "hit": bit(),
+            "numerator": unsigned(eye_bits(config) - 1),
+            "denominator": unsigned(light_slope_bits(config)),
+            "found_slope": unsigned(exact_slope_bits(config)),
+            "shaded": bit(),
+        },
+        tmp_path,
+    )
+    steepest, most = (1 << exact_slope_bits(config)) - 1, (1 << light_slope_bits(config)) - 1
+    stimulus, expected, shaded, kinds = [], [], None, set()
+    e = 1
+    for cycle in range(CYCLES):
+        starts = cycle == 0 or random.random() < 0.2
+        if starts:
+            e = int(random.choice([1, 2, steepest, random.integers(1, steepest + 1)]))
+        n = int(random.choice([1, WORLD_SIZE - 1, random.integers(1, WORLD_SIZE)]))
+        near = n * e + int(random.integers(-1, 2))
+        denominator = int(np.clip(random.choice([near, 2 * near, random.integers(1, most + 1)]), 1, most))
+        hit, write = int(random.random() < 0.4), int(not starts and random.random() < 0.5)
+        stimulus.append(
+            {
+                "steps_aim": int(starts), "steps_write_shadow": write, "hit": hit, "numerator": n,
+                "denominator": denominator, "found_slope": e,
+            }
+        )  # fmt: skip
+        expected.append(shaded)
+        if starts:
+            shaded = 0
+        elif write and hit:
+            between = Fraction(n, denominator) < Fraction(1, e)
+            kinds.add((between, n * e - denominator if abs(n * e - denominator) < 2 else None))
+            shaded |= int(between)
+    outputs = leaf.run_both(stimulus, settled=1)
+    for cycle, wanted in enumerate(expected):
+        if wanted is not None:
+            assert outputs[cycle]["shaded"] == wanted, cycle
+    assert {(True, -1), (False, 0), (False, 1)} <= kinds
