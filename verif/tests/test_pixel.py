@@ -22,7 +22,7 @@ PAGE = (ROOT / "docs" / "pixel.md").read_text()
 
 SCENES = (
     "boxes", "corners", "degenerate", "facing_mirrors", "chessboard", "kaleidoscope", "matte_gallery", "pool",
-    "rooftops", "stage",
+    "rooftops", "stage", "blinds", "shadow_hall",
 )  # fmt: skip
 TURNED = {"yaw": 31.0, "pitch": -17.5, "roll": 9.0}
 
@@ -116,6 +116,20 @@ def colour_at(rectangle: Rectangle, point: list[Fraction]) -> tuple[int, int, in
     return rectangle.colour2 if odd else rectangle.colour
 
 
+def is_lit(scene: Scene, point: list[Fraction], slope: list[int], axis: int) -> bool:
+    light = scene.light.position
+    if not (light[axis] - point[axis]) * slope[axis] < 0:
+        return False
+    for rectangle in scene.rect:
+        b = axis_of(rectangle)
+        if point[b] == light[b]:
+            continue
+        t = (rectangle.corners[0][b] - light[b]) / (point[b] - light[b])
+        if 0 < t < 1 and within(rectangle, [a + t * (p - a) for a, p in zip(light, point, strict=True)], b):
+            return False
+    return True
+
+
 def pixel(engine: Exact | Seed, scene: Scene, slope: list[int]) -> list[int]:
     origin, slope, met = [Fraction(part) for part in scene.camera.position], list(slope), None
     colours, mirrors = [], []
@@ -128,9 +142,11 @@ def pixel(engine: Exact | Seed, scene: Scene, slope: list[int]) -> list[int]:
             break
         winner = next(index for index, hit in enumerate(hits) if hit and hit[0] == nearest)
         rectangle, (_, point) = scene.rect[winner], hits[winner]
-        colours.append(colour_at(rectangle, point))
+        axis, colour = axis_of(rectangle), colour_at(rectangle, point)
+        if scene.light and not is_lit(scene, point, slope, axis):
+            colour = tuple(scene.light.quarters * channel // 4 for channel in colour)
+        colours.append(colour)
         mirrors.append(int(4 * rectangle.mirror))
-        axis = axis_of(rectangle)
         met = {axis} | (met or set() if point == origin else set())
         origin = point
         slope[axis] = -slope[axis]
@@ -159,10 +175,11 @@ def test_the_table_of_screens(name):
     ids=lambda options: "-".join(map(str, options.values())),
 )
 def test_the_page_says_what_golden_draws(name, options):
-    """Every seventh pixel of the tiny screen, with 0 to 4 reflections; the exact engine's camera is turned too."""
+    """Every seventh pixel of the tiny screen, with 0 to 4 reflections; the exact engine's camera is turned too, and has
+    the light."""
     scene = load_scene(packaged_scenes()[name]).model_copy(update={"reflections": SCENES.index(name) % 5})
-    if options["engine"] == "seed" and scene.camera.turned:
-        scene = scene.model_copy(update={"camera": Camera(position=scene.camera.position)})
+    if options["engine"] == "seed":
+        scene = scene.model_copy(update={"camera": Camera(position=scene.camera.position), "light": None})
     cameras = [scene.camera]
     if options["engine"] == "exact":
         cameras.append(Camera(position=scene.camera.position, **TURNED))
@@ -177,7 +194,9 @@ def test_the_page_says_what_golden_draws(name, options):
         places = [divmod(number, screen["columns"]) for number in chosen]
         mine = [slope_of(screen, camera, *place) for place in places]
         table = Rectangles.of_scene(shown)
-        trace = model_of(config).trace(table, camera.position, shown.background, slopes[chosen], shown.reflections)
+        trace = model_of(config).trace(
+            table, camera.position, shown.background, slopes[chosen], shown.reflections, light=shown.light
+        )
         drawn = [pixel(engine, shown, slope) for slope in mine]
         assert drawn == trace.colours.tolist(), name
 
