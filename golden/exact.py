@@ -61,23 +61,17 @@ def _nearest(
 ) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
     """The nearest rectangle from the last mirror on and its t, as numerator and denominator; arrays are ([3,] rays)."""
     mirror_n, mirror_e = mirror_t
-    sign, magnitude = np.sign(slope), np.abs(slope)
     winner = np.full(eye.shape[1], -1, dtype=np.int64)
     # 1 / 0 lies beyond every t.
     best_n, best_e = np.ones_like(winner), np.zeros_like(winner)
     for index in np.flatnonzero(rectangles.visible):
         axis = rectangles.axes[index]
-        low, high = rectangles.low[index], rectangles.high[index]
-        n = (low[axis] - eye[axis]) * sign[axis]
-        e = magnitude[axis]
+        n, e, within = rectangles.crossed(index, eye, slope)
         # False for n <= 0, as the first "mirror" stands at t = 0 / 1 and all its axes are met; and for a ray that has
         # ended, as its last one stands at 1 / 0.
         along, along_mirror = n * mirror_e, mirror_n * e
         ahead = (e > 0) & ((along > along_mirror) | ((along == along_mirror) & ~met[axis]))
-        hit = ahead.copy()
-        for u in OTHER_AXES[axis]:
-            way = slope[u] * n
-            hit &= ((low[u] - eye[u]) * e <= way) & (way <= (high[u] - eye[u]) * e)
+        hit = ahead & within
         # Strict, so the lower index wins a tie.
         nearer = hit & (n * best_e < best_n * e)
         winner[nearer] = index
@@ -87,6 +81,6 @@ def _nearest(
             ways = slope * n
             bounce.note(
                 index, numerators=n, denominators=e, scales=e, quotients=ways[list(OTHER_AXES[axis])].T,
-                valid=ahead[:, None], points=(eye * e + ways).T, depths=magnitude[0] * n, hits=hit,
+                valid=ahead[:, None], points=(eye * e + ways).T, depths=np.abs(slope[0]) * n, hits=hit,
             )  # fmt: skip
     return winner, (best_n, best_e)

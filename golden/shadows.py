@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.golden.world import Rectangles
 from raycaster.scene import Light
 
 
@@ -61,17 +61,9 @@ def shade(
     facing = (winners >= 0) & (np.sign(beyond) == -np.sign(slopes[rays, axes])) & (beyond != 0)
     shades = np.full(len(winners), -1, dtype=np.int64)
     asked = np.flatnonzero(facing)
-    e = denominators[asked]
-    slope = points[asked].T - e * position[:, None]
-    sign, magnitude = np.sign(slope), np.abs(slope)
+    e, eye = denominators[asked], position[:, None]
+    slope = points[asked].T - e * eye
     for index in np.flatnonzero(rectangles.visible)[::-1]:
-        axis = rectangles.axes[index]
-        low, high = rectangles.low[index], rectangles.high[index]
-        n = (low[axis] - position[axis]) * sign[axis]
-        between = (n > 0) & (n * e < magnitude[axis])
-        for u in OTHER_AXES[axis]:
-            way = slope[u] * n
-            between &= (low[u] - position[u]) * magnitude[axis] <= way
-            between &= way <= (high[u] - position[u]) * magnitude[axis]
-        shades[asked[between]] = index
+        n, magnitude, within = rectangles.crossed(index, eye, slope)
+        shades[asked[within & (n > 0) & (n * e < magnitude)]] = index
     return Shading(facing, shades)

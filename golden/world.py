@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import SupportsIndex
 
 import numpy as np
 
@@ -80,3 +81,26 @@ class Rectangles:
     def visible(self) -> np.ndarray:
         """bool (rectangles,): enabled and with a plane; rays pass through the others."""
         return self.enabled & (self.axes >= 0)
+
+    def crossed(
+        self, index: SupportsIndex, eye: np.ndarray, slope: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Find where straight lines cross a rectangle's plane, by cross-multiplication: nothing is divided.
+
+        Args:
+            index: the rectangle, which has a plane.
+            eye: int64 (3, lines), or (3, 1) for one eye: a point of each line.
+            slope: int64 (3, lines).
+
+        Returns:
+            n and e, int64 (lines,): a line crosses the plane at t = n / e; e is 0 or more, and 0 for a parallel line.
+            bool (lines,): the crossing is within the bounds. Don't care where e is 0.
+        """
+        axis, low, high = self.axes[index], self.low[index], self.high[index]
+        n = (low[axis] - eye[axis]) * np.sign(slope[axis])
+        e = np.abs(slope[axis])
+        within = np.ones(n.shape, dtype=bool)
+        for u in OTHER_AXES[axis]:
+            way = slope[u] * n
+            within &= ((low[u] - eye[u]) * e <= way) & (way <= (high[u] - eye[u]) * e)
+        return n, e, within
