@@ -135,11 +135,7 @@ def fix(path: Path, options: Mapping[str, Any], scope: str) -> Fixing:
     rectangles = tuple(fixed_rectangle(scene.rect[index]) for index in tested)
     fixed = FixedScene(rectangles, (primary or 1, *reflected), shadows=tuple(shadows))
     if scope == "all":
-        background = int.from_bytes(bytes(scene.background), "big")
-        light = scene.light and (*scene.light.position, scene.light.quarters)
-        fixed = replace(
-            fixed, camera=scene.camera.position, background=background, basis=scene.camera.basis, light=light
-        )
+        fixed = with_camera(fixed, scene)
     kept = {name: getattr(general.configuration, name) for name in ("engine", "rows", *LOOKS)}
     given = {**options, **kept, "reflections": reflections, "fixed": fixed}
     design = Design(path, scene, configure(**given), reflections)
@@ -184,6 +180,13 @@ def fixed_rectangle(rectangle: Rectangle) -> FixedRectangle:
         axis, rectangle.corners[0][axis], u_low, u_high, v_low, v_high, colour,
         mirror=rectangle.quarters, kind=rectangle.kind, cell=rectangle.cell_code, colour_2=colour_2,
     )  # fmt: skip
+
+
+def with_camera(fixed: FixedScene, scene: Scene) -> FixedScene:
+    """Build in the scene's camera, background and light, beside its rectangles."""
+    background = int.from_bytes(bytes(scene.background), "big")
+    light = scene.light and (*scene.light.position, scene.light.quarters)
+    return replace(fixed, camera=scene.camera.position, background=background, basis=scene.camera.basis, light=light)
 
 
 def general_design(path: Path, options: Mapping[str, Any]) -> Design:

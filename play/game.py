@@ -91,10 +91,7 @@ def look_around(design: Design, frames: int, build: Path, output: Path, console:
             live = frame.scene
             if live is None:
                 raise SimulationError("the design shows no scene")
-            perfect = ExactModel().picture(
-                config.screen_geometry, live.rectangles, live.camera, live.background, live.reflections,
-                basis=live.basis, light=live.light,
-            )  # fmt: skip
+            perfect = live.picture(ExactModel(), config.screen_geometry)
             wrong += count_wrong(frame.picture, shown(perfect, config))
             Image.fromarray(frame.picture).save(output / f"frame_{number:04}.png")
     return wrong

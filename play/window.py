@@ -82,10 +82,7 @@ class Judge:
             self.all_wrong += self.wrong
 
     def _count(self, picture: np.ndarray, scene: LiveScene) -> int:
-        perfect = ExactModel().picture(
-            self._config.screen_geometry, scene.rectangles, scene.camera, scene.background, scene.reflections,
-            basis=scene.basis, light=scene.light,
-        )  # fmt: skip
+        perfect = scene.picture(ExactModel(), self._config.screen_geometry)
         return count_wrong(picture, shown(perfect, self._config))
 
 

@@ -9,7 +9,7 @@ import inspect
 import json
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any, ClassVar, Protocol
@@ -24,7 +24,7 @@ from raycaster.convert.take_home import TOP
 from raycaster.design import design_for
 from raycaster.digests import sources_digest, tools_digest
 from raycaster.errors import UserError
-from raycaster.fit.fixing import fix, fixed_rectangle
+from raycaster.fit.fixing import fix, fixed_rectangle, with_camera
 from raycaster.fixed import FixedScene
 from raycaster.fpga.cells import FAMILIES, measure
 from raycaster.golden.catalogue import catalogue
@@ -296,10 +296,7 @@ def leaving_out(view: View, engine: str) -> Iterator[tuple[str, Configuration]]:
     passes = (every,) * (scene.reflections + 1)
     fixed = FixedScene(tuple(map(fixed_rectangle, scene.rect)), passes, shadows=passes if own.light else ())
     yield "registers of rectangles", configure(**options, fixed=fixed)
-    background = int.from_bytes(bytes(scene.background), "big")
-    light = scene.light and (*scene.light.position, scene.light.quarters)
-    fixed = replace(fixed, camera=scene.camera.position, background=background, basis=scene.camera.basis, light=light)
-    yield "registers of the camera", configure(**options, fixed=fixed)
+    yield "registers of the camera", configure(**options, fixed=with_camera(fixed, scene))
     yield (
         "hidden rectangles",
         fix(Path(view.source), {"engine": engine, "allow_underrun": True}, "all").design.configuration,

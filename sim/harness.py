@@ -58,12 +58,7 @@ class Viewer:
         """The same of what the registers say, or nothing, for the time before the first StartScreen."""
         if scene is None or not scene.run:
             return self.shown(np.zeros((self.screen.rows, self.screen.columns, 3), dtype=np.uint8))
-        return self.shown(
-            self.model.picture(
-                self.screen, scene.rectangles, scene.camera, scene.background, scene.reflections, basis=scene.basis,
-                light=scene.light,
-            )
-        )  # fmt: skip
+        return self.shown(scene.picture(self.model, self.screen))
 
     def expect_picture(self, seen: np.ndarray, expected: np.ndarray, what: str) -> None:
         """Check every visible pixel.

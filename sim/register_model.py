@@ -9,9 +9,11 @@ from typing import NamedTuple
 import numpy as np
 
 from raycaster.configuration import Configuration
+from raycaster.golden.model import Model
 from raycaster.golden.world import Rectangles
 from raycaster.registers import Register, register_map
 from raycaster.scene import UNTURNED, Basis, Light
+from raycaster.screens import Screen
 
 AXES = "xyz"
 COLOURS = ("red", "green", "blue")
@@ -298,6 +300,12 @@ class LiveScene:
     basis: Basis
     rectangles: Rectangles
     light: Light | None = None
+
+    def picture(self, model: Model, screen: Screen) -> np.ndarray:
+        """Draw it with a golden model, as `Model.picture` does."""
+        return model.picture(
+            screen, self.rectangles, self.camera, self.background, self.reflections, basis=self.basis, light=self.light
+        )
 
 
 def read_live(config: Configuration, control: Word, background: Word, camera: CameraWords, table: Table) -> LiveScene:

@@ -9,6 +9,7 @@ import os
 import sys
 import tempfile
 import time
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
@@ -117,10 +118,12 @@ def _shared(scenes: Mapping[Path, Scene]) -> dict[Path, dict[str, Any]]:
     They are few of a kind. So those that the default engine can show share a design, and so do the others: otherwise
     most of the time would go into building.
     """
+    groups: dict[bool, dict[Path, Scene]] = defaultdict(dict)
+    for path, scene in scenes.items():
+        if scene.lacks(()):
+            groups[bool(scene.lacks(SEED.looks))][path] = scene
     found: dict[Path, dict[str, Any]] = {}
-    special = {path: scene for path, scene in scenes.items() if scene.lacks(())}
-    for shown in (True, False):
-        group = {path: scene for path, scene in special.items() if (not scene.lacks(SEED.looks)) == shown}
+    for group in groups.values():
         if len(group) > 1:
             needed = {look: True for scene in group.values() for look in scene.lacks(())}
             most = max(scene.reflections for scene in group.values())

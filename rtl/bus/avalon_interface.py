@@ -3,7 +3,7 @@
 
 from myhdl import Signal, always_comb, always_seq, block, instances
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import LOOKS, Configuration
 from raycaster.registers import register_map
 from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import CYCLE_BITS, RGB_BITS, WORD_BITS, bit, unsigned
@@ -24,10 +24,7 @@ def engine_word(config: Configuration) -> int:
         colour_bits=config.colour_bits,
         fixed=FIXED_CODES[config.fixed.scope] if config.fixed else 0,
         culling=int(config.culling),
-        turn=int(config.turn),
-        materials=int(config.materials),
-        patterns=int(config.patterns),
-        light=int(config.light),
+        **{look: int(getattr(config, look)) for look in LOOKS},
     )
 
 

@@ -75,8 +75,8 @@ def ray_sequencer(
     wanted = unsigned(config.rectangles)
     if config.fixed:
         first, *reflected = config.passes
-        masks = tuple(reflected + [0] * ((1 << REFLECTION_BITS) - len(reflected)))
-        shadow_masks = tuple([*config.shadows] + [0] * ((1 << REFLECTION_BITS) - len(config.shadows)))
+        unused = [0] * (1 << REFLECTION_BITS)
+        masks, shadow_masks = (tuple([*passes, *unused][: len(unused)]) for passes in (reflected, config.shadows))
         wanted_next = unsigned(config.rectangles)
 
     sequencer = rect_sequencer(
@@ -147,28 +147,24 @@ def ray_sequencer(
 
     # While a ray is traced, the next one is a reflection, which may hit any rectangle.
     if config.fixed:
-        if config.light:
-            after_this, from_light = unsigned(config.rectangles), unsigned(config.rectangles)
+        after_this = unsigned(config.rectangles) if config.light else wanted_next
 
-            @always_comb
-            def look_after():
-                after_this.next = masks[bounce]
+        @always_comb
+        def look_ahead():
+            after_this.next = masks[bounce]
+
+        if config.light:
+            from_light = unsigned(config.rectangles)
 
             @always_comb
             def look_from_light():
                 from_light.next = shadow_masks[bounce]
 
             @always_comb
-            def look_ahead():
+            def choose_next():
                 wanted_next.next = after_this
                 if shadow_pass.comes_next:
                     wanted_next.next = from_light
-
-        else:
-
-            @always_comb
-            def look_ahead():
-                wanted_next.next = masks[bounce]
 
         @always_comb
         def choose_wanted():

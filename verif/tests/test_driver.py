@@ -154,7 +154,7 @@ def test_the_programs_of_the_page(language, tmp_path):
     live = model.live
     assert live.run
     full, screen = model_of(configure(engine="exact")), configure(engine="exact").screen_geometry
-    shown = full.picture(screen, live.rectangles, live.camera, live.background, live.reflections, basis=live.basis)
+    shown = live.picture(full, screen)
     assert np.unique(shown.reshape(-1, 3), axis=0).shape[0] > 1
     np.testing.assert_array_equal(shown, full.render(load_scene(scene), screen, 1))
 

@@ -181,15 +181,7 @@ def live(config: Configuration, words: Iterable[tuple[int, int]]) -> LiveScene:
 
 def expected(config: Configuration, screen: Screen, scene: LiveScene) -> np.ndarray:
     """The picture at the pins, a pixel a ray."""
-    picture = model_of(config).picture(
-        screen,
-        scene.rectangles,
-        scene.camera,
-        scene.background,
-        scene.reflections,
-        basis=scene.basis,
-        light=scene.light,
-    )
+    picture = scene.picture(model_of(config), screen)
     doubling = config.screen_geometry.doubling
     return shown(picture, config)[::doubling, ::doubling]
 
