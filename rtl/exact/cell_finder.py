@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
 """In which cells of a pattern a hit lies, by the few bits of a quotient that decide it."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS
 from raycaster.engines.engine import SMALLEST_CELL_BITS
 from raycaster.rtl.common.widths import bit, signed, unsigned
 from raycaster.rtl.engine.divider_step import divider_step
+from raycaster.rtl.exact.hit_component import hit_component
 
 
 @block
@@ -41,11 +42,7 @@ def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, fo
     eye_q = signed(eye_bits)
     slope_q = unsigned(slope_bits)
     back_q = bit()
-    e = signed(slope_bits + 1)
-    position = signed(eye_bits + slope_bits + 1)
-    way_bits = max(eye_bits - 1 + slope_bits, point_bits)
-    way, turned_way = unsigned(way_bits), unsigned(way_bits)
-    from_eye, along, point = (unsigned(point_bits + 1) for _ in range(3))
+    point = unsigned(point_bits)
 
     remainder, remainder_1, remainder_2 = (unsigned(slope_bits) for _ in range(3))
     digits, digits_1, digits_2 = (unsigned(digit_count) for _ in range(3))
@@ -73,36 +70,15 @@ def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, fo
             slope_q.next = slope.dy
             back_q.next = signs.dy
 
-    @always_comb
-    def extend():
-        e.next = found_slope
-
-    @always_comb
-    def multiply():
-        position.next = eye_q * e
-        way.next = found_distance * slope_q
-
-    @always_comb
-    def turn_way():
-        turned_way.next = way
-        if back_q:
-            turned_way.next = ~way
-
-    # A bit below the units carries the one that a complement lacks.
-    @always_comb
-    def add_carry():
-        from_eye.next = concat(position[point_bits:], True)
-        along.next = concat(turned_way[point_bits:], back_q)
-
-    @always_comb
-    def add():
-        point.next = (from_eye + along) % (1 << (point_bits + 1))
+    whole = hit_component(
+        eye=eye_q, back=back_q, slope=slope_q, distance=found_distance, e=found_slope, component=point
+    )  # fmt: skip
 
     @always(clk.posedge)
     def divide():
         if steps.load_divider or steps.store_quotient:
-            remainder.next = point[point_bits + 1 : COORDINATE_BITS + 1]
-            digits.next = point[COORDINATE_BITS + 1 : SMALLEST_CELL_BITS + 1]
+            remainder.next = point[point_bits:COORDINATE_BITS]
+            digits.next = point[COORDINATE_BITS:SMALLEST_CELL_BITS]
         else:
             remainder.next = remainder_2
             digits.next = digits_2

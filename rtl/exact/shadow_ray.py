@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The ray from the light to the point that a ray hit."""
 
-from myhdl import always, always_comb, block, concat, instances
+from myhdl import always, always_comb, block, instances
 
-from raycaster.rtl.common.by_axis import along_a, by_axis
-from raycaster.rtl.common.widths import bit, signed, unsigned
+from raycaster.rtl.common.by_axis import by_axis
+from raycaster.rtl.common.widths import AXIS_BITS, bit, signed, unsigned
+from raycaster.rtl.exact.hit_component import hit_component
 
 
 @block
@@ -37,54 +38,44 @@ def shadow_ray(
     """
     eye_bits, slope_bits, light_bits = len(eye.x), len(found_slope), len(shadow_slope.dx)
     sum_bits = light_bits + 1
-    way_bits = max(eye_bits - 1 + slope_bits, sum_bits)
 
-    at_y, at_z, x_ends, y_ends, z_ends = (bit() for _ in range(5))
-    eye_q, light_q = signed(eye_bits), signed(eye_bits)
-    slope_q, back_q = unsigned(slope_bits), bit()
+    axis = unsigned(AXIS_BITS)
+    eye_q, light = signed(eye_bits), signed(eye_bits)
+    light_q, light_a = (unsigned(len(camera.light_x)) for _ in range(2))
+    slope_q, back_q, back_a = unsigned(slope_bits), bit(), bit()
     difference, difference_1 = signed(eye_bits + 1), signed(eye_bits + 1)
     slope_1, back_1 = unsigned(slope_bits), bit()
-    e = signed(slope_bits + 1)
-    position = signed(eye_bits + slope_bits + 2)
-    way, turned_way = unsigned(way_bits), unsigned(way_bits)
-    from_eye, along, aimed = (unsigned(sum_bits + 1) for _ in range(3))
-    sum_2, inverse, negated = (unsigned(sum_bits) for _ in range(3))
+    aimed, sum_2, inverse, negated = (unsigned(sum_bits) for _ in range(4))
     back_2 = bit()
     magnitude = unsigned(light_bits)
     dx, dy, dz = bit(), bit(), bit()
-    back_a = bit()
-    light_a = unsigned(len(camera.light_x))
 
     # The number at a name's end is that of the stage whose registers have it.
     @always_comb
     def see_axis():
-        at_y.next = steps.aim[0]
-        at_z.next = steps.aim[1]
-        x_ends.next = steps.aim[1]
-        y_ends.next = steps.aim[2]
-        z_ends.next = steps.aim[3]
+        axis.next = 0
+        if steps.aim[0]:
+            axis.next = 1
+        elif steps.aim[1]:
+            axis.next = 2
+
+    of_light, of_signs = (camera.light_x, camera.light_y, camera.light_z), (signs.dx, signs.dy, signs.dz)
+    choices = [
+        by_axis(one, *values, chosen, width=len(chosen))
+        for one, values, chosen in (
+            (axis, (eye.x, eye.y, eye.z), eye_q), (axis, of_light, light_q), (axis, of_signs, back_q),
+            (axis, (slope.dx, slope.dy, slope.dz), slope_q), (found_surface.axis, of_light, light_a),
+            (found_surface.axis, of_signs, back_a),
+        )
+    ]  # fmt: skip
 
     @always_comb
-    def choose_axis():
-        if at_y:
-            eye_q.next = eye.y
-            light_q.next = camera.light_y
-            slope_q.next = slope.dy
-            back_q.next = signs.dy
-        elif at_z:
-            eye_q.next = eye.z
-            light_q.next = camera.light_z
-            slope_q.next = slope.dz
-            back_q.next = signs.dz
-        else:
-            eye_q.next = eye.x
-            light_q.next = camera.light_x
-            slope_q.next = slope.dx
-            back_q.next = signs.dx
+    def extend():
+        light.next = light_q
 
     @always_comb
     def measure():
-        difference.next = eye_q - light_q
+        difference.next = eye_q - light
 
     @always(clk.posedge)
     def stage_1():
@@ -92,34 +83,13 @@ def shadow_ray(
         slope_1.next = slope_q
         back_1.next = back_q
 
-    @always_comb
-    def extend():
-        e.next = found_slope
-
-    @always_comb
-    def multiply():
-        position.next = difference_1 * e
-        way.next = found_distance * slope_1
-
-    @always_comb
-    def turn_way():
-        turned_way.next = way
-        if back_1:
-            turned_way.next = ~way
-
-    # A bit below the units carries the one that a complement lacks.
-    @always_comb
-    def add_carry():
-        from_eye.next = concat(position[sum_bits:], True)
-        along.next = concat(turned_way[sum_bits:], back_1)
-
-    @always_comb
-    def add():
-        aimed.next = (from_eye + along) % (1 << (sum_bits + 1))
+    component = hit_component(
+        eye=difference_1, back=back_1, slope=slope_1, distance=found_distance, e=found_slope, component=aimed
+    )  # fmt: skip
 
     @always(clk.posedge)
     def stage_2():
-        sum_2.next = aimed[sum_bits + 1 : 1]
+        sum_2.next = aimed
 
     @always_comb
     def invert():
@@ -138,22 +108,15 @@ def shadow_ray(
 
     @always(clk.posedge)
     def keep():
-        if x_ends:
+        if steps.aim[1]:
             shadow_slope.dx.next = magnitude
             dx.next = back_2
-        if y_ends:
+        if steps.aim[2]:
             shadow_slope.dy.next = magnitude
             dy.next = back_2
-        if z_ends:
+        if steps.aim[3]:
             shadow_slope.dz.next = magnitude
             dz.next = back_2
-
-    choices = [
-        by_axis(found_surface.axis, *along_a(*values), chosen, width=len(chosen))
-        for values, chosen in (
-            ((camera.light_x, camera.light_y, camera.light_z), light_a), ((signs.dx, signs.dy, signs.dz), back_a),
-        )
-    ]  # fmt: skip
 
     @always(clk.posedge)
     def judge_side():

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""A component of the hit point, times the slope towards its plane: a whole number."""
+
+from myhdl import always_comb, block, concat, instances
+
+from raycaster.rtl.common.widths import signed, unsigned
+
+
+@block
+def hit_component(eye, back, slope, distance, e, component):
+    """Compute a component of N = E e + D n, which is e times the hit point P = E + D n / e. Combinational.
+
+    Args:
+        eye: signed; the component of E, from the origin or from any other point that N is wanted from.
+        back: flag; the component of D is negative.
+        slope: unsigned; the magnitude of the component of D.
+        distance: unsigned; n, from the eye to the plane that is hit.
+        e: unsigned, as wide as slope; the magnitude of the slope on that plane's axis.
+        component: unsigned output; the lowest bits of N in two's complement, no more than E e has.
+    """
+    slope_bits, bits = len(e), len(component)
+
+    divisor = signed(slope_bits + 1)
+    position = signed(len(eye) + slope_bits + 1)
+    way_bits = max(len(distance) + slope_bits, bits)
+    way, turned_way = unsigned(way_bits), unsigned(way_bits)
+    from_eye, along, total = (unsigned(bits + 1) for _ in range(3))
+
+    @always_comb
+    def extend():
+        divisor.next = e
+
+    @always_comb
+    def multiply():
+        position.next = eye * divisor
+        way.next = distance * slope
+
+    @always_comb
+    def turn_way():
+        turned_way.next = way
+        if back:
+            turned_way.next = ~way
+
+    # A bit below the units carries the one that a complement lacks.
+    @always_comb
+    def add_carry():
+        from_eye.next = concat(position[bits:], True)
+        along.next = concat(turned_way[bits:], back)
+
+    @always_comb
+    def add():
+        total.next = (from_eye + along) % (1 << (bits + 1))
+
+    @always_comb
+    def leave_carry():
+        component.next = total[bits + 1 : 1]
+
+    return instances()
