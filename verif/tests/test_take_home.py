@@ -20,7 +20,7 @@ from raycaster.buses import BRIDGED
 from raycaster.configuration import Configuration, configure
 from raycaster.convert.take_home import FILE_LIST, PREFIX, TOP, WAIVERS
 from raycaster.convert.write import write_verilog
-from raycaster.engines import ENGINES
+from raycaster.engines import ENGINES, EXACT
 from raycaster.fit.fixing import fix
 from raycaster.fpga import verilog
 from raycaster.sim.simulator import find_tool
@@ -37,6 +37,8 @@ CONFIGURATIONS = [
     configure(units=2, rectangles=2, reflections=0, materials=True, culling=False, allow_underrun=True),
     configure(units=2, rectangles=3, reflections=2, materials=True, patterns=True, allow_underrun=True),
     configure(engine="exact", screen="tiny", reflections=2, turn=True, materials=True, patterns=True),
+    configure(engine="exact", screen="tiny", rectangles=2, light=True),
+    configure(engine="exact", screen="tiny", reflections=2, rectangles=2, **dict.fromkeys(EXACT.looks, True)),
     configure(engine="beam", rows=180),
     configure(engine="beam", screen="tiny", reflections=2, rectangles=3, scale=1),
     configure(engine="beam", reflections=0, rectangles=1, colour_bits=4),
