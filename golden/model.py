@@ -107,7 +107,7 @@ class Trace:
     """uint8 (rays, 3): the colour of what was hit, in the light or in the dark; the background for none."""
 
     shadings: tuple[Shading, ...]
-    """How the light meets the points; empty without a light."""
+    """The light at each hit point; empty without a light."""
 
     points: tuple[np.ndarray, ...]
     """int64 (rays, 3): where it hit, in world units times the denominator; of the seed engine's misses, where they

@@ -21,7 +21,7 @@ from raycaster.scene import Light
 
 @dataclass(frozen=True)
 class Shading:
-    """How a light meets the points that rays hit. Both are False and -1 for a ray that hit nothing."""
+    """The light at the points that rays hit. For a ray that hit nothing, facing is False and shades is -1."""
 
     facing: np.ndarray
     """bool (rays,): the light is strictly on the side of the rectangle that the ray came from."""
@@ -44,7 +44,7 @@ def shade(
     denominators: np.ndarray,
     slopes: np.ndarray,
 ) -> Shading:
-    """Find what the light reaches.
+    """Find which hit points the light reaches.
 
     Args:
         rectangles: the table.

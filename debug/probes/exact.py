@@ -11,6 +11,7 @@ from raycaster.debug.probes.units import SIGNS, UnitProbes, slope_signs, surface
 from raycaster.debug.waves import Samples
 from raycaster.output import printable
 from raycaster.rtl.common.records import Signs, mirror_of, surface_of
+from raycaster.scene import Light
 
 SURFACE = ("axis", "position", "colour")
 
@@ -36,9 +37,14 @@ def fraction(ray: Ray, place: Place) -> Sequence[Value] | None:
     return ray.of_rectangle(place, "numerators"), ray.of_rectangle(place, "denominators")
 
 
+def light_on(ray: Ray, place: Place) -> Light | None:
+    """Return the scene's light, or None where the ray has hit nothing that it could reach."""
+    return ray.scene.light if ray.alive(place.bounce) and ray.winner(place.bounce) >= 0 else None
+
+
 def lighting(ray: Ray, place: Place) -> Sequence[Value] | None:
-    """Whether the light reaches what the ray has hit, and otherwise why not; nothing for a miss."""
-    if ray.winner(place.bounce) < 0 or not ray.scene.light or not ray.alive(place.bounce):
+    """Say whether the light reaches the hit point and, if not, why; None for a miss."""
+    if light_on(ray, place) is None:
         return None
     shading = ray.golden.shadings[place.bounce]
     if not shading.facing[0]:
@@ -48,18 +54,19 @@ def lighting(ray: Ray, place: Place) -> Sequence[Value] | None:
 
 
 def hardware_lighting(ray: Ray, place: Place, facing: int, shaded: int) -> Sequence[Value]:
-    """The same of the unit, which knows no rectangle: golden's words where they mean the same."""
+    """Say what the unit found, in golden's words where they agree: the unit does not know which rectangle shades."""
     found = "on the dark side" if not facing else "shaded" if shaded else "lit"
     golden = lighting(ray, place)
     return golden if golden and str(golden[0]).startswith(found) else (found,)
 
 
 def shadow_slope(ray: Ray, place: Place) -> Sequence[Value] | None:
-    """Magnitudes of the slope of the ray from the light; nothing for a miss."""
-    if ray.winner(place.bounce) < 0 or not ray.scene.light or not ray.alive(place.bounce):
+    """Magnitudes of the shadow ray's slope; None for a miss."""
+    light = light_on(ray, place)
+    if light is None:
         return None
     point, e = ray.golden.points[place.bounce][0], int(ray.golden.denominators[place.bounce][0])
-    return [abs(int(n) - e * light) for n, light in zip(point, ray.scene.light.position, strict=True)]
+    return [abs(int(n) - e * part) for n, part in zip(point, light.position, strict=True)]
 
 
 class ExactProbes(UnitProbes):
@@ -106,7 +113,7 @@ class ExactProbes(UnitProbes):
         ]  # fmt: skip
 
     def _light_probes(self) -> list[Probe]:
-        """The ray from the light, and what became of it."""
+        """Probes of the shadow ray and of its result."""
         shadow = f"{self.unit}.shadow_ray_i"
         facing, shaded = f"{shadow}.facing", f"{self.unit}.shadow_register_i.shaded"
         return [

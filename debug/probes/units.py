@@ -193,7 +193,7 @@ class UnitProbes(Description):
         events = [Event("start", start, Place(0)), Event("ray", start, Place(0))]
         bounce, at_hand = 0, None
         tried: list[tuple[int, int]] = []
-        # What is tested from the light is no rectangle of the ray's.
+        # Tests of the shadow ray are not tests of the unit's own ray.
         from_light = values.get(f"{self.control}.steps_from_light", [0] * len(samples.times_ns))
         for cycle in range(start, len(samples.times_ns)):
             ends = values[f"{step}_add_colour"][cycle] == 1

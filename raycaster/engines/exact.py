@@ -19,7 +19,7 @@ PATTERN_LATENCY = 6
 
 
 AIM_CYCLES = 4
-"""Cycles from the end of a pass to the start of the pass from the light: the shadow ray, a component per cycle."""
+"""Cycles from the end of a pass to the start of the shadow pass: the shadow ray, a component per cycle."""
 
 
 class Exact(LineBufferedEngine):
@@ -52,6 +52,6 @@ class Exact(LineBufferedEngine):
         return WRITE_AT + 2 + (PATTERN_LATENCY if config.patterns else 0)
 
     def group_cycles(self, config: Configuration) -> int:
-        """A pass from the light follows each pass."""
+        """A shadow pass follows each pass."""
         shadows = sum(mask.bit_count() for mask in config.shadows)
         return super().group_cycles(config) + shadows + len(config.shadows) * (AIM_CYCLES + self.pass_latency(config))

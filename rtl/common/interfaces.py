@@ -173,11 +173,11 @@ class Direction(Interface):
 
 
 class Steps(Interface):
-    """The control signals that operate all ray units in step. All but initial_ray are strobes.
+    """The control signals that operate all ray units in step: strobes, unless they say otherwise.
 
     Attributes:
         screen_to_ray: load the primary ray.
-        initial_ray: trace the primary ray, not a reflected one.
+        initial_ray: level; trace the primary ray, not a reflected one.
         find_intersection: start on the rectangle at hand.
         load_divider: load the divider, where there is one, with what was started.
         store_quotient: store what the divider found.
@@ -186,9 +186,9 @@ class Steps(Interface):
         reset_colour: begin a new pixel.
         add_colour: add the colour that the ray saw.
         store_ray: keep the reflected ray.
-        aim: a bit for each cycle in which a shadow ray is computed, one after the other.
-        from_light: the ray that is tested is the shadow ray.
-        write_shadow: keep the shadow at hand.
+        aim: one-hot, the cycle in which shadow rays are computed; 0 otherwise.
+        from_light: level; shadow rays are tested instead of the units' own rays.
+        write_shadow: keep whether the rectangle under test shades the point.
     """
 
     def __init__(self):
@@ -200,14 +200,14 @@ class Steps(Interface):
 
 
 class ShadowPass(Interface):
-    """How the pass from the light follows each pass of the rays; see `shadow_sequencer`.
+    """Signals between the ray sequencer and the `shadow_sequencer`, which adds a shadow pass after each pass of rays.
 
     Attributes:
-        traced: all rectangles that the present pass wants have been tested.
-        awaited: the rays wait until the light has been looked for.
-        comes_next: the pass from the light is the next one.
-        start: strobe; the next cycle begins the pass from the light.
-        stop: strobe; whatever is still to be tested decides nothing.
+        traced: the present pass has tested all its rectangles.
+        awaited: the rays wait for the end of the shadow pass.
+        comes_next: the next pass is a shadow pass.
+        start: strobe; a shadow pass begins in the next cycle.
+        stop: strobe; the remaining tests of the shadow pass cannot change a pixel.
     """
 
     def __init__(self):
@@ -221,8 +221,8 @@ class RayFate(Interface):
         towards: it has hit mirrors at every bounce before, and runs towards the plane that find_intersection started on
             in the cycle before; where a control ends rectangles early.
         alive: what it has hit since reset_z_buf, and at every bounce before, are mirrors.
-        in_question: the light may reach the point that it hit: it is on the right side, and nothing that was tested
-            since steps.aim is between them.
+        in_question: the light may reach the hit point: it is on the side that the ray came from, and nothing tested
+            since steps.aim is in between.
     """
 
     def __init__(self):

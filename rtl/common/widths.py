@@ -27,7 +27,7 @@ MIRROR_BITS = 3
 """How much a rectangle mirrors, in quarters: 0..4."""
 
 SHADE_BITS = 2
-"""How much of a colour is left in the dark, in quarters: 0..3."""
+"""Width of a shade: the quarters of a colour that are left in the dark, 0..3."""
 
 REFLECTION_BITS = 3
 """How many reflections a scene asks for."""

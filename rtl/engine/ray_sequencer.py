@@ -29,7 +29,7 @@ def ray_sequencer(
     rectangle, BLEND follows, and then the next ray. In a fixed scene each ray has the rectangles that it may hit there,
     the primary ray and each reflection its own, instead of the usable ones.
 
-    With `config.light` a pass of the same kind follows each pass, before BLEND, where shadow_pass asks for it.
+    With `config.light` a shadow pass may follow each pass, before BLEND: shadow_pass starts it.
 
     Culling leaves out rectangles and rays that cannot change a pixel, and is correct where its signals are valid in
     time:

@@ -17,8 +17,8 @@ from raycaster.rtl.exact.shadow_sequencer import shadow_sequencer
 def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offered, done, config: Configuration):
     """Operate all units of the exact engine in step: a ray_sequencer that takes a rectangle per clock.
 
-    steps.write_z_buf follows steps.find_intersection by three cycles, the latency of rect_tester; in a pass from the
-    light steps.write_shadow does, with `config.light`. With
+    steps.write_z_buf follows steps.find_intersection by three cycles, the latency of rect_tester; in a shadow
+    pass steps.write_shadow does, with `config.light`. With
     `config.patterns` a pass goes on until the cells of the nearest hit are known: steps.load_divider is in the cycle
     after a steps.write_z_buf, and steps.store_quotient three cycles after the last steps.load_divider.
 
@@ -43,7 +43,7 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
     first, second = surface_of(config), surface_of(config)
     shadow_pass = ShadowPass()
     if not config.fixed:
-        shadow_pass.comes_next = unconnected(1)  # a pass from the light wants the same rectangles as a reflection
+        shadow_pass.comes_next = unconnected(1)  # a shadow pass wants the same rectangles as a reflection
     from_light = steps.from_light if config.light else tied(0, 1)
 
     sequencer = ray_sequencer(

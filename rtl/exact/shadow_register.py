@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whether anything is between the light and the point that a ray hit."""
+"""The shadow of a hit point: a flag that a rectangle is between it and the light."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -9,7 +9,7 @@ from raycaster.rtl.common.widths import bit, unsigned
 
 @block
 def shadow_register(clk, steps, hit, numerator, denominator, found_slope, shaded):
-    """Keep whether the shadow ray hits anything strictly between the light and the hit point P.
+    """Set a flag when the shadow ray hits anything strictly between the light and the hit point P.
 
     The ray meets P at t = 1 / e, and a rectangle at t = numerator / denominator: before P where numerator * e <
     denominator.
@@ -27,7 +27,7 @@ def shadow_register(clk, steps, hit, numerator, denominator, found_slope, shaded
     reached = unsigned(COORDINATE_BITS + len(found_slope))
     in_between = bit()
 
-    # A distance from the light to a plane, both of which are in the world.
+    # The light and the plane are both in the world, so the distance between them fits a coordinate's width.
     @always_comb
     def narrow():
         distance.next = numerator[COORDINATE_BITS:]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""When the light is looked for."""
+"""The order of shadow passes."""
 
 from myhdl import Signal, always, always_comb, block, enum, instances
 
@@ -11,11 +11,11 @@ ShadowState = enum("WAIT", "AIM", "TEST")
 
 @block
 def shadow_sequencer(clk, reset_ray_caster, shadow_pass, any_in_question, aim, from_light):
-    """Follow each pass of the rays with a pass from the light, where any unit has a point that it may reach.
+    """Add a shadow pass after each pass of the rays, if the light may reach the hit point of any unit.
 
     When shadow_pass.traced says that a pass is over, the units compute their shadow rays, in the cycles of aim. The
-    pass from the light begins in the cycle after the last of these. It ends with its last rectangle, or as soon as no
-    point is in question any more: each then has its shadow, and shadow_pass.stop drops the tests under way.
+    shadow pass begins in the cycle after the last of these. It ends with its last rectangle, or as soon as no point is
+    in question any more; shadow_pass.stop then drops the tests under way.
 
     Args:
         clk: the clock.

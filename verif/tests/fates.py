@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from raycaster.configuration import Configuration
+from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.rtl.common.interfaces import GroupFate, Picture, Rects, ShadowPass, Steps
@@ -41,6 +41,26 @@ def control_leaf(function: Callable, config: Configuration, directory: Path) -> 
         },
         directory,
     )
+
+
+def usable_masks(random: np.random.Generator, count: int, some: int) -> list[int]:
+    """Which of so many rectangles are usable, as masks: all, none, each alone, each with the first, and some others."""
+    every = (1 << count) - 1
+    masks = [every, 0, 1, 1 << (count - 1), every]
+    masks += [int(random.integers(1 << count)) & int(random.integers(1 << count)) for _ in range(some)]
+    return masks + [1 << index for index in range(count)] + [1 | 1 << index for index in range(count)]
+
+
+def flat_rectangles(random: np.random.Generator, count: int) -> Rectangles:
+    """Rectangles anywhere, all enabled, each with a plane on a random axis."""
+    table = Rectangles(
+        random.integers(WORLD_SIZE, size=(count, 2, 3)),
+        random.integers(256, size=(count, 3)).astype(np.uint8),
+        np.ones(count, dtype=bool),
+    )
+    flat = random.integers(3, size=count)
+    table.corners[np.arange(count), 1, flat] = table.corners[np.arange(count), 0, flat]
+    return table
 
 
 def random_fate(random: np.random.Generator, usable: Sequence[int], reflections: int, number: int) -> dict[str, Any]:

@@ -3,14 +3,12 @@
 
 from itertools import pairwise
 
-import numpy as np
 import pytest
 from exact_vectors import exact_config
-from fates import control_leaf, group_fate_in, mask_of, random_fate
+from fates import control_leaf, flat_rectangles, group_fate_in, mask_of, random_fate, usable_masks
 
-from raycaster.configuration import WORLD_SIZE, Configuration, configure
+from raycaster.configuration import Configuration, configure
 from raycaster.golden.random_world import random_looks
-from raycaster.golden.world import Rectangles
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
 from raycaster.rtl.exact.exact_control import exact_control
 from raycaster.rtl.seed.ray_control import ray_control
@@ -42,17 +40,7 @@ def test_controls(function, config, tmp_path, random):
     write_at = 2 if config.engine == "exact" else slot_length(config) + 3
     leaf = control_leaf(function, config, tmp_path)
     count = config.rectangles
-    every = (1 << count) - 1
-    masks = [every, 0, 1, 1 << (count - 1), every]
-    masks += [int(random.integers(1 << count)) & int(random.integers(1 << count)) for _ in range(24)]
-    masks += [1 << index for index in range(count)] + [1 | 1 << index for index in range(count)]
-    table = Rectangles(
-        random.integers(WORLD_SIZE, size=(count, 2, 3)),
-        random.integers(256, size=(count, 3)).astype(np.uint8),
-        np.ones(count, dtype=bool),
-    )
-    flat = random.integers(3, size=count)
-    table.corners[np.arange(count), 1, flat] = table.corners[np.arange(count), 0, flat]
+    masks, table = usable_masks(random, count, 24), flat_rectangles(random, count)
     table = random_looks(random, table)
     quiet = {name: 0 for name in leaf.outputs if name.startswith("steps_") and name != "steps_initial_ray"}
     quiet["done"] = 0

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: MIT
 """The choice between a unit's own ray and its shadow ray."""
 
-from __future__ import annotations
-
 import pytest
+from vectors import ports
 
 from raycaster.configuration import configure
 from raycaster.rtl.common.interfaces import Eye, Slope
 from raycaster.rtl.common.records import Signs, camera_of, mirror_of
-from raycaster.rtl.common.widths import bit, exact_slope_bits, eye_bits, light_slope_bits
+from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, light_slope_bits
 from raycaster.rtl.exact.ray_switch import ray_switch
 from raycaster.verif.leaf import Leaf
 
@@ -19,20 +18,20 @@ def test_ray_switch(reflections, tmp_path, random):
     config = configure(engine="exact", reflections=reflections, light=True, allow_underrun=True)
     leaf = Leaf(
         ray_switch,
-        lambda: {
-            "from_light": bit(),
-            "camera": camera_of(config),
-            "eye": Eye(eye_bits(config)),
-            "signs": Signs(),
-            "slope": Slope(exact_slope_bits(config)),
-            "mirror": mirror_of(config),
-            "shadow_signs": Signs(),
-            "shadow_slope": Slope(light_slope_bits(config)),
-            "tested_eye": Eye(eye_bits(config)),
-            "tested_signs": Signs(),
-            "tested_slope": Slope(light_slope_bits(config)),
-            "tested_mirror": mirror_of(config),
-        },
+        lambda: ports(
+            "from_light",
+            camera=camera_of(config),
+            eye=Eye(eye_bits(config)),
+            signs=Signs(),
+            slope=Slope(exact_slope_bits(config)),
+            mirror=mirror_of(config),
+            shadow_signs=Signs(),
+            shadow_slope=Slope(light_slope_bits(config)),
+            tested_eye=Eye(eye_bits(config)),
+            tested_signs=Signs(),
+            tested_slope=Slope(light_slope_bits(config)),
+            tested_mirror=mirror_of(config),
+        ),
         tmp_path,
     )
     stimulus = [

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Colours in the light and in the dark."""
 
-from __future__ import annotations
+from vectors import ports
 
 from raycaster.rtl.common.records import Colour
-from raycaster.rtl.common.widths import RGB_BITS, SHADE_BITS, bit, unsigned
+from raycaster.rtl.common.widths import RGB_BITS, SHADE_BITS, unsigned
 from raycaster.rtl.exact.shade_colour import shade_colour
 from raycaster.verif.leaf import Leaf
 
@@ -13,7 +13,7 @@ def test_shade_colour(tmp_path):
     """Each value of a channel, with every shade; the three channels have different ones."""
     leaf = Leaf(
         shade_colour,
-        lambda: {"colour": Colour(), "dark": bit(), "shade": unsigned(SHADE_BITS), "shaded": unsigned(RGB_BITS)},
+        lambda: ports("dark", colour=Colour(), shade=unsigned(SHADE_BITS), shaded=unsigned(RGB_BITS)),
         tmp_path,
     )
     stimulus, expected = [], []

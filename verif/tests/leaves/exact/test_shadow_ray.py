@@ -1,20 +1,18 @@
 # SPDX-License-Identifier: MIT
 """The ray from the light, against the image contract's formulas."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
+from vectors import LAST, ports
 
 from raycaster.configuration import WORLD_SIZE, configure
 from raycaster.golden.random_world import EXTREMES
 from raycaster.rtl.common.interfaces import Eye, Slope, Steps
 from raycaster.rtl.common.records import Signs, camera_of, surface_of
-from raycaster.rtl.common.widths import bit, exact_slope_bits, eye_bits, light_slope_bits, unsigned
+from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, light_slope_bits, unsigned
 from raycaster.rtl.exact.shadow_ray import shadow_ray
 from raycaster.verif.leaf import Leaf
 
-LAST = WORLD_SIZE - 1
 CASES = 200
 
 
@@ -26,20 +24,19 @@ def test_shadow_ray(reflections, turn, tmp_path, random):
     slope_bits, eyes = exact_slope_bits(config), eye_bits(config)
     leaf = Leaf(
         shadow_ray,
-        lambda: {
-            "clk": bit(),
-            "steps": Steps(),
-            "camera": camera_of(config),
-            "eye": Eye(eyes),
-            "signs": Signs(),
-            "slope": Slope(slope_bits),
-            "found_surface": surface_of(config),
-            "found_distance": unsigned(eyes - 1),
-            "found_slope": unsigned(slope_bits),
-            "shadow_signs": Signs(),
-            "shadow_slope": Slope(light_slope_bits(config)),
-            "facing": bit(),
-        },
+        lambda: ports(
+            "clk facing",
+            steps=Steps(),
+            camera=camera_of(config),
+            eye=Eye(eyes),
+            signs=Signs(),
+            slope=Slope(slope_bits),
+            found_surface=surface_of(config),
+            found_distance=unsigned(eyes - 1),
+            found_slope=unsigned(slope_bits),
+            shadow_signs=Signs(),
+            shadow_slope=Slope(light_slope_bits(config)),
+        ),
         tmp_path,
     )
     far, steepest = LAST * (reflections + 1), (1 << slope_bits) - 1

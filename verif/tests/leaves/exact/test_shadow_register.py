@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Whether anything is between the light and a point, against fractions."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np
 import pytest
+from vectors import ports
 
 from raycaster.configuration import WORLD_SIZE, configure
 from raycaster.rtl.common.interfaces import Steps
-from raycaster.rtl.common.widths import bit, exact_slope_bits, eye_bits, light_slope_bits, unsigned
+from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, light_slope_bits, unsigned
 from raycaster.rtl.exact.shadow_register import shadow_register
 from raycaster.verif.leaf import Leaf
 
@@ -23,15 +22,13 @@ def test_shadow_register(turn, tmp_path, random):
     config = configure(engine="exact", turn=turn, light=True)
     leaf = Leaf(
         shadow_register,
-        lambda: {
-            "clk": bit(),
-            "steps": Steps(),
-            "hit": bit(),
-            "numerator": unsigned(eye_bits(config) - 1),
-            "denominator": unsigned(light_slope_bits(config)),
-            "found_slope": unsigned(exact_slope_bits(config)),
-            "shaded": bit(),
-        },
+        lambda: ports(
+            "clk hit shaded",
+            steps=Steps(),
+            numerator=unsigned(eye_bits(config) - 1),
+            denominator=unsigned(light_slope_bits(config)),
+            found_slope=unsigned(exact_slope_bits(config)),
+        ),
         tmp_path,
     )
     steepest, most = (1 << exact_slope_bits(config)) - 1, (1 << light_slope_bits(config)) - 1

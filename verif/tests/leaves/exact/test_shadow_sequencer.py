@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """When the light is looked for, against the order that the contract states."""
 
-from __future__ import annotations
+from vectors import ports
 
 from raycaster.rtl.common.interfaces import ShadowPass
-from raycaster.rtl.common.widths import bit, unsigned
+from raycaster.rtl.common.widths import unsigned
 from raycaster.rtl.exact.shadow_sequencer import shadow_sequencer
 from raycaster.verif.leaf import Leaf
 
@@ -16,10 +16,7 @@ def test_shadow_sequencer(tmp_path, random):
     """Passes of any length with any outcome: nothing in question, decided on the way, or to the last rectangle."""
     leaf = Leaf(
         shadow_sequencer,
-        lambda: {
-            "clk": bit(), "reset_ray_caster": bit(), "shadow_pass": ShadowPass(), "any_in_question": bit(),
-            "aim": unsigned(AIM), "from_light": bit(),
-        },
+        lambda: ports("clk reset_ray_caster any_in_question from_light", shadow_pass=ShadowPass(), aim=unsigned(AIM)),
         tmp_path,
     )  # fmt: skip
     names = (

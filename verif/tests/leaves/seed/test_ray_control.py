@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Leaf tests of `ray_control`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
 
-import numpy as np
 import pytest
 from engine_vectors import any_config
-from fates import control_leaf, group_fate_in, mask_of, random_fate
+from fates import control_leaf, flat_rectangles, group_fate_in, mask_of, random_fate, usable_masks
 from vectors import config_id
 
-from raycaster.configuration import WORLD_SIZE
-from raycaster.golden.world import Rectangles
 from raycaster.rtl.seed.ray_control import ray_control
 from raycaster.verif.leaf import sorted_rect, step_names, trace_cycles
 
@@ -31,17 +28,7 @@ controls = pytest.mark.parametrize(
 def test_ray_control(config, tmp_path, random):
     leaf = control_leaf(ray_control, config, tmp_path)
     count = config.rectangles
-    every = (1 << count) - 1
-    masks = [every, 0, 1, 1 << (count - 1), every]
-    masks += [int(random.integers(1 << count)) & int(random.integers(1 << count)) for _ in range(6)]
-    masks += [1 << index for index in range(count)] + [1 | 1 << index for index in range(count)]
-    table = Rectangles(
-        random.integers(WORLD_SIZE, size=(count, 2, 3)),
-        random.integers(256, size=(count, 3)).astype(np.uint8),
-        np.ones(count, dtype=bool),
-    )
-    flat = random.integers(3, size=count)
-    table.corners[np.arange(count), 1, flat] = table.corners[np.arange(count), 0, flat]
+    masks, table = usable_masks(random, count, 6), flat_rectangles(random, count)
 
     stimulus, expected = [], []
 
