@@ -171,7 +171,7 @@ FAULTS = {
     "slot-runs-on": (EARLY_OUT, "rect_sequencer", "if (start_ray || early_out || (slot == 3)) begin",
                      "if (start_ray || (slot == 3)) begin"),
     "ended-by-itself": (NO_EARLY_OUT, "ray_control", ".early_out(1'd0)", ".early_out(in_flight[1] && !fate_any_alive)"),
-    "verdict-too-early": (PIPELINED, "exact_control", "write_z_buf = in_flight[2];", "write_z_buf = in_flight[1];"),
+    "verdict-too-early": (PIPELINED, "exact_control", "write_z_buf = in_flight[2]", "write_z_buf = in_flight[1]"),
     "another-verdict": (PIPELINED, "exact_control", "offered_word <= second_word;",
                         "offered_word <= first_word;"),
     "blended-before-the-last": (PIPELINED, "ray_sequencer", "(in_flight[1:0] == 0)", "(in_flight[0] == 0)"),

@@ -80,7 +80,8 @@ def test_the_gates_show_the_same(tmp_path, output, capsys):
     kept = tmp_path / "kept.json"
     words = [str(SMALL_SCENE), "--output", str(tmp_path), "--keep", str(kept)]
     tiny_tapeout.main(words)
-    [row] = json.loads(kept.read_text())["figures"]["designs"]
+    figures = json.loads(kept.read_text())["figures"]
+    [row] = figures["designs"]
     netlist = tmp_path / "gates" / "project" / "netlist.v"
     assert len(re.findall(r"^  always @\(posedge clk\)", netlist.read_text(), re.M)) == row["registers"]
     # Two rows of 80 rays, of two bits a colour.
@@ -90,7 +91,9 @@ def test_the_gates_show_the_same(tmp_path, output, capsys):
     told = capsys.readouterr().out
     assert f"{row['gates']:,}" in told
     info = yaml.safe_load((tmp_path / "project" / "info.yaml").read_text())
-    assert info["project"]["tiles"] == shape_for(row["tiles"])
+    tiles = row["gates"] / figures["gates_a_tile"] + row["registers"] / figures["registers_a_tile"]
+    assert row["tiles"] == round(tiles, 1)
+    assert info["project"]["tiles"] == shape_for(tiles)
     show(project(), [netlist], output)
 
 
