@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# The way in from a clone: each target sets up the environment that it needs and calls the program `raycaster`, which
-# takes make's variables as they are: `make sim ENGINE=beam SCENE=boxes` is `raycaster sim ENGINE=beam SCENE=boxes`.
+# The entry point from a clone. Each target sets up the environment it needs and calls the program `raycaster` with
+# make's variables unchanged: `make sim ENGINE=beam SCENE=boxes` runs `raycaster sim ENGINE=beam SCENE=boxes`.
 
 PYTHON3 ?= python3
 VENV := .venv
@@ -8,8 +8,8 @@ PYTHON := $(VENV)/bin/python
 COMMANDS := sim scenes options play game web wave trace verilog fit area quartus bitstream tinytapeout registers report docs results commands
 CHECKS := soak prove mutate exhaustive coverage upsets dvi verify-all
 comma := ,
-# Variables of the command line go to the program as they were typed: `value` and `unexport` keep make from expanding
-# them, quotes keep the shell from it, and one shell for a recipe keeps a line break within them.
+# The program gets command-line variables exactly as typed: `value` and `unexport` keep make from expanding them, quotes
+# keep the shell from expanding them, and one shell per recipe preserves line breaks inside them.
 GIVEN := $(foreach name,$(.VARIABLES),$(if $(filter command,$(firstword $(origin $(name)))),$(name)))
 $(foreach name,$(GIVEN),$(eval unexport $(name)))
 quoted = '$(subst ','\'',$1)'
@@ -17,7 +17,7 @@ ARGUMENTS = $(foreach name,$(filter-out PYTHON3 PYTHON VENV,$(GIVEN)),$(call quo
 .ONESHELL:
 .SHELLFLAGS := -ec
 
-# Extras of pyproject.toml that a target needs beside the program itself.
+# Extras of pyproject.toml that a target needs in addition to the program itself.
 play game: EXTRAS := play
 web: EXTRAS := $(if $(filter-out 0,$(value MEASURE)),play$(comma)test,play)
 fit area tinytapeout: EXTRAS := fpga
@@ -50,10 +50,11 @@ lint test: $(VENV)/base
 	@$(if $(filter lint,$@),$(PYTHON) -m ruff check)
 	@$(if $(filter lint,$@),$(PYTHON) -m ruff format --check)
 	@$(if $(filter lint,$@),$(PYTHON) -m pyright)
+	@$(if $(filter lint,$@),$(PYTHON) -m raycaster.verif.text_lint)
 	@$(if $(filter lint,$@),$(PYTHON) -m raycaster.verif.rtl_lint,$(PYTHON) -m raycaster.sim.ensure_tools icarus chromium tcl)
 	@$(if $(filter test,$@),$(PYTHON) -m pytest -q -n 2 --dist worksteal -m 'not slow' --durations=10 verif/tests)
 
-# What is no target.
+# Unknown targets.
 .DEFAULT:
 	@$(PYTHON3) cli/commands.py $@
 
@@ -61,7 +62,7 @@ clean:
 	rm -rf build .pytest_cache .ruff_cache
 	find . -name __pycache__ -not -path './$(VENV)/*' -prune -exec rm -rf {} +
 
-# Where uv is, it installs. A stamp stands for each set of extras, so that nothing is asked of an index twice.
+# Install with uv if it is available. A stamp file per set of extras avoids asking the package index again.
 PIP = $(or $(addsuffix  pip install --python $(PYTHON),$(shell command -v uv)),$(PYTHON) -m pip install --use-pep517)
 ADD = $(PIP) -q -c constraints.txt -e
 install = $(if $1,if [ ! -e $(VENV)/$1 ]; then echo "installing $1 (usually a minute)"; $(ADD) '.[$1]'; touch $(VENV)/$1; fi)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""The program `raycaster`: one command, and what it can do as subcommands."""
+"""The program `raycaster` and its subcommands."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster`: a subcommand's name, and then its own options."""
+"""`raycaster`: dispatch to a subcommand, with its options."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a subcommand; returns its exit code."""
+    """Run a subcommand and return its exit code."""
     words = list(sys.argv[1:] if argv is None else argv)
     if not words or words[0] in ("-h", "--help"):
         print(overview())
@@ -41,7 +41,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def parser_of(command: Command) -> CommandParser:
-    """The parser of a command, whether its extra is installed or not: mocks stand in for packages that are missing."""
+    """Return the parser of a command, even if its extra is not installed: mocks replace missing packages."""
     while True:
         try:
             return importlib.import_module(command.module).command_parser()
@@ -52,7 +52,7 @@ def parser_of(command: Command) -> CommandParser:
 
 
 def loaded(command: Command) -> ModuleType:
-    """The module of a command.
+    """Import the module of a command.
 
     Raises:
         UserError: it needs an extra that is not installed.
@@ -66,10 +66,10 @@ def loaded(command: Command) -> ModuleType:
 
 
 def run() -> None:
-    """The program."""
-    # Loading the options takes a second, which the overview does not wait for.
+    """Run the program."""
+    # Loading the options takes a second, so the overview is printed without them.
     if len(sys.argv) == 1:
-        with suppress(OSError):  # then `run_command` says so
+        with suppress(OSError):  # `run_command` then reports it
             print(overview(), flush=True)
             return
     run_command = importlib.import_module("raycaster.options").run_command

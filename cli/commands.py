@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What `raycaster` can do, and where each command is.
+"""Commands of `raycaster` and their modules.
 
-Only the standard library is needed, so that `make help` can run this file before anything is installed.
+This file needs only the standard library, so that `make help` can run it before anything is installed.
 """
 
 from __future__ import annotations
@@ -14,9 +14,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Command:
-    """A subcommand: the module whose `main` it is, which is only loaded where it is called, and what it does.
+    """A subcommand.
 
-    `extra` is the extra of pyproject.toml that it needs.
+    Attributes:
+        module: the module with its `main`, imported only when the command is called.
+        purpose: its description in the overview.
+        extra: the extra of pyproject.toml that it needs.
     """
 
     module: str
@@ -30,7 +33,7 @@ COMMANDS: Mapping[str, Command] = {
     "options": Command("raycaster.cli.design_options", "list the options of a design, such as --engine"),
     "play": Command("raycaster.play.window", "play the game, or walk through a scene, in a window", "play"),
     "game": Command("raycaster.play.game", "run a recorded game and check every frame", "play"),
-    "web": Command("raycaster.web.site", "write a page in which the hardware runs", "play"),
+    "web": Command("raycaster.web.site", "write a page that runs the hardware in the browser", "play"),
     "trace": Command("raycaster.debug.trace", "follow one pixel through the hardware"),
     "wave": Command("raycaster.debug.wave", "write the waveform of some rows"),
     "verilog": Command("raycaster.fpga.verilog", "write the hardware as Verilog"),
@@ -42,29 +45,29 @@ COMMANDS: Mapping[str, Command] = {
     "registers": Command("raycaster.register_views", "write the register map as a C header and a page"),
     "report": Command("raycaster.report.__main__", "compare error, run time and size of designs", "report"),
     "docs": Command("raycaster.docs.__main__", "build the manual", "docs"),
-    "results": Command("raycaster.docs.results", "measure the engines, and write the tables of the pages", "docs"),
-    "commands": Command("raycaster.docs.commands", "run every command that the manual names"),
-    "completion": Command("raycaster.cli.completion", "print the completions for bash, zsh or tcsh"),
-    "verify all": Command("raycaster.verif.everything", "run all tests, those included that take long", "test"),
+    "results": Command("raycaster.docs.results", "measure the engines and write the manual's tables", "docs"),
+    "commands": Command("raycaster.docs.commands", "run every command in the manual"),
+    "completion": Command("raycaster.cli.completion", "print shell completions for bash, zsh or tcsh"),
+    "verify all": Command("raycaster.verif.everything", "run all tests, including the slow ones", "test"),
     "verify soak": Command("raycaster.verif.soak.soak", "compare random scenes at full size"),
     "verify prove": Command("raycaster.verif.formal.prove", "prove properties of the Verilog", "formal"),
-    "verify mutate": Command("raycaster.verif.mutation.mutate", "plant faults and see whether tests notice", "formal"),
+    "verify mutate": Command("raycaster.verif.mutation.mutate", "plant faults that the tests must notice", "formal"),
     "verify exhaustive": Command("raycaster.verif.exhaustive.run", "check the arithmetic with every operand"),
     "verify coverage": Command("raycaster.verif.coverage.measure", "measure code and functional coverage", "coverage"),
-    "verify upsets": Command("raycaster.verif.upsets.upsets", "disturb a running design and see it come back"),
+    "verify upsets": Command("raycaster.verif.upsets.upsets", "disturb a running design and check that it recovers"),
     "verify dvi": Command("raycaster.verif.dvi.watch", "decode and compare a board's video output"),
 }
 
 
 NOT_OF_MAKE = ("completion",)
-"""Commands that are no target of make: it completes words by itself."""
+"""Commands that are not make targets: shells complete make's targets already."""
 
 
 def overview(*, from_make: bool = False) -> str:
-    """All commands, a line each, on one screen; those of `verify` share one.
+    """Return an overview of all commands, one per line; the `verify` commands share a line.
 
     Args:
-        from_make: those that make takes, and in its form.
+        from_make: list make's targets, in make's notation.
     """
     checks = [name.removeprefix("verify ") for name in COMMANDS if name.startswith("verify ")]
     others = [name for name in COMMANDS if not name.startswith("verify ") and not (from_make and name in NOT_OF_MAKE)]
@@ -73,7 +76,7 @@ def overview(*, from_make: bool = False) -> str:
         head = "make sim SCENE=mirror_room ENGINE=beam PYTHON3=python3.12"
         lines += [
             (", ".join("verify-all" if check == "all" else check for check in checks), ""),
-            ("test, lint, clean", "run most tests; check the sources; remove what was made"),
+            ("test, lint, clean", "run most tests; check the sources; remove generated files"),
         ]
     else:
         head = "raycaster sim mirror_room      raycaster COMMAND --help explains a command"
@@ -82,21 +85,21 @@ def overview(*, from_make: bool = False) -> str:
 
 
 def verify_overview() -> str:
-    """The commands of `verify`."""
+    """Return an overview of the `verify` commands."""
     lines = [f"  {name:<18} {each.purpose}" for name, each in COMMANDS.items() if name.startswith("verify ")]
     return "\n".join(["raycaster verify soak --seeds 10", "", *lines])
 
 
 OF_MAKE_ALONE = ("help", "test", "lint", "clean", "flash")
-"""Targets of make that are no commands of the program."""
+"""Make targets that are not commands of the program."""
 
 
 def unknown_command(asked: str, *, from_make: bool = False) -> str:
-    """The complaint about a command that there is not, with the one that was probably meant.
+    """Return the error message for an unknown command, with the most similar known one.
 
     Args:
-        asked: its name.
-        from_make: whether it was given to make, which calls a check by its last word.
+        asked: the unknown name.
+        from_make: it was given to make, which names a check by its last word.
     """
     names = {word: name for name in COMMANDS for word in (name, name.removeprefix("verify "))}
     if from_make:

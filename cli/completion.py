@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster completion`: what a shell needs to complete commands, scenes and options."""
+"""`raycaster completion`: print a script with which a shell completes commands, scenes and options."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from raycaster.scene import packaged_scenes
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Return the command's parser."""
     parser = CommandParser("completion", __doc__, "bash > ~/.local/share/bash-completion/completions/raycaster")
-    parser.add_argument("shell", choices=shtab.SUPPORTED_SHELLS, help="%(choices)s")
+    parser.add_argument("shell", choices=shtab.SUPPORTED_SHELLS, help="shell: %(choices)s")
     return parser
 
 
 def whole_parser() -> argparse.ArgumentParser:
-    """One parser of all commands."""
+    """Return a single parser for all commands."""
     whole = argparse.ArgumentParser("raycaster")
     places = {"": whole.add_subparsers()}
-    verify = places[""].add_parser("verify", help="the checks that take long")
+    verify = places[""].add_parser("verify", help="run a long check")
     places["verify"] = verify.add_subparsers()
     for name, command in COMMANDS.items():
         place, _, last = name.rpartition(" ")
@@ -38,7 +38,7 @@ def whole_parser() -> argparse.ArgumentParser:
 
 
 def _completed(parser: CommandParser) -> CommandParser:
-    """The parser with what its arguments may be, as far as that is known."""
+    """Add the known values of each argument to a parser, and return it."""
     for action in parser._actions:
         if action.dest == "scene":
             action.choices = list(packaged_scenes())
@@ -50,6 +50,6 @@ def _completed(parser: CommandParser) -> CommandParser:
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+    """Run the command."""
     arguments = command_parser().parse_args(argv)
     print(shtab.complete(whole_parser(), arguments.shell))

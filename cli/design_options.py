@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster options`: the options of a design, which most commands take."""
+"""`raycaster options`: list the options of a design, which most commands take."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from raycaster.output import Console
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Return the command's parser."""
     return CommandParser("options", __doc__, "")
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+    """Run the command."""
     command_parser().parse_args(argv)
-    table = Table("option", "what it is", "default", box=SIMPLE_HEAD, pad_edge=False)
+    table = Table("option", "meaning", "default", box=SIMPLE_HEAD, pad_edge=False)
     for name in OPTIONS:
         table.add_row("--" + name.replace("_", "-"), OPTIONS[name].description, shown_default(OPTIONS[name]))
     Console().print(table)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster scenes`: the packaged scenes."""
+"""`raycaster scenes`: list the packaged scenes."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from raycaster.scene import load_scene, packaged_scenes
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Return the command's parser."""
     return CommandParser("scenes", __doc__, "")
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+    """Run the command."""
     command_parser().parse_args(argv)
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for heading in ("scene", "title", "rows", "reflections", "rectangles"):

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""From MyHDL to Verilog: one file a module, and what goes with them into other people's flows."""
+"""Convert MyHDL to Verilog, one file per module, with the files that other people's flows need."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Elaborating a MyHDL design, that is making its blocks: one at a time, and quickly."""
+"""Elaborate MyHDL designs, that is, make their blocks: one design at a time, and quickly."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ from myhdl._block import _Block
 from myhdl._simulator import _signals
 
 _ELABORATING = threading.RLock()
-"""MyHDL elaborates, simulates and converts through globals, so one design at a time, whatever else runs."""
+"""Lock for a single design at a time, as MyHDL elaborates, simulates and converts through globals."""
 
 
 @contextmanager
 def elaboration() -> Iterator[None]:
-    """Elaborate within this; MyHDL forgets the signals afterwards, so what is simulated must be within, too.
+    """Make a context to elaborate in, and to simulate in, as MyHDL forgets the signals afterwards.
 
-    MyHDL asks for the stack at each instance and process, of which it only wants a few frames and their functions'
-    names. Python's own answer opens files, and goes through all modules for each frame that has no file: 64 units take
-    twice as long with it, and six times as long under pytest. It also reads each process's source anew for each
-    instance, several times. And MyHDL keeps every signal ever made, and resets them all after each simulation, so that
-    each takes longer than the one before.
+    MyHDL asks for the stack at each instance and process, but only uses a few frames and their functions' names.
+    Python's own answer opens files, and goes through all modules for each frame that has no file: with it, 64 units
+    take twice as long, and six times as long under pytest. MyHDL also rereads each process's source for each instance,
+    several times. And it keeps every signal ever made, and resets them all after each simulation, so that each one
+    takes longer than the one before.
 
-    `inspect`'s functions are replaced for the whole process while this lasts: other threads then get frames without
-    their source. A second elaboration waits for the first one's end.
+    `inspect`'s functions are replaced for the whole process during this time: other threads then get frames without
+    their source. A second elaboration waits for the first to end.
     """
     with _ELABORATING, forgetting():
         before = [(module, name, getattr(module, name)) for module, name, _ in _REPLACED]
@@ -46,7 +46,7 @@ def elaboration() -> Iterator[None]:
 
 @contextmanager
 def forgetting() -> Iterator[None]:
-    """MyHDL forgets the signals that are made within this."""
+    """Make a context whose signals MyHDL forgets afterwards."""
     known = len(_signals)
     try:
         yield
@@ -55,12 +55,12 @@ def forgetting() -> Iterator[None]:
 
 
 def elaborated(block: Any, **arguments: Any) -> _Block:
-    """Elaborate a block, for whose function MyHDL has no type."""
+    """Elaborate a block; this gives the result a type, which MyHDL's function does not have."""
     return block(**arguments)
 
 
 _DEEPEST = 6
-"""Frames that MyHDL looks at, at most."""
+"""Most frames that MyHDL looks at."""
 
 
 def _callers(*_: Any) -> list[inspect.FrameInfo]:
@@ -73,12 +73,12 @@ def _callers(*_: Any) -> list[inspect.FrameInfo]:
 
 
 def _code_of(what: Any) -> CodeType | None:
-    """Return the code of a function or of a frame, which all that one `def` makes share."""
+    """Return the code of a function or of a frame, shared by all functions from one `def`."""
     return getattr(what, "__code__", None) or getattr(what, "f_code", None)
 
 
 def _once(function: Any) -> Any:
-    """Let one of `inspect`'s functions look at each code once."""
+    """Make one of `inspect`'s functions look at each code only once."""
 
     @cache
     def known(file: str, code: CodeType) -> Any:  # equal code may be in two files
@@ -100,4 +100,4 @@ _REPLACED = (
     (_UTIL, "_dedent", _dedent := cache(_UTIL._dedent)),
     (_WAITER, "_dedent", _dedent),
 )
-"""Functions that MyHDL calls, and what takes their place."""
+"""Functions that MyHDL calls, and their replacements."""

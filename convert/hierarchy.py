@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Verilog with its hierarchy kept: one module a file, where MyHDL by itself would flatten the design.
+"""Convert to Verilog and keep the hierarchy, one module per file; MyHDL by itself would flatten the design.
 
-Blocks are converted from the leaves up. Each converts as a top level of its own, and in its parent's conversion it is
-replaced by text that instantiates the module. Blocks of one function share one module where their arguments are alike:
-see `_kind`.
+Blocks are converted from the leaves up. Each is converted as a top level, and in its parent's conversion it is replaced
+by text that instantiates the module. Blocks of one function share a module if their arguments are alike: see `_kind`.
 
 This package, `raycaster.rtl.common.records`, `ties` and `widths`, and `raycaster.docs.blocks` import MyHDL's internals,
-which is why its version is pinned; the contract that they rely on is tested.
+so its version is pinned, and tests check the internals that they rely on.
 """
 
 from __future__ import annotations
@@ -37,12 +36,12 @@ from raycaster.rtl.common.ties import Tied, Unconnected
 
 
 class HierarchyError(UserError):
-    """A block that cannot be made a module of its own; the text says which and why."""
+    """A block that cannot be made a module; the text says which block and why."""
 
 
 @dataclass(frozen=True)
 class Port:
-    """A module's port, as its parent and other generators need to know it."""
+    """A module's port, for its parent and for other generators."""
 
     name: str
     width: int
@@ -52,9 +51,9 @@ class Port:
 
 @dataclass(frozen=True)
 class Module:
-    """A module. `instances` are the modules that it instantiates directly, by instance name.
+    """A Verilog module. `instances` are the modules that it instantiates directly, by instance name.
 
-    `parameters` are what an instance gives to it in Verilog; a converted module has none, as its values are built in.
+    `parameters` are those that an instance sets in Verilog; a converted module has none, as its values are built in.
     """
 
     name: str
@@ -65,11 +64,11 @@ class Module:
 
 
 Connection = _Signal | str | None
-"""A signal, a number as Verilog writes it, or nothing."""
+"""A signal, a number in Verilog notation, or nothing."""
 
 
 class _Instance(_UserVerilogCode):
-    """The text that stands for a block in its parent; names are only known when it is printed."""
+    """Text that replaces a block in its parent; names are only known when it is printed."""
 
     def __init__(self, module: Module, name: str, connections: dict[str, Connection]):
         super().__init__("", {}, module.name, None, None, None)
@@ -83,34 +82,34 @@ class _Instance(_UserVerilogCode):
 
 
 class _Loading(_UserVerilogCode):
-    """The text that stands for `load_words`; as with instances, the memory's name is known when it is printed."""
+    """Text that replaces `load_words`; as with instances, the memory's name is only known when it is printed."""
 
     def __init__(self, memory: _MemInfo, file: str):
         super().__init__("", {}, memory.name, None, None, None)
         self._memory, self._file = memory, file
 
     def __str__(self) -> str:
-        return f'\n// What the memory holds from the start.\ninitial $readmemh("{self._file}", {self._memory.name});\n'
+        return f'\n// Initial contents of the memory.\ninitial $readmemh("{self._file}", {self._memory.name});\n'
 
 
 def _printed(connection: Any) -> str:
-    """A signal by its name in the parent, a number as it is, and nothing for what is not connected."""
+    """Return a signal's name in the parent, a number as it is, or nothing if there is no connection."""
     if connection is None:
         return ""
     return connection if isinstance(connection, str) else connection._name
 
 
 class _RecordingConvertor(_ToVerilogConvertor):
-    """MyHDL's convertor, but that a module has only those of an interface's signals as ports that it uses.
+    """MyHDL's convertor, except that an interface's signals are ports only of modules that use them.
 
-    The same holds for a port that is tied or left open: so a design that lacks a feature lacks its ports.
-    Fields of records that are read become wires, and ties that are read become localparams.
+    Likewise for ports that are tied or left open, so a design without a feature does not have its ports. Fields of
+    records that are read become wires, and ties that are read become localparams.
     """
 
     __slots__ = ("constants", "fields", "ports")
 
     def __init__(self, fields: set[int]):
-        """Convert a block that reads these fields, by identity."""
+        """Convert a block that reads these fields, given by identity."""
         super().__init__()
         self.fields = fields
 
@@ -132,7 +131,7 @@ class _RecordingConvertor(_ToVerilogConvertor):
             for name in intf.argnames
         )
         self._declare_fields(siglist, intf)
-        siglist.sort(key=lambda signal: isinstance(signal, ConcatSignal))  # after what they are made of
+        siglist.sort(key=lambda signal: isinstance(signal, ConcatSignal))  # after their parts
         _check_names(intf, {id(intf.argdict[name]): name for name in intf.argnames}, memlist)
         _check_values(intf, siglist, memlist)
         self.constants = [s for s in siglist if isinstance(s, Tied) and s._used and s._name not in intf.argnames]
@@ -153,7 +152,7 @@ class _RecordingConvertor(_ToVerilogConvertor):
 
 
 def prefixed(name: str, prefix: str) -> str:
-    """Begin a module's name with a prefix, unless it does already, as `ray_caster` and `ray_caster_module` may."""
+    """Put a prefix before a module's name, unless it has it already, as `ray_caster` and `ray_caster_module` may."""
     return name if f"{name}_".startswith(prefix) else f"{prefix}{name}"
 
 
@@ -161,10 +160,10 @@ def convert_hierarchy(top: _Block, directory: Path, header: str, prefix: str = "
     """Write one Verilog file for each distinct block below and including `top`.
 
     Args:
-        top: an elaborated block; it cannot be simulated any more afterwards.
-        directory: where the files go; it exists.
-        header: comment lines for the head of each file; `{module}` stands for the module's name.
-        prefix: of the modules' names, and so of the files'; instances keep their names.
+        top: an elaborated block; it cannot be simulated afterwards.
+        directory: directory for the files, which exists.
+        header: comment lines for the head of each file; `{module}` is replaced by the module's name.
+        prefix: prefix of the names of modules and files; instances keep their names.
 
     Returns:
         The modules, each after those that it instantiates; `top` is the last.
@@ -172,8 +171,8 @@ def convert_hierarchy(top: _Block, directory: Path, header: str, prefix: str = "
     Raises:
         HierarchyError: a block cannot be a module: a signal has no driver or no reader; a process indexes a list of
             slices; a constant is below 0; two things in it would have one name in Verilog; an instance connects to a
-            signal that no variable holds; given Verilog drives what is no argument of its block, lacks its module, or
-            another block has its name.
+            signal that no variable holds; given Verilog lists an output that is not an argument of its block, lacks
+            its module, or has the name of another block.
     """
     with elaboration():
         return _Converter(directory, header, prefix).convert(top)
@@ -190,7 +189,7 @@ class _Converter:
         return [*self._modules.values()]
 
     def _module_of(self, block: _Block) -> Module:
-        """The block's module, which is written unless a block of the same kind has one."""
+        """Return the block's module, after writing it unless a block of the same kind has one."""
         if given := getattr(block.func, "given_verilog", None):
             return self._copy(given, block)
         kind = _kind(block)
@@ -207,11 +206,11 @@ class _Converter:
         return self._modules[name]
 
     def _copy(self, given: GivenVerilog, block: _Block) -> Module:
-        """The module of given Verilog: one file for all instances, each of which has its own parameters."""
+        """Return the module of given Verilog: one file for all instances, each with its own parameters."""
         given_name, ports = block.func.__name__, block_ports(block)
         name = prefixed(given_name, self._prefix)
         if strangers := given.outputs - set(ports):
-            raise HierarchyError(f"{name}: {', '.join(sorted(strangers))} is said to be an output, and is no argument")
+            raise HierarchyError(f"{name}: {', '.join(sorted(strangers))} is listed as an output, but no argument")
         shapes = tuple(
             Port(port, len(signal) or 1, (signal.min or 0) < 0, port in given.outputs) for port, signal in ports.items()
         )
@@ -230,7 +229,7 @@ class _Converter:
             path.write_text(text)
             self._kinds[name], self._modules[name] = block.func, Module(name, path, shapes, {}, parameters)
         if self._kinds[name] is not block.func:
-            raise HierarchyError(f"{name} is given Verilog, whose name stays, and another block's name; rename that")
+            raise HierarchyError(f"{name} is the name of given Verilog, which stays, and of another block; rename that")
         return replace(self._modules[name], ports=shapes, parameters=parameters)
 
     def _convert_block(self, block: _Block, name: str, ports: dict[str, _Signal]) -> Module:
@@ -243,7 +242,7 @@ class _Converter:
                 children.append(sub)
         modules = [self._module_of(child) for child in children]
         for signal in ports.values():
-            signal._read = False  # another block may have read it, or a slice of it; this one has not been looked at
+            signal._read = False  # set if another block reads it, or a slice of it
         instances = {}
         for child, module in zip(children, modules, strict=True):
             kind = child.func.__name__
@@ -297,7 +296,7 @@ class _Converter:
 
 
 class _Constant:
-    """An argument that is no signal. Equal ones have one type, value and text: True == 1, and -0.0 == 0.0."""
+    """An argument that is not a signal. Type, value and text must be equal, as True == 1 and -0.0 == 0.0 in Python."""
 
     __hash__: Any = None
 
@@ -308,12 +307,12 @@ class _Constant:
         if not isinstance(other, _Constant) or type(self._value) is not type(other._value):
             return False
         mine, its = self._value, other._value
-        # An array's == is no truth value, but an array.
+        # An array's == returns an array, not a bool.
         return mine is its or ((mine == its) is True and repr(mine) == repr(its))
 
 
 def _kind(block: _Block) -> tuple[Any, ...]:
-    """What determines a block's module: its function, its arguments, and which of its ports are the same signal.
+    """Return what determines a block's module: its function, its arguments, and which ports are the same signal.
 
     A signal counts by its shape, a record by its layout, an interface by its class and all its attributes, anything
     else by its value.
@@ -324,7 +323,7 @@ def _kind(block: _Block) -> tuple[Any, ...]:
 
 
 def _description(value: Any) -> Any:
-    """What `_kind` compares of an argument."""
+    """Return what `_kind` compares for an argument."""
     if isinstance(value, _Signal):
         return _description_of_signal(value)
     if isinstance(value, (list, tuple)):
@@ -338,12 +337,12 @@ def _description(value: Any) -> Any:
 
 
 def _description_of_signal(signal: _Signal) -> tuple[int, ...]:
-    """Its width and its range, which a bit does not state."""
+    """Return a signal's width and range; MyHDL has no range for a single bit."""
     return len(signal) or 1, signal.min or 0, signal.max or 1 << (len(signal) or 1)
 
 
 def _check_names(block: _Block, ports: Mapping[int, str], memories: list[Any]) -> None:
-    """Refuse two signals, memories or instances of one name in Verilog: MyHDL would print one for the other."""
+    """Refuse two signals, memories or instances with one name in Verilog: MyHDL would print one for the other."""
     owners: dict[str, int] = {memory.name: id(memory) for memory in memories if memory._used}
     owners |= {name: number for number, name in ports.items()}
     used: list[tuple[str, _Signal]] = []
@@ -355,14 +354,14 @@ def _check_names(block: _Block, ports: Mapping[int, str], memories: list[Any]) -
             used += [(port, one) for port, one in sub.verilog_code.connections.items() if isinstance(one, _Signal)]
     for variable, signal in used:
         if isinstance(signal, _SliceSignal) and not isinstance(signal, Field) and id(signal) not in ports:
-            continue  # it prints as bits of another
+            continue  # it is printed as bits of another signal
         name = ports.get(id(signal), signal._name)
         if name is None or owners.setdefault(name, id(signal)) != id(signal):
             raise HierarchyError(f"{block.name}: two things would be called {name or variable} in Verilog; rename one")
 
 
 def _check_values(block: _Block, signals: list[_Signal], memories: list[Any]) -> None:
-    """Refuse what MyHDL would print as other values: slices that processes index, and constants below 0."""
+    """Refuse values that MyHDL would print wrongly: slices that processes index, and constants below 0."""
     for memory in memories:
         if memory._used and any(isinstance(one, _ShadowSignal) for one in memory.mem):
             raise HierarchyError(
@@ -373,20 +372,20 @@ def _check_values(block: _Block, signals: list[_Signal], memories: list[Any]) ->
     for signal in constants:
         if signal._read and int(signal.val) < 0:
             raise HierarchyError(
-                f"{_place(block, signal._name)}: {signal._name} is {int(signal.val)}, and a constant below 0 is no "
-                "Verilog; use tied()"
+                f"{_place(block, signal._name)}: {signal._name} is {int(signal.val)}, and a constant below 0 is not "
+                "valid Verilog; use tied()"
             )
 
 
 def _place(block: _Block, name: str) -> str:
-    """File and line at which a block gives a name its value, or of the block where it does not."""
+    """Return the file and line at which a block assigns a name, or those of the block if it does not."""
     lines, first = inspect.getsourcelines(block.func)
     given = (number for number, line in enumerate(lines) if re.match(rf"\s*(?:\w+, *)*{re.escape(name)}\b.*=", line))
     return f"{inspect.getsourcefile(block.func)}:{first + next(given, 0)}"
 
 
 def _fields_read(block: _Block, children: list[Any]) -> dict[int, Field]:
-    """The fields of records that a block's processes and instances read, by identity."""
+    """Return the fields of records that a block's processes and instances read, by identity."""
     read = [sub.symdict[name] for sub in block.subs if isinstance(sub, _Instantiator) for name in sorted(sub.inputs)]
     read += [signal for child in children for signal in child.verilog_code.connections.values()]
     for signal in read:
@@ -398,13 +397,13 @@ def _fields_read(block: _Block, children: list[Any]) -> dict[int, Field]:
 
 
 def _shape(signal: _Signal) -> str:
-    """A declaration's sign and range."""
+    """Return a declaration's sign and range."""
     width = len(signal) or 1
     return f"{'signed ' if (signal.min or 0) < 0 else ''}{f'[{width - 1}:0] ' if width > 1 else ''}"
 
 
 def _number(signal: Any) -> str:
-    """What never changes, as Verilog writes it."""
+    """Return a constant in Verilog notation."""
     width, value = len(signal) or 1, int(signal.val)
     if (signal.min or 0) < 0:
         return f"{'-' if value < 0 else ''}{width}'sd{abs(value)}"
@@ -412,9 +411,9 @@ def _number(signal: Any) -> str:
 
 
 def _replace_by_instance(child: _Block, module: Module, name: str, parent_ports: dict[str, _Signal]) -> None:
-    """Make the parent's conversion print an instance where the child's processes would stand."""
+    """Make the parent's conversion print an instance instead of the child's processes."""
     signals = block_ports(child)
-    # What `rests_on` says of it.
+    # Set by `rests_on`.
     if (clock := getattr(child, "verilog_clk", None)) is not None:
         signals["clk"] = clock
     passed_on = {id(signal) for signal in parent_ports.values()}
@@ -437,11 +436,11 @@ def _replace_by_instance(child: _Block, module: Module, name: str, parent_ports:
         else:
             signal._markRead()
             if isinstance(signal, ConcatSignal):
-                signal._driven = "wire"  # by its parts, which the child's conversion has forgotten
+                signal._driven = "wire"  # driven by its parts, which the child's conversion has forgotten
 
 
 def _replace_by_loading(loading: _Block, parent: _Block) -> None:
-    """Make the parent's conversion print where its memory's words come from."""
+    """Make the parent's conversion print the file from which its memory is loaded."""
     words, file = loading.args
     [memory] = [known for known in parent.memdict.values() if known.mem is words]
     loading.verilog_code = _Loading(memory, file)
@@ -469,14 +468,14 @@ def _mark_processes(block: _Block) -> None:
 def _name_signals(
     block: _Block, children: list[Any], ports: Mapping[str, _Signal], fields: Mapping[int, Field]
 ) -> None:
-    """Give MyHDL a name for every signal that only instances use, and for records of which only fields are used."""
+    """Give MyHDL a name for every signal that only instances use, and for records used only by their fields."""
     named = {id(signal) for signal in block.sigdict.values()}
     arrived = {id(signal) for signal in ports.values()}
     scope: dict[str, Any] = {}
     for sub in block.subs:
         scope |= {name: value for name, value in sub.callinfo.symdict.items() if not name.startswith("_")}
     candidates = {id(signal): port for port, signal in ports.items()}
-    # A variable of its own names a signal better than its place in a list does.
+    # A signal's own variable is a better name than its place in a list.
     for name, value in sorted(scope.items(), key=lambda item: not isinstance(item[1], _Signal)):
         for path, signal in signals_in(name, value):
             candidates.setdefault(id(signal), path)
@@ -486,7 +485,7 @@ def _name_signals(
         if id(signal) in named:
             return
         if id(signal) not in candidates:
-            raise HierarchyError(f"{block.func.__name__}: what {where} has no name")
+            raise HierarchyError(f"{block.func.__name__}: the signal that {where} has no name")
         block.sigdict[candidates[id(signal)]] = signal
         named.add(id(signal))
 

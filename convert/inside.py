@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What an elaborated design is made of: its blocks, its processes, and the signals between them."""
+"""Structure of an elaborated design: its blocks, its processes, and the signals between them."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from raycaster.rtl.common.records import Record
 
 @dataclass(frozen=True)
 class Part:
-    """A block or a process inside a design, with the signals that it drives, and those that it reads of others.
+    """A block or a process inside a design, with the signals that it drives, and the others that it reads.
 
-    Its clock and its reset do not count. Signals are given by their identity; `Inside.names` has their names.
+    Its clock and its reset do not count. Signals are given by identity; `Inside.names` has their names.
     """
 
     name: str
     is_block: bool
     within: tuple[str, ...]
-    """The blocks that it stands in, below the one that was asked for, outermost first."""
+    """Enclosing blocks, below the one that was asked for, outermost first."""
 
     reads: frozenset[int]
     drives: frozenset[int]
@@ -36,7 +36,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Inside:
-    """What a block is made of. `names` has the variable that gives access to a signal, and the signal's whole name."""
+    """Structure of a block. `names` has the variable that gives access to a signal, and the signal's full name."""
 
     parts: tuple[Part, ...]
     names: dict[int, tuple[str, str]]
@@ -44,10 +44,10 @@ class Inside:
 
 
 def find_block(top: _Block, name: str) -> _Block:
-    """The first block of this name in an elaborated design.
+    """Return the first block of this name in an elaborated design.
 
     Raises:
-        KeyError: there is none.
+        KeyError: there is no such block.
     """
     waiting = [top]
     for candidate in waiting:
@@ -58,7 +58,7 @@ def find_block(top: _Block, name: str) -> _Block:
 
 
 def look_inside(top: _Block, opened: Collection[str]) -> Inside:
-    """What an elaborated block is made of; blocks whose names are in `opened` are replaced by their own parts."""
+    """Return an elaborated block's structure; blocks whose names are in `opened` are replaced by their own parts."""
     ports = block_ports(top)
     names: dict[int, tuple[str, str]] = {}
     parts: list[Part] = []
@@ -89,7 +89,7 @@ Signals = dict[int, _Signal]
 
 
 def _traffic(block: _Block) -> tuple[Signals, Signals]:
-    """All signals that are read, and driven, in a block and below."""
+    """Return all signals that are read, and all that are driven, in a block and below."""
     given = getattr(block.func, "given_verilog", None)
     reads: Signals = {}
     drives: Signals = {}
@@ -104,7 +104,7 @@ def _traffic(block: _Block) -> tuple[Signals, Signals]:
 
 
 def _traffic_of_process(process: _Instantiator) -> tuple[Signals, Signals]:
-    """The signals that a process reads, and drives; the edges and the reset that it waits for are not among them."""
+    """Return the signals that a process reads, and those that it drives, except the edges and reset it waits for."""
 
     def find(names: Collection[str]) -> Signals:
         return {id(signal): signal for name in names for _, signal in signals_in(name, process.symdict[name])}
@@ -113,7 +113,7 @@ def _traffic_of_process(process: _Instantiator) -> tuple[Signals, Signals]:
 
 
 def _whole(signals: Signals) -> frozenset[int]:
-    """The signals themselves where some of these are slices of them, or put together of them."""
+    """Replace slices and concatenations by their whole signals."""
     found: set[int] = set()
     waiting = list(signals.values())
     while waiting:
@@ -128,10 +128,10 @@ def _whole(signals: Signals) -> frozenset[int]:
 
 
 def state_names(top: _Block) -> dict[tuple[str, str], dict[int, str]]:
-    """The enumerated signals of an elaborated design.
+    """Find the enumerated signals of an elaborated design.
 
     Returns:
-        By module and signal, the name of each value as the Verilog encodes it.
+        By module and signal, the name of each value as encoded in Verilog.
     """
     found = {}
     for name, signal in top.sigdict.items():
@@ -146,26 +146,24 @@ def state_names(top: _Block) -> dict[tuple[str, str], dict[int, str]]:
 
 
 def port_signals(arguments: Mapping[str, Any]) -> dict[str, _Signal]:
-    """The signals among a block's arguments by Verilog port name: `name`, or `interface_attribute`."""
+    """Return the signals among a block's arguments by Verilog port name: `name`, or `interface_attribute`."""
     return {path: signal for name, value in arguments.items() for path, signal in signals_in(name, value)}
 
 
 def block_arguments(block: _Block) -> dict[str, Any]:
-    """A block's arguments by name, those that were left to their defaults too."""
+    """Return a block's arguments by name, including defaults."""
     bound = inspect.signature(block.func).bind(*block.args, **block.kwargs)
     bound.apply_defaults()
     return dict(bound.arguments)
 
 
 def block_ports(block: _Block) -> dict[str, _Signal]:
-    """A block's port signals by Verilog name."""
+    """Return a block's port signals by Verilog name."""
     return port_signals(block_arguments(block))
 
 
 def signals_in(name: str, value: Any) -> Iterator[tuple[str, _Signal]]:
-    """The signals that a variable gives access to: itself, a record's word, an interface's attributes, a list's
-    elements.
-    """
+    """Yield a variable's signals: itself, a record's word, an interface's attributes, or a list's elements."""
     if isinstance(value, _Signal):
         yield name, value
     elif isinstance(value, Record):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The ray tracer as an IP-XACT component, in the form of 2009 that Vivado reads: ports, bus, registers, files."""
+"""The ray tracer as an IP-XACT component, in the 2009 version that Vivado reads: ports, bus, registers, files."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from raycaster.convert.hierarchy import Port
 from raycaster.registers import address_bits, compile_registers
 
 IP_XACT = "component.xml"
-"""The file's name; Vivado's catalogue looks for it."""
+"""File name that Vivado's catalogue looks for."""
 
 SPIRIT = "http://www.spiritconsortium.org/XMLSchema/SPIRIT/1685-2009"
 VENDOR = "xilinx.com"
 
 BUS_TYPES = {"axi4lite": ("aximm", "s_axi_", {"PROTOCOL": "AXI4LITE"}), "apb": ("apb", "s_apb_", {})}
-"""Of the buses that Vivado has a definition of: its name there, the prefix of their ports, and parameters."""
+"""Buses that Vivado defines: Vivado's name, the prefix of the ports, and parameters."""
 
 WRITES = {"woclr": "oneToClear", "woset": "oneToSet"}
-"""What SystemRDL's `onwrite` is here."""
+"""IP-XACT's names for the values of SystemRDL's `onwrite`."""
 
 VIEWS = {"synthesis": ":vivado.xilinx.com:synthesis", "simulation": ":vivado.xilinx.com:simulation"}
 
@@ -31,7 +31,7 @@ register_namespace("spirit", SPIRIT)
 
 
 def _add(parent: Element, tag: str, text: object = None, /, **attributes: str) -> Element:
-    """An element below another, with its text."""
+    """Add an element below another, with its text."""
     qualified = {QName(SPIRIT, key).text: value for key, value in attributes.items()}
     child = SubElement(parent, QName(SPIRIT, tag).text, qualified)
     child.text = None if text is None else str(text)
@@ -39,12 +39,12 @@ def _add(parent: Element, tag: str, text: object = None, /, **attributes: str) -
 
 
 def component(config: Configuration, ports: Sequence[Port], sources: Sequence[str]) -> str:
-    """The component's description, for a bus of `BUS_TYPES`.
+    """Return the component's description, for a bus of `BUS_TYPES`.
 
     Args:
-        config: what was generated.
-        ports: of the top module.
-        sources: the files' names, each after those that it needs; the top is the last.
+        config: the generated design.
+        ports: ports of the top module.
+        sources: names of the files, each after those that it needs; the top is the last.
     """
     top = sources[-1].removesuffix(".v")
     root = Element(QName(SPIRIT, "component").text)
@@ -74,7 +74,7 @@ def component(config: Configuration, ports: Sequence[Port], sources: Sequence[st
 
 
 def _version() -> str:
-    """Vivado has versions of two numbers."""
+    """Return the version in Vivado's form of two numbers."""
     return ".".join(version("raycaster").split(".")[:2])
 
 
@@ -101,7 +101,7 @@ def _add_interface(
     role: str = "slave",
     registers: bool = False,
 ) -> None:
-    """One, of a library and a name of Vivado's; its ports by the bus's names for them."""
+    """Add an interface, given by Vivado's library and name, with its ports by the bus's names for them."""
     library, bus = kind
     interface = _add(parent, "busInterface")
     _add(interface, "name", name)
@@ -125,7 +125,7 @@ def _add_interface(
 
 
 def _add_registers(parent: Element, config: Configuration) -> None:
-    """Every register of the design's map; those of a table's entries have the entry's number in their names."""
+    """Add every register of the design's map; registers of table entries have the entry's number in their names."""
     memory = _add(parent, "memoryMap")
     _add(memory, "name", BUS_TYPES[config.bus][1].rstrip("_").upper())
     block = _add(memory, "addressBlock")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The ray tracer as a module of LiteX: `add_ray_caster` puts it into a SoC, of any processor and board."""
+"""The ray tracer as a LiteX module: `add_ray_caster` puts it into a SoC with any processor and board."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from raycaster.registers import address_bits, register_map
 from raycaster.rtl.common.interfaces import vga_of
 
 BUSES = ("wishbone", "axi4lite")
-"""What `Configuration.bus` may be here; LiteX adapts both to the SoC's own."""
+"""Supported values of `Configuration.bus`; LiteX adapts both to the SoC's bus."""
 
 CLOCK_TOLERANCE = 0.01
-"""Of the SoC's clock, as a part of the design's: a PLL seldom has exactly what a monitor's standard says."""
+"""Allowed relative difference between the SoC's clock and the design's clock; PLLs seldom meet a standard exactly."""
 
 
 class RayCaster(LiteXModule):
@@ -34,30 +34,30 @@ class RayCaster(LiteXModule):
     Args:
         platform: gets the Verilog files.
         config: the design.
-        directory: for these files; replaced as a whole.
+        directory: directory for these files; replaced as a whole.
 
     Attributes:
-        bus: the registers; an interface of LiteX, of Wishbone with word addresses or of AXI-Lite.
-        size: bytes that they take up, a power of two.
+        bus: LiteX interface of the registers, Wishbone with word addresses or AXI-Lite.
+        size: size of the registers in bytes, a power of two.
         ev: LiteX's event manager; its event `frame` is the level of the ray tracer's own interrupt.
-        vga: by the port's name without `vga_`, the signals for a DAC: `r`, `g`, `b`, `hs`, `vs`, `blank_n`, `sync_n`,
+        vga: signals for a DAC, by the port's name without `vga_`: `r`, `g`, `b`, `hs`, `vs`, `blank_n`, `sync_n`,
             `clk`.
-        source: the same as LiteX's video stream, for its PHYs and cores: a beat is a pixel, in the clock in which it is
-            valid. It cannot wait. Colours have 8 bits, and both syncs are active high.
+        source: the video as LiteX's stream, for its PHYs and cores: a beat is a pixel, in the clock in which it is
+            valid. There is no back-pressure. Colours have 8 bits, and both syncs are active high.
 
     Raises:
-        UserError: the design has another bus than LiteX does, or more than one pixel a clock.
+        UserError: the design's bus is not in `BUSES`, or it has more than one pixel per clock.
     """
 
     comb: Any
     specials: Any
-    """Migen makes both when they are asked for."""
+    """Migen creates both on first access."""
 
     def __init__(self, platform: GenericPlatform, config: Configuration, directory: Path):
         if config.bus not in BUSES:
             raise UserError(f"bus: LiteX takes {' or '.join(BUSES)}, not {config.bus}")
         if config.pixels != 1:
-            raise UserError(f"pixels: LiteX's video has 1 a clock, not {config.pixels}")
+            raise UserError(f"pixels: LiteX's video has 1 per clock, not {config.pixels}")
         for path in write_verilog(config, directory, PREFIX):
             platform.add_source(str(path), "verilog")
         words = address_bits(config.table)
@@ -78,7 +78,7 @@ class RayCaster(LiteXModule):
         self._stream(config)
 
     def _wishbone(self, words: int) -> dict[str, Signal]:
-        """The ports of that bus."""
+        """Return the ports of a Wishbone bus."""
         bus: Any = wishbone.Interface(data_width=32, address_width=32, addressing="word")
         self.bus = bus
         self.comb += bus.err.eq(0)
@@ -86,7 +86,7 @@ class RayCaster(LiteXModule):
         return inputs | {"i_wb_adr": bus.adr[:words], "o_wb_ack": bus.ack, "o_wb_dat_r": bus.dat_r}
 
     def _axi4lite(self, words: int) -> dict[str, Signal]:
-        """The same of the other."""
+        """Return the ports of an AXI4-Lite bus."""
         self.bus = bus = AXILiteInterface(data_width=32, address_width=32)
         fields = {"aw": ["addr"], "w": ["data", "strb"], "b": ["resp"], "ar": ["addr"], "r": ["data", "resp"]}
         ports = {}
@@ -113,24 +113,24 @@ class RayCaster(LiteXModule):
 def add_ray_caster(
     soc: SoC, config: Configuration, directory: Path, *, name: str = "ray_caster", origin: int | None = None
 ) -> RayCaster:
-    """Put a ray tracer into a SoC: its registers on the bus, its interrupt, its names among the SoC's.
+    """Put a ray tracer into a SoC, with its registers, its interrupt, and constants for software.
 
-    The SoC's headers and its `csr.json` then have the region, as `RAY_CASTER_BASE`, the interrupt's number, and as
-    constants where each register is in the region, such as `RAY_CASTER_CONTROL_OFFSET`.
+    The SoC's headers and its `csr.json` then have the region, as `RAY_CASTER_BASE`, the interrupt's number, and each
+    register's offset in the region, such as `RAY_CASTER_CONTROL_OFFSET`.
 
     Args:
-        soc: its clock is the design's.
+        soc: the SoC; it runs at the design's clock frequency.
         config: the design.
-        directory: for its Verilog; replaced as a whole.
-        name: of the module in the SoC.
-        origin: byte address of the registers, or None for where there is room for what a processor must not cache;
-            without a processor it is to be given.
+        directory: directory for its Verilog; replaced as a whole.
+        name: name of the module in the SoC.
+        origin: byte address of the registers, or None to let LiteX choose one that the processor does not cache;
+            required without a processor.
 
     Returns:
-        The module, `soc.<name>`, whose video is to be connected.
+        The module, `soc.<name>`; the caller connects its video.
 
     Raises:
-        UserError: the design is none for `RayCaster`, or the SoC's clock is another.
+        UserError: `RayCaster` refuses the design, or the SoC has another clock.
     """
     wanted = config.screen_geometry.clock_hz
     if abs(soc.sys_clk_freq - wanted) > CLOCK_TOLERANCE * wanted:

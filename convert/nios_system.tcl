@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-# The ray tracer with a Nios processor, memory, buttons and a serial port over JTAG, for Intel's Platform Designer, which
-# writes nios_system.qsys. Not run there so far; see docs/boards.md for what was.
+# The ray tracer with a Nios processor, memory, buttons and a serial port over JTAG, for Intel's Platform Designer,
+# which writes nios_system.qsys. Not yet run there; docs/boards.md says what was tested.
 #
-# From the directory that `make verilog` wrote, as the component raycaster_hw.tcl is looked for in it:
+# Run it in the directory that `make verilog` wrote, where Platform Designer looks for the component raycaster_hw.tcl:
 #   qsys-script --script=nios_system.tcl \
 #       --cmd="set processor nios2; set family {Cyclone IV E}; set device EP4CE115F29C7"
 #
-# processor: nios2 (Nios II/e, Quartus 14.0 to 23.1) or niosv (Nios V/m, from 23.1 on; it needs a licence, free of charge).
-# clock_hz, where it is set: of the system's clock, 50 MHz otherwise; the beam engine wants its pixel clock. Software finds
-# everything by the names in the system.h of its board support package, and the driver, whose raycaster_sw.tcl is in sw/.
+# processor: nios2 (Nios II/e, Quartus 14.0 to 23.1) or niosv (Nios V/m, from 23.1 on; it needs a free licence).
+# clock_hz: frequency of the system's clock, 50 MHz if not set; the beam engine needs its pixel clock. Software finds
+# all addresses by the names in the system.h of its board support package; the driver's raycaster_sw.tcl is in sw/.
 
 package require -exact qsys 14.0
 
@@ -21,7 +21,8 @@ foreach needed {processor family device} {
     }
 }
 
-# By processor: the component, its ends for instructions, data, debugging and interrupts, and what only data reaches.
+# For each processor: the component, its interfaces for instructions, data, debugging and interrupts, and agents that
+# only the data interface reaches.
 switch $processor {
     nios2 {
         set component altera_nios2_gen2
@@ -36,7 +37,7 @@ switch $processor {
         set debug_base 0x00030000
     }
     default {
-        error "processor: nios2 or niosv, not $processor"
+        error "processor: expected nios2 or niosv, got $processor"
     }
 }
 
@@ -82,7 +83,7 @@ connect cpu.$data raycaster.s0 0x00040000
 connect cpu.$data buttons.s1 0x00041000
 connect cpu.$data serial.avalon_jtag_slave 0x00041010
 
-# The frame's interrupt comes first.
+# The frame interrupt has number 0.
 set number 0
 foreach sender {raycaster.irq serial.irq} {
     add_connection cpu.$interrupts $sender
@@ -90,7 +91,7 @@ foreach sender {raycaster.irq serial.irq} {
     incr number
 }
 
-# Its program is in the memory, and so are its exceptions.
+# The program starts in the memory, and so do exception handlers.
 if {$processor eq "nios2"} {
     set_instance_parameter_value cpu impl Tiny
     set_instance_parameter_value cpu resetSlave memory.s1

@@ -13,16 +13,16 @@ from raycaster.convert.hierarchy import Port
 from raycaster.registers import compile_registers
 
 COMPONENT = "raycaster_hw.tcl"
-"""The file's name; Platform Designer looks for `*_hw.tcl`."""
+"""File name; Platform Designer looks for `*_hw.tcl`."""
 
 NIOS_SYSTEM = Path(__file__).with_name("nios_system.tcl")
-"""A script for Platform Designer: a system with a Nios processor around the component."""
+"""Script for Platform Designer that builds a system with the component and a Nios processor."""
 
 QSYS_VERSION = "13.0"
-"""Of the commands that the file uses: the last release for the Cyclone II has them, and later ones still take them."""
+"""Version of the file's commands, which the last release for the Cyclone II has, and later ones still accept."""
 
 READS_IN_FLIGHT = 2
-"""Reads that may be accepted and not yet answered: one a cycle, each answered after two."""
+"""Reads that may be accepted and not yet answered: one per cycle, each answered after two."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -30,11 +30,11 @@ class Interface:
     """A group of ports as Platform Designer knows them.
 
     Attributes:
-        name: of the instance.
-        kind: of interface, and which end of it this is.
-        properties: of the interface, by name.
-        prefix: of the names of its ports; the rest of a name is the port's role.
-        roles: of ports whose names do not say it.
+        name: name of the instance.
+        kind: kind of interface, and which end of it this is.
+        properties: properties of the interface, by name.
+        prefix: prefix of its ports' names; the rest of a name is the port's role.
+        roles: roles of ports whose names do not contain them, by name.
     """
 
     name: str
@@ -44,7 +44,7 @@ class Interface:
     roles: dict[str, str] = dataclasses.field(default_factory=dict)
 
     def role(self, port: str) -> str | None:
-        """What a port is to this interface, or None where it belongs to another."""
+        """Return a port's role in this interface, or None if it belongs to another."""
         if port in self.roles:
             return self.roles[port]
         return port.removeprefix(self.prefix) if self.prefix and port.startswith(self.prefix) else None
@@ -54,7 +54,7 @@ _IN_CLOCK = {"associatedClock": "clock", "associatedReset": "reset"}
 
 
 def interfaces(config: Configuration) -> tuple[Interface, ...]:
-    """The component's, in the order in which they refer to each other."""
+    """Return the component's interfaces, in the order in which they refer to each other."""
     return (
         Interface("clock", "clock end", {"clockRate": config.screen_geometry.clock_hz}, roles={"clk": "clk"}),
         Interface(
@@ -79,15 +79,15 @@ def interfaces(config: Configuration) -> tuple[Interface, ...]:
 
 
 def component(config: Configuration, ports: Sequence[Port], sources: Sequence[str]) -> str:
-    """The component's description, in Tcl.
+    """Return the component's description, in Tcl.
 
-    The options become macros in the `system.h` of software for the system, and so does `FIXED`, "rects" or "all", in
-    a design with a scene built in; others do not have it.
+    The options become macros in the `system.h` of the system's software. Only a design with a scene built in also has
+    `FIXED`, which is "rects" or "all".
 
     Args:
-        config: what was generated.
-        ports: of the top module.
-        sources: the files' names, each after those that it needs; the top is the last.
+        config: the generated design.
+        ports: ports of the top module.
+        sources: names of the files, each after those that it needs; the top is the last.
 
     Raises:
         ValueError: a port belongs to no interface, or to more than one.
@@ -95,7 +95,7 @@ def component(config: Configuration, ports: Sequence[Port], sources: Sequence[st
     top = sources[-1].removesuffix(".v")
     lines = [
         "# SPDX-License-Identifier: MIT",
-        f"# {top}, {config.name}, for Platform Designer. Not run there so far; see docs/boards.md for what was.",
+        f"# {top}, {config.name}, for Platform Designer. Not yet run there; docs/boards.md says what was tested.",
         f"package require -exact qsys {QSYS_VERSION}",
         "",
         f"set_module_property NAME {top}",
@@ -127,7 +127,7 @@ def component(config: Configuration, ports: Sequence[Port], sources: Sequence[st
 
 
 def _macros(config: Configuration) -> dict[str, str | int]:
-    """What software is told of the design: by macro, its C expression, as a word of Tcl."""
+    """Return the macros that describe the design to software: C expressions, each as a word of Tcl, by name."""
     values = {name: getattr(config, name) for name in OPTIONS}
     if config.fixed:
         values["fixed"] = config.fixed.scope

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Comments in Verilog, from a block's docstring and comments: of the module, its ports and its processes."""
+"""Verilog comments for a module, its ports and its processes, from a block's docstring and comments."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from raycaster.rtl.common.interfaces import Interface
 from raycaster.rtl.common.records import Record
 
 _SHARED = {name: value for module in (engine, beam, exact, widths) for name, value in vars(module).items()}
-"""Latencies and widths, which a docstring may name without need of them in its code."""
+"""Latencies and widths that a docstring may name, even if the block's code does not use them."""
 
 
 CLOCK = "the clock."
-"""The text of a clock of which there is nothing to say."""
+"""Text of a clock that needs no comment."""
 
 
 def split(purpose: str) -> tuple[str, Mapping[str, str]]:
-    """Take the arguments out of a docstring.
+    """Separate the arguments from the rest of a docstring.
 
     Args:
-        purpose: the docstring as Verilog comments, a line each.
+        purpose: the docstring as Verilog comments, one per line.
 
     Returns:
         The comments without the arguments, and the text of each argument by its name.
@@ -46,16 +46,16 @@ def split(purpose: str) -> tuple[str, Mapping[str, str]]:
 
 
 def commented(ports: Sequence[str], texts: Mapping[str, str], block: Any, width: int) -> Mapping[str, str]:
-    """Find the comment that stands above each port.
+    """Return the comment above each port.
 
-    The text of an interface goes above the first of its ports, behind the names of all of them, as in `vga_*`. Above
-    each of its ports goes what the class says about that attribute. A record's port has the bits of each field.
+    The text of an interface goes above the first of its ports, after a name for all of them, as in `vga_*`. Above each
+    of its ports goes the class's text about that attribute. A record's port has the bits of each field.
 
     Args:
         ports: names, in order; those of a record or an interface begin with the argument's name.
-        texts: of the arguments, by name.
-        block: whose ports they are.
-        width: of a line, at most.
+        texts: texts of the arguments, by name.
+        block: the block that has the ports.
+        width: largest width of a line.
     """
     comments = dict.fromkeys(ports, "")
     given = _given(block)
@@ -84,7 +84,7 @@ def commented(ports: Sequence[str], texts: Mapping[str, str], block: Any, width:
 
 
 def _layout(record: Record) -> str:
-    """The bits of each field."""
+    """Describe the bits of each field."""
     places = ((name, *record.slice(name)) for name in record.layout)
     return ", ".join(f"[{high}:{low}] {name}" if high > low else f"[{low}] {name}" for name, high, low in places)
 
@@ -101,15 +101,15 @@ def _given(block: Any) -> Mapping[str, Any]:
 
 
 def in_verilog(text: str, block: Any) -> str:
-    """Replace what a text says in Python by what Verilog has.
+    """Replace Python names in a text by their Verilog counterparts.
 
-    Names in backticks are numbers where a block's arguments or module have them; a clock has its MHz. A choice that the
-    text depends on, `config.turn`, is the option by which a user makes it, `TURN=1`. An attribute, `steps.add_colour`,
-    is the signal `steps_add_colour`.
+    Names in backticks become numbers if a block's arguments or module have them, and a clock frequency becomes MHz. A
+    choice that the text depends on, `config.turn`, becomes the user's option, `TURN=1`. An attribute,
+    `steps.add_colour`, becomes the signal `steps_add_colour`.
 
     Args:
-        text: of the block's docstring or comments, with names such as `config.units`, `unit_bits` and `SETUP_LATENCY`.
-        block: whose text it is.
+        text: text from a docstring or comment, with names such as `config.units`, `unit_bits` and `SETUP_LATENCY`.
+        block: the block that has the text.
     """
     given = _given(block)
     config = given.get("config")
@@ -133,7 +133,7 @@ def in_verilog(text: str, block: Any) -> str:
 
 
 def _option(match: re.Match[str]) -> str:
-    """What a user gives to `make` or `raycaster` for an attribute of the configuration that is true."""
+    """Return the option of `make` or `raycaster` for an attribute of the configuration that is true."""
     if match[1] == "fixed":
         return "FIX"
     if match[1] not in OPTIONS:
@@ -143,6 +143,6 @@ def _option(match: re.Match[str]) -> str:
 
 
 def _without_absent(text: str) -> str:
-    """Leave out where a port is None: where it stands it is not."""
+    """Leave out statements about ports that are None, as a port that is printed is not."""
     text = re.sub(r"(?<=\.) [^.;]*\bNone\b[^.]*\.", "", text)
     return re.sub(r"; [^.;]*\bNone\b[^.;]*", "", text)

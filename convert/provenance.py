@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Digests of everything that decides a measured figure: Verilog, code, data and tools."""
+"""Digests of everything that affects a measured figure: Verilog, code, data and tools."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ ROOT = Path(__file__).resolve().parents[1]
 
 @dataclass(frozen=True)
 class Provenance:
-    """Everything that decides a command's figures.
+    """Everything that affects a command's figures.
 
     Attributes:
-        designs: the designs that it measures.
-        sources: files and folders that decide the figures too, by path in the project.
-        tools: packages whose versions do.
+        designs: designs that it measures.
+        sources: files and folders that affect the figures, by path in the project.
+        tools: packages whose versions affect the figures.
         projects: digests of other Verilog that it measures, by name.
     """
 
@@ -37,10 +37,10 @@ class Provenance:
     projects: Mapping[str, str] = field(default_factory=dict)
 
     def digests(self, known: Mapping[str, str] | None = None) -> Digests:
-        """Digest all of it.
+        """Compute the digests.
 
         Args:
-            known: digests of designs, by the configuration's name; the others are made.
+            known: digests of designs, by the configuration's name; the others are computed.
         """
         known = known or {}
         designs = {design.name: known.get(design.name) or verilog_digest(design) for design in self.designs}
@@ -59,7 +59,7 @@ def verilog_digest(configuration: Configuration) -> str:
 
 
 def files_digest(paths: Iterable[Path]) -> str:
-    """Digest Verilog files without their comments, whatever order they come in."""
+    """Digest Verilog files without their comments, in any order."""
     digest = hashlib.sha256()
     for path in sorted(paths):
         digest.update(f"{path.name}\0{uncommented(path.read_text())}\0".encode())

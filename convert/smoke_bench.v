@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// A first simulation in one's own tools: does the design answer on the bus, and does it draw lines of the right length?
-// It says PASS or FAIL and ends; whether the picture is right is for a bench with a model of it.
+// A first simulation in your own tools: does the design answer on the bus, and does it draw lines of the right length?
+// It prints PASS or FAIL and ends. Checking the picture takes a bench with a model of it.
 
 `timescale 1ns / 1ns
 
 module smoke_bench #(
-    parameter ADDRESS_BITS = 6,     // of the bus's word address
-    parameter COLOUR_BITS = 8,      // of a channel, of all pixels of a clock
-    parameter H_TOTAL = 800,        // pixel clocks a line, blanking included
-    parameter H_SYNC = 96,          // pixel clocks of HS's pulse
-    parameter HS_ACTIVE = 0,        // level of HS in its pulse
-    parameter SIZE = 0              // what the register with the design's size must hold
+    parameter ADDRESS_BITS = 6,     // width of the bus's word address
+    parameter COLOUR_BITS = 8,      // bits per channel, of all pixels in a clock
+    parameter H_TOTAL = 800,        // pixel clocks per line, blanking included
+    parameter H_SYNC = 96,          // pixel clocks of the HS pulse
+    parameter HS_ACTIVE = 0,        // level of HS in the pulse
+    parameter SIZE = 0              // expected value of the register with the design's size
 ) ();
     localparam IDENTIFICATION = 0, SIZE_ADDRESS = 3;
     localparam MAGIC = 32'h52415943;
@@ -19,13 +19,13 @@ module smoke_bench #(
     reg clk = 1'b0, reset = 1'b1;
     always #10 clk = ~clk;
 
-    // The bus: a read is asked for while its address stands on it, and its word is there when it is answered.
+    // The bus: read is high with the address, and readdata is valid while answered is high.
     reg [ADDRESS_BITS-1:0] address = 0;
     reg read = 1'b0;
     wire [31:0] readdata;
     wire taken, answered, irq;
 `ifdef BUS_AXI4LITE
-    localparam HOLD = 0;        // whether the request stays until the answer
+    localparam HOLD = 0;        // 1: the request stays until the answer
     wire arready;
     assign taken = arready;
 `elsif BUS_WISHBONE
@@ -126,7 +126,7 @@ module smoke_bench #(
         end
     endtask
 
-    // Lines, by the pixel clock.
+    // Measure lines in pixel clocks.
     wire hs_active = vga_hs == HS_ACTIVE[0];
     reg hs_was_active = 1'b0;
     integer pixels = 0, pulse = 0, lines = 0;
@@ -156,7 +156,7 @@ module smoke_bench #(
             $display("FAIL: %0d lines, expected %0d or more", lines, LINES);
             faults = faults + 1;
         end
-        if (faults != 0) $stop;     // with which simulators that run unattended end in an error
+        if (faults != 0) $stop;     // makes simulators that run unattended end in an error
         $display("PASS: %0d lines, and the bus answers", lines);
         $finish;
     end

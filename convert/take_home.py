@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What goes with the Verilog so that it builds in other people's flows.
+"""Write the files that let the Verilog build in other people's flows.
 
-Lists of files, constraints, waivers, an instantiation template, and a first test bench.
+These are file lists, constraints, waivers, an instantiation template, and a first test bench.
 """
 
 from __future__ import annotations
@@ -22,24 +22,24 @@ from raycaster.rtl.bus.avalon_interface import size_word
 
 TOP = "ray_caster_module"
 PREFIX = "ray_caster_"
-"""Of the modules' names where Verilog is written for others: the top has it anyway."""
+"""Prefix of module names in Verilog that is written for others; the top has it anyway."""
 
 FILE_LIST = f"{TOP}.f"
 SMOKE_BENCH = Path(__file__).with_name("smoke_bench.v")
 BENCHES = "bench"
-"""Folder of what is not hardware, so that all Verilog files beside it are."""
+"""Folder for test benches, so that all Verilog files outside it are hardware."""
 
 WAIVERS = Path(__file__).with_name("waivers.vlt")
 
 
 def write_take_home(config: Configuration, prefix: str, modules: Sequence[Module], directory: Path) -> None:
-    """Write beside the Verilog what tools want to know of it.
+    """Write the files that tools need next to the Verilog.
 
     Args:
-        config: what was generated.
-        prefix: of the modules' names.
-        modules: what it consists of, each after those that it instantiates; the top is the last.
-        directory: where its files are.
+        config: the generated design.
+        prefix: prefix of the modules' names.
+        modules: its modules, each after those that it instantiates; the top is the last.
+        directory: directory of its files.
     """
     sources, top = [module.path.name for module in modules], modules[-1].name
     (directory / f"{top}.f").write_text("".join(f"{name}\n" for name in sources))
@@ -63,7 +63,7 @@ def write_take_home(config: Configuration, prefix: str, modules: Sequence[Module
 
 
 def _description(config: Configuration) -> str:
-    """The configuration as comment lines, without what its engine has no choice of, and a fixed scene where none is."""
+    """Return the configuration as comment lines, without options that do not apply to the design."""
     values = {name: getattr(config, name) for name in OPTIONS}
     values = {name: int(value) if isinstance(value, bool) else value for name, value in values.items()}
     if config.fixed:
@@ -75,28 +75,28 @@ def _description(config: Configuration) -> str:
 
 
 def clock_period(config: Configuration) -> str:
-    """Of the one clock, in ns."""
+    """Return the period of the clock, in ns."""
     return f"{1e9 / config.screen_geometry.clock_hz:.3f}"
 
 
 def _quartus_list(config: Configuration, top: str, sources: Sequence[str]) -> str:
-    """Quartus's list of files, each relative to the list."""
+    """Return Quartus's list of files, relative to the list."""
     files = "".join(
         f'set_global_assignment -name VERILOG_FILE [file join $::quartus(qip_path) "{name}"]\n' for name in sources
     )
     return f"""# SPDX-License-Identifier: MIT
 # {top}, {config.name}.
-# {top}.sdc is not in this list, as it is for a design whose top this is.
+# {top}.sdc is not in this list, as it only applies if this module is the top of the design.
 {files}"""
 
 
 def _template(config: Configuration, top: str, text: str) -> str:
-    """An instance of the top, with the comments and the shape of each port.
+    """Return an instance of the top, with the comments and the shape of each port.
 
     Args:
         config: the design.
-        top: the module's name.
-        text: its Verilog.
+        top: name of the module.
+        text: Verilog of the module.
     """
     [listed] = re.findall(rf"^module {top} \(\n(.*?)^\);", text, re.M | re.S)
     ports = re.findall(r"^( +//.*|.*\w)(?:,?)$", listed, re.M)
@@ -130,13 +130,13 @@ def _constraints(config: Configuration, top: str, pixel_clock: str) -> str:
 create_clock -name clk -period {clock_period(config)} [get_ports clk]
 create_generated_clock -name vga_clk -source [get_ports clk] {relation} [get_ports vga_clk]
 {forwarded}
-# Where the ports are pins, say here what the board takes; inside a system the other side's constraints hold.
+# If the ports are pins, give the board's requirements here; inside a system, the other side's constraints apply.
 # set_output_delay -clock vga_clk -max 2.0 [get_ports {{vga_r[*] vga_g[*] vga_b[*] vga_hs vga_vs vga_blank_n}}]
 """
 
 
 def _core(config: Configuration, top: str, sources: Sequence[str]) -> str:
-    """A FuseSoC core (CAPI2) that lints, simulates and synthesises the files where they are."""
+    """Return a FuseSoC core (CAPI2) that lints, simulates and synthesises the files in place."""
     horizontal = config.screen_geometry.beats
     parameters = {
         "ADDRESS_BITS": address_bits(config.table),
@@ -176,7 +176,7 @@ targets:
     toplevel: {top}
   lint:
     <<: *default
-    description: Verilator's -Wall, with the waivers
+    description: Lint with Verilator's -Wall and the waivers
     filesets: [rtl, waivers]
     default_tool: verilator
     tools:
@@ -184,7 +184,7 @@ targets:
         mode: lint-only
         verilator_options: [-Wall]
   sim:
-    description: The bus answers and lines are as long as they should be
+    description: Check that the bus answers and that lines have the right length
     filesets: [rtl, bench]
     toplevel: {SMOKE_BENCH.stem}
     default_tool: icarus
@@ -198,7 +198,7 @@ targets:
         verilator_options: [--timing, -Wno-fatal, -CFLAGS, -fcoroutines]
   synth:
     <<: *default
-    description: Yosys, for an ECP5
+    description: Synthesise with Yosys for an ECP5
     filesets: [rtl]
     default_tool: yosys
     tools:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Verilog as a person would write it, from Verilog as MyHDL prints it; the meaning stays."""
+"""Turn Verilog as MyHDL prints it into Verilog as a person would write it, with the same meaning."""
 
 from __future__ import annotations
 
@@ -31,19 +31,18 @@ _OPERATORS = {
 def restyle(text: str, block: _Block, ports: Sequence[str]) -> str:
     """Restyle one module.
 
-    The comment above a process, where there is one, stands above it here too. Port lists become ANSI, codes of states
-    their names, and constant expressions numbers; needless parentheses go. Processes and instances have a blank line
-    between them.
+    A comment above a process is kept. Port lists become ANSI style, codes of states become names, constant expressions
+    become numbers, and needless parentheses are dropped. Blank lines separate processes and instances.
 
     Args:
-        text: what MyHDL printed.
-        block: what it printed it of.
+        text: MyHDL's output.
+        block: the block that was converted.
         ports: names of the module's ports, in order.
     """
     for sub in block.subs:
         if isinstance(sub, _Instantiator):
             text = _comment(text, sub, block)
-    # A block that declares nothing needs no name, and Icarus pays for one with a thread at each evaluation.
+    # A block that declares nothing needs no name, which would cost Icarus a thread at each evaluation.
     text = re.sub(r"^(always [^\n]*begin): \w+\n(?! *(?:integer|reg)\b)", r"\1\n", text, flags=re.M)
     text = re.sub(r"^always @\(([^)]*)\)", _sensitivity, text, flags=re.M)
     for name, signal in block.sigdict.items():
@@ -63,7 +62,7 @@ def restyle(text: str, block: _Block, ports: Sequence[str]) -> str:
 
 
 def _size_words(text: str) -> str:
-    """Give a long word the width of what it is assigned to; MyHDL gives it that of its value, or one bit more."""
+    """Give a long constant the width of its target; MyHDL gives it the width of its value, or one bit more."""
     widths = {name: int(high) + 1 for high, name in re.findall(r"\[(\d+):0\] (\w+);", text)}
 
     def size(match: re.Match[str]) -> str:
@@ -74,7 +73,7 @@ def _size_words(text: str) -> str:
 
 
 def _comment(text: str, process: _Instantiator, block: _Block) -> str:
-    """Put the comment above a process, if it has one, above it in the Verilog."""
+    """Put the comment above a process, if there is one, above it in the Verilog."""
     comment = inspect.getcomments(process.funcobj)
     if not comment:
         return text
@@ -93,11 +92,11 @@ def _comment(text: str, process: _Instantiator, block: _Block) -> str:
 
 
 def _sensitivity(match: re.Match[str]) -> str:
-    """MyHDL lists what a process reads in the order of a Python set, which changes from run to run."""
+    """Write @* or a sorted list; MyHDL's list has the order of a Python set, which changes from run to run."""
     names = match[1].split(", ")
     if any(name.startswith(("posedge", "negedge")) for name in names):
         return match[0]
-    if any("[" in name for name in names):  # words of an array, which not every tool takes @* to cover
+    if any("[" in name for name in names):  # words of an array, which @* does not cover in every tool
         return f"always @({', '.join(sorted(names))})"
     return "always @*"
 
@@ -112,7 +111,7 @@ def _name_states(text: str, signal: str, state: Any) -> str:
 
 
 def _drop_modulo(text: str, block: _Block) -> str:
-    """Drop the modulo of a sum that its target's width implies: Verilog's assignment wraps around by itself."""
+    """Drop the modulo of a sum if the target's width implies it: Verilog's assignment wraps around by itself."""
     widths = {name: len(signal) for name, signal in block.sigdict.items() if signal.val is not None}
 
     def wrap(match: re.Match[str]) -> str:
@@ -123,7 +122,7 @@ def _drop_modulo(text: str, block: _Block) -> str:
 
 
 def _fold_constants(text: str) -> str:
-    """Write numbers in place of constant arithmetic, such as the 2 * 8 of a slice's bounds."""
+    """Replace constant arithmetic by numbers, such as the 2 * 8 of a slice's bounds."""
     constant = r"[\d\s()*-][\d\s+()*-]*(?<=[\d)])"
     text = re.sub(rf"\[({constant})\]", lambda match: f"[{_evaluate(match[1])}]", text)
     text = re.sub(
@@ -162,7 +161,7 @@ def _drop_parentheses(line: str) -> str:
 
 
 def _wrap(line: str) -> list[str]:
-    """Break a line that is too long behind its spaces; a comment stays one."""
+    """Break a line that is too long at spaces; a comment stays a comment."""
     if len(line) <= LINE_LENGTH:
         return [line]
     indent = line[: len(line) - len(line.lstrip())]
@@ -171,7 +170,7 @@ def _wrap(line: str) -> list[str]:
 
 
 def _is_one_group(text: str) -> bool:
-    """Whether the first parenthesis is closed by the last."""
+    """Return True if the last parenthesis closes the first."""
     depth = 0
     for index, character in enumerate(text):
         depth += (character == "(") - (character == ")")
@@ -181,7 +180,7 @@ def _is_one_group(text: str) -> bool:
 
 
 def _declare_ports(text: str, ports: Sequence[str], block: _Block) -> str:
-    """Declare each port once, in the module's head, below its comment, and put the text about the module above that."""
+    """Declare each port once, in the module's head below its comment, and put the module's text above the head."""
     head = re.search(r"^module (\w+) \(\n[^)]*\);\n((?://[^\n]*\n)*)", text, re.M)
     if not head:
         raise ValueError("no module begins as MyHDL writes it")
@@ -202,7 +201,7 @@ def _declare_ports(text: str, ports: Sequence[str], block: _Block) -> str:
 
 
 def _declare_fields(text: str) -> str:
-    """Declare a record's field where it is cut out of its word."""
+    """Declare a record's field where it is sliced from its word."""
     for name, bits in re.findall(r"^assign (\w+) = (\w+_word\[\d+(?::\d+)?\]);$", text, re.M):
         shape = re.search(rf"^wire((?: signed)?(?: \[\d+:0\])?) {name};\n", text, re.M)
         if shape:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The tops as Verilog, one file a module, with what other flows want beside them."""
+"""Write the top levels as Verilog, one file per module, with the files that other flows need."""
 
 from __future__ import annotations
 
@@ -27,22 +27,22 @@ from raycaster.scene import Scene
 
 
 def write_verilog(config: Configuration, directory: Path, prefix: str = "") -> list[Path]:
-    """Write the ray tracer, `ray_caster_module`, and beside it what other flows want.
+    """Write the ray tracer, `ray_caster_module`, and the files that other flows need.
 
-    This and the other functions here replace the directory as a whole, once everything is generated; equal arguments
-    give equal bytes.
+    This and the other functions here replace the directory as a whole, once everything is generated. The same arguments
+    always produce identical files.
 
     Args:
-        config: what to generate.
-        directory: where to.
-        prefix: of the names of all modules that do not begin with it, such as `PREFIX`, so that they are no others' in
-            a larger design; none in the project's own simulations.
+        config: the design to generate.
+        directory: output directory.
+        prefix: prefix, such as `PREFIX`, for the names of all modules without it, which makes them unique in a larger
+            design; none in the project's own simulations.
 
     Returns:
         The modules' files, each after those that it instantiates; the top is the last.
 
     Raises:
-        UserError: the prefix is no beginning of a name in Verilog.
+        UserError: no Verilog name can begin with the prefix.
     """
     if prefix and not re.fullmatch(r"[A-Za-z_]\w*", prefix, re.ASCII):
         raise UserError(f"prefix: expected the beginning of a Verilog name, such as {PREFIX}, got {prefix}")
@@ -56,7 +56,7 @@ def write_verilog(config: Configuration, directory: Path, prefix: str = "") -> l
 
 
 def write_scene_system(config: Configuration, scene: Scene, directory: Path) -> list[Path]:
-    """Write `scene_system`, which has no processor, with a scene of no more rectangles than the hardware.
+    """Write `scene_system`, which has no processor, with a scene that fits the hardware.
 
     Raises:
         UserError: the configuration has another bus than Avalon-MM.
@@ -68,13 +68,13 @@ def write_scene_system(config: Configuration, scene: Scene, directory: Path) -> 
 
 
 def write_system(config: Configuration, directory: Path, program: str = PROGRAM_FILE) -> list[Path]:
-    """Write `ray_caster_system`; PicoRV32 is among the files as it was given.
+    """Write `ray_caster_system`; PicoRV32 is among the files, unchanged.
 
     Args:
-        config: what to generate.
-        directory: where to.
-        program: the file with the words of the program, in hexadecimal, which simulators open where they run, and
-            synthesis where it reads the Verilog.
+        config: the design to generate.
+        directory: output directory.
+        program: file with the words of the program, in hexadecimal; a simulator opens it where it runs, a synthesis
+            tool where it reads the Verilog.
 
     Raises:
         UserError: PicoRV32 is not installed, or the configuration has another bus than Avalon-MM.
@@ -88,12 +88,15 @@ def write_system(config: Configuration, directory: Path, program: str = PROGRAM_
 
 
 def write_dvi_encoder(config: Configuration, directory: Path) -> list[Path]:
-    """Write `dvi_encoder`, which turns a VGA output of 8 bits a channel into a DVI link; config names the files."""
+    """Write `dvi_encoder`, which turns a VGA output with 8 bits per channel into a DVI link.
+
+    The configuration only goes into the headers of the files.
+    """
     return _write(config, directory, lambda: elaborated(dvi_encoder, **dvi_ports()))
 
 
 def design_states(config: Configuration) -> dict[tuple[str, str], dict[int, str]]:
-    """The enumerated signals of `ray_caster_module`; see `raycaster.convert.inside.state_names`."""
+    """Return the enumerated signals of `ray_caster_module`; see `raycaster.convert.inside.state_names`."""
     with elaboration():
         return state_names(elaborated(ray_caster_module, **module_ports(config), config=config))
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""A wrong pixel: waveforms, and one pixel's life held against golden."""
+"""Debug a wrong pixel: record waveforms, and compare one pixel's life with the golden model."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Waveforms of some rows of a frame, which stay small however large the design is."""
+"""Record waveforms of some rows of a frame; they stay small however large the design is."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from raycaster.sim.simulator import (
 from raycaster.waits import building
 
 MARGIN = 32
-"""Clocks after the last row's time, in which its last pixels reach the pins."""
+"""Clocks after the end of the last row, in which its last pixels reach the pins."""
 
 
 def add_recording_options(parser: argparse.ArgumentParser, pixel: str) -> None:
-    """Add the options that say what is recorded of which design.
+    """Add the options that choose the design and the rows to record.
 
     Args:
-        parser: gets them.
-        pixel: what `--pixel` is for.
+        parser: the command's parser.
+        pixel: help text of `--pixel`.
     """
-    add_scene_argument(parser, "what to record (mirror_room)", default=find_scene("mirror_room"))
+    add_scene_argument(parser, "scene to record (default: mirror_room)", default=find_scene("mirror_room"))
     parser.add_argument("--pixel", metavar="COLUMN,ROW", help=pixel)
     add_simulator_option(parser)
     add_build_option(parser)
@@ -43,21 +43,22 @@ def add_recording_options(parser: argparse.ArgumentParser, pixel: str) -> None:
 
 
 def pixel_place(text: str) -> tuple[int, int]:
-    """Column and row, as they are given.
+    """Parse a pixel's column and row.
 
     Raises:
-        UserError: they are not two numbers.
+        UserError: the text is not two numbers.
     """
     column, comma, row = text.partition(",")
     if not (comma and column.strip().isdecimal() and row.strip().isdecimal()):
-        raise UserError(f"pixel: a column and a row of rays, as in 160,120, not {text}")
+        raise UserError(f"pixel: expected a ray's column and row, as in 160,120, got {text}")
     return int(column), int(row)
 
 
 def window_clocks(configuration: Configuration, first_row: int, last_row: int) -> tuple[int, int]:
-    """When rows are computed and shown, in clocks since StartScreen: from the first, and before the second.
+    """Compute when rows are computed and shown: the first clock since StartScreen, and the clock after the last.
 
-    A line buffer is filled while the row before is shown, and StartScreen comes a row's time before the first is.
+    A line buffer is filled while the previous row is shown, and StartScreen comes a row's time before the first row is
+    shown.
     """
     row_cycles = configuration.screen_geometry.row_cycles
     first = first_row if configuration.facts.line_buffered else first_row + 1
@@ -65,27 +66,27 @@ def window_clocks(configuration: Configuration, first_row: int, last_row: int) -
 
 
 def check_rows(configuration: Configuration, rows: tuple[int, int]) -> None:
-    """See that there are such rows.
+    """Check that the rows exist.
 
     Raises:
-        UserError: there are not.
+        UserError: they do not.
     """
     (first, last), most = rows, configuration.screen_geometry.rows - 1
     if not 0 <= first <= last <= most:
-        raise UserError(f"span: rows from 0 to {most}, the first one first, not {first},{last}")
+        raise UserError(f"span: expected rows from 0 to {most} in rising order, got {first},{last}")
 
 
 def record(model: Model, design: Design, rows: tuple[int, int], target: Path) -> Path:
-    """Simulate a scene's frame up to some rows, and write the waveform of these.
+    """Simulate a scene's frame up to the last of some rows, and write the waveform of these rows.
 
     Args:
-        model: built for windows.
-        design: the scene, and what the model is of.
-        rows: the first and the last one, of rays.
-        target: a directory, which is replaced once the waveform is whole; it also holds the simulation's log.
+        model: a model with a window bench.
+        design: the scene, and the configuration of the model.
+        rows: the first and the last row of rays.
+        target: the output directory, replaced once the waveform is complete; it also gets the simulation's log.
 
     Returns:
-        The waveform.
+        The waveform's path.
 
     Raises:
         UserError: there are no such rows.
@@ -111,22 +112,22 @@ def record(model: Model, design: Design, rows: tuple[int, int], target: Path) ->
 def build_and_record(
     design: Design, simulator: str, rows: tuple[int, int], target: Path, *, build: Path, console: Console
 ) -> Path:
-    """Record some rows with a model that is built where there is none, telling a person what is being waited for.
+    """Record some rows, after building the model if there is none, and show the user what is in progress.
 
     Args:
-        design: the scene and what shows it.
+        design: the scene and the hardware that shows it.
         simulator: one of `SIMULATORS`.
-        rows: the first and the last one, of rays.
-        target: a directory; see `record`.
+        rows: the first and the last row of rays.
+        target: the output directory; see `record`.
         build: the directory that holds `model/`.
-        console: for the telling.
+        console: for progress messages.
 
     Returns:
-        The waveform.
+        The waveform's path.
 
     Raises:
         UserError: there are no such rows, or the simulator is missing.
-        SimulationError: it could not build the model, or the simulation failed.
+        SimulationError: the model could not be built, or the simulation failed.
     """
     check_replaceable(target)
     find_tool(simulator)

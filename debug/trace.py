@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The life of one pixel, golden's values beside the hardware's, and where they part: `make trace`."""
+"""Compare every value of one pixel with the golden model, and find the first difference: `make trace`."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ ERROR_DIGITS = 3
 
 
 def show(ray: Ray, readings: Sequence[Reading], console: Console) -> None:
-    """Print the life of a pixel: a table of each ray's rectangles, and one of all else."""
+    """Print the life of a pixel: for each ray a table of its rectangles, and a table of everything else."""
     first = first_difference(readings)
     colour = _colour(ray.pixel, ray.config.colour_bits)
-    console.print(f"{ray.design.path}, column {ray.column}, row {ray.row}: golden has {colour}")
+    console.print(f"{ray.design.path}, column {ray.column}, row {ray.row}: expected colour {colour}")
     for bounce in range(ray.reflections + 1):
         name = "the ray from the camera" if bounce == 0 else f"reflection {bounce}"
-        lost = "" if ray.alive(bounce) else ": there is none, as the ray before it hit nothing"
+        lost = "" if ray.alive(bounce) else ": none, as the previous ray hit nothing"
         console.print(Text.assemble("\n", (name, "bold"), lost))
         mine = [reading for reading in readings if reading.place.bounce == bounce and not _of_pixel(reading)]
-        # What has no column of its own is told where it is wrong.
+        # Values without a column in the table of rectangles are printed here if they are wrong.
         console.print(_others(ray, [reading for reading in mine if _is_line(reading)], first))
         if ray.alive(bounce):
             rectangles = [reading for reading in mine if not _is_line(reading)]
@@ -46,16 +46,16 @@ def show(ray: Ray, readings: Sequence[Reading], console: Console) -> None:
     console.print("\nthe pixel", style="bold")
     console.print(_others(ray, [reading for reading in readings if _of_pixel(reading)], first))
     console.print(
-        "*: what the ray sees. left out: what culling found it cannot see. exact: without rounding.", style="dim"
+        "*: what the ray sees. left out: culled, as the ray cannot see it. exact: without rounding.", style="dim"
     )
     if first is None:
-        console.print("The hardware does what golden does.")
+        console.print("The hardware agrees with the golden model.")
         return
     console.print(difference_line(ray, first), style=WRONG, soft_wrap=True)
 
 
 def difference_line(ray: Ray, reading: Reading) -> str:
-    """Where the hardware parts from golden, in a line."""
+    """Describe a difference between the hardware and the golden model in one line."""
     part = reading.wrong or 0
     quantity = ", ".join((reading.probe.quantity, *reading.probe.parts[part : part + 1]))
     golden = _one(ray, reading.probe, part, reading.golden[part])
@@ -67,17 +67,17 @@ def difference_line(ray: Ray, reading: Reading) -> str:
         of += f", rectangle {_label(ray, reading.place.rectangle)}"
     return (
         f"First difference: at {reading.time_ns:.0f} ns, {of}: {quantity} is {found}, "
-        f"golden has {golden}; module {reading.module}, signal {reading.signal}"
+        f"expected {golden}; module {reading.module}, signal {reading.signal}"
     )
 
 
 def _of_pixel(reading: Reading) -> bool:
-    """Whether it comes after all rays."""
+    """True if the reading comes after all rays."""
     return reading.probe.event in PIXEL_EVENTS
 
 
 def _is_line(reading: Reading) -> bool:
-    """Whether it has a line of its own, and not a place among the values of a rectangle."""
+    """True if the reading takes a line, instead of a cell in the table of rectangles."""
     return reading.place.rectangle is None or not reading.probe.shown
 
 
@@ -86,7 +86,7 @@ def _table() -> Table:
 
 
 def _others(ray: Ray, readings: Sequence[Reading], first: Reading | None) -> Table:
-    """What is told a line each."""
+    """Make the table of readings that take a line each."""
     table = _table()
     table.add_column("", no_wrap=True)
     exactly = any(reading.probe.true for reading in readings)
@@ -112,7 +112,7 @@ def _others(ray: Ray, readings: Sequence[Reading], first: Reading | None) -> Tab
 
 
 def _rectangles(ray: Ray, bounce: int, readings: Sequence[Reading], first: Reading | None) -> Table:
-    """A rectangle's values side by side: golden's, the hardware's below them, and below these the exact ones."""
+    """Make the table of rectangles: golden values, below them the hardware's values, then the exact ones."""
     by_place: dict[tuple[int | None, str], Reading] = {}
     probes: dict[str, Probe] = {}
     for reading in readings:
@@ -146,7 +146,7 @@ def _rectangles(ray: Ray, bounce: int, readings: Sequence[Reading], first: Readi
 
 
 def _named(probe: Probe) -> str:
-    """A quantity with the names of its values."""
+    """Name a quantity, with the names of its values."""
     return f"{probe.quantity} ({', '.join(probe.parts)})" if probe.parts else probe.quantity
 
 
@@ -157,7 +157,7 @@ def _label(ray: Ray, rectangle: int) -> str:
 
 
 def _found(ray: Ray, reading: Reading, first: Reading | None) -> Text:
-    """What the hardware has, which stands out where it is wrong."""
+    """Format the hardware's values; wrong ones stand out."""
     text = _text(ray, reading.probe, reading.found, like=reading.golden)
     if reading.wrong is None:
         return Text(text)
@@ -165,14 +165,14 @@ def _found(ray: Ray, reading: Reading, first: Reading | None) -> Text:
 
 
 def _text(ray: Ray, probe: Probe, values: Sequence[Value], like: Sequence[Value] | None = None) -> str:
-    """Values as people read them; what means nothing is a dash."""
+    """Format values; a dash stands for don't care."""
     likes = values if like is None else like
     pairs = enumerate(zip(values, likes, strict=True))
     return ", ".join("-" if hint is None else _one(ray, probe, number, value) for number, (value, hint) in pairs)
 
 
 def _colour(value: int, bits: int) -> str:
-    """A colour as #rrggbb, whose channels have so many bits."""
+    """Format a colour with this many bits per channel as #rrggbb."""
     return "#" + "".join(f"{channel << (CHANNEL_BITS - bits):02x}" for channel in channels_of(value, bits))
 
 
@@ -195,7 +195,7 @@ def _true_text(values: Sequence[Number]) -> str:
 
 
 def _error_text(ray: Ray, probe: Probe, golden: Sequence[Value], true: Sequence[Number]) -> str:
-    """How far golden is from the value without rounding; nothing where there is no error."""
+    """Format the errors of the golden model's values: their distances from the exact ones."""
     unit = 1 << ray.config.fraction_bits if probe.scale else 1
     errors = [
         "-" if value is None or exact is None else f"{float(Fraction(int(value), unit) - exact):+.{ERROR_DIGITS}f}"
@@ -205,17 +205,17 @@ def _error_text(ray: Ray, probe: Probe, golden: Sequence[Value], true: Sequence[
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Make the command's parser."""
     parser = CommandParser("trace", __doc__, "boxes --pixel 160,120")
-    add_recording_options(parser, "of rays, from 0 on")
+    add_recording_options(parser, "column and row of the ray, from 0")
     return parser
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """The command; returns its exit code."""
+    """Run the command and return its exit code."""
     arguments = command_parser().parse_args(argv)
     if arguments.pixel is None:
-        raise UserError("pixel: say which one, as in PIXEL=160,120")
+        raise UserError("pixel: expected a ray's column and row, as in PIXEL=160,120, got none")
     column, row = pixel_place(arguments.pixel)
     console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
     design = design_for(arguments.scene, given_options(arguments))
@@ -230,5 +230,5 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 1
     readings = read(Waves(waves), description_of(design.configuration, ray.unit), ray)
     show(ray, readings, console)
-    console.print(f"The waveform of its row is {waves}", soft_wrap=True)
+    console.print(f"The waveform of the pixel's row is {waves}", soft_wrap=True)
     return int(first_difference(readings) is not None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A waveform of some rows of a scene's frame, with what viewers open it with: `make wave`."""
+"""Record a waveform of some rows of a scene's frame, and open it in a viewer: `make wave`."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ MEGABYTE = 1_000_000
 
 
 def rows_of(text: str | None, row: int) -> tuple[int, int]:
-    """The rows that are asked for, or the one alone.
+    """Parse the first and the last row; without a text, both are the pixel's row.
 
     Raises:
-        UserError: they are not one number or two.
+        UserError: the text is not one or two numbers.
     """
     if text is None:
         return row, row
     numbers = [number.strip() for number in text.split(",")]
     if len(numbers) > 2 or not all(number.isdecimal() for number in numbers):
-        raise UserError(f"span: the first row and the last one, as in 118,122, not {text}")
+        raise UserError(f"span: expected the first and the last row, as in 118,122, got {text}")
     return int(numbers[0]), int(numbers[-1])
 
 
@@ -43,12 +43,12 @@ def write_view(path: Path, design: Design, ray: Ray) -> list[Path]:
     """Write viewers' files with the cursor at a pixel's ray.
 
     Args:
-        path: a waveform that has the pixel's row.
-        design: what it is of.
-        ray: of the pixel.
+        path: a waveform that contains the pixel's row.
+        design: the recorded design.
+        ray: the pixel's ray.
 
     Returns:
-        The files of GTKWave and Surfer, beside the waveform.
+        The files for GTKWave and Surfer, next to the waveform.
     """
     waves = Waves(path)
     description = description_of(design.configuration, ray.unit)
@@ -61,29 +61,29 @@ def write_view(path: Path, design: Design, ray: Ray) -> list[Path]:
 
 
 def viewer(waves: Path, files: list[Path]) -> list[str] | None:
-    """The command that shows a waveform, where there is a viewer and a screen to show it on."""
+    """Return the command that shows a waveform; None if there is no viewer or no screen."""
     if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         return None
     return next((command for command in commands(waves, files) if shutil.which(command[0])), None)
 
 
 def commands(waves: Path, files: list[Path]) -> list[list[str]]:
-    """How to open a waveform: in GTKWave, and in Surfer, which finds the names of states where it is started."""
+    """List commands that open a waveform: GTKWave, and Surfer, which finds state names where it is started."""
     gtkwave, surfer = files
     return [["gtkwave", str(gtkwave.resolve())], ["surfer", "--command-file", surfer.name, waves.name]]
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Make the command's parser."""
     parser = CommandParser("wave", __doc__, "boxes --pixel 160,120")
-    add_recording_options(parser, "of rays, from 0 on; the cursor is put there (the middle)")
-    parser.add_argument("--span", metavar="FIRST,LAST", help="rows to write (default: that of the pixel)")
-    parser.add_argument("--no-viewer", action="store_true", help="open nothing")
+    add_recording_options(parser, "column and row of the ray at the cursor, from 0 (default: the middle)")
+    parser.add_argument("--span", metavar="FIRST,LAST", help="first and last row to record (default: the pixel's row)")
+    parser.add_argument("--no-viewer", action="store_true", help="do not open a viewer")
     return parser
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """The command; returns its exit code."""
+    """Run the command and return its exit code."""
     arguments = command_parser().parse_args(argv)
     design = design_for(arguments.scene, given_options(arguments))
     screen = design.configuration.screen_geometry
@@ -92,7 +92,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     rows = rows_of(arguments.span, row)
     check_rows(design.configuration, rows)
     if not rows[0] <= row <= rows[1]:
-        raise UserError(f"span: rows {rows[0]} to {rows[1]} do not have the pixel's, which is {row}")
+        raise UserError(f"span: rows {rows[0]} to {rows[1]} do not include the pixel's row {row}")
     console = Console(soft_wrap=True)
     target = arguments.build / "wave" / design.name
     try:

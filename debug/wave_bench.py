@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: one scene through the design until the bench has written its window of the frame."""
+"""cocotb bench: show one scene until the bench has written its window of the frame."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from raycaster.sim.harness import Harness
 
 @cocotb.test()
 async def one_window(bench: HierarchyObject) -> None:
-    """Program the job's scene as a frame's bench does, and end with the window; pixels are not looked at."""
+    """Program the job's scene as the frame bench does, and end with the window; pixels are not checked."""
     harness = Harness(bench)
     job, configuration = harness.job, harness.configuration
     scene = load_scene(job.scene, configuration.capacity)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What viewers open a waveform with: GTKWave's save file, Surfer's command file, and names of states for both."""
+"""Write viewers' files for a waveform: GTKWave's save file, Surfer's command file, and state names for both."""
 
 from __future__ import annotations
 
@@ -19,50 +19,50 @@ GTKWAVE_FILE = "view.gtkw"
 SURFER_FILE = "view.sucl"
 
 FORMATS = {"": "dec", "signed": "signed", "hex": "hex"}
-"""GTKWave's names of number formats, by what stands behind a signal's name."""
+"""GTKWave's names of number formats, by the suffix of a signal's name."""
 
 SURFER_FORMATS = {"": "Unsigned", "signed": "Signed", "hex": "Hexadecimal"}
-"""Surfer's."""
+"""Surfer's names of number formats, by the same suffix."""
 
 WINDOW_SIZE = 1500, 1000
 NAMES_WIDTH = 360
 WAVES_WIDTH = 1050
-"""Pixels of GTKWave's window, and about what its waveforms have of them."""
+"""Sizes in pixels of GTKWave's window, of its names, and roughly of its waveforms."""
 
 PIXELS_A_FRAME = 200
-"""Two to the power of GTKWave's zoom are the units of time that so many pixels have."""
+"""Pixels that span 2^zoom units of time in GTKWave."""
 
 SURFER_DIGITS = "abcdefghijklmnop"
-"""Surfer numbers what it shows in sixteen letters."""
+"""The sixteen digits with which Surfer numbers its items."""
 
 States = Mapping[tuple[str, str], Mapping[int, str]]
 
 
 @dataclass(frozen=True)
 class View:
-    """What a viewer is to show."""
+    """Contents of a viewer's window."""
 
     groups: Mapping[str, Sequence[str]]
     """Signals by group; see `raycaster.debug.probes.ray.Description`."""
 
     states: States
-    """By module and signal, the names of an enumerated signal's values."""
+    """Names of an enumerated signal's values, by module and signal."""
 
     cursor_ns: float
     end_ns: float
-    """The last that is to be seen at first."""
+    """End of the time that is visible at first."""
 
 
 def signal_names(view: View) -> list[str]:
-    """The whole names of all that is shown."""
+    """List the full names of all signals shown."""
     return [_name_and_kind(name)[0] for names in view.groups.values() for name in names]
 
 
 def write_files(waves: Waves, view: View) -> list[Path]:
-    """Write everything beside a waveform; each file appears whole.
+    """Write all files next to a waveform; each file appears complete.
 
     Returns:
-        GTKWave's file and Surfer's.
+        The files for GTKWave and Surfer.
 
     Raises:
         UserError: the waveform lacks a signal.
@@ -92,16 +92,16 @@ def _write(path: Path, text: str) -> Path:
 
 
 def _name_and_kind(name: str) -> tuple[str, str]:
-    """A signal's whole name, which may end with a range of its bits, and what stands behind it."""
+    """Split a signal's full name, which may end with a range of its bits, from its number format."""
     signal, _, kind = name.rpartition(":")
     return (signal, kind) if signal and not kind.endswith("]") else (name, "")
 
 
 def _parts(name: str) -> tuple[str, str, tuple[str, str]]:
-    """A signal's whole name, its number format, and the module and signal that it is."""
+    """Split a name into the signal's full name, its number format, and its module and own name."""
     signal, kind = _name_and_kind(name)
     if kind not in FORMATS:
-        raise UserError(f"{name}: there is no such number format as {kind}")
+        raise UserError(f"{name}: unknown number format: {kind}")
     return signal, kind, (module_of(signal), signal.rpartition(".")[2])
 
 
@@ -109,7 +109,7 @@ def _gtkwave(waves: Waves, view: View, filters: Mapping[tuple[str, str], Path]) 
     text = io.StringIO()
     save = GTKWSave(text)
     save.dumpfile(str(waves.path.resolve()))
-    # GTKWave counts whole units where the file counts tens or hundreds of them.
+    # GTKWave counts single units of time even if a tick of the file is 10 or 100 of them.
     begin, end = (waves.ticks(time) * waves.tick_units for time in (view.cursor_ns, view.end_ns))
     zoom = math.log2(max(1, end - begin) * 1.2 / WAVES_WIDTH * PIXELS_A_FRAME)
     save.timestart(begin - (end - begin) // 20)
@@ -129,7 +129,7 @@ def _gtkwave(waves: Waves, view: View, filters: Mapping[tuple[str, str], Path]) 
                     # GTKWave numbers a signal's bits from the left.
                     bits = " ".join(f"({count - 1 - bit}){signal}[{count - 1}:0]" for bit in range(high, low - 1, -1))
                     shown = FORMATS[kind] if width > 1 else "bin"
-                    # What trace_combined of pyvcd 0.5 writes; Amaranth 0.5 wants a pyvcd before that.
+                    # As trace_combined of pyvcd 0.5 writes it; Amaranth 0.5 needs an older pyvcd.
                     with save.trace_bits(f"#{{{label}}} {bits}", datafmt=shown, extraflags=GTKWFlag.grp_begin):
                         continue
                 whole = f"{signal}[{width - 1}:0]" if width > 1 else signal
@@ -147,7 +147,7 @@ def _surfer(waves: Waves, view: View) -> str:
         count += 1
         for name in names:
             signal, kind, place = _parts(name)
-            # Surfer has no names for bits of a signal, so it shows all of them.
+            # Surfer has no names for ranges of bits, so it shows the whole signal.
             signal, kind = (waves.bits(signal)[0], "hex") if RANGE.fullmatch(signal) else (signal, kind)
             lines.append(f"variable_add {signal}")
             shown = ".".join(place) if place in view.states else SURFER_FORMATS[kind]
@@ -158,14 +158,14 @@ def _surfer(waves: Waves, view: View) -> str:
 
 
 def _letters(number: int) -> str:
-    """A number as Surfer writes it."""
+    """Write a number as Surfer does."""
     return "".join(SURFER_DIGITS[int(digit, 16)] for digit in f"{number:x}")
 
 
 def _labels(signals: Sequence[str]) -> list[str]:
-    """Names as short as tells them apart, with their instances before them where it takes these.
+    """Shorten names as far as they stay distinct; like names get an instance in front.
 
-    GTKWave shows what follows the last dot, so there is none.
+    GTKWave shows only what follows the last dot, so labels have no dots.
     """
     labels = []
     for signal in signals:

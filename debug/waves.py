@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Reads waveforms: signals by their hierarchical names, with their values at each rising edge of the clock.
+"""Read waveforms: signals by their hierarchical names, with their values at each rising edge of the clock.
 
 waves = Waves(Path("build/sim/boxes/waves.fst"))
 state = waves.find("bench.dut.*.ray_sequencer_i.state")
@@ -25,12 +25,12 @@ import pywellen
 from raycaster.errors import UserError
 
 CLOCK = "bench.clk"
-"""The clock of every bench here."""
+"""Clock of every bench in this project."""
 
 SUGGESTIONS = 3
 
 RANGE = re.compile(r"(.+)\[(\d+):(\d+)\]")
-"""Bits of a signal: its name, the highest and the lowest."""
+"""A range of a signal's bits: the signal's name, the highest and the lowest bit."""
 
 
 @dataclass(frozen=True)
@@ -38,30 +38,30 @@ class Samples:
     """Signals' values at rising edges of the clock."""
 
     times_ns: list[float]
-    """When the edges were, in ns since the simulation's start, ascending."""
+    """Times of the edges, in ns since the simulation's start, ascending."""
 
     values: dict[str, list[int | None]]
-    """By signal, one value an edge: what stood just before it, which is what registers took at it. Unsigned; None where
-    any bit is unknown, floating or not yet written down."""
+    """One value per edge, by signal: the value just before the edge, which registers capture. Unsigned; None if any bit
+    is unknown, floating or not yet recorded."""
 
 
 class Waves:
     """A waveform file: FST or VCD, as this project's benches write it.
 
     A name is the path of instances from the bench down, with dots: `bench.dut.ray_caster_renderer_i.row`. An element of
-    a memory has its number after the memory's name, in brackets. Wherever values or widths are
-    asked for, a name may mean bits of a signal: `bench.dut.rect_mem_i.rects_rect_word[24:23]`, or one, as `[23:23]`.
+    a memory has its number after the memory's name, in brackets. Methods that return values or widths also accept a
+    range of a signal's bits: `bench.dut.rect_mem_i.rects_rect_word[24:23]`, or `[23:23]` for one bit.
     """
 
     def __init__(self, path: Path, clock: str = CLOCK):
-        """Open a file; values are only read where they are asked for.
+        """Open a file; values are read only when needed.
 
         Args:
-            path: of the file.
-            clock: the signal whose rising edges `edges` and `sample` mean.
+            path: the file.
+            clock: the signal whose rising edges `edges` and `sample` use.
 
         Raises:
-            UserError: there is no such file, or it is none of these; or it has no such clock, when that is asked for.
+            UserError: the file does not exist, or is not a waveform; a missing clock is reported on its first use.
         """
         if not path.is_file():
             raise UserError(f"{path}: there is no such file")
@@ -79,64 +79,64 @@ class Waves:
         self._changes: dict[str, tuple[list[int], list[int | None]]] = {}
         scale = self._file.timescale
         self.tick_units = scale.factor
-        """Of its unit (s, ms, ns, ps ...), how many a tick of the file has: 1, 10 or 100."""
+        """Units (s, ms, ns, ps ...) per tick of the file: 1, 10 or 100."""
         self._tick_ns = scale.factor * 10.0 ** (scale.unit.to_exponent() + 9)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """All signals of bits."""
+        """Names of all signals that consist of bits."""
         return tuple(self._variables)
 
     def matching(self, pattern: str) -> list[str]:
-        """The signals whose whole names match a pattern, in which `*` stands for anything, dots included.
+        """List the signals whose full names match a pattern, in which `*` matches anything, dots included.
 
-        Brackets stand for themselves.
+        Brackets match themselves.
         """
         escaped = pattern.replace("[", "[[]")
         return [name for name in self._variables if fnmatchcase(name, escaped)]
 
     def find(self, pattern: str) -> str:
-        """The one signal whose name matches; see `matching`.
+        """Return the only signal that matches a pattern; see `matching`.
 
         Raises:
-            UserError: none does, or several do.
+            UserError: no signal matches, or several do.
         """
         found = self.matching(pattern)
         if len(found) > 1:
-            raise UserError(f"{self.path}: {pattern} stands for {len(found)} signals: {found[0]}, {found[1]} ...")
+            raise UserError(f"{self.path}: {pattern} matches {len(found)} signals: {found[0]}, {found[1]} ...")
         if not found:
             raise self._missing(pattern)
         return found[0]
 
     def ticks(self, time_ns: float) -> int:
-        """A time as the file counts it."""
+        """Convert a time to ticks of the file."""
         return round(time_ns / self._tick_ns)
 
     def width(self, name: str) -> int:
-        """Bits of a signal.
+        """Number of bits of a signal.
 
         Raises:
-            UserError: there is no such signal, or it has not these bits.
+            UserError: there is no such signal, or it lacks these bits.
         """
         _, high, low = self.bits(name)
         return high - low + 1
 
     def bits(self, name: str) -> tuple[str, int, int]:
-        """The signal that a name means, and the highest and the lowest of its bits that it means.
+        """Split a name into the signal, and the highest and the lowest bit of the range.
 
         Raises:
-            UserError: there is no such signal, or it has not these bits.
+            UserError: there is no such signal, or it lacks these bits.
         """
         found = RANGE.fullmatch(name)
         signal = found[1] if found else name
         width = self._variable(signal).bitwidth
         high, low = (int(found[2]), int(found[3])) if found else (width - 1, 0)
         if not low <= high < width:
-            raise UserError(f"{self.path}: {signal} has {width} bits, not {name.removeprefix(signal)}")
+            raise UserError(f"{self.path}: {signal} has {width} bits, which do not include {name.removeprefix(signal)}")
         return signal, high, low
 
     def span_ns(self) -> tuple[float, float]:
-        """When the clock's first and last changes were, in ns.
+        """Return the times of the clock's first and last changes, in ns.
 
         Raises:
             UserError: there is no such clock, or it never changes.
@@ -147,7 +147,7 @@ class Waves:
         return times[0] * self._tick_ns, times[-1] * self._tick_ns
 
     def value(self, name: str, time_ns: float) -> int | None:
-        """A signal's value at a time, with what changed in that very moment; see `Samples.values`.
+        """Return a signal's value at a time, including changes at that very time; see `Samples.values`.
 
         Raises:
             UserError: there is no such signal.
@@ -157,7 +157,7 @@ class Waves:
         return values[place - 1] if place else None
 
     def changes(self, name: str) -> list[tuple[float, int | None]]:
-        """When a signal changed, in ns, and what to; the first is its value when the file begins.
+        """List a signal's changes: the time in ns and the new value, beginning with the initial value.
 
         Raises:
             UserError: there is no such signal.
@@ -165,7 +165,7 @@ class Waves:
         return [(time * self._tick_ns, value) for time, value in zip(*self._history(name), strict=True)]
 
     def edges(self, start_ns: float = 0, end_ns: float = math.inf) -> list[float]:
-        """The clock's rising edges from start_ns, and before end_ns.
+        """List the clock's rising edges from start_ns on and before end_ns.
 
         Raises:
             UserError: there is no such clock.
@@ -173,7 +173,7 @@ class Waves:
         return [time * self._tick_ns for time in self._edge_ticks(start_ns, end_ns)]
 
     def sample(self, names: Iterable[str], start_ns: float = 0, end_ns: float = math.inf) -> Samples:
-        """Signals at each rising edge from start_ns, and before end_ns.
+        """Sample signals at each rising edge from start_ns on and before end_ns.
 
         Raises:
             UserError: there is no such clock or signal.
@@ -184,7 +184,7 @@ class Waves:
 
     def _edge_ticks(self, start_ns: float, end_ns: float) -> list[int]:
         times, values = self._history(self._clock)
-        # Where the file begins with a high clock, its edge was earlier.
+        # If the clock is high at the start of the file, its edge was earlier.
         rising = [time for i, time in enumerate(times) if values[i] == 1 and i and values[i - 1] == 0]
         first = bisect_left(rising, start_ns / self._tick_ns - 0.5)
         return rising[first : bisect_left(rising, end_ns / self._tick_ns - 0.5)]
@@ -196,11 +196,11 @@ class Waves:
 
     def _missing(self, name: str) -> UserError:
         near = difflib.get_close_matches(name, self._variables, SUGGESTIONS)
-        hint = f"; there are {', '.join(near)}" if near else ""
+        hint = f"; similar names: {', '.join(near)}" if near else ""
         return UserError(f"{self.path}: has no signal {name}{hint}")
 
     def _history(self, name: str) -> tuple[list[int], list[int | None]]:
-        """The ticks at which a signal changed, and its values since."""
+        """Return the ticks at which a signal changed, and its values from then on."""
         if name not in self._changes:
             signal, high, low = self.bits(name)
             changes = list(self._variable(signal).signal)
@@ -210,7 +210,7 @@ class Waves:
 
 
 def _bits_of(value: int | str | float | None, high: int, low: int) -> int | None:
-    """Bits of a value, which is text where any of its bits is unknown; None where one of these is."""
+    """Extract bits of a value, which is text if any of its bits is unknown; None if one of these is."""
     if isinstance(value, str):
         text = value[len(value) - 1 - high : len(value) - low]
         return int(text, 2) if text and set(text) <= {"0", "1"} else None
@@ -218,7 +218,7 @@ def _bits_of(value: int | str | float | None, high: int, low: int) -> int | None
 
 
 def _before(edges: Sequence[int], times: Sequence[int], values: Sequence[int | None]) -> list[int | None]:
-    """The value just before each edge."""
+    """Return the value just before each edge."""
     sampled, place = [], 0
     for edge in edges:
         while place < len(times) and times[place] < edge:
@@ -228,7 +228,7 @@ def _before(edges: Sequence[int], times: Sequence[int], values: Sequence[int | N
 
 
 def signed(value: int | None, bits: int) -> int | None:
-    """What a value of so many bits is in two's complement."""
+    """Interpret a value with this many bits as two's complement."""
     if value is None:
         return None
     return value - (1 << bits) if value >> (bits - 1) & 1 else value

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""The documentation: its pages, and what draws their pictures and counts their numbers from the design itself."""
+"""The manual: its pages, and the code that generates their diagrams and tables from the design."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster docs`: the documentation for a browser, its pictures drawn from the design."""
+"""`raycaster docs`: build the manual for a browser, with diagrams drawn from the design."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ REFERENCE = (
     "raycaster.sim.simulator",
     "raycaster.errors",
 )
-"""What a program of one's own calls, in the order in which it needs them."""
+"""Modules for programs that use the package, in the order in which they need them."""
 
 
 def draw_timing(build: Path) -> None:
-    """Simulate anew, and keep what is drawn of it with the sources.
+    """Repeat the simulation, and store the timing diagrams with the sources.
 
     Raises:
-        UserError: as `timing.simulate`, or the simulated design is at fault.
+        UserError: as for `timing.simulate`, or if the simulated design is wrong.
     """
     timing.SOURCES.mkdir(exist_ok=True)
     try:
@@ -68,24 +68,24 @@ LIVE = """```{image} \\2
 ```
 
 *Click the picture: the hardware runs in your browser.*"""
-"""The first page's picture, as a link to the page that runs the hardware, which takes seconds to load."""
+"""Link from the first page's picture to the page that runs the hardware, which takes seconds to load."""
 
 GROUP_OF_API = "Reference"
-"""Where the Python API is among the pages."""
+"""Group of pages that the Python API joins."""
 
 
 def write_site(output: Path, web: Path | None = None) -> Path:
     """Write all pages.
 
     Args:
-        output: replaced as a whole, once everything is there.
-        web: the page that runs the hardware, to be a part of them.
+        output: the directory, replaced as a whole once all pages are built.
+        web: directory of the page that runs the hardware, to include in the manual.
 
     Returns:
-        The first page.
+        The path of the first page.
 
     Raises:
-        UserError: Sphinx has a complaint, which it has printed.
+        UserError: Sphinx has printed a warning or an error.
     """
     with replaced(output) as written, tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
         pages = Path(scratch) / "pages"
@@ -99,16 +99,16 @@ def write_site(output: Path, web: Path | None = None) -> Path:
             )
         write_page(configure().rectangles, pages / "extra" / "register_map")
         if build_main(["-q", "-W", "--keep-going", "-d", f"{scratch}/doctrees", str(pages), str(written)]):
-            raise UserError("the pages have faults, which stand above")
+            raise UserError("the pages have faults, listed above")
     return output / "index.html"
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Return the command's parser."""
     parser = CommandParser("docs", __doc__, "")
-    parser.add_argument("--output", type=Path, default=BUILD / "docs", help="(default: %(default)s)")
+    parser.add_argument("--output", type=Path, default=BUILD / "docs", help="directory (default: %(default)s)")
     parser.add_argument(
-        "--keep-timing", action="store_true", help="take the timing diagrams as they are, without a simulation"
+        "--keep-timing", action="store_true", help="use the stored timing diagrams, without a simulation"
     )
     parser.add_argument(
         "--no-web", action="store_true", help="leave out the page that runs the hardware, which takes minutes to build"
@@ -117,7 +117,7 @@ def command_parser() -> CommandParser:
 
 
 def _add_what_forges_would_not_show(pages: Path) -> None:
-    """The groups of the pages, the Python API, and the link to the register map's own page."""
+    """Add the page groups, the Python API, and the link to the interactive register map."""
     (pages / "python_api.rst").write_text("\n".join(_reference()))
     index, registers = pages / "index.md", pages / "registers.md"
     toctrees = []
@@ -126,19 +126,19 @@ def _add_what_forges_would_not_show(pages: Path) -> None:
         names += ["python_api"] if group == GROUP_OF_API else []
         toctrees += ["```{toctree}", ":hidden:", f":caption: {group}", "", *names, "```", ""]
     index.write_text("\n".join([index.read_text(), *toctrees]))
-    link = '<a href="register_map/index.html">The register map as a page of its own, which decodes words.</a>'
+    link = '<a href="register_map/index.html">Interactive register map, which decodes words</a>'
     registers.write_text(f"{registers.read_text()}\n{link}\n")
 
 
 def _reference() -> Iterator[str]:
-    """A page of what the docstrings say of the modules that a program of one's own calls."""
+    """Yield the lines of the page that documents the modules in `REFERENCE` from their docstrings."""
     yield from ("Python API", "==========", "")
     for module in REFERENCE:
         yield from (module, "-" * len(module), "", f".. automodule:: {module}", "")
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+    """Run the command."""
     arguments = command_parser().parse_args(argv)
     announce("docs")
     if not arguments.keep_timing:
@@ -146,7 +146,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         BUILD.mkdir(exist_ok=True)
         draw_timing(BUILD)
     for path in draw_all():
-        print(printable(f"drawn anew: {path}"))
+        print(printable(f"redrawn: {path}"))
     web = None
     if not arguments.no_web:
         web = BUILD / "web"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Block diagrams, drawn from the elaborated design: what it is made of, and the signals between its parts."""
+"""Block diagrams, drawn from the elaborated design: its parts and the signals between them."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ FONT = "Helvetica,Arial,sans-serif"
 BLOCK_FILL, PROCESS_FILL, OPENED_FILL = "#d6e6f2", "#ffffff", "#f6f8fa"
 INK, PALE, PORT_INK = "#20303c", "#8a99a5", "#0b5394"
 EVERYWHERE = ("clk", "reset")
-"""Not drawn."""
+"""Signals that are not drawn."""
 
 MOST_NAMES = 3
-"""In a label, before names that begin alike stand there as one."""
+"""Names in a label; a longer label groups names with a common prefix."""
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """A diagram of one block, with some of the blocks in it opened."""
+    """A diagram of one block, in which some inner blocks are opened."""
 
     name: str
     design: Callable[[Configuration], _Block]
@@ -62,7 +62,7 @@ DRAWINGS = (
 
 @dataclass(frozen=True)
 class Net:
-    """Signals that go from the same parts to the same others; by the parts' keys."""
+    """Signals with the same drivers and the same readers, given by the parts' keys."""
 
     names: tuple[str, ...]
     drivers: frozenset[str]
@@ -71,12 +71,12 @@ class Net:
 
 
 def _key(part: Part) -> str:
-    """Equal parts in one place are drawn as one."""
+    """Return a key that identical parts in one place share, so that they are drawn as one."""
     return "/".join((*part.within, part.name))
 
 
 def nets(inside: Inside) -> list[Net]:
-    """What goes between the parts, and in and out."""
+    """Return the nets between the parts, and between the parts and the ports."""
     drivers, readers = defaultdict(set), defaultdict(set)
     for part in inside.parts:
         for signal in part.drives:
@@ -89,14 +89,14 @@ def nets(inside: Inside) -> list[Net]:
             continue
         is_port = signal in inside.ports
         ends = frozenset(drivers[signal]), frozenset(readers[signal] - drivers[signal]), is_port
-        # What nobody reads or drives here is a constant, or belongs to another design.
+        # A signal without a reader or a driver here is a constant, or belongs to another design.
         if (ends[0] or is_port) and (ends[1] or (is_port and ends[0])):
             together[ends].append(name)
     return [Net(_labels(names), *ends) for ends, names in together.items()]
 
 
 def _labels(names: Iterable[tuple[str, str]]) -> tuple[str, ...]:
-    """Names to draw. Of a variable with many signals that go the same way, only what they have in common is."""
+    """Return the names to draw; many signals of one variable are abbreviated to their common prefix."""
     groups = defaultdict(list)
     for variable, path in sorted(set(names)):
         groups[variable].append(path)
@@ -115,24 +115,24 @@ def _shortened(paths: list[str]) -> list[str]:
 
 
 def _in_common(sequences: Iterable[Sequence[str]]) -> tuple[str, ...]:
-    """What all of them begin with."""
+    """Return the common prefix of all sequences."""
     return tuple(column[0] for column in takewhile(lambda column: len(set(column)) == 1, zip(*sequences, strict=False)))
 
 
 @cache
 def _elaborate(design: Callable[[Configuration], _Block], engine: str) -> _Block:
-    """The design with all defaults; one serves several drawings."""
+    """Elaborate the default design of an engine once for all drawings."""
     with elaboration():
         return design(configure(engine=engine))
 
 
 def inside_of(drawing: Drawing) -> Inside:
-    """The parts of what is drawn."""
+    """Return the parts of the drawn block."""
     return look_inside(find_block(_elaborate(drawing.design, drawing.engine), drawing.block), drawing.opened)
 
 
 def graph(drawing: Drawing, inside: Inside) -> pygraphviz.AGraph:
-    """The diagram, without places."""
+    """Return the diagram, without a layout."""
     drawn = pygraphviz.AGraph(directed=True, strict=False, name=drawing.name)
     drawn.graph_attr.update(
         rankdir="TB", fontname=FONT, fontsize=11, nodesep=0.08, ranksep=0.3, outputorder="edgesfirst"
@@ -163,7 +163,7 @@ def graph(drawing: Drawing, inside: Inside) -> pygraphviz.AGraph:
 
 
 def _add_net(drawn: pygraphviz.AGraph, cluster: pygraphviz.AGraph, net: Net, name: str) -> None:
-    """One part to another is an edge with its names; more ends, or the outside, meet at the names."""
+    """Add a net: a labelled edge from one part to another, or a label node if it has more ends or is a port."""
     label = "\n".join(net.names)
     if not net.is_port and len(net.drivers) == len(net.readers) == 1:
         drawn.add_edge(*net.drivers, *net.readers, label=label)
@@ -179,7 +179,7 @@ def _add_net(drawn: pygraphviz.AGraph, cluster: pygraphviz.AGraph, net: Net, nam
 
 
 def draw(drawing: Drawing) -> str:
-    """A diagram as SVG."""
-    # To a file it would open for itself, as some versions of Python do not let it.
+    """Return a diagram as SVG."""
+    # Not into a file: pygraphviz would open it itself, which fails in some versions of Python.
     svg: Any = graph(drawing, inside_of(drawing)).draw(format="svg", prog="dot")
     return svg.decode()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster commands`: run every command of the documentation, as it stands there."""
+"""`raycaster commands`: run every command in the manual, exactly as printed there."""
 
 from __future__ import annotations
 
@@ -19,41 +19,41 @@ from raycaster.output import Console
 from raycaster.tools import find_program
 
 LEFT_OUT = {
-    "make test": "what runs this, too",
+    "make test": "it checks the commands itself",
     ".venv/bin/pre-commit install": "it would change this clone",
     ".venv/bin/python -m pytest -q verif/tests/leaves/engine/test_colour_dimmer.py": (
-        "the page has this test, the clone has not"
+        "the test is only on the page, not in the clone"
     ),
 }
-"""By command, why it is not run."""
+"""Commands that are not run, with the reason."""
 
 NEEDED = {"make quartus": "quartus_sh"}
-"""By how a command begins, the program that it is left out without."""
+"""Programs without which a command is left out, by the beginning of the command."""
 
 UNATTENDED = {"make play": ("FRAMES=10",)}
-"""By how a command begins, what ends it without a person."""
+"""Arguments that make an interactive command end, by the beginning of the command."""
 
 
 def shell_lines(page: Path) -> list[str]:
-    """The commands of a page's blocks that are marked as shell, without their comments."""
+    """Return the commands in a page's shell blocks, without comments."""
     blocks = re.findall(r"^```sh\n(.*?)^```", page.read_text(), re.MULTILINE | re.DOTALL)
     lines = (line.partition(" #")[0].strip() for block in blocks for line in block.splitlines())
     return [line for line in lines if line]
 
 
 def commands_of(pages: Iterable[Path]) -> list[str]:
-    """The commands of pages, each once."""
+    """Return the commands of pages, without repetitions."""
     return list(dict.fromkeys(line for page in pages for line in shell_lines(page)))
 
 
 def left_out(command: str) -> str | None:
-    """Why a command is not run; None where it is."""
+    """Return the reason why a command is not run, or None if it is run."""
     missing = (tool for start, tool in NEEDED.items() if command.startswith(start) and find_program(tool) is None)
     return LEFT_OUT.get(command) or next((f"{tool} is not on the path" for tool in missing), None)
 
 
 def outside_make() -> dict[str, str]:
-    """The environment without the settings of a make that runs this."""
+    """Return the environment without the settings of a make that runs this program."""
     return {
         name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", FROM_MAKE)
     }
@@ -63,11 +63,11 @@ def run(command: str, log: Path) -> tuple[int, float]:
     """Run a command in the project's root.
 
     Args:
-        command: as it stands on a page.
-        log: for what it prints.
+        command: the command, as printed on a page.
+        log: file for its output.
 
     Returns:
-        Its exit code, and the seconds that it took.
+        Its exit code, and its run time in seconds.
     """
     more = next((words for start, words in UNATTENDED.items() if command.startswith(start)), ())
     environment = outside_make() | {"SDL_VIDEODRIVER": "dummy"}
@@ -81,24 +81,26 @@ def run(command: str, log: Path) -> tuple[int, float]:
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Return the command's parser."""
     parser = CommandParser("commands", __doc__, "--only boxes")
-    parser.add_argument("--only", default="", metavar="TEXT", help="those that have this in them")
-    parser.add_argument("--output", type=Path, default=Path("build/commands"), help="of logs (default: %(default)s)")
+    parser.add_argument("--only", default="", metavar="TEXT", help="only run commands that contain this text")
+    parser.add_argument(
+        "--output", type=Path, default=Path("build/commands"), help="directory for logs (default: %(default)s)"
+    )
     return parser
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """The command; returns its exit code.
+    """Run the command and return its exit code.
 
     Args:
-        argv: its arguments, those of the process by default.
+        argv: the arguments; by default those of the process.
     """
     arguments = command_parser().parse_args(argv)
     need_clone()
     chosen = [command for command in commands_of(PAGES) if arguments.only in command]
     if not chosen:
-        raise UserError(f"only: no command of the documentation has {arguments.only!r} in it")
+        raise UserError(f"only: no command in the manual contains {arguments.only!r}")
     arguments.output.mkdir(parents=True, exist_ok=True)
     console, failed = Console(), 0
     table = Table("command", "seconds", "exit code", "log")

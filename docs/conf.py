@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Sphinx's configuration. `raycaster docs` runs it, on a copy of the pages."""
+"""Sphinx configuration, which `raycaster docs` uses on a copy of the pages."""
 
 from __future__ import annotations
 
@@ -24,26 +24,26 @@ html_copy_source = False
 
 
 def _keep_bars(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
-    """Docstrings write |x| for a magnitude, which reStructuredText takes for a substitution."""
+    """Escape bars: docstrings write |x| for a magnitude, which reStructuredText would take for a substitution."""
     lines[:] = [re.sub(r"(`[^`]*`)|\|", lambda found: found[1] or r"\|", line) for line in lines]
 
 
 _as_written: dict[str, list[str]] = {}
-"""By name, docstrings that napoleon is about to change."""
+"""Docstrings that napoleon is about to change, by name."""
 
 
 def _note(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
-    """Remember an attribute's docstring; napoleon takes what is before a colon in its first line for a type."""
+    """Remember an attribute's docstring, because napoleon takes text before a colon in its first line for a type."""
     if what in ("attribute", "data", "property"):
         _as_written[name] = list(lines)
 
 
 def _restore(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
-    """Put it back."""
+    """Restore a remembered docstring."""
     lines[:] = _as_written.pop(name, lines)
 
 
 def setup(app: Any) -> None:
-    """What Sphinx asks of a configuration with code of its own."""
-    for change, priority in ((_note, 400), (_restore, 600), (_keep_bars, 700)):  # napoleon's is 500
+    """Connect the functions above to Sphinx."""
+    for change, priority in ((_note, 400), (_restore, 600), (_keep_bars, 700)):  # napoleon has priority 500
         app.connect("autodoc-process-docstring", change, priority=priority)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The diagrams beside the pages, `docs/diagrams/*.svg`, kept so that a page shows them wherever it is read."""
+"""Diagrams of the pages, `docs/diagrams/*.svg`, stored so that every viewer of a page shows them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ DIAGRAMS = Path(__file__).parent / "diagrams"
 
 
 def drawn() -> dict[str, str]:
-    """Every diagram as SVG, by its name."""
+    """Return every diagram as SVG, by name."""
     found = {drawing.name: blocks.draw(drawing) for drawing in blocks.DRAWINGS}
     with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
         for diagram in timing.DIAGRAMS:
@@ -30,15 +30,15 @@ def drawn() -> dict[str, str]:
 
 
 def words(svg: str) -> list[str]:
-    """What a diagram says, without where it is: another machine's fonts move everything a little."""
+    """Return the texts of a diagram without their positions, which depend on the machine's fonts."""
     return sorted(re.findall(r"<(?:title|text|tspan)\b[^>]*>([^<]+)<", svg))
 
 
 def draw_all() -> list[Path]:
-    """Write the diagrams that say something else than those that are kept.
+    """Write the diagrams whose texts differ from the stored ones.
 
     Returns:
-        What was written.
+        The paths of the written files.
     """
     changed = []
     for name, svg in drawn().items():

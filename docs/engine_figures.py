@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Wrong pixels and cells of the designs that the README compares."""
+"""Wrong pixels and cell counts of the designs that the README compares."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ DESIGNS: tuple[Mapping[str, Any], ...] = (
     *({"engine": name} for name in ENGINES),
     {"engine": "beam", "rows": 180},
 )
-"""Options of the designs that are compared; all else is as by default."""
+"""Options of the compared designs; all other options have their defaults."""
 
 
 def measured(options: Mapping[str, Any], build: Path) -> dict[str, Any]:
-    """Show the packaged scenes that every design can show, and count the cells of one.
+    """Draw the packaged scenes that every design can show, and count the cells of a design.
 
     Raises:
-        UserError: a scene could not be shown as it should be, or the cells could not be counted.
+        UserError: a scene failed or had wrong pixels, or the cells could not be counted.
     """
     config = configure(**options)
     words = [word for name, value in options.items() for word in (f"--{name}", str(value))]
@@ -57,7 +57,7 @@ def measured(options: Mapping[str, Any], build: Path) -> dict[str, Any]:
 
 
 def provenance() -> Provenance:
-    """Digest what decides these figures."""
+    """Return the designs, sources and tools that decide these figures."""
     return Provenance([configure(**options) for options in DESIGNS], ["golden", "scenes", *DECIDES], TOOLS)
 
 
@@ -66,7 +66,7 @@ def _options(design: Mapping[str, Any]) -> str:
 
 
 def _engines(kept: Outcome) -> str:
-    """The README's table, and the lines that say what it is of."""
+    """Return the README's table and the note below it."""
     figures = kept.figures
     rows = [
         [
@@ -79,15 +79,15 @@ def _engines(kept: Outcome) -> str:
     headings = ["engine", "rays per frame", "wrong pixels", "LUT4", "registers", "multipliers", "required clock"]
     unlike = sum(row["wrong_vs_golden"] for row in figures["designs"])
     note = (
-        f"Wrong pixels differ from exact arithmetic, in {figures['scenes']} scenes; {unlike} pixels differ from the "
-        "engine's own model. Cell counts are Yosys's for an ECP5, before placement. Each design holds "
+        f"Wrong pixels differ from exact arithmetic, counted over {figures['scenes']} scenes; {unlike} pixels differ "
+        "from the engine's own model. Cell counts are Yosys's for an ECP5, before placement. Each design holds "
         f"{kept.scope['rectangles']} rectangles; the seed engine has culling, the others do not."
     )
     return f"{table(headings, rows)}\n\n{note}"
 
 
 def _work(kept: Outcome) -> str:
-    """Units and cycles of the same designs, from their configurations."""
+    """Return the table of units and cycles of the same designs, from their configurations."""
     rows = []
     for row in kept.figures["designs"]:
         config = configure(**row["options"])

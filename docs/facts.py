@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Tables of the pages that the project itself knows: options, cycles, registers. In Markdown."""
+"""Markdown tables for the pages, from the design itself: options, cycles, registers."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ ACCESS = {"r": "read", "rw": "read, write", "woclr": "read, write 1 to clear", "
 
 
 def options() -> str:
-    """What a design is configured with, on the command line of make."""
+    """Table of a design's options, in the form of make's command line."""
 
     def default(field: FieldInfo) -> str:
         value = int(field.default) if isinstance(field.default, bool) else field.default
-        return "as suits the rest" if value is None else f"`{value}`"
+        return "automatic" if value is None else f"`{value}`"
 
     rows = ([f"`{name.upper()}`", OPTIONS[name].description, default(OPTIONS[name])] for name in OPTIONS)
-    return table(["option", "what it is", "where it is not given"], rows)
+    return table(["option", "meaning", "default"], rows)
 
 
 def seed_cycles() -> str:
-    """A group's cycles and its budget, by reflections and quotient bits a cycle."""
+    """Table of the seed engine's cycles and budget per group, by reflections and quotient bits per cycle."""
     rows = []
     for reflections in range(3):
         for bits in (1, 2, 3):
@@ -41,70 +41,80 @@ def seed_cycles() -> str:
             fits = "yes" if config.group_cycles <= config.group_budget else "no"
             rows.append([reflections, bits, config.slot_cycles, config.group_cycles, config.group_budget, fits])
     return table(
-        ["reflections", "quotient bits a cycle", "a rectangle", "a group, worst case", "a group may take", "fits"], rows
+        [
+            "reflections",
+            "quotient bits per cycle",
+            "cycles per rectangle",
+            "cycles per group, worst case",
+            "budget per group",
+            "fits",
+        ],
+        rows,
     )
 
 
 def seed_steps() -> str:
-    """Cycles between the steps of the control, as they were measured for the timing diagrams."""
+    """Table of cycles between the control's steps, as measured for the timing diagrams."""
     [diagram] = [diagram for diagram in DIAGRAMS if diagram.name == "ray_control_and_ray_unit"]
     lines = measured(diagram, kept(diagram.name))
     return table(["from", "to", "cycles"], ([f"`{start}`", f"`{end}`", cycles] for start, end, cycles in lines))
 
 
 def exact_cycles(*, light: bool) -> str:
-    """The fewest units, and their cycles, by reflections and rectangles."""
+    """Table of the exact engine's fewest units and their cycles, by reflections and rectangles."""
     rows = []
     for reflections in range(3):
         for rectangles in (12, 32):
             config = configure(engine="exact", reflections=reflections, rectangles=rectangles, light=light)
             rows.append([reflections, rectangles, config.units, config.group_cycles, config.group_budget])
-    return table(["reflections", "rectangles", "units, the fewest", "a group, worst case", "a group may take"], rows)
+    return table(
+        ["reflections", "rectangles", "fewest units", "cycles per group, worst case", "budget per group"], rows
+    )
 
 
 def beam_screens() -> str:
-    """What the beam engine shows, and how fast it must be clocked."""
+    """Table of the beam engine's screens, with their clocks and latencies."""
     rows = []
     for rows_of_rays, scale, pixels in ((240, 1, 1), (240, 2, 1), (200, 2, 1), (180, 4, 1), (180, 6, 1), (180, 6, 2)):
         config = configure(engine="beam", rows=rows_of_rays, scale=scale, pixels=pixels)
         screen = config.screen_geometry
         rate = round(screen.clock_hz / screen.frame_cycles)
-        size = f"{screen.columns}x{screen.rows}, {rate} a second"
-        size += f", {pixels} pixels a clock" if pixels > 1 else ""
+        size = f"{screen.columns}x{screen.rows}, {rate} per second"
+        size += f", {pixels} pixels per clock" if pixels > 1 else ""
         turned = replace(config, turn=True)
         setup = [f"{beam.start_cycles(one)}" for one in (config, turned)]
         rows.append([size, f"{screen.clock_hz / 1e6:g} MHz", beam.beam_latency(config), *setup, screen.beats.blank])
-    head = ["rays, frames", "clock", "cycles from a column to its colour", "to set up a row", "with a turned camera"]
-    return table([*head, "blanking before it"], rows)
+    head = ["rays, frame rate", "clock", "cycles, column to colour", "cycles, row set-up", "with a turning camera"]
+    return table([*head, "blanking cycles before a row"], rows)
 
 
 def beam_latencies() -> str:
-    """What the latency is made of."""
+    """Table of the blocks' shares in the beam engine's latency."""
     config = configure(engine="beam")
     turned, two_lanes = replace(config, turn=True), configure(engine="beam", rows=180, scale=6, pixels=2)
     rows = [
-        ["`ray_tester`, `fold_tester`", "whether the ray hits, all rectangles at once", beam.TESTER_LATENCY],
+        ["`ray_tester`, `fold_tester`", "ray-rectangle test, all rectangles at once", beam.TESTER_LATENCY],
         [
             "`nearest_of_two`",
-            f"a round; {config.rectangles} rectangles take {beam.rounds(config)}",
+            f"one round of comparisons; {config.rectangles} rectangles take {beam.rounds(config)} rounds",
             beam.contest_latency(config),
         ],
-        ["`ray_fold`", "how the ray folds at its mirror", beam.FOLD_LATENCY],
-        ["", "all of it, from a ray to its reflection", beam.pass_latency(config)],
-        ["", "the same where the camera turns, as each `fold_tester` registers its fold", beam.pass_latency(turned)],
+        ["`ray_fold`", "fold of the ray at its mirror", beam.FOLD_LATENCY],
+        ["", "in total, from a ray to its reflection", beam.pass_latency(config)],
+        ["", "in total if the camera turns, because each `fold_tester` registers its fold", beam.pass_latency(turned)],
         [
             "",
-            "at 1920x1080 with two pixels a clock, as each `nearest_of_two` takes a cycle more too",
+            "in total at 1920x1080 with two pixels per clock, because each `nearest_of_two` takes one more cycle too",
             beam.pass_latency(two_lanes),
         ],
-        ["`colour_blend`", "the pixel's colour", beam.blend_latency(config)],
-        ["`hit_cells`", "with patterns, in which of its cells the nearest rectangle is hit", beam.CELL_LATENCY],
+        ["`colour_blend`", "colour of the pixel", beam.blend_latency(config)],
+        ["`hit_cells`", "with patterns: cell in which the nearest rectangle is hit", beam.CELL_LATENCY],
     ]
-    return table(["block", "what it does", "cycles"], rows)
+    return table(["block", "function", "cycles"], rows)
 
 
 def register_overview() -> str:
-    """A row for each register."""
+    """Table with a row per register."""
     rows = []
     for node in _registers():
         values = [(field.get_property("reset"), field.low) for field in node.fields()]
@@ -118,7 +128,7 @@ def register_overview() -> str:
 
 
 def registers() -> str:
-    """Every register with its fields."""
+    """Section per register, with a table of its fields."""
     parts = []
     for node in _registers():
         rows = [
@@ -131,12 +141,12 @@ def registers() -> str:
 
 
 def _registers() -> Iterator[RegNode]:
-    """Those of the default design, of the table's entries once."""
+    """Yield the registers of the default design, with a single entry of the rectangle table."""
     return (node for node in compile_registers(configure().rectangles).descendants() if isinstance(node, RegNode))
 
 
 def _place(node: RegNode) -> tuple[str, str]:
-    """Its name, and its offset in bytes."""
+    """Return a register's name and its offset in bytes."""
     path = node.get_path(empty_array_suffix="[i]").removeprefix("ray_caster.")
     if not node.parent.is_array:
         return path, f"{node.raw_absolute_address:#04x}"
@@ -145,23 +155,23 @@ def _place(node: RegNode) -> tuple[str, str]:
 
 
 def _about(node: Node) -> str:
-    """Its description, in one line."""
+    """Return a description in one line."""
     return " ".join((node.get_property("desc") or "").split())
 
 
 def _bits(field: FieldNode) -> str:
-    """Where it is in the word."""
+    """Return a field's bit range in the word."""
     return f"{field.high}:{field.low}" if field.width > 1 else f"{field.low}"
 
 
 def _access(field: FieldNode) -> str:
-    """What software may do with it."""
+    """Return a field's software access in words."""
     onwrite = field.get_property("onwrite")
     return ACCESS[onwrite.name if onwrite else field.get_property("sw").name]
 
 
 def facts() -> dict[str, str]:
-    """What the pages have of the design itself, by the names in their markers."""
+    """Return all tables and numbers that come from the design itself, by the names in the pages' markers."""
     default = configure()
     return {
         "options": options(),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The pages, and what is written into them: everything between `<!--name-->` and `<!--/-->` is made, not typed.
+"""The pages and their generated text: everything between `<!--name-->` and `<!--/-->` is generated, not typed.
 
-The values stand in the pages themselves, so that a page can be read where nothing builds it.
+The generated text is stored in the pages, so that a page can be read without being built.
 """
 
 from __future__ import annotations
@@ -18,24 +18,24 @@ README = ROOT / "README.md"
 PAGES = (*sorted(HERE.glob("*.md")), README, ROOT / "CONTRIBUTING.md")
 
 MADE = re.compile(r"<!--(\w+)-->(.*?)<!--/-->", re.DOTALL)
-"""A name, and what is made of it: a word or two within a line, or lines of their own."""
+"""A marker's name and its generated text: a few words within a line, or separate lines."""
 
 
 def rendered(text: str, values: Mapping[str, str], place: str) -> str:
-    """A page with these values in it.
+    """Return a page with these values between its markers.
 
     Args:
         text: the page.
-        values: in Markdown, by name.
-        place: of the page, for complaints.
+        values: Markdown text, by marker name.
+        place: name of the page, for error messages.
 
     Raises:
-        UserError: it names what has no value.
+        UserError: a marker has no value.
     """
 
     def made(match: re.Match[str]) -> str:
         if match[1] not in values:
-            raise UserError(f"{place}: {match[1]} is none of what is made; there are {', '.join(sorted(values))}")
+            raise UserError(f"{place}: unknown marker {match[1]}; expected one of {', '.join(sorted(values))}")
         value = values[match[1]]
         gap = "\n\n" if "\n" in match[2] else ""
         return f"<!--{match[1]}-->{gap}{value}{gap}<!--/-->"
@@ -44,23 +44,23 @@ def rendered(text: str, values: Mapping[str, str], place: str) -> str:
 
 
 def need_clone() -> None:
-    """Refuse to go on where the package was installed without the project around it.
+    """Refuse to run if the package was installed without the project around it.
 
     Raises:
-        UserError: there is no README above the pages.
+        UserError: the directory above the pages has no README.
     """
     if not README.is_file():
-        raise UserError(f"{README}: is not there; this command needs a clone of the project")
+        raise UserError(f"{README}: not found; this command needs a clone of the project")
 
 
 def render_all(values: Mapping[str, str]) -> list[Path]:
-    """Write all pages anew.
+    """Update the generated text of all pages.
 
     Returns:
-        Those that have changed.
+        The pages that have changed.
 
     Raises:
-        UserError: as `rendered`.
+        UserError: as for `rendered`.
     """
     changed = []
     for page in PAGES:

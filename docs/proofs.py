@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is proved of each block, and what else checks it, from the lists that the commands themselves work through."""
+"""Tables of proofs and other checks per block, from the lists that the commands themselves use."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ EVERY_OPERAND = {
     "divider_step": "`divider`",
     "intersection_helper": "`reduced`, 4 bits",
 }
-"""By module, the benches of `raycaster verify exhaustive` in which it gets all its operands."""
+"""Benches of `raycaster verify exhaustive` in which a module gets every operand, by module."""
 
 FOLDERS = ("exact", "engine", "beam", "seed", "cull", "scene", "bus", "video", "common", "dvi", "system")
-"""The first of the table of blocks; other folders follow."""
+"""Folders that come first in the table of blocks; other folders follow."""
 
 UNGATED = "clock_gate"
-"""Proofs are of what goes to an FPGA, where this is a wire; so they say nothing of it."""
+"""Module that no proof covers: proofs are about the Verilog for FPGAs, in which it is a wire."""
 
 
 def scale(of_it: Sequence[Property]) -> tuple[bool, str]:
-    """Whether numbers are as wide as in a default design in one of a property's designs, and what sizes there are.
+    """Return whether one of a property's designs has the full widths of a default design, and the sizes of all of them.
 
-    The number of rectangles is a matter of width where a property is of their index or their memory; reflections are
-    one of range where its wrapper has them as a parameter.
+    The number of rectangles is a width if the property covers their index or their memory. The number of reflections is
+    a range if the property's wrapper has it as a parameter.
     """
     narrow = [proof.design.coordinate for proof in of_it if isinstance(proof.design, TesterWidths | FoldWidths)]
     tables = [proof.design.fixed.rectangles for proof in of_it if isinstance(proof.design, FixedTable)]
@@ -57,7 +57,7 @@ def scale(of_it: Sequence[Property]) -> tuple[bool, str]:
 
 
 def _values(numbers: list[int]) -> str:
-    """Some numbers, or a range of them."""
+    """Format numbers as a list, or as a range if they are consecutive."""
     found = sorted(set(numbers))
     if len(found) > 2 and found == list(range(found[0], found[-1] + 1)):
         return f"{found[0]} to {found[-1]}"
@@ -65,7 +65,7 @@ def _values(numbers: list[int]) -> str:
 
 
 def _proofs(module: str) -> tuple[str, str]:
-    """The properties of designs as large as they come, and of smaller ones."""
+    """Return a module's properties at full width, and its properties for smaller designs."""
     of_it = [proof for proof in PROPERTIES if module in proof.modules and module not in (*proof.cut, UNGATED)]
     full, small = [], []
     for name in dict.fromkeys(proof.name for proof in of_it):
@@ -79,13 +79,13 @@ def _proofs(module: str) -> tuple[str, str]:
 
 
 def _tested() -> set[str]:
-    """The tests' names, without what they begin with."""
+    """Return the names of all tests, without the prefix `test_`."""
     found = (re.findall(r"^def test_(\w+)\(", path.read_text(), re.MULTILINE) for path in TESTS.rglob("test_*.py"))
     return set().union(*found)
 
 
 def proved_blocks() -> str:
-    """Every module of the project's own, with what checks it by itself."""
+    """Table of the project's modules, with the checks of each one."""
     mutated, tested = expectations(), _tested()
     rows = []
     others = {path.parent.name for path in RTL.glob("*/*.py")} - {*FOLDERS}
@@ -106,7 +106,7 @@ def proved_blocks() -> str:
 
 
 def properties() -> str:
-    """Every property, with the sizes of the designs that it is proved of."""
+    """Table of all properties, with the sizes of the designs for which each is proved."""
     rows = []
     for name in dict.fromkeys(proof.name for proof in PROPERTIES):
         of_it = [proof for proof in PROPERTIES if proof.name == name]
@@ -115,28 +115,28 @@ def properties() -> str:
         products = "any function" if any(proof.any_product for proof in of_it) else "bits"
         quick = sum(proof.small for proof in of_it)
         rows.append([name, claim, scale(of_it)[1], products, len(of_it), quick, ", ".join(map(str, depths))])
-    return table(["property", "what it says", "of", "products", "designs", "quick", "induction depth"], rows)
+    return table(["property", "claim", "proved for", "products", "designs", "quick", "induction depth"], rows)
 
 
 def counts() -> str:
-    """How many proofs there are, and how many of them are the quick ones, in a sentence."""
+    """Return the number of proofs, and of quick proofs, as part of a sentence."""
     quick = sum(proof.small for proof in PROPERTIES)
     return (
-        f"There are {len(PROPERTIES)} proofs of properties and {len(LEMMAS)} lemmas; the quick ones are {quick} of the "
-        f"properties and {'all' if all(lemma.small for lemma in LEMMAS) else 'some'} lemmas"
+        f"{len(PROPERTIES)} property proofs and {len(LEMMAS)} lemmas; {quick} of the property proofs and "
+        f"{'all' if all(lemma.small for lemma in LEMMAS) else 'some'} lemmas are quick"
     )
 
 
 def lemmas() -> str:
-    """Every lemma, as it is proved."""
+    """Table of all lemmas, in the form in which they are proved."""
     rows = []
     for lemma in LEMMAS:
         kind = "integers" if lemma.integers else "reals"
         given = ", ".join(f"`{text}`" for text in lemma.given)
         rows.append([f"`{lemma.label}`", lemma.claim, kind, given, f"`{lemma.then}`"])
-    return table(["lemma", "what it says", "of", "given", "then"], rows)
+    return table(["lemma", "claim", "numbers", "given", "then"], rows)
 
 
 def proofs() -> dict[str, str]:
-    """All of them, by the names that pages use."""
+    """Return all tables of this module, by the names in the pages' markers."""
     return {"proved_blocks": proved_blocks(), "properties": properties(), "lemmas": lemmas(), "proof_counts": counts()}

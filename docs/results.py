@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster results`: measure the engines, or how they grow, and write all measured tables into the pages.
+"""`raycaster results`: measure the engines or their scaling, and write all measured tables into the pages.
 
-With --stale it lists the kept figures that no longer hold, and measures nothing.
+With --stale it only lists the stored figures that no longer hold.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def _measure_beside(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def _show_stale(console: Console) -> None:
-    """List the kept figures that no longer hold, with the command that measures each again."""
+    """List the stored figures that no longer hold, with the command that measures each again."""
     shown = Table("results/", "changed since", "measured again by", box=SIMPLE_HEAD, pad_edge=False)
     stale = [one for one in outcomes().values() if one.changed]
     for one in stale:
@@ -65,29 +65,34 @@ def _show_stale(console: Console) -> None:
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Return the command's parser."""
     parser = CommandParser("results", __doc__, "--render")
     asked = parser.add_mutually_exclusive_group()
-    asked.add_argument("--render", action="store_true", help="only write the pages, from the files in results/")
+    asked.add_argument("--render", action="store_true", help="only update the pages, from the files in results/")
     asked.add_argument("--stale", action="store_true", help="list the figures in results/ that no longer hold")
     asked.add_argument("--scaling", action="store_true", help="measure designs of many sizes (half an hour)")
     asked.add_argument(
-        "--beside", nargs="*", metavar="NAME=CHECKOUT", help="measure software, and others' designs in their checkouts"
+        "--beside",
+        nargs="*",
+        metavar="NAME=CHECKOUT",
+        help="measure software, and other projects' designs in their checkouts",
     )
-    parser.add_argument("--output", type=Path, default=Path("build/results"), help="for output files (%(default)s)")
+    parser.add_argument(
+        "--output", type=Path, default=Path("build/results"), help="directory for output files (%(default)s)"
+    )
     add_keep_option(parser)
     return parser
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what decides the figures of what was asked for."""
+    """Return what decides the figures of the requested measurement."""
     if arguments.scaling:
         return scaling.provenance()
     return engine_figures.provenance() if arguments.beside is None else beside.provenance()
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """The command; returns its exit code: 1 where something could not be measured."""
+    """Run the command and return its exit code, 1 if a measurement failed."""
     arguments = command_parser().parse_args(argv)
     need_clone()
     console = Console()

@@ -32,12 +32,12 @@ from raycaster.scene import Scene, load_scene, packaged_scenes
 FAMILY = FAMILIES["ecp5"]
 JOBS = 2
 FEW, MANY = 2, 12
-"""Frames of two runs, whose difference is the time that frames take."""
+"""Numbers of frames in two runs, whose difference in time gives the time per frame."""
 
 
 @dataclass(frozen=True)
 class Series:
-    """Designs of an engine that differ in one option, and have the defaults otherwise."""
+    """Designs of one engine that differ in one option; all others have their defaults."""
 
     engine: str
     option: str
@@ -53,7 +53,7 @@ SERIES = (
 
 
 def provenance() -> Provenance:
-    """Digest what decides these figures."""
+    """Return the designs, sources and tools that decide these figures."""
     designs = []
     for series in SERIES:
         for value in series.values:
@@ -63,17 +63,17 @@ def provenance() -> Provenance:
 
 
 def scene_for(config: Configuration) -> Scene:
-    """As many rectangles as the design holds, of the packaged scenes one after the other."""
+    """Return a scene that fills the design's rectangle table with rectangles from the packaged scenes."""
     scenes = [load_scene(path) for path in packaged_scenes(plain=True).values()]
     rectangles = [rectangle for scene in scenes for rectangle in scene.rect][: config.rectangles]
     return scenes[0].model_copy(update={"rect": tuple(rectangles), "reflections": config.reflections})
 
 
 def frame_time(config: Configuration, build: Path) -> float:
-    """Milliseconds of a processor that a frame takes in Verilator; the last frame is checked in every pixel.
+    """Measure the processor time of a frame in Verilator, in milliseconds, and check every pixel of the last frame.
 
     Raises:
-        AssertionError: it was wrong.
+        AssertionError: a pixel of the last frame is wrong.
     """
     scene, command = scene_for(config), build_machine(config, build, processor=False)
     times = []
@@ -90,15 +90,15 @@ def frame_time(config: Configuration, build: Path) -> float:
 
 
 def measure_scaling(output: Path, build: Path, console: Console) -> list[dict[str, Any]]:
-    """All designs of `SERIES`: what each takes and how long it takes, or why it is refused.
+    """Measure all designs of `SERIES`: cells, cycles and frame time, or the reason why a design is refused.
 
     Args:
-        output: for the netlists.
+        output: directory for the netlists.
         build: the directory that holds `model/`.
-        console: for the progress bars.
+        console: console for the progress bars.
 
     Raises:
-        UserError: a tool is missing, or refuses something.
+        UserError: a tool is missing or failed.
     """
     rows, wanted = [], {}
     for series in SERIES:
@@ -136,7 +136,7 @@ def _count(config: Configuration, output: Path) -> Any:
 
 PANELS = (
     ("rectangles", "tables", "LUT4"),
-    ("rectangles", "frame_ms", "a frame in Verilator, ms"),
+    ("rectangles", "frame_ms", "frame time in Verilator, ms"),
     ("reflections", "tables", "LUT4"),
 )
 
@@ -145,9 +145,9 @@ def draw_scaling(rows: Sequence[Mapping[str, Any]], measured: str, path: Path) -
     """Plot growth with rectangles and reflections as SVG, a line per engine.
 
     Args:
-        rows: `measure_scaling`'s.
-        measured: the day, which the file has.
-        path: replaced.
+        rows: the result of `measure_scaling`.
+        measured: the date of the measurement, which the file states.
+        path: the file, which is replaced.
     """
     with mpl.rc_context({"svg.hashsalt": "raycaster", "svg.fonttype": "none", "font.size": 9}):
         figure = Figure(figsize=(8, 8.4), layout="constrained")
@@ -168,7 +168,7 @@ def draw_scaling(rows: Sequence[Mapping[str, Any]], measured: str, path: Path) -
 
 
 def _series(option: str, kept: Outcome) -> str:
-    """The designs that differ in one option, all engines."""
+    """Return the table of the designs that differ in one option, for all engines."""
     lines = []
     for row in kept.figures["designs"]:
         if row["option"] != option:
@@ -181,7 +181,7 @@ def _series(option: str, kept: Outcome) -> str:
         lines.append([f"`{row['engine']}`", row["value"], *counts, clock, time])
     headings = [
         "engine", option, "LUT4", "registers", "multipliers", "units", "cycles per frame, at most", "required clock",
-        "frame in Verilator",
+        "frame time in Verilator",
     ]  # fmt: skip
     return table(headings, lines)
 

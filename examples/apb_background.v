@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The ray tracer in a design of one's own in plain Verilog, behind APB: it is told of a background, and to run.
-// Of `make verilog BUS=apb SCREEN=tiny UNITS=8 RECTANGLES=3`; other designs have other widths.
+// The ray tracer in your own plain Verilog design, behind APB: this writes a background and starts it.
+// For `make verilog BUS=apb SCREEN=tiny UNITS=8 RECTANGLES=3`; other designs have other widths.
 
 module apb_background #(
     parameter [23:0] BACKGROUND = 24'h204060    // red, green, blue from the highest bits on
 ) (
-    input  wire       clk,                      // as the file with constraints says
+    input  wire       clk,                      // frequency: see the constraints file
     input  wire       reset,                    // synchronous, active high
     output wire [7:0] red, green, blue,
     output wire       hs, vs, blank_n
 );
-    // raycaster_regs.h says where the registers are.
+    // Addresses and bits of registers, from raycaster_regs.h
     localparam CONTROL = 7'h10, BACKGROUND_COLOUR = 7'h24;
     localparam RUN = 32'h1, COMMIT = 32'h2;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the processor of litex_soc.py runs: it draws three rectangles, and counts frames on the LEDs as the ray tracer
-// interrupts.
+// The program of litex_soc.py's processor: it draws three rectangles, and counts the ray tracer's interrupts, one per
+// frame, on the LEDs.
 
 #include <stddef.h>
 
@@ -10,7 +10,7 @@
 #include "raycaster_regs.h"
 #include "soc.h"
 
-// Does not compile where LiteX's constants differ from the driver's header.
+// Does not compile if LiteX's constants differ from the driver's header.
 #define SAME(name, register, constant) typedef char name[offsetof(ray_caster_t, register) == (constant) ? 1 : -1]
 SAME(control_is_there, control, RAY_CASTER_CONTROL_OFFSET);
 SAME(table_is_there, rectangle, RAY_CASTER_RECTANGLE_0_CORNER_0_OFFSET);
@@ -18,7 +18,7 @@ SAME(table_is_there, rectangle, RAY_CASTER_RECTANGLE_0_CORNER_0_OFFSET);
 #define REGISTER(address) (*(volatile uint32_t *)(uintptr_t)(address))
 #define FAILED 0x80u
 
-// VexRiscv's own registers: which interrupts are looked at, and which of those are there.
+// VexRiscv's own registers: the interrupt mask, and the pending interrupts.
 static void look_at_interrupts(uint32_t mask) {
     __asm__ volatile(".option arch, +zicsr\n csrw 0xbc0, %0" : : "r"(mask));
 }

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""RayCaster inside a SoC of LiteX: a VexRiscv draws with the C driver, on no board in particular.
+"""RayCaster in a LiteX SoC: a VexRiscv draws with the C driver, on no board in particular.
 
-Run it to get the SoC's Verilog, with its memory and LiteX's headers beside it:
+To get the SoC's Verilog, with its memory's contents and LiteX's headers, run:
 
     pip install raycaster[litex,play]
     python examples/litex_soc.py build/litex_soc
@@ -29,7 +29,7 @@ PROGRAM = Path(__file__).with_suffix(".c")
 
 
 def pins(config: Configuration) -> list[tuple]:
-    """The SoC's ports; a board's platform has pins for them."""
+    """The SoC's ports; a board's platform would assign pins to them."""
     vga = (Subsignal(name, Pins(len(port))) for name, port in vars(vga_of(config)).items())
     return [("clk", 0, Pins(1)), ("reset", 0, Pins(1)), ("leds", 0, Pins(8)), ("vga", 0, *vga)]
 
@@ -56,13 +56,13 @@ class RayCasterSoC(SoCCore):
 
 
 def make_soc(config: Configuration, directory: Path, more_pins: Sequence[tuple] = ()) -> RayCasterSoC:
-    """The SoC, with the ray tracer's Verilog in `directory`."""
+    """Make the SoC, with the ray tracer's Verilog in `directory`."""
     platform = GenericPlatform("none", [*pins(config), *more_pins], name="soc")
     return RayCasterSoC(platform, config, directory / "ray_caster")
 
 
 def write(soc: RayCasterSoC, directory: Path) -> list[Path]:
-    """Write Verilog, the top last, LiteX's headers, and `soc_rom.init`, which the memory is loaded from."""
+    """Write LiteX's headers, `soc_rom.init` for the memory, and Verilog; return the Verilog files, the top last."""
     soc.finalize()
     headers = {
         "mem.h": get_mem_header(soc.bus.regions),
@@ -84,7 +84,7 @@ def write(soc: RayCasterSoC, directory: Path) -> list[Path]:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="Write the Verilog of a SoC with the ray tracer.")
-    parser.add_argument("directory", type=Path, help="where the Verilog, LiteX's headers and the memory's contents go")
+    parser.add_argument("directory", type=Path, help="output: Verilog, LiteX's headers and the memory's contents")
     output = parser.parse_args().directory
     for path in write(make_soc(configure(bus="wishbone", engine="exact"), output), output):
         print(path)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""RayCaster inside a design of one's own: a picture frame, which needs no processor.
+"""RayCaster in your own MyHDL design: a picture frame that needs no processor.
 
-After reset a small Avalon-MM host writes one scene from a ROM, and the monitor shows it. Run it to get Verilog:
+After reset a small Avalon-MM host writes one scene from a ROM, and the monitor shows it. To get Verilog, run:
 
     python examples/picture_frame.py scenes/boxes.toml build/picture_frame
 """
@@ -28,14 +28,14 @@ from raycaster.scene import Scene, load_scene
 
 @block
 def scene_writer(clk, reset, avm_m0, words):
-    """Avalon-MM host: write each (address, word) of `words` once, in order, waiting where the agent asks for it."""
+    """Avalon-MM host: write each (address, word) of `words` once, in order, waiting when the agent requests it."""
     count = len(words)
     addresses = tuple(word[0] for word in words)
     contents = tuple(word[1] for word in words)
     position = Signal(intbv(0, min=0, max=count + 1))
     rom_index = Signal(intbv(0, min=0, max=count))
 
-    # The ROM ends where the scene does.
+    # The ROM has no word after the scene.
     @always_comb
     def index():
         rom_index.next = 0
@@ -64,7 +64,7 @@ def scene_writer(clk, reset, avm_m0, words):
 
 @block
 def picture_frame(clk, reset, vga, scene: Scene, config: Configuration):
-    """Show one scene for ever. vga is that of ray_caster_module."""
+    """Show one scene forever. vga is the port of ray_caster_module."""
     words = tuple(scene_words(scene, config, min(scene.reflections, config.reflections)))
     bus = AvalonPort(address_bits(config.table))
     bus.read, bus.byteenable = tied(0, bus.read), tied(0b1111, bus.byteenable)
@@ -83,7 +83,7 @@ def ports(config: Configuration) -> dict[str, Any]:
 
 
 def convert(scene: Scene, config: Configuration, directory: Path) -> list[Path]:
-    """Write the design as Verilog, one file a module, the top last."""
+    """Write the design as Verilog, one file per module, the top last."""
     directory.mkdir(parents=True, exist_ok=True)
     with elaboration():
         top = picture_frame(**ports(config), scene=scene, config=config)

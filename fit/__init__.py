@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""From a scene to the least hardware that shows it."""
+"""Find the smallest hardware that shows a scene."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What `make fit` chose for a scene, kept for the commands that build it."""
+"""Options that `make fit` chose for a scene, kept for the commands that build it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from raycaster.errors import UserError
 from raycaster.options import command_line
 
 BUILD = Path("build/fit")
-"""Where it is kept, a file for each scene."""
+"""Folder of the choices, with a file per scene."""
 
 
 def _digest(path: Path) -> str:
@@ -21,16 +21,16 @@ def _digest(path: Path) -> str:
 
 
 def keep_choice(path: Path, options: Mapping[str, Any], scope: str, output: Path = BUILD) -> Path:
-    """Write what was chosen for a scene.
+    """Write the choice for a scene.
 
     Args:
         path: the scene file.
-        options: of the configuration.
-        scope: what of the scene is built in.
-        output: where it goes.
+        options: options of the configuration.
+        scope: part of the scene that is built in.
+        output: folder to write to.
 
     Returns:
-        The file, which appears whole.
+        The file, which is never seen half-written.
     """
     output.mkdir(parents=True, exist_ok=True)
     target = output / f"{path.stem}.json"
@@ -42,7 +42,7 @@ def keep_choice(path: Path, options: Mapping[str, Any], scope: str, output: Path
 
 
 def kept_choice(path: Path, output: Path = BUILD) -> tuple[dict[str, Any], str]:
-    """The options and the scope that were chosen for a scene.
+    """Return the options and the scope that were chosen for a scene.
 
     Raises:
         UserError: nothing was chosen for this scene, or it has changed since.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A scene built into the hardware, and what that leaves out."""
+"""Designs with a scene built in, and the parts of the hardware that this leaves out."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ SCOPES = {
     "all": "camera, background and reflections are constants too",
 }
 FIT = "fit"
-"""The scope, and all else, that `raycaster.fpga.fit` chose."""
+"""Scope that stands for everything that `raycaster.fpga.fit` chose."""
 
 BOUNDS = {"u_low": 0, "v_low": 0, "u_high": WORLD_SIZE - 1, "v_high": WORLD_SIZE - 1}
-"""The world's edge, by the bound that may be there."""
+"""Coordinate of the world's edge for each bound of a rectangle."""
 
 
 @dataclass(frozen=True)
 class Omission:
-    """Something that the hardware does without."""
+    """A part that the hardware does without."""
 
     what: str
     reason: str
@@ -46,9 +46,9 @@ class Fixing:
     """A design with a scene built in.
 
     Attributes:
-        design: it.
-        general: the design that shows the same scene, and any other.
-        omissions: what the one has not got of the other.
+        design: the design.
+        general: a design that shows the same scene, and any other.
+        omissions: parts of `general` that `design` does without.
     """
 
     design: Design
@@ -57,26 +57,26 @@ class Fixing:
 
 
 def add_fix_option(parser: argparse.ArgumentParser) -> None:
-    """Add `--fix`, and `--fit`, which is one more scope."""
+    """Add `--fix`, and `--fit` as one more scope."""
     scopes = "; ".join(f"{name}: {meaning}" for name, meaning in SCOPES.items())
     parser.add_argument("--fix", metavar="SCOPE", help=f"build the scene into the hardware; {scopes}")
     parser.add_argument(
-        "--fit", dest="fix", action="store_const", const=FIT, help="build what `raycaster fit` chose for the scene"
+        "--fit", dest="fix", action="store_const", const=FIT, help="build the design that `raycaster fit` chose"
     )
 
 
 def design_of(path: Path, options: Mapping[str, Any], scope: str | None, console: Console, **defaults: Any) -> Design:
-    """The design for a scene, which is built into it where a scope is given; what that leaves out is shown.
+    """Return the design for a scene; with a scope, build the scene in and show what that leaves out.
 
     Args:
         path: the scene file.
-        options: of the configuration, as they are given.
+        options: options of the configuration that were given.
         scope: one of `SCOPES`, `FIT`, or None.
-        console: where to show it.
-        defaults: for the hardware where nothing is given; see `design_for`.
+        console: console to show it on.
+        defaults: values for options that were not given; see `design_for`.
 
     Raises:
-        UserError: as `design_for` and `fix`.
+        UserError: see `design_for` and `fix`.
     """
     if scope is None:
         return design_for(path, options, defaults)
@@ -84,7 +84,7 @@ def design_of(path: Path, options: Mapping[str, Any], scope: str | None, console
     if scope == FIT:
         if options:
             raise UserError(
-                f"{min(options)}: FIT takes what was chosen for the scene; leave {min(options).upper()} out"
+                f"{min(options)}: FIT uses the options chosen for the scene; leave {min(options).upper()} out"
             )
         chosen, scope = kept_choice(path)
         chosen = defaults | chosen
@@ -96,7 +96,7 @@ def design_of(path: Path, options: Mapping[str, Any], scope: str | None, console
 def configuration_of(
     path: Path | None, options: Mapping[str, Any], scope: str | None, console: Console
 ) -> Configuration:
-    """The hardware for any scene, or for the one that is built into it; otherwise as `design_of`.
+    """Return the hardware for any scene, or with one scene built in; otherwise like `design_of`.
 
     Raises:
         UserError: a scope without a scene, or a scene without a scope, which would decide nothing.
@@ -106,7 +106,7 @@ def configuration_of(
     if path is None:
         raise UserError("fix: needs a scene to build in; name one with SCENE=path")
     if scope is None:
-        raise UserError(f"scene: the hardware shows any; to build {path} in, say FIX={' or FIX='.join(SCOPES)}")
+        raise UserError(f"scene: the hardware shows any; to build {path} in, give FIX={' or FIX='.join(SCOPES)}")
     return design_of(path, options, scope, console).configuration
 
 
@@ -115,16 +115,16 @@ def fix(path: Path, options: Mapping[str, Any], scope: str) -> Fixing:
 
     Args:
         path: the scene file.
-        options: of the configuration, as they are given; not the number of rectangles, which is the scene's.
+        options: options of the configuration that were given, without the number of rectangles.
         scope: one of `SCOPES`.
 
     Raises:
-        UserError: as `design_for`; there is no such scope; or a number of rectangles was given.
+        UserError: see `design_for`; there is no such scope; or a number of rectangles was given.
     """
     if scope not in SCOPES:
-        raise UserError(f"fix: {' or '.join(SCOPES)}, not {scope}")
+        raise UserError(f"fix: expected {' or '.join(SCOPES)}, got {scope}")
     if "rectangles" in options:
-        raise UserError("rectangles: FIX builds in those of the scene; leave RECTANGLES out")
+        raise UserError("rectangles: FIX takes the number from the scene; leave RECTANGLES out")
     general = general_design(path, options)
     scene, reflections = general.scene, general.reflections
     reasons = _reasons(general, scope)
@@ -143,8 +143,10 @@ def fix(path: Path, options: Mapping[str, Any], scope: str) -> Fixing:
 
 
 def _reasons(general: Design, scope: str) -> list[dict[int, str]]:
-    """Reasons why a rectangle is not tested, by its index: for the primary ray and each reflection, and with a light
-    for the shadow rays of each of these."""
+    """Return reasons why rectangles are not tested, by index.
+
+    There is an entry for the primary ray and each reflection; with a light, one more for the shadow rays of each.
+    """
     scene, reflections = general.scene, general.reflections
     rectangles = Rectangles.of_scene(scene)
     within = {index: f"lies within {label(scene, other)}" for index, other in covered(rectangles).items()}
@@ -162,7 +164,7 @@ def _reasons(general: Design, scope: str) -> list[dict[int, str]]:
         met, shading = needed(general.configuration, scene, reflections)
         for every, kept, reason in (
             (reasons, met, "no ray of the picture meets it first"),
-            (shadows, shading or [set() for _ in shadows], "it shades nothing that is not shaded without it"),
+            (shadows, shading or [set() for _ in shadows], "all that it shades is shaded without it"),
         ):
             for one, indices in zip(every, kept, strict=True):
                 one.update(dict.fromkeys(set(range(len(scene.rect))) - indices - set(one), reason))
@@ -170,7 +172,7 @@ def _reasons(general: Design, scope: str) -> list[dict[int, str]]:
 
 
 def fixed_rectangle(rectangle: Rectangle) -> FixedRectangle:
-    """A scene's rectangle with its corners put in order."""
+    """Return a scene's rectangle with its corners in order."""
     axis = rectangle.axis
     (u_low, u_high), (v_low, v_high) = (
         sorted(pair) for other, pair in enumerate(zip(*rectangle.corners, strict=True)) if other != axis
@@ -183,17 +185,17 @@ def fixed_rectangle(rectangle: Rectangle) -> FixedRectangle:
 
 
 def with_camera(fixed: FixedScene, scene: Scene) -> FixedScene:
-    """Build in the scene's camera, background and light, beside its rectangles."""
+    """Build in the scene's camera, background and light, too."""
     background = int.from_bytes(bytes(scene.background), "big")
     light = scene.light and (*scene.light.position, scene.light.quarters)
     return replace(fixed, camera=scene.camera.position, background=background, basis=scene.camera.basis, light=light)
 
 
 def general_design(path: Path, options: Mapping[str, Any]) -> Design:
-    """The design that shows a scene, and any other: the default one, or one that is large enough.
+    """Return the design that shows a scene, and any other: the default one, or one that is large enough.
 
     Raises:
-        UserError: as `design_for`, but for the row budget, and up to `MOST_RECTANGLES` for the number of rectangles.
+        UserError: see `design_for`, except that the row budget is ignored and up to `MOST_RECTANGLES` are allowed.
     """
     underrun = {"allow_underrun": True}
     for room in ({}, underrun):
@@ -205,11 +207,11 @@ def general_design(path: Path, options: Mapping[str, Any]) -> Design:
 def _omissions(
     design: Design, general: Design, fixed: FixedScene, reasons: Sequence[Mapping[int, str]]
 ) -> Iterator[Omission]:
-    """In the order in which a picture is made: what is stored, what is compared, what it is multiplied with."""
+    """Yield omissions in the order in which a picture is made: storage, comparisons, multiplications."""
     scene, small, large = design.scene, design.configuration, general.configuration
     words = (4 if large.patterns else 3) * large.rectangles
-    yield Omission(f"rectangle memory: {words} words, each three times", "rectangles are constants")
-    yield Omission("sorter of corners", "constants are in order")
+    yield Omission(f"rectangle memory: {words} words, three copies each", "rectangles are constants")
+    yield Omission("sorter of corners", "constants are already sorted")
     if fixed.camera:
         yield Omission("memory of camera and background", "they are constants")
     yield from _rectangles(scene, reasons, bool(fixed.shadows))
@@ -237,14 +239,14 @@ def _rectangles(scene: Scene, reasons: Sequence[Mapping[int, str]], with_shadows
 
 def _work(small: Configuration, large: Configuration) -> tuple[str, str]:
     fewer = f"{large.units - small.units} of {large.units} units"
-    reason = f"{small.units} meet the row budget with {small.group_cycles} cycles a group"
+    reason = f"{small.units} meet the row budget with {small.group_cycles} cycles per group"
     if small.divider_bits != large.divider_bits:
-        reason += f", at {small.divider_bits} quotient bits a cycle"
+        reason += f", at {small.divider_bits} quotient bits per cycle"
     return fewer, reason
 
 
 def _constant_fields(config: Configuration, fixed: FixedScene) -> Iterator[Omission]:
-    """What the rectangles have in common, so that nothing looks it up or carries it."""
+    """Yield omissions for values that all rectangles share, which are not stored or passed on."""
     axes = set(fixed.column("axis"))
     for axis in sorted({0, 1, 2} - axes):
         yield Omission(f"rays against planes on {'xyz'[axis]}", "no rectangle is on that axis")
@@ -261,10 +263,10 @@ def _constant_fields(config: Configuration, fixed: FixedScene) -> Iterator[Omiss
 
 
 def show(fixing: Fixing, console: Console) -> None:
-    """Print what is left out, each with its reason."""
+    """Print the omissions with their reasons."""
     table = Table(title=f"{fixing.design.name}: left out of {fixing.general.configuration.name}", title_justify="left")
     table.add_column("left out")
-    table.add_column("as")
+    table.add_column("reason")
     for omission in fixing.omissions:
         table.add_row(omission.what, omission.reason)
     console.print(table)

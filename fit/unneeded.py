@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Which of a scene's rectangles no picture needs, and why."""
+"""Find the rectangles of a scene that no picture needs, and why."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from raycaster.scene import Scene
 
 
 def covered(rectangles: Rectangles) -> dict[int, int]:
-    """Rectangles that lie within an earlier one of the same plane, which of two at one depth is the one that is seen.
+    """Find rectangles that lie within an earlier one of the same plane; of two at one depth, the earlier is seen.
 
     In every engine a ray meets both at the same point and depth, rounded or not.
 
     Returns:
-        By the index of such a rectangle, that of the first which covers it.
+        For the index of each such rectangle, the index of the first one that covers it.
     """
     found: dict[int, int] = {}
     for index in np.flatnonzero(rectangles.visible):
@@ -37,13 +37,13 @@ def covered(rectangles: Rectangles) -> dict[int, int]:
 
 
 def unreachable(rectangles: Rectangles, reflections: int) -> list[set[int]]:
-    """Rectangles that no camera's ray can run to: at x = 0, where every ray starts from or beyond it.
+    """Find rectangles that no ray from any camera can reach: those at x = 0, as rays start there or beyond.
 
-    The camera does not turn. A ray runs along +x until a mirror on x turns it round, and only one that is not at x = 0
-    itself can do that.
+    The camera does not turn. A ray runs along +x until a mirror on x reverses it, which takes a mirror that is not at
+    x = 0 itself.
 
     Returns:
-        For the primary ray and each reflection, their indices.
+        Indices of the rectangles, for the primary ray and each reflection.
     """
     on_x = rectangles.visible & (rectangles.axes == 0)
     at_0 = on_x & (rectangles.low[:, 0] == 0)
@@ -53,35 +53,35 @@ def unreachable(rectangles: Rectangles, reflections: int) -> list[set[int]]:
 
 
 def without_mirrors(rectangles: Rectangles, reflections: int) -> list[set[int]]:
-    """Rectangles that no reflected ray meets, as there is none where nothing mirrors.
+    """Find rectangles that no reflected ray meets: all of them if nothing mirrors.
 
     Returns:
-        For the primary ray and each reflection, their indices.
+        Indices of the rectangles, for the primary ray and each reflection.
     """
     mirrored = (rectangles.visible & (rectangles.mirrors > 0)).any()
     return [set()] + reflections * [set() if mirrored else set(range(len(rectangles)))]
 
 
 def at_the_edge(rectangles: Rectangles) -> set[int]:
-    """Rectangles in a plane at the world's edge: none has a point strictly between two points of the world."""
+    """Find rectangles in a plane at the world's edge, which have no point strictly between two points of the world."""
     planes = rectangles.low[np.arange(len(rectangles)), rectangles.axes]
     return set(np.flatnonzero(rectangles.visible & ((planes == 0) | (planes == WORLD_SIZE - 1))).tolist())
 
 
 def needed(config: Configuration, scene: Scene, reflections: int) -> tuple[list[set[int]], list[set[int]]]:
-    """Rectangles that decide a pixel of the picture, by the golden model of the very engine.
+    """Find rectangles that decide a pixel of the picture, with the golden model of the configured engine.
 
-    Without the others every ray meets what it met before, as the nearest of fewer rectangles is the same one; and each
-    point that has a shadow keeps one of the rectangles that cast it.
+    Without the others, every ray meets the same rectangle as before, as the nearest one is still there; and each point
+    in shadow keeps one of the rectangles that shade it.
 
     Args:
-        config: the engine, its fraction and rounding, and the screen; not the number of rectangles.
-        scene: all its rectangles are enabled.
-        reflections: those that are shown.
+        config: only the engine, its fraction and rounding, and the screen are used.
+        scene: scene whose rectangles are all enabled.
+        reflections: number of reflections that are shown.
 
     Returns:
-        For the primary ray and each reflection, the indices of those that a ray meets first, and of those that shade
-        it, which is empty without a light.
+        For the primary ray and each reflection, the indices of the rectangles that a ray meets first; and likewise of
+        those that shade its hit points, which is empty without a light.
     """
     slopes = primary_slopes(config.screen_geometry, scene.camera.basis).reshape(-1, 3)
     traced = model_of(config).trace(
@@ -95,5 +95,5 @@ def needed(config: Configuration, scene: Scene, reflections: int) -> tuple[list[
 
 
 def label(scene: Scene, index: int) -> str:
-    """A rectangle's name, or its place in the file."""
+    """Return a rectangle's name, or its place in the file."""
     return printable(scene.rect[index].name) or f"rect[{index}]"

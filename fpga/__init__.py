@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Boards: what connects the ray tracer to a chip's pins, and the tools that make a configuration of it."""
+"""Boards: Verilog between the ray tracer and a chip's pins, and the tools that make bitstreams and count cells."""

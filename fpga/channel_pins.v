@@ -2,8 +2,9 @@
 
 `timescale 1ns/10ps
 
-// One colour channel on the pins of its DAC, aligned at the top. A DAC with more bits gets the channel's again from the
-// top on, so that all ones are full scale and nothing leaves it all black; one with fewer gets the upper ones.
+// Connects a colour channel to the pins of its DAC, aligned at the top bit. A DAC with more bits gets the channel
+// repeated from its top bit on, so that all ones are full scale and all zeros are black; one with fewer gets the upper
+// bits.
 module channel_pins #(
     parameter BITS = 8,
     parameter PINS = 8

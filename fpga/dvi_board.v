@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// All of a board with a DVI link but its pins: what board_design draws is on the link, and what it says on serial.
+// A board with a DVI link, except its pins: sends the picture of board_design on the link, and its text on serial.
 
 module dvi_board (
     input  wire       clk_in,           // the oscillator
-    input  wire       run,              // low starts everything anew, as does an unlocked PLL
+    input  wire       run,              // low resets everything, like an unlocked PLL
     input  wire [5:0] buttons,          // down, up, right, left, back, forward
     output wire       locked,
     output wire       serial,

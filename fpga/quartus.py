@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster quartus`: a Quartus project that shows a scene on a board, compiled where Quartus is found.
+"""`raycaster quartus`: write a Quartus project that shows a scene on a board, and compile it if Quartus is installed.
 
-No Quartus and no board were at hand: the projects are checked as text, and with Yosys, simulators and Tcl.
-What the original design had beside the ray tracer: its SRAM has no successor, as nothing needs one, with no processor
-and the scene as a table in logic; for its debugging over JTAG, Platform Designer's "JTAG to Avalon Master Bridge" on
-avs_s0 reads every register of ray_caster_module.
+Neither Quartus nor a board was available: the projects are checked as text, and with Yosys, simulators and Tcl.
+The original design also used the board's SRAM and debugging over JTAG. The SRAM is not needed, because there is no
+processor and the scene is a table in logic. For debugging, Platform Designer's "JTAG to Avalon Master Bridge" on avs_s0
+can read every register of ray_caster_module.
 """
 
 from __future__ import annotations
@@ -27,33 +27,34 @@ from raycaster.scene import Scene, find_scene
 from raycaster.tools import find_program, run_program
 
 VERILOG = "verilog"
-"""Folder of the generated modules, within the project's."""
+"""Subfolder of a project for the generated modules."""
 
 HELPER = Path(__file__).with_name("channel_pins.v")
 OUTPUT_FILES = "output_files"
-"""Where Quartus puts what it makes."""
+"""Subfolder of a project for the output of Quartus."""
 
 TIMEOUT = 4 * 3600
-"""Seconds after which a compilation that should have ended long ago is stopped."""
+"""Time limit of a compilation in seconds, far above what one should need."""
 
 _SETUP_NS, _HOLD_NS = 0.2, 1.5
-"""Of the ADV7123's data and control inputs: t1 and t2 of its data sheet (rev. D), 3.3 V timing specifications."""
+"""Setup and hold of the ADV7123's inputs: t1 and t2 in its data sheet (rev. D), 3.3 V timing specifications."""
 
 _CLOCK_REGISTER = "*|video_generator:*|pixel_end"
-"""What drives vga_clk, as Quartus names it."""
+"""Quartus's name of the register that drives vga_clk."""
 
 
 def write_project(board: QuartusBoard, config: Configuration, scene: Scene, directory: Path) -> None:
     """Write a Quartus project.
 
     Args:
-        board: what it is for.
-        config: the hardware.
-        scene: what it shows; it has no more rectangles than the hardware.
-        directory: replaced as a whole, once everything is generated.
+        board: target board.
+        config: configuration of the hardware.
+        scene: scene to show, with no more rectangles than the hardware holds.
+        directory: output directory, replaced as a whole once everything is generated.
 
     Raises:
         BoardError: the board's pins and its top do not agree; nothing is generated.
+        UserError: the engine needs the pixel clock, which the projects lack.
     """
     top = (board.directory / board.top).read_text()
     ports = top_ports(top)
@@ -61,8 +62,8 @@ def write_project(board: QuartusBoard, config: Configuration, scene: Scene, dire
     check_project(board, top, pins)
     if config.screen_geometry.clocks_per_pixel == 1:
         raise UserError(
-            f"engine: the boards' projects run at 50 MHz, and the {config.engine} engine at the pixel clock; take "
-            "make verilog, a PLL, and a DDR output register in place of ray_caster_pixel_clock"
+            f"engine: the boards' projects run at 50 MHz, but the {config.engine} engine needs the pixel clock; use "
+            "make verilog, with a PLL, and a DDR output register instead of ray_caster_pixel_clock"
         )
     with replaced(directory) as written:
         modules = write_scene_system(config, scene, written / VERILOG)
@@ -75,13 +76,13 @@ def write_project(board: QuartusBoard, config: Configuration, scene: Scene, dire
 
 
 def compile_project(board: QuartusBoard, directory: Path) -> Path:
-    """Compile a project with the Quartus that is on the path.
+    """Compile a project with the Quartus on the path.
 
     Returns:
-        The file for the chip.
+        The file to load into the chip.
 
     Raises:
-        UserError: there is none, or it failed; one line.
+        UserError: Quartus is missing or failed; one line.
     """
     quartus = find_program("quartus_sh")
     if quartus is None:
@@ -89,7 +90,7 @@ def compile_project(board: QuartusBoard, directory: Path) -> Path:
             f"quartus_sh is not on the path, and the {board.title} needs {board.quartus}; "
             f"the project is {directory / TOP}.qpf"
         )
-    print(printable(f"{quartus} compiles {directory / TOP}.qpf; that takes a while"), flush=True)
+    print(printable(f"compiling {directory / TOP}.qpf with {quartus}; this takes a while"), flush=True)
     try:
         done = run_program([quartus, "--flow", "compile", TOP], directory, TIMEOUT)
     except subprocess.TimeoutExpired:
@@ -104,14 +105,14 @@ def compile_project(board: QuartusBoard, directory: Path) -> Path:
 
 
 def _settings(board: QuartusBoard, config: Configuration, sources: list[str]) -> str:
-    """The settings file but for the pins: the chip and the sources."""
+    """Generate the settings file, except the pins: the chip and the sources."""
     settings = {
         "FAMILY": board.family,
         "DEVICE": board.device,
         "TOP_LEVEL_ENTITY": TOP,
         "PROJECT_OUTPUT_DIRECTORY": OUTPUT_FILES,
         "VERILOG_INPUT_VERSION": "VERILOG_2001",
-        # Registers without a reset, of which the reset itself is made, rely on 0.
+        # Registers without a reset, which generate the reset itself, must start at 0.
         "ALLOW_POWER_UP_DONT_CARE": "OFF",
         **board.settings,
     }
@@ -124,7 +125,7 @@ def _settings(board: QuartusBoard, config: Configuration, sources: list[str]) ->
 
 
 def _pin_assignments(board: QuartusBoard, ports: dict[str, str]) -> str:
-    """The rest of it: pin and standard of each bit of the top's ports that the board has."""
+    """Generate the pin and standard of each bit of the top's ports that the board has."""
     pins = board.pins
     lines = []
     for bit in ports:
@@ -136,14 +137,14 @@ def _pin_assignments(board: QuartusBoard, ports: dict[str, str]) -> str:
 
 
 def _constraints(board: QuartusBoard, config: Configuration, ports: dict[str, str]) -> str:
-    """The timing constraints."""
+    """Generate the timing constraints."""
     asynchronous = _patterns(bit for bit, direction in ports.items() if direction == "input" and bit != board.clock)
     start = f"""# SPDX-License-Identifier: MIT
 # RayCaster, {config.name}, on the {board.title}.
 create_clock -name clk -period {clock_period(config)} [get_ports {board.clock}]
 derive_clock_uncertainty
 
-# Buttons and switches know no clock, and are synchronised.
+# Buttons and switches are asynchronous, and are synchronised.
 set_false_path -from [get_ports {{{asynchronous}}}]
 """
     sync = ["VGA_HS", "VGA_VS"]
@@ -151,7 +152,7 @@ set_false_path -from [get_ports {{{asynchronous}}}]
     if board.dac_clock is None:
         pins = _patterns(bit for bit, direction in ports.items() if direction == "output")
         return f"""{start}
-# Nothing takes these at a clock: the monitor sees them change. Half a pixel keeps them together.
+# No register captures these outputs: the monitor sees each change. A limit of half a pixel keeps them aligned.
 set_max_delay -to [get_ports {{{pins}}}] {clock_period(config)}
 set_min_delay -to [get_ports {{{pins}}}] 0.000
 """
@@ -159,39 +160,39 @@ set_min_delay -to [get_ports {{{pins}}}] 0.000
         bit for bit, direction in ports.items() if direction == "output" and bit not in (*sync, board.dac_clock)
     )
     return f"""{start}
-# The pixel clock is a register, and goes to the DAC's pin.
+# The pixel clock comes from a register and drives the DAC's pin.
 create_generated_clock -name vga_clk -divide_by {divided} -source [get_ports {board.clock}] \\
     [get_registers {{{_CLOCK_REGISTER}}}]
 create_generated_clock -name dac_clk -source [get_registers {{{_CLOCK_REGISTER}}}] [get_ports {board.dac_clock}]
 
-# Setup and hold of the ADV7123 at 3.3 V. Data changes at the falling edge, a whole period of clk before the rising one
-# that takes it, and again only a pixel later: hold is not at the edge that the clocks alone suggest.
+# Setup and hold of the ADV7123 at 3.3 V. Data changes at the falling edge, a whole period of clk before the rising edge
+# that captures it, and then holds for a pixel: the hold check is not at the edge that the clocks alone suggest.
 set_output_delay -clock dac_clk -max {_SETUP_NS:.3f} [get_ports {{{taken}}}]
 set_output_delay -clock dac_clk -min {-_HOLD_NS:.3f} [get_ports {{{taken}}}]
 set_multicycle_path -hold -start -from [get_clocks clk] -to [get_clocks dac_clk] {divided - 1}
 
-# The sync goes past the DAC to the monitor: half a pixel keeps it with the picture.
+# The sync signals bypass the DAC: a limit of half a pixel keeps them aligned with the picture.
 set_max_delay -to [get_ports {{{" ".join(sync)}}}] {clock_period(config)}
 set_min_delay -to [get_ports {{{" ".join(sync)}}}] 0.000
 """
 
 
 def _patterns(bits: Iterable[str]) -> str:
-    """Names of whole ports for Tcl: `KEY[*] VGA_HS`."""
+    """Return Tcl patterns of whole ports, such as `KEY[*] VGA_HS`."""
     return " ".join(dict.fromkeys(re.sub(r"\[\d+\]$", "[*]", bit) for bit in bits))
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Build the parser of the command line."""
     parser = CommandParser("quartus", __doc__, "boxes --board de1_soc")
-    parser.add_argument("--board", default="", help=", ".join(board_names(QuartusBoard)))
-    add_scene_argument(parser, "what to show (mirror_room)", default=find_scene("mirror_room"))
+    parser.add_argument("--board", default="", help=f"board: {', '.join(board_names(QuartusBoard))}")
+    add_scene_argument(parser, "scene to show (default: mirror_room)", default=find_scene("mirror_room"))
     parser.add_argument(
         "--output",
         type=Path,
         default=Path("build/quartus"),
         metavar="DIR",
-        help="where a folder for the board is made (default: %(default)s)",
+        help="directory for the board's folder (default: %(default)s)",
     )
     add_fix_option(parser)
     add_configuration_options(parser)
@@ -199,7 +200,7 @@ def command_parser() -> CommandParser:
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+    """Run the command."""
     arguments = command_parser().parse_args(argv)
     board = find_board(arguments.board, QuartusBoard)
     design = design_of(arguments.scene, given_options(arguments), arguments.fix, Console(), **board.configuration)

@@ -4,8 +4,8 @@
 
 // RayCaster on the pins of a DE2-115 or a DE1-SoC, named as in their manuals.
 //
-// KEY[3] left, KEY[2] forward, KEY[1] back, KEY[0] right: the camera moves while one is pressed, which is low.
-// SW[0] up, SW[1] down: it moves while one is high. SW[2] high: reset.
+// KEY[3] left, KEY[2] forward, KEY[1] back, KEY[0] right: the camera moves while a key is pressed (low).
+// SW[0] up, SW[1] down: the camera moves while a switch is high. SW[2] high: reset.
 module ray_caster_project #(
     parameter COLOUR_BITS = 8
 ) (
@@ -26,7 +26,7 @@ wire [COLOUR_BITS-1:0] red;
 wire [COLOUR_BITS-1:0] green;
 wire [COLOUR_BITS-1:0] blue;
 
-// buttons, from bit 5 on: down, up, right, left, back, forward.
+// buttons[5:0]: down, up, right, left, back, forward.
 scene_system system (
     .clk(CLOCK_50),
     .ready(~SW[2]),

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster tinytapeout`: one scene as a Tiny Tapeout project, and how many gates it takes.
+"""`raycaster tinytapeout`: write one scene as a Tiny Tapeout project, and count its gates.
 
-Tiny Tapeout puts many small projects on one chip. Its tiles have no memories and no multipliers: all is gates and
-registers. Not laid out: the gates are Yosys's own, of no process.
+Tiny Tapeout puts many small projects on one chip. Its tiles have no memories and no multipliers, so everything is made
+of gates and registers. The project is not laid out: the gates are Yosys's generic ones, independent of a process.
 """
 
 from __future__ import annotations
@@ -30,36 +30,36 @@ from raycaster.tools import run_yosys
 
 TOP = Path(__file__).with_name("tt_um_raycaster.v")
 CHANNEL_PINS = 2
-"""Of the Pmod, for each colour."""
+"""Pins of the Pmod per colour."""
 
 DEFAULTS = {"engine": "exact", "rows": 60, "colour_bits": CHANNEL_PINS}
-"""What takes the fewest gates."""
+"""Options with the fewest gates."""
 
 COMPARED = ({"engine": "exact", "rows": 96}, {"engine": "exact", "rows": 120}, {"engine": "beam", "rows": 240})
-"""Beside them, the other designs with a clock a pixel."""
+"""The other designs with one clock per pixel."""
 
 GATES_A_TILE = 1000
-"""tinytapeout.com/faq, 2026: a tile of about 160x100 um is enough for about 1000 digital logic gates."""
+"""Gates per tile, from tinytapeout.com/faq, 2026: about 1000 digital logic gates fit a tile of about 160x100 um."""
 
 REGISTERS_A_TILE = 320
-"""tinytapeout.com/specs/memory, 2026: approximately so many flip-flops fit into a tile."""
+"""Registers per tile, from tinytapeout.com/specs/memory, 2026: approximate number of flip-flops that fit."""
 
 SHAPES = ("1x1", "1x2", "2x2", "3x2", "4x2", "6x2", "8x2")
-"""Tiles that a project may have, as the comment in the template's info.yaml says."""
+"""Sizes that a project may have, in tiles, from the comment in the template's info.yaml."""
 
 PINS = ("R1", "G1", "B1", "vsync", "R0", "G0", "B0", "hsync")
-"""uo[0] to uo[7], of tinytapeout.com/specs/pinouts for the Tiny VGA Pmod; raybox-zero's top has the same."""
+"""Pins uo[0] to uo[7] of the Tiny VGA Pmod, from tinytapeout.com/specs/pinouts; raybox-zero's top has the same."""
 
 
 @dataclass(frozen=True)
 class Gates:
-    """What a design takes.
+    """Size of a design.
 
     Attributes:
-        gates: NAND, NOR, inverters, XOR, multiplexers and the like, of two to four inputs.
-        registers: D flip-flops without enable or reset, which are gates before them.
-        products: multiplications, which are among the gates.
-        buffer_bits: of the line buffer, which are among the registers.
+        gates: number of NAND, NOR, inverters, XOR, multiplexers and similar gates, with two to four inputs.
+        registers: number of plain D flip-flops; enables and resets are made of gates.
+        products: number of multiplications, whose gates are counted too.
+        buffer_bits: bits of the line buffer, which are included in the registers.
     """
 
     gates: int
@@ -69,7 +69,7 @@ class Gates:
 
     @property
     def tiles(self) -> float:
-        """By the published figures; a tile that has registers has so much less room for gates."""
+        """Tiles by the published figures; registers take room from gates."""
         return self.gates / GATES_A_TILE + self.registers / REGISTERS_A_TILE
 
 
@@ -77,14 +77,14 @@ def write_project(design: Design, directory: Path) -> list[Path]:
     """Write the Verilog of a project.
 
     Args:
-        design: a scene that is built in, camera and all.
-        directory: replaced as a whole; gets `src/`.
+        design: design with its scene and camera built in.
+        directory: output directory, replaced as a whole; gets `src/`.
 
     Returns:
-        The files, the top last.
+        The files, with the top last.
 
     Raises:
-        UserError: a pixel takes more than a clock or a clock has more than one, or the Pmod has another number of pins.
+        UserError: the design does not show exactly one pixel per clock, or its ports do not suit the project's top.
     """
     config = design.configuration
     check(config)
@@ -98,16 +98,18 @@ def write_project(design: Design, directory: Path) -> list[Path]:
 
 
 def check(config: Configuration) -> None:
-    """See whether a design suits the ports.
+    """Check that a design suits the ports of a project.
 
     Raises:
         UserError: it does not; one line.
     """
     screen = config.screen_geometry
     if screen.clocks_per_pixel != 1 or config.pixels != 1:
-        raise UserError("rows: a Tiny Tapeout project shows a pixel a clock; choose ROWS=120, 96 or 60, or ENGINE=beam")
+        raise UserError(
+            "rows: a Tiny Tapeout project shows one pixel per clock; choose ROWS=120, 96 or 60, or ENGINE=beam"
+        )
     if config.colour_bits != CHANNEL_PINS:
-        raise UserError(f"colour_bits: the Pmod has {CHANNEL_PINS} pins a colour, not {config.colour_bits}")
+        raise UserError(f"colour_bits: the Pmod has {CHANNEL_PINS} pins per colour, not {config.colour_bits}")
     if config.bus != "avalon":
         raise UserError(f"bus: the top drives the registers itself, by Avalon-MM; leave out {config.bus}")
 
@@ -116,12 +118,12 @@ def count_gates(config: Configuration, files: Sequence[Path], directory: Path) -
     """Map a project's Verilog to gates.
 
     Args:
-        config: the design.
-        files: of `write_project`.
-        directory: replaced; keeps the netlist, `netlist.v`, which is Verilog without cells of a library.
+        config: configuration of the design.
+        files: files from `write_project`.
+        directory: output directory, which is replaced; keeps `netlist.v`, Verilog without library cells.
 
     Raises:
-        UserError: Yosys is missing, or refuses something.
+        UserError: Yosys is missing, or reported an error.
     """
     emptied(directory)
     for path in files:
@@ -136,7 +138,7 @@ def count_gates(config: Configuration, files: Sequence[Path], directory: Path) -
         "opt_clean",
         "tee -q -o products.json stat -json",
         f"synth -flatten -top {TOP.stem}",
-        # A library of cells has few kinds of flip-flops.
+        # Cell libraries have few kinds of flip-flops.
         "dfflegalize -cell $_DFF_P_ x",
         "abc -g cmos",
         "opt_clean -purge",
@@ -159,21 +161,21 @@ def _kinds(statistics: Path) -> dict[str, int]:
 
 
 def shape_for(tiles: float) -> str | None:
-    """The smallest of `SHAPES` with so many tiles, or None."""
+    """Return the smallest of `SHAPES` with this many tiles, or None."""
     sizes = {shape: int(shape[0]) * int(shape[2]) for shape in SHAPES}
     return next((shape for shape, size in sizes.items() if size >= tiles), None)
 
 
 def write_info(design: Design, files: Sequence[Path], shape: str) -> Path:
-    """Write what Tiny Tapeout wants to know of a project; its author fills in the empty texts.
+    """Write Tiny Tapeout's description of a project; the author fills in the empty texts.
 
     Args:
-        design: it.
-        files: of `write_project`.
+        design: design of the project.
+        files: files from `write_project`.
         shape: one of `SHAPES`.
 
     Returns:
-        `info.yaml`, beside `src/`.
+        `info.yaml`, next to `src/`.
     """
     clock_hz = design.configuration.screen_geometry.clock_hz
     pins = {f"ui[{bit}]": "" for bit in range(8)}
@@ -201,10 +203,10 @@ def write_info(design: Design, files: Sequence[Path], shape: str) -> Path:
 def designs_of(
     scene: Path, options: Mapping[str, object], console: Console, *, compare: bool
 ) -> Iterator[tuple[str, Design]]:
-    """What is to be counted, by a name: the project, and what it may be compared with.
+    """Yield the designs to count, with their names: the project, and designs to compare it with.
 
     Raises:
-        UserError: as `fix`.
+        UserError: as in `fix`.
     """
     yield "project", design_of(scene, options, "all", console, **DEFAULTS)
     for other in COMPARED if compare else ():
@@ -214,8 +216,8 @@ def designs_of(
 
 
 def show(counted: Sequence[tuple[Design, Gates]], console: Console) -> None:
-    """Print what designs take."""
-    counts = Table("rays", "gates", "registers", "of the line buffer", "products", "tiles", "project")
+    """Print the sizes of designs."""
+    counts = Table("rays", "gates", "registers", "line buffer bits", "products", "tiles", "shape")
     for column in counts.columns[:-1]:
         column.justify = "right"
     for design, gates in counted:
@@ -227,18 +229,18 @@ def show(counted: Sequence[tuple[Design, Gates]], console: Console) -> None:
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Build the parser of the command line."""
     parser = CommandParser("tinytapeout", __doc__, "boxes")
-    add_scene_argument(parser, "what to build in (mirror_room)", default=find_scene("mirror_room"))
-    parser.add_argument("--compare", action="store_true", help="count finer pictures and the beam engine too")
-    parser.add_argument("--output", type=Path, default=Path("build/tinytapeout"), help="(default: %(default)s)")
+    add_scene_argument(parser, "scene to build in (default: mirror_room)", default=find_scene("mirror_room"))
+    parser.add_argument("--compare", action="store_true", help="also count finer pictures and the beam engine")
+    parser.add_argument("--output", type=Path, default=Path("build/tinytapeout"), help="output directory (%(default)s)")
     add_configuration_options(parser)
     add_keep_option(parser)
     return parser
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what decides the command's figures."""
+    """Digest everything that affects the command's figures."""
     quiet = Console(quiet=True)
     found = designs_of(arguments.scene, given_options(arguments), quiet, compare=arguments.compare)
     sources = ["fpga/tiny_tapeout.py", "fpga/tt_um_raycaster.v"]
@@ -246,7 +248,7 @@ def provenance(arguments: argparse.Namespace) -> Provenance:
 
 
 def _tinytapeout(kept: Outcome) -> str:
-    """Gates and tiles of a scene as a Tiny Tapeout project, the chosen design first."""
+    """Gates and tiles of a scene as a Tiny Tapeout project, with the default design first."""
     figures = kept.figures
     rows = [
         [
@@ -259,7 +261,7 @@ def _tinytapeout(kept: Outcome) -> str:
         f"`{figures['scene']}`, built in. Tiles: one for {figures['gates_a_tile']:,} gates, and one for "
         f"{figures['registers_a_tile']} registers."
     )
-    headings = ["engine", "rays per frame", "gates", "registers", "of them line buffer", "multiplications", "tiles"]
+    headings = ["engine", "rays per frame", "gates", "registers", "in line buffer", "multiplications", "tiles"]
     return f"{table(headings, rows)}\n\n{note}"
 
 
@@ -267,7 +269,7 @@ PUBLISHED = (Published("tinytapeout", ["tinytapeout"], _tinytapeout),)
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+    """Run the command."""
     arguments = command_parser().parse_args(argv)
     console, counted = Console(), []
     for name, design in designs_of(arguments.scene, given_options(arguments), console, compare=arguments.compare):
@@ -302,8 +304,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         figures,
         scope_of(project.configuration),
         provenance,
-        left_out="a layout, and any process's own cells",
+        left_out="a layout, and the cells of a process",
     )
     console.print(
-        f"{arguments.output / 'project'}/ has src/ and info.yaml of {project.configuration.name}", soft_wrap=True
+        f"{arguments.output / 'project'}/ has src/ and info.yaml for {project.configuration.name}", soft_wrap=True
     )

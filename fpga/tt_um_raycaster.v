@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The ports of a Tiny Tapeout project: one scene, which is built in, on the VGA Pmod that its community uses. A pixel takes
-// a clock.
+// Top of a Tiny Tapeout project: one built-in scene on the community's VGA Pmod, at one pixel per clock.
 
 module tt_um_raycaster (
     input  wire [7:0] ui_in,            // not used
@@ -8,12 +7,12 @@ module tt_um_raycaster (
     input  wire [7:0] uio_in,           // not used
     output wire [7:0] uio_out,
     output wire [7:0] uio_oe,           // all are inputs
-    input  wire       ena,              // high while the project is chosen
+    input  wire       ena,              // high while the project is selected
     input  wire       clk,
     input  wire       rst_n             // may change at any time
 );
 
-// raycaster_regs.h says where the registers are.
+// Register address and bits, as in raycaster_regs.h.
 localparam [3:0] CONTROL = 4'h4;
 localparam [31:0] RUN = 32'h1, COMMIT = 32'h2;
 
@@ -26,7 +25,7 @@ always @(posedge clk)
     settled <= {settled[0], rst_n};
 wire reset = !settled[1];
 
-// One write tells the ray tracer to run.
+// One write starts the ray tracer.
 reg started;
 always @(posedge clk)
     if (reset)

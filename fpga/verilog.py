@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster verilog`: the design as Verilog, a file a module, with what other flows want beside it."""
+"""`raycaster verilog`: write the design as Verilog, one file per module, with the files that other flows need."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from raycaster.output import Console, printable
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Build the parser of the command line."""
     parser = CommandParser("verilog", __doc__, "--engine exact")
-    parser.add_argument("--output", type=Path, default=Path("build/verilog"), help="(default: %(default)s)")
+    parser.add_argument("--output", type=Path, default=Path("build/verilog"), help="output directory (%(default)s)")
     parser.add_argument("--prefix", default=PREFIX, help="prefix of all module names (default: %(default)s)")
-    add_scene_argument(parser, "what to build in, with --fix")
+    add_scene_argument(parser, "scene to build in with --fix")
     add_fix_option(parser)
     add_configuration_options(parser)
     return parser
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+    """Run the command."""
     arguments = command_parser().parse_args(argv)
     config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, Console())
     files = write_verilog(config, arguments.output, arguments.prefix)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""The truth in Python: what every picture must be, by rational arithmetic and as the seed engine rounds it."""
+"""Golden models in Python: every picture as it must be, in rational arithmetic or with the seed engine's rounding."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Scenes that strain fixed-point arithmetic, each by name with what it strains.
+"""Scenes that strain fixed-point arithmetic, each with a name and a description of the strain.
 
 They are made for the full screen, whose rays have slopes (100, -160..159, -49..190).
 """
@@ -23,37 +23,37 @@ _PALETTE = (
     (200, 200, 180), (230, 80, 60), (60, 160, 80), (70, 100, 220), (240, 200, 60), (160, 70, 180),
     (60, 190, 200), (250, 140, 40), (120, 120, 130), (220, 120, 160), (140, 180, 60), (90, 60, 40),
 )  # fmt: skip
-"""Colours in turn, no two of which blend alike."""
+"""Colours for rectangles in turn; no two blend alike."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """One entry of the catalogue."""
+    """An entry of the catalogue."""
 
     name: str
     strain: str
-    """What it is about, in a few words."""
+    """The case's purpose, in a few words."""
 
     scene: Scene
 
 
 def catalogue(looks: Collection[str] = ()) -> list[Case]:
-    """All cases that need no more than these of the options `LOOKS`.
+    """Return all cases that need no options of `LOOKS` except these.
 
-    Every scene has at most 12 rectangles, and two reflections; a design that has more may show it with more.
+    Every scene has at most 12 rectangles, and two reflections; a design with more reflections may show it with more.
     """
     cases = [_case(*entry) for family in _FAMILIES for entry in family()]
     found = [case for case in cases if not case.scene.lacks(looks)]
     names = [case.name for case in found]
     if len(set(names)) != len(names):
-        raise ValueError("two cases have one name")
+        raise ValueError("two cases have the same name")
     return found
 
 
 _Look = Mapping[str, Any]
 _Rectangles = Sequence[Corners | tuple[Corners, _Look]]
 _Entry = tuple[str, str, Corner | Camera, _Rectangles, *tuple[Light, ...]]
-"""A rectangle may have a look: what a scene file says beside its corners and colour. There is at most one light."""
+"""A rectangle may have a look: its keys in a scene file, except corners and colour. There is at most one light."""
 
 
 def _case(name: str, strain: str, camera: Corner | Camera, rectangles: _Rectangles, *lights: Light) -> Case:
@@ -71,7 +71,7 @@ def _case(name: str, strain: str, camera: Corner | Camera, rectangles: _Rectangl
 
 
 def _plane(axis: int, position: int, low: tuple[int, int] = (0, 0), high: tuple[int, int] = (LAST, LAST)) -> Corners:
-    """A rectangle on an axis; its extent is given on the two others in the order x, y, z."""
+    """Return a rectangle across an axis; its extent is given on the two other axes in the order x, y, z."""
 
     def corner(extent: tuple[int, int]) -> Corner:
         coordinates = list(extent)
@@ -83,7 +83,7 @@ def _plane(axis: int, position: int, low: tuple[int, int] = (0, 0), high: tuple[
 
 
 def _box(low: Corner, high: Corner) -> list[Corners]:
-    """The six sides."""
+    """Return the six sides of a box."""
     sides = []
     for axis in range(3):
         others = [other for other in range(3) if other != axis]
@@ -98,7 +98,7 @@ _FLOOR = _plane(2, 0)
 
 
 def _grazing() -> Iterator[_Entry]:
-    """e = 1: the quotient is the slope times the distance, and an error of the origin is multiplied likewise."""
+    """Yield cases with e = 1: the quotient is slope times distance, so an error of the origin is multiplied too."""
     for name, axis, step in (("right", 1, 1), ("left", 1, -1), ("ceiling", 2, 1), ("floor", 2, -1)):
         camera = (0, MIDDLE, MIDDLE)
         for distance in (1, 2, 5):
@@ -122,7 +122,7 @@ def _grazing() -> Iterator[_Entry]:
 
 
 def _parallel() -> Iterator[_Entry]:
-    """e = 0."""
+    """Yield cases with e = 0."""
     camera = (0, MIDDLE, MIDDLE)
     yield "parallel_in_plane", "e = 0 and n = 0: rays run within a plane", camera, [_plane(1, MIDDLE), _BACK]
     yield (
@@ -137,7 +137,7 @@ def _parallel() -> Iterator[_Entry]:
 
 
 def _camera_on() -> Iterator[_Entry]:
-    """n = 0, and walls that are touched."""
+    """Yield cases with n = 0: the camera touches walls."""
     camera = (100, 200, 300)
     for axis, name in enumerate("xyz"):
         plane = _plane(axis, camera[axis])
@@ -153,7 +153,7 @@ def _camera_on() -> Iterator[_Entry]:
 
 
 def _boxes() -> Iterator[_Entry]:
-    """Closed, so that every ray is reflected as often as it may."""
+    """Yield closed boxes, in which every ray is reflected as often as it may be."""
     middle = (MIDDLE, MIDDLE, MIDDLE)
     for half in (1, 2, 10, 100):
         low, high = MIDDLE - half, MIDDLE + half
@@ -162,7 +162,7 @@ def _boxes() -> Iterator[_Entry]:
     yield "box_world", "inside the whole world", middle, _WORLD
     yield (
         "box_off_centre",
-        "inside a box of mirrors, beside a wall",
+        "inside a box of mirrors, next to a wall",
         (101, 299, 201),
         _box((100, 200, 200), (140, 300, 260)),
     )
@@ -175,7 +175,7 @@ def _boxes() -> Iterator[_Entry]:
 
 
 def _extreme_coordinates() -> Iterator[_Entry]:
-    """Nothing but 0 and 511."""
+    """Yield cases whose rectangles have only the coordinates 0 and 511."""
     zero, last = (0, 0, 0), (LAST, LAST, LAST)
     lines = [_plane(axis, 0, (0, 0), (0, LAST)) for axis in range(3)]
     yield "all_0", "every coordinate 0 or along an axis", zero, [(zero, zero), *lines, _plane(0, 0), _FLOOR]
@@ -190,9 +190,9 @@ def _extreme_coordinates() -> Iterator[_Entry]:
 
 
 def _quotients() -> Iterator[_Entry]:
-    """The divider's greatest quotient, and the first that overflows."""
+    """Yield cases with the divider's greatest quotient, and with the smallest that overflows."""
     yield "quotient_511", "100 x 511 / 100: the greatest quotient", (0, 0, 0), [_BACK]
-    yield "quotient_512", "100 x 128 / 25: the least that overflows", (0, MIDDLE, 128), [_FLOOR, _BACK]
+    yield "quotient_512", "100 x 128 / 25: the smallest that overflows", (0, MIDDLE, 128), [_FLOOR, _BACK]
     yield (
         "quotient_511_6",
         "100 x 220 / 43: 511.6, which nearest rounds out of the world",
@@ -204,7 +204,7 @@ def _quotients() -> Iterator[_Entry]:
 
 
 def _close_planes() -> Iterator[_Entry]:
-    """Depths that differ by one."""
+    """Yield cases with depths that differ by one."""
     for axis, name, camera in ((0, "x", (0, MIDDLE, 100)), (1, "y", (0, 0, 100)), (2, "z", (0, MIDDLE, 0))):
         yield (
             f"far_pair_{name}",
@@ -227,7 +227,7 @@ def _close_planes() -> Iterator[_Entry]:
 
 
 def _slits() -> Iterator[_Entry]:
-    """One unit wide."""
+    """Yield cases with slits and strips one unit wide."""
     camera = (0, MIDDLE, 100)
     for name, x in (("near", 20), ("far", 500)):
         yield f"slit_y_{name}", "a gap of one unit between two walls", camera, [
@@ -242,7 +242,7 @@ def _slits() -> Iterator[_Entry]:
 
 
 def _shared() -> Iterator[_Entry]:
-    """Ties."""
+    """Yield cases with ties."""
     camera = (0, MIDDLE, 100)
     wall = _plane(0, 300, (100, 50), (400, 300))
     yield "coincident", "one rectangle three times", camera, [wall, wall, wall]
@@ -265,7 +265,7 @@ def _shared() -> Iterator[_Entry]:
 
 
 def _thin() -> Iterator[_Entry]:
-    """No extent."""
+    """Yield cases with rectangles that have no extent: points and lines."""
     camera = (0, MIDDLE, 100)
     yield "points", "rectangles of one point, some of them on a ray", camera, [
         (point, point)
@@ -281,7 +281,7 @@ def _thin() -> Iterator[_Entry]:
 
 
 def _mirror_edges() -> Iterator[_Entry]:
-    """Whether a mirror is hit decides everything after it."""
+    """Yield cases with rays near a mirror's edge, where a hit or a miss decides everything after it."""
     camera = (0, MIDDLE, 100)
     yield "mirror_edge", "a mirror that ends where rays arrive at whole units", camera, [
         _plane(0, 200, (MIDDLE - 40, 60), (MIDDLE + 40, 140)), _plane(0, 0), _BACK, _FLOOR,
@@ -289,13 +289,13 @@ def _mirror_edges() -> Iterator[_Entry]:
     yield "mirror_strip", "a mirror one unit wide before a wall", camera, [
         _plane(0, 300, (MIDDLE, 0), (MIDDLE + 1, LAST)), _plane(0, 0), _BACK,
     ]  # fmt: skip
-    yield "mirror_floor_edge", "a mirror on the floor that ends beside a wall", camera, [
+    yield "mirror_floor_edge", "a mirror on the floor that ends next to a wall", camera, [
         _plane(2, 0, (100, 100), (400, 300)), _plane(1, 301), _plane(0, 401), _plane(2, LAST),
     ]  # fmt: skip
 
 
 def _facing() -> Iterator[_Entry]:
-    """The error is carried from mirror to mirror."""
+    """Yield cases with facing mirrors, which carry the error from one to the next."""
     for width in (1, 4, 40, 400):
         low = MIDDLE - (width + 1) // 2
         sides = [_plane(1, low), _plane(1, low + width + 1)]
@@ -320,7 +320,7 @@ def _facing() -> Iterator[_Entry]:
 
 
 def _corners() -> Iterator[_Entry]:
-    """Planes that are met in one point, twice as far as the viewing rectangle."""
+    """Yield cases with planes that rays meet in one point, twice as far as the viewing rectangle."""
     camera = (100, 100, 200)
     walls = [_plane(0, 300), _plane(1, 140)]
     yield "corner_of_two", "rays into the edge of two walls", camera, [*walls, _plane(0, 50), _FLOOR]
@@ -342,7 +342,7 @@ def _corners() -> Iterator[_Entry]:
 
 
 def _turned() -> Iterator[_Entry]:
-    """Every sign of every component of a slope, and each of them 0."""
+    """Yield cases with turned cameras: every sign of each slope component, and each component 0."""
     place = (200, 250, 300)
 
     def camera(yaw: float = 0, pitch: float = 0, roll: float = 0, position: Corner = place) -> Camera:
@@ -380,7 +380,7 @@ def _turned() -> Iterator[_Entry]:
 
 
 def _surfaces() -> Iterator[_Entry]:
-    """Points on the border of two cells, and every weight."""
+    """Yield cases with points on the border of two cells, and with every weight of mirrors."""
     camera = (0, MIDDLE, 128)
     pattern = {"pattern": "checker", "colour2": (250, 250, 250), "cell": 8}
     for kind, cell in (("checker", 8), ("checker", 256), ("rows", 16), ("columns", 64)):
@@ -410,7 +410,7 @@ def _surfaces() -> Iterator[_Entry]:
 
 
 def _lights() -> Iterator[_Entry]:
-    """The light in planes, on edges, in corners, behind slits, and where it is seen edge-on."""
+    """Yield cases with the light in planes, on edges, in corners, behind slits, and edge-on to surfaces."""
     camera = (0, MIDDLE, 128)
 
     def light(x: int, y: int, z: int, shade: float = 0.25) -> Light:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From what a ray met to the colour of its pixel."""
+"""Pixel colours from the hits of rays."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ def hit_colours(
     points: np.ndarray,
     denominators: np.ndarray | int,
 ) -> np.ndarray:
-    """The colours of what rays hit, patterns included.
+    """Return the colours at the hit points of rays, patterns included.
 
     Args:
         rectangles: the table.
         background: red, green, blue; the colour of a ray that hits nothing.
         winners: int64 (rays,): the rectangle that was hit, -1 for none.
-        points: int64 (rays, 3): where, in world units times the denominator.
-        denominators: of the points, int64 (rays,) or one for all; don't care for a miss.
+        points: int64 (rays, 3): the hit point, in world units times the denominator.
+        denominators: int64 (rays,) or one for all: denominators of the points; don't care for a miss.
 
     Returns:
         uint8 (rays, 3).
@@ -42,15 +42,16 @@ def hit_colours(
 
 
 def blend(seen: Sequence[np.ndarray], quarters: Sequence[np.ndarray]) -> np.ndarray:
-    """Pixel colours: what a ray sees after a mirror weighs as many quarters as it mirrors, the mirror's own the others.
+    """Blend the colours that rays see into pixel colours.
 
-    The last hit shows its own colour alone. Nothing is rounded before the end.
+    At a mirror, the reflected colour has the weight of the mirror's quarters, and the mirror's own colour that of the
+    remaining ones. The last hit shows only its own colour. Nothing is rounded before the end.
 
     Args:
         seen: for the primary ray and each reflection, uint8 (rays, 3): the colour of what was hit, the background for a
             miss and from then on.
-        quarters: for the primary ray and each reflection, int (rays,): how much of what was hit is mirror, 0..4; don't
-            care for the last and for a miss.
+        quarters: for the primary ray and each reflection, int (rays,): reflectivity of the rectangle that was hit,
+            0..4; don't care for the last and for a miss.
 
     Returns:
         uint8 (rays, 3).

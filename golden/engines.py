@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The golden model of a design."""
+"""Choice of the golden model for a design."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from raycaster.golden.seed_engine import SeedModel
 
 
 def model_of(config: Configuration) -> Model:
-    """The model whose pictures a design must draw."""
+    """Return the golden model whose pictures a design must draw."""
     if config.facts.divides:
         return SeedModel(config.fraction_bits, config.rounding, looks=config.looks)
     return ExactModel(looks=config.looks)

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""How far the seed engine's rounding leads from the exact picture, ray by ray, and how far it may.
+"""Errors of the seed engine's rounding against the exact picture, ray by ray, and their bounds.
 
 An intersection forms P[u] = O[u] + D[u] (k - O[a]) / e. The plane k is exact, so an origin that is off by d[u] and d[a]
 puts the point off by at most
 
     d'[u] = d[u] + |D[u] / e| d[a] + q,    d'[a] = 0,
 
-where q is what the quotient's rounding adds: one unit in the last place for truncation, half of one for nearest. The
-primary ray starts from d = 0. It is standard forward error analysis (Higham 2002, chapter 1), and holds for a ray as
-long as it hits what the exact ray hits; where it does not, it has flipped, and is counted instead.
+where q is the error of the quotient's rounding: one unit in the last place for truncation, half of one for nearest. The
+primary ray starts from d = 0. This is standard forward error analysis (Higham 2002, chapter 1). It holds for a ray as
+long as it hits the same rectangles as the exact ray; a ray that does not has flipped, and is only counted.
 
-Everything is compared as integers: distances over a denominator in which all slopes passed so far are multiplied
-together, with 2^(F + 1) for the half.
+All comparisons are of integers: distances over a common denominator, the product of all slopes so far and of 2^(F + 1),
+which covers the half.
 """
 
 from __future__ import annotations
@@ -29,33 +29,33 @@ from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.world import OTHER_AXES, Rectangles
 
 NEAR = 1e-9
-"""Parts by which two quotients in floating point may be off, many times over."""
+"""Relative margin for comparing two floating-point quotients, far above their rounding errors."""
 
 
 @dataclass(frozen=True)
 class DepthErrors:
-    """The rays of one depth of reflection, 0 for primary rays, of those that have not flipped before."""
+    """Errors at one depth of reflection, 0 for primary rays, of the rays that have not flipped before."""
 
     rays: int
-    """That hit what the exact ray hits."""
+    """Number of rays that hit the same rectangle as the exact ray."""
 
     flips: int
-    """That hit something else, or nothing, or something where the exact ray hits nothing."""
+    """Number of rays that hit something else, or nothing, or something although the exact ray hits nothing."""
 
     worst: float
-    """Greatest error of a coordinate of a hit point, in world units; 0 where no ray hit."""
+    """Greatest error of a coordinate of a hit point, in world units; 0 if no ray hit."""
 
     mean: float
-    """Mean over the rays of each one's greatest error of a coordinate, in world units; 0 where no ray hit."""
+    """Mean, over the rays, of a ray's greatest error of a coordinate, in world units; 0 if no ray hit."""
 
     bound: float
-    """Greatest of the errors that the rays might have, in world units."""
+    """Greatest bound on an error of the rays, in world units."""
 
     tightest: float
-    """Greatest part of its bound that a coordinate's error reaches; more than 1 would be wrong."""
+    """Greatest ratio of a coordinate's error to its bound; more than 1 would be wrong."""
 
     exceeded: int
-    """Coordinates whose error is more than their bound."""
+    """Number of coordinates whose error exceeds their bound."""
 
 
 def compare(
@@ -66,15 +66,15 @@ def compare(
     fraction_bits: int,
     rounding: Rounding,
 ) -> tuple[DepthErrors, ...]:
-    """Trace rays both ways and compare; see `depth_errors`.
+    """Trace rays with both models and compare the results; see `depth_errors`.
 
     Args:
         rectangles: the table.
         camera: where the rays start, in world units.
-        slopes: int (rays, 3), none 0 along x.
+        slopes: int (rays, 3): slopes of the rays, not 0 along x.
         reflections: 0 or more.
         fraction_bits: F.
-        rounding: of quotients.
+        rounding: rounding of quotients.
     """
     dark = (0, 0, 0)
     perfect, rounded = (
@@ -93,25 +93,25 @@ def depth_errors(
     fraction_bits: int,
     rounding: Rounding,
 ) -> tuple[DepthErrors, ...]:
-    """Hold hit points against the exact ones and against their bounds.
+    """Compare hit points with the exact ones, and the errors with their bounds.
 
     Args:
         rectangles: the table.
-        slopes: int (rays, 3), of the primary rays.
-        perfect: what they meet.
-        winners: for each depth, int64 (rays,): what they met, as `Trace` has it.
-        points: for each depth, int64 (rays, 3): where, in units of 2^-F.
+        slopes: int (rays, 3): slopes of the primary rays.
+        perfect: exact trace of the rays.
+        winners: for each depth, int64 (rays,): the rectangles that they hit, as in `Trace`.
+        points: for each depth, int64 (rays, 3): the hit points, in units of 2^-F.
         fraction_bits: F.
-        rounding: of quotients.
+        rounding: rounding of quotients.
 
     Returns:
-        By depth of reflection, the primary rays first.
+        The errors by depth of reflection, the primary rays first.
     """
     # Slopes only change signs, so the magnitudes serve all depths.
     magnitude = np.abs(np.asarray(slopes)).T
-    # A bound's numerator at most doubles with each depth beside the slope that it is multiplied with, and starts at 4.
+    # At each depth, a bound's numerator is multiplied by at most twice a slope; it starts at 4.
     if len(winners) * math.log2(2 * magnitude.max()) + 2 >= 63:
-        # Python's own integers, which take a hundred times as long.
+        # Python's own integers do not overflow, but take a hundred times as long.
         magnitude = magnitude.astype(object)
     scale = 1 << fraction_bits
     last_place = 2 if rounding == "truncate" else 1
@@ -131,7 +131,7 @@ def depth_errors(
         # Errors over denominator * scale.
         off = np.abs(points[depth].T * denominator - perfect.points[depth].T * scale)
         found.append(_summary(off, allowed, common, denominator, hit, flips, scale))
-        # A ray that hits nothing has ended, and agrees from then on.
+        # A ray that hits nothing has ended, and is not compared any further.
         same = hit
     return tuple(found)
 
@@ -144,7 +144,7 @@ def _next_bound(
     hit: np.ndarray,
     last_place: int,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The bounds after one more intersection; `last_place` is q in halves of a unit."""
+    """Return the bounds after one more intersection; `last_place` is q in halves of a unit."""
     further = np.zeros_like(allowed)
     denominator = np.ones_like(common)
     for axis in range(3):
@@ -166,13 +166,13 @@ def _summary(
     flips: int,
     scale: int,
 ) -> DepthErrors:
-    """Errors off / (denominator * scale) against bounds allowed / (common * 2 * scale), of the rays that hit."""
+    """Compare errors off / (denominator * scale) with bounds allowed / (common * 2 * scale), for the rays that hit."""
     if not hit.any():
         return DepthErrors(0, flips, 0.0, 0.0, 0.0, 0.0, 0)
     off, allowed, common, denominator = off[:, hit], allowed[:, hit], common[hit], denominator[hit]
     errors = off / (denominator * scale).astype(float)
     bounds = allowed.astype(float) / (common.astype(float) * 2 * scale)
-    # Only where the two are next to each other are the products compared themselves, which no machine word holds.
+    # Only if the two are close are the exact products compared, which exceed a machine word.
     exceeded = sum(
         int(off[place]) * 2 * int(common[place[1]]) > int(allowed[place]) * int(denominator[place[1]])
         for place in map(tuple, np.argwhere(errors > bounds * (1 - NEAR)))
@@ -192,19 +192,20 @@ def _summary(
 def conditions(
     rectangles: Rectangles, camera: Sequence[int], slopes: np.ndarray, perfect: Trace
 ) -> tuple[np.ndarray, ...]:
-    """How far a hit moves for each unit by which a slope is off: the condition number of the intersection.
+    """Return the condition number of each intersection: how far a hit moves per unit of a slope's error.
 
     A ray hits at P[u] = E[u] + D[u] t with t = n / e and e = D[a]. A change of D[u] moves it by t along u, one of D[a]
-    by t |D[u] / e|: the greatest of these. Mirrors do not change it, as t runs on through them.
+    by t |D[u] / e|; the condition number is the greatest of these. Mirrors do not change it, as t continues through
+    them.
 
     Args:
         rectangles: the table.
         camera: where the rays start, in world units.
-        slopes: int (rays, 3), none of them all 0.
-        perfect: what they meet.
+        slopes: int (rays, 3): slopes of the rays, none of them all 0.
+        perfect: exact trace of the rays.
 
     Returns:
-        By depth of reflection, float (rays,): in world units; not a number where nothing is hit.
+        By depth of reflection, float (rays,): in world units; NaN where nothing is hit.
     """
     magnitude = np.abs(np.asarray(slopes))
     # Along the steepest axis, whose slope is not 0.

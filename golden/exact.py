@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""The image over the rationals: no division, no rounding, at any depth of reflection.
+"""The exact picture: no division and no rounding, at any depth of reflection.
 
 Two ideas replace the divisions. Bounds and depths are compared by cross-multiplication (Kensler and Shirley 2006). And
-a ray that was reflected at plane k on axis a is taken as the straight ray from the eye mirrored in that plane,
-E'[a] = 2 k - E[a] and D'[a] = -D[a], with the parameter t = n / e running on (Heckbert and Hanrahan 1984). So no hit
-point is ever formed; what lies between the mirrored eye and the mirror is shut out by t > t of the mirror, or by t not
-less than that where the ray may meet a second plane in the mirror's point, as it does in a corner.
+a ray that was reflected at plane k on axis a is treated as the straight ray from the eye mirrored in that plane,
+E'[a] = 2 k - E[a] and D'[a] = -D[a], with the parameter t = n / e continuing (Heckbert and Hanrahan 1984). So no hit
+point is ever formed. Anything between the mirrored eye and the mirror is excluded by requiring that t is greater than
+at the mirror, or not less if the ray may meet a second plane at the same point, as it does in a corner.
 
-Widths: after r reflections |E| and |n| are at most 511 (r + 1), and |e| and |D| at most the greatest slope, 190 for
-primary rays of a camera that is not turned and below 2^19 of one that is. Every product is such a length times a slope.
+Widths: after r reflections |E| and |n| are at most 511 (r + 1), and |e| and |D| at most the greatest slope: 190 for
+primary rays of an unturned camera, below 2^19 for a turned one. Every product is one of these lengths times a slope.
 Arrays are int64, so nothing overflows before slopes of 2^50.
 """
 
@@ -25,12 +25,12 @@ from raycaster.golden.world import OTHER_AXES, Rectangles
 
 @dataclass(frozen=True)
 class ExactModel(Model):
-    """The model of every engine that does not divide, and the true picture for those that do."""
+    """Golden model of every engine that does not divide, and source of the true picture for those that do."""
 
     def meetings(
         self, rectangles: Rectangles, origin: np.ndarray, slope: np.ndarray, *, keep: bool
     ) -> Iterator[Meeting]:
-        """Follow rays from mirror to mirror, each as a straight one from the mirrored eye."""
+        """Follow rays from mirror to mirror, each as a straight ray from the mirrored eye."""
         eye = origin
         mirror_t = np.zeros_like(eye[0]), np.ones_like(eye[0])
         met = np.ones(slope.shape, dtype=bool)
@@ -59,7 +59,10 @@ def _nearest(
     *,
     bounce: Bounce | None,
 ) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
-    """The nearest rectangle from the last mirror on and its t, as numerator and denominator; arrays are ([3,] rays)."""
+    """Find the nearest rectangle from the last mirror on, and its t as numerator and denominator.
+
+    Arrays are ([3,] rays).
+    """
     mirror_n, mirror_e = mirror_t
     winner = np.full(eye.shape[1], -1, dtype=np.int64)
     # 1 / 0 lies beyond every t.
@@ -67,8 +70,8 @@ def _nearest(
     for index in np.flatnonzero(rectangles.visible):
         axis = rectangles.axes[index]
         n, e, within = rectangles.crossed(index, eye, slope)
-        # False for n <= 0, as the first "mirror" stands at t = 0 / 1 and all its axes are met; and for a ray that has
-        # ended, as its last one stands at 1 / 0.
+        # False for n <= 0, as the first "mirror" is at t = 0 / 1 and all its axes are met; and for a ray that has
+        # ended, as its last mirror is at 1 / 0.
         along, along_mirror = n * mirror_e, mirror_n * e
         ahead = (e > 0) & ((along > along_mirror) | ((along == along_mirror) & ~met[axis]))
         hit = ahead & within

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The shape of the golden models: rays followed from mirror to mirror, and the pictures that they make."""
+"""Base of the golden models: rays followed from mirror to mirror, and the pictures that they make."""
 
 from __future__ import annotations
 
@@ -23,25 +23,25 @@ from raycaster.screens import Screen
 
 @dataclass(frozen=True)
 class Bounce:
-    """All that happened to every ray between two mirrors.
+    """All values of every ray between two mirrors.
 
-    Lengths of the exact model are in world units, those of the seed engine's in units of 2^-F; slopes are in world
+    Lengths in the exact model are in world units, in the seed engine's model in units of 2^-F; slopes are in world
     units. Rows of rectangles that are disabled or have no plane are all 0.
     """
 
     origins: np.ndarray
     """int64 (rays, 3): where rays start. Exact: the camera, mirrored in all mirrors so far. Seed: the camera, or the
-    last hit point as stored, where a ray that has ended stays."""
+    last hit point as stored; a ray that has ended stays there."""
 
     slopes: np.ndarray
-    """int64 (rays, 3): slopes of the rays, with the reflections so far."""
+    """int64 (rays, 3): slopes of the rays, after the reflections so far."""
 
     met: np.ndarray
-    """bool (rays, 3): on which axes a plane through the ray's start is not hit. Exact: those of the mirrors that it met
-    there, and all of a ray from the camera. Seed: all."""
+    """bool (rays, 3): axes on which a plane through the ray's start is not hit. Exact: the axes of the mirrors that it
+    met there, and all axes for a ray from the camera. Seed: all."""
 
     alive: np.ndarray
-    """bool (rays,): has hit something that mirrors at every bounce before."""
+    """bool (rays,): the ray has hit something that mirrors at every bounce before."""
 
     numerators: np.ndarray
     """int64 (rectangles, rays): n = plane - origin along the rectangle's axis. Exact: times the sign of the slope, so
@@ -55,26 +55,26 @@ class Bounce:
     parallel ray. Seed: 2^F."""
 
     quotients: np.ndarray
-    """int64 (rectangles, rays, 2): the way from the origin on u and v. Exact: slope times n, signed. Seed: magnitudes
-    |slope n / e|, rounded; 0 where not valid."""
+    """int64 (rectangles, rays, 2): the distance from the origin along u and v. Exact: slope times n, signed. Seed:
+    magnitudes |slope n / e|, rounded; 0 where not valid."""
 
     valid: np.ndarray
-    """bool (rectangles, rays, 2): that there is a coordinate on u and on v: the plane is ahead, behind the last mirror
-    or in a corner with it; and of the seed engine, the quotient fits its bits."""
+    """bool (rectangles, rays, 2): the coordinates on u and v exist: the plane is ahead, beyond the last mirror or in a
+    corner with it. Seed: also, the quotient fits its bits."""
 
     points: np.ndarray
     """int64 (rectangles, rays, 3): the point on the rectangle's plane. Seed: 0 on u and v where not valid."""
 
     depths: np.ndarray
-    """int64 (rectangles, rays): the way along x. Exact: from the camera by all mirrors, with the sign of n. Seed: from
-    the origin; means something where hit."""
+    """int64 (rectangles, rays): the distance along x. Exact: from the camera via all mirrors, with the sign of n. Seed:
+    from the origin; don't care unless hit."""
 
     hits: np.ndarray
     """bool (rectangles, rays): the ray is alive, and both coordinates are valid and within the bounds."""
 
     @classmethod
     def empty(cls, count: int, origin: np.ndarray, slope: np.ndarray, met: np.ndarray, alive: np.ndarray) -> Bounce:
-        """The rays, as (3, rays), before any of so many rectangles."""
+        """Return a bounce of rays, given as (3, rays), with all values of `count` rectangles 0."""
         shapes = {name: () for name in ("numerators", "denominators", "scales", "depths")}
         numbers = {**shapes, "quotients": (2,), "points": (3,)}
         return cls(
@@ -84,7 +84,7 @@ class Bounce:
         )  # fmt: skip
 
     def note(self, rectangle: SupportsIndex, **values: ArrayLike) -> None:
-        """Keep the values of a rectangle, by the names of the arrays."""
+        """Store the values of a rectangle, given by the names of the arrays."""
         for name, value in values.items():
             getattr(self, name)[rectangle] = value
 
@@ -101,23 +101,23 @@ class Trace:
     """uint8 (rays, 3)."""
 
     winners: tuple[np.ndarray, ...]
-    """int64 (rays,): index of the rectangle hit, -1 for none and after what does not mirror."""
+    """int64 (rays,): index of the rectangle hit, -1 for a miss and after a hit that does not mirror."""
 
     seen: tuple[np.ndarray, ...]
-    """uint8 (rays, 3): the colour of what was hit, in the light or in the dark; the background for none."""
+    """uint8 (rays, 3): the colour at the hit point, in the light or in the dark; the background for a miss."""
 
     shadings: tuple[Shading, ...]
     """The light at each hit point; empty without a light."""
 
     points: tuple[np.ndarray, ...]
-    """int64 (rays, 3): where it hit, in world units times the denominator; of the seed engine's misses, where they
-    started."""
+    """int64 (rays, 3): the hit point, in world units times the denominator. Seed: for a miss, where the ray started."""
 
     denominators: tuple[np.ndarray, ...]
-    """int64 (rays,): of the points. Exact: |slope| along the axis of what was hit, 0 for a miss. Seed: 2^F."""
+    """int64 (rays,): denominators of the points. Exact: |slope| along the axis of the rectangle hit, 0 for a miss.
+    Seed: 2^F."""
 
     bounces: tuple[Bounce, ...]
-    """Everything else; empty unless it was to be kept."""
+    """All other values; empty unless they are kept."""
 
 
 @dataclass(frozen=True)
@@ -125,13 +125,13 @@ class Model(ABC):
     """A golden model: the arithmetic of an engine, on whole arrays of rays."""
 
     looks: Collection[str] = field(default=LOOKS, kw_only=True)
-    """Options that scenes may need, from `LOOKS`."""
+    """Options of `LOOKS` that scenes may need."""
 
     @abstractmethod
     def meetings(
         self, rectangles: Rectangles, origin: np.ndarray, slope: np.ndarray, *, keep: bool
     ) -> Iterator[Meeting]:
-        """Follow rays from mirror to mirror without end; it may change the arrays, which are (3, rays)."""
+        """Follow rays from mirror to mirror without end; the arrays are (3, rays), and may be changed in place."""
 
     def trace(
         self,
@@ -152,7 +152,7 @@ class Model(ABC):
             background: red, green, blue.
             slopes: int (rays, 3); only their ratios count.
             reflections: 0 or more.
-            light: what casts shadows; None lights everything.
+            light: light that casts shadows; None lights everything.
             keep: also return every intermediate value: some 100 bytes per ray, rectangle and bounce.
         """
         slope = np.array(np.asarray(slopes).T, dtype=np.int64, order="C")
@@ -161,7 +161,7 @@ class Model(ABC):
         for meeting in islice(self.meetings(rectangles, origin, slope, keep=keep), reflections + 1):
             colours = hit_colours(rectangles, background, *meeting[:3])
             if light:
-                # The slope is still that of the ray that hit: the next one is asked for after this.
+                # The slope is still that of the ray that hit, as `meetings` changes it only for the next one.
                 shading = shade(rectangles, light, *meeting[:3], slope.T)
                 dark = (meeting[0] >= 0) & ~shading.lit
                 colours[dark] = light.quarters * colours[dark].astype(np.int64) >> 2
@@ -183,7 +183,7 @@ class Model(ABC):
         basis: Basis = UNTURNED,
         light: Light | None = None,
     ) -> np.ndarray:
-        """The picture of a table of rectangles; the arguments are those of `trace` and `primary_slopes`.
+        """Return the picture of a table of rectangles; for the arguments see `trace` and `primary_slopes`.
 
         Returns:
             uint8 (rows, columns, 3).
@@ -193,12 +193,12 @@ class Model(ABC):
         return traced.colours.reshape(slopes.shape)
 
     def render(self, scene: Scene, screen: Screen, reflections: int | None = None) -> np.ndarray:
-        """The picture of a scene.
+        """Return the picture of a scene.
 
         Args:
-            scene: what is seen; its `rows` are not looked at.
-            screen: what it is looked at through.
-            reflections: instead of the scene's reflections.
+            scene: the scene; its `rows` are ignored.
+            screen: the screen that shows it.
+            reflections: number of reflections, instead of the scene's own.
 
         Returns:
             uint8 (rows, columns, 3).

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Two pictures held against each other."""
+"""Comparison of two pictures."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ import numpy as np
 from raycaster.configuration import CHANNEL_BITS, Configuration
 
 WRONG = (255, 20, 120)
-"""A pink that no dimmed grey comes near."""
+"""Pink, far from any dimmed grey."""
 
 
 def shown(picture: np.ndarray, config: Configuration) -> np.ndarray:
-    """What a monitor must show of a picture.
+    """Return what a monitor must show for a picture.
 
     Args:
         picture: uint8 (rows, columns, 3).
         config: the design that draws it.
 
     Returns:
-        uint8 (visible lines, visible pixels, 3): each pixel doubled where the screen does so, a channel's lost bits 0.
+        uint8 (visible lines, visible pixels, 3): pixels repeated as on the screen, with a channel's lost bits 0.
     """
     doubling = config.screen_geometry.doubling
     lost_bits = CHANNEL_BITS - config.colour_bits
@@ -27,7 +27,7 @@ def shown(picture: np.ndarray, config: Configuration) -> np.ndarray:
 
 
 def wrong_pixels(picture: np.ndarray, reference: np.ndarray) -> np.ndarray:
-    """Which pixels differ in any channel.
+    """Find the pixels that differ in any channel.
 
     Args:
         picture: uint8 (rows, columns, 3).
@@ -45,18 +45,18 @@ def wrong_pixels(picture: np.ndarray, reference: np.ndarray) -> np.ndarray:
 
 
 def count_wrong(picture: np.ndarray, reference: np.ndarray) -> int:
-    """How many pixels differ; see `wrong_pixels`."""
+    """Count the pixels that differ; see `wrong_pixels`."""
     return int(wrong_pixels(picture, reference).sum())
 
 
 def first_wrong(picture: np.ndarray, reference: np.ndarray) -> tuple[int, int] | None:
-    """Column and row of the first pixel that differs, in the order in which a monitor shows them, or None."""
+    """Return column and row of the first pixel that differs, in the order in which a monitor shows them, or None."""
     places = np.argwhere(wrong_pixels(picture, reference))
     return (int(places[0][1]), int(places[0][0])) if len(places) else None
 
 
 def diff_picture(picture: np.ndarray, reference: np.ndarray) -> np.ndarray:
-    """The reference in dim grey with every wrong pixel in bright pink, for a person to look at.
+    """Return the reference in dim grey with every wrong pixel in bright pink, for people to look at.
 
     Returns:
         uint8 (rows, columns, 3).

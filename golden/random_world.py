@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Random tables, cameras and rays for tests, drawn so that rare cases are common: ties, edges, planes stood on."""
+"""Random tables, cameras and rays for tests, drawn so that rare cases are common: ties, edges, cameras in planes."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ EXTREMES = (0, 1, 255, 256, 510, 511)
 
 ROOM = [((0, 0, 0), tuple(0 if axis == plane else 511 for axis in range(3))) for plane in range(3)]
 ROOM += [(tuple(511 if axis == plane else 0 for axis in range(3)), (511, 511, 511)) for plane in range(3)]
-"""Corners of the six walls of the whole world, from within which every ray hits something."""
+"""Corners of the six walls of the whole world, within which every ray hits something."""
 
 
 def random_rectangles(rng: np.random.Generator, count: int = 12, closed: bool | None = None) -> Rectangles:
-    """A table of `count` rectangles, most with a plane and enabled; lines, points and coincident ones among them.
+    """Draw a table of rectangles, most with a plane and enabled, including lines, points and coincident rectangles.
 
     Args:
-        rng: the source.
-        count: length of the table; 7 or more where closed.
-        closed: with the six walls of the world among them, all enabled; None leaves it to chance.
+        rng: random source.
+        count: number of rectangles; 7 or more if closed.
+        closed: True includes the six walls of the world, all enabled; None leaves it to chance.
     """
     # Few different coordinates, so that planes and edges are shared.
     pool = np.concatenate([rng.choice(EXTREMES, 3), rng.integers(WORLD_SIZE, size=3)])
@@ -49,14 +49,14 @@ def random_rectangles(rng: np.random.Generator, count: int = 12, closed: bool | 
 
 
 def random_camera(rng: np.random.Generator, rectangles: Rectangles) -> np.ndarray:
-    """int64 (3,): in the world, and often on a rectangle's plane or at its edge."""
+    """Draw a camera, int64 (3,), in the world and often in a rectangle's plane or at its edge."""
     corners = rectangles.corners.reshape(-1, 3)
     near = corners[rng.integers(len(corners), size=3), [0, 1, 2]]
     return np.where(rng.random(3) < 0.4, near, rng.integers(WORLD_SIZE, size=3))
 
 
 def random_light(rng: np.random.Generator, rectangles: Rectangles, camera: np.ndarray) -> Light:
-    """A light of any shade: anywhere, in planes and on edges, close to one of them, or at the camera."""
+    """Draw a light of any shade: anywhere, in planes and on edges, close to one of them, or at the camera."""
     position = random_camera(rng, rectangles)
     if rng.random() < 0.1:
         position = camera
@@ -67,7 +67,7 @@ def random_light(rng: np.random.Generator, rectangles: Rectangles, camera: np.nd
 
 
 def random_slopes(rng: np.random.Generator, rays: int) -> np.ndarray:
-    """int64 (rays, 3): half as primary rays have them, half anything of 9 signed bits; 0 only along y and z."""
+    """Draw slopes, int64 (rays, 3): half as in primary rays, half any of 9 signed bits; 0 only along y and z."""
     primary = np.stack(
         [np.full(rays, VIEW_DISTANCE), rng.integers(-160, 160, rays), rng.integers(-49, 191, rays)], axis=1
     )
@@ -78,15 +78,15 @@ def random_slopes(rng: np.random.Generator, rays: int) -> np.ndarray:
 
 
 def random_grid(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """A room, and what is in it, on a grid, so that rays on diagonals run into corners.
+    """Draw a room and its contents on a grid, so that rays on diagonals run into corners.
 
     Args:
-        rng: the source.
-        count: of rectangles, 6 or more.
+        rng: random source.
+        count: number of rectangles, 6 or more.
 
     Returns:
-        Corners, int64 (count, 2, 3), of rectangles with a plane, and a camera, int64 (3,), on the grid too; half of
-        them are on a diagonal of the room.
+        Corners, int64 (count, 2, 3), of rectangles with a plane, and a camera, int64 (3,), on the grid too; half of the
+        cameras are on a diagonal of the room.
     """
     low, high = rng.integers(0, 5, 3), rng.integers(8, 16, 3)
     corners = np.concatenate([np.tile([low, high], (6, 1, 1)), rng.integers(low, high + 1, (count - 6, 2, 3))])
@@ -98,7 +98,7 @@ def random_grid(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.nd
 
 
 def random_looks(rng: np.random.Generator, rectangles: Rectangles) -> Rectangles:
-    """The same rectangles with every mirror and every pattern among them, most often half and plain."""
+    """Return rectangles with random mirrors and patterns, most often half and plain."""
     count = len(rectangles)
     return replace(
         rectangles,
@@ -110,8 +110,11 @@ def random_looks(rng: np.random.Generator, rectangles: Rectangles) -> Rectangles
 
 
 def random_basis(rng: np.random.Generator) -> Basis:
-    """Forward, right and up of a camera, the kinds of which are equally frequent: turned by any angles, by whole right
-    angles, along axes with any signs and lengths, and anything that the registers hold."""
+    """Draw forward, right and up of a camera.
+
+    Four kinds are equally frequent: turned by any angles, turned by whole right angles, along axes with any signs and
+    lengths, and anything that the registers can hold.
+    """
     kind = rng.integers(4)
     if kind == 0:
         yaw, pitch, roll = rng.uniform(-180, 180, 3).tolist()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Primary rays: one a pixel, from the camera through the viewing rectangle."""
+"""Primary rays: one per pixel, from the camera through the viewing rectangle."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from raycaster.screens import Screen
 
 
 def primary_slopes(screen: Screen, basis: Basis = UNTURNED) -> np.ndarray:
-    """Slopes of the ray through every pixel, as the image contract has them.
+    """Return the slopes of the ray through every pixel, as specified in the image contract.
 
     Args:
-        screen: what is looked through.
-        basis: forward, right and up of the camera, times 256. Of one that is not turned the slopes are not times 256,
-            as only ratios of their components count.
+        screen: grid of rays.
+        basis: forward, right and up of the camera, times 256. For an unturned camera the slopes are not times 256, as
+            only ratios of their components count.
 
     Returns:
         int64 (rows, columns, 3): view distance * forward + (column - centre column) * right + (horizon row - row) * up,

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Bit for bit what the divide-per-rectangle hardware computes.
+"""Golden model of the seed engine, bit for bit as its hardware computes, with a division per rectangle.
 
 Origins, planes and hit points are fixed-point numbers with F fraction bits: integers in units of 2^-F. Each coordinate
 of a hit point costs one division of magnitudes. Its quotient is rounded, and reflected rays start at the rounded point:
 that is the engine's only error.
 
-Widths: |n| < 2^(9 + F) and |slope| is at most 190 for primary rays of the screens at hand, so dividends stay below
-2^(17 + F), and within 2^25 at F = 8. Arrays are int64, so nothing overflows before slopes of 2^40.
+Widths: |n| < 2^(9 + F) and |slope| is at most 190 for primary rays of all screens, so dividends stay below 2^(17 + F),
+and within 2^25 at F = 8. Arrays are int64, so nothing overflows before slopes of 2^40.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from raycaster.golden.world import OTHER_AXES, Rectangles
 
 @dataclass(frozen=True)
 class SeedModel(Model):
-    """The model of the seed engine, which measures depth along x, so that its camera cannot turn."""
+    """Golden model of the seed engine, which measures depth along x, so its camera cannot turn."""
 
     fraction_bits: int = 0
     """F, 0..8."""
@@ -60,9 +60,9 @@ class SeedModel(Model):
         *,
         bounce: Bounce | None,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """The nearest rectangle and the point where it is hit; arrays are ([3,] rays).
+        """Find the nearest rectangle and the point where it is hit; arrays are ([3,] rays).
 
-        For a miss, and a ray that is not alive, -1 and the origin itself.
+        For a miss, and for a ray that is not alive, they are -1 and the origin.
         """
         fraction_bits = self.fraction_bits
         winner = np.full(origin.shape[1], -1, dtype=np.int64)
@@ -101,20 +101,20 @@ class SeedModel(Model):
 def divide(
     numerator: ArrayLike, denominator: ArrayLike, fraction_bits: int = 0, rounding: Rounding = "truncate"
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The divider: numerator / denominator, of magnitudes.
+    """Divide magnitudes like the hardware's divider.
 
     Args:
-        numerator: int, 0 or more; it carries the quotient's fraction bits already, so it is not shifted here.
+        numerator: int, 0 or more; it already includes the quotient's fraction bits, so it is not shifted here.
         denominator: int, 0 or more.
         fraction_bits: F; the quotient has 9 + F bits.
-        rounding: toward zero or to nearest, halves up.
+        rounding: toward zero, or to nearest with halves up.
 
     Returns:
-        The quotient, int64, and the overflow, bool: denominator 0 or a quotient, once rounded, of more than 9 + F bits.
+        The quotient, int64, and the overflow, bool: denominator 0, or a rounded quotient of more than 9 + F bits.
         The quotient is 0 where it overflows. Both have the arguments' common shape.
 
     Raises:
-        ValueError: no such rounding.
+        ValueError: there is no such rounding.
     """
     numerator, denominator = np.asarray(numerator, dtype=np.int64), np.asarray(denominator, dtype=np.int64)
     divisor = np.maximum(denominator, 1)
@@ -137,7 +137,7 @@ def intersect(
     fraction_bits: int = 0,
     rounding: Rounding = "truncate",
 ) -> tuple[np.ndarray, np.ndarray]:
-    """One coordinate of a hit point: a + b (c - d) / e.
+    """Compute one coordinate of a hit point: a + b (c - d) / e.
 
     Args:
         a: the origin on this axis, in units of 2^-F.
@@ -146,7 +146,7 @@ def intersect(
         d: the origin on the plane's axis, in units of 2^-F.
         e: the slope on the plane's axis, in world units.
         fraction_bits: F.
-        rounding: of the quotient.
+        rounding: rounding of the quotient.
 
     Returns:
         The coordinate, int64 in units of 2^-F, and whether it is valid, bool: the plane is ahead (e and c - d have one

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Shadows of a point light over the rationals: no point is rounded, so nothing leaks and no epsilon is needed.
+"""Exact shadows of a point light: no point is rounded, so nothing leaks and no epsilon is needed.
 
 A hit point P = N / e is lit if the light L lies strictly on the side that the ray came from, and no rectangle has a
 point strictly between the two. The ray from the light has the integer slope S = N - e L, and meets P at t = 1 / e: a
@@ -51,7 +51,7 @@ def shade(
         light: the light.
         winners: int64 (rays,): the rectangle that was hit, -1 for none.
         points: int64 (rays, 3): the hit point, in world units times the denominator.
-        denominators: int64 (rays,): of the points, more than 0 where anything was hit.
+        denominators: int64 (rays,): denominators of the points, more than 0 where anything was hit.
         slopes: int64 (rays, 3): slopes of the rays; only the signs count.
     """
     position = np.array(light.position, dtype=np.int64)

@@ -10,11 +10,11 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 CONTROL_SYMBOLS = (0b1101010100, 0b0010101011, 0b0101010100, 0b1010101011)
-"""What is sent in blanking, by the control bits c1 c0."""
+"""Symbols sent in blanking, by the control bits c1 c0."""
 
 
 class Sample(NamedTuple):
-    """What a channel carries in one pixel: in the picture a byte, in blanking two bits."""
+    """Content of a channel in one pixel: a byte in the picture, two bits in blanking."""
 
     visible: bool
     data: int
@@ -22,7 +22,7 @@ class Sample(NamedTuple):
 
 
 def minimise_transitions(data: int) -> int:
-    """The first step: nine bits, of which the highest says how the byte was chained, 1 by XOR, 0 by XNOR."""
+    """Do the first step of encoding: nine bits, the highest 1 if the byte was chained by XOR, 0 if by XNOR."""
     ones = data.bit_count()
     xnor = int(ones > 4 or (ones == 4 and not data & 1))
     word = data & 1
@@ -32,8 +32,8 @@ def minimise_transitions(data: int) -> int:
 
 
 def encode(samples: Iterable[Sample]) -> Iterator[int]:
-    """The symbols of a channel, from a balanced start on."""
-    disparity = 0  # ones less zeros of what was sent since blanking
+    """Yield the symbols of a channel, starting with zero disparity."""
+    disparity = 0  # ones minus zeros sent since blanking
     for visible, data, control in samples:
         if not visible:
             disparity = 0
@@ -49,10 +49,10 @@ def encode(samples: Iterable[Sample]) -> Iterator[int]:
 
 
 def decode(symbol: int) -> Sample:
-    """What a symbol carries.
+    """Return the content of a symbol.
 
     Raises:
-        ValueError: the symbol stands for nothing.
+        ValueError: no content has this symbol.
     """
     if symbol in CONTROL_SYMBOLS:
         return Sample(False, 0, CONTROL_SYMBOLS.index(symbol))
@@ -62,5 +62,5 @@ def decode(symbol: int) -> Sample:
     steps = word ^ word << 1
     data = (steps if chained else steps ^ 0xFE) & 0xFF
     if minimise_transitions(data) != chained << 8 | word:
-        raise ValueError(f"{symbol:010b} is no TMDS symbol")
+        raise ValueError(f"{symbol:010b} is not a TMDS symbol")
     return Sample(True, data, 0)

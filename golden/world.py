@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The rectangle table that both engines read, laid out as the hardware's own."""
+"""The rectangle table that the golden models read, laid out like that of the hardware."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ OTHER_AXES = ((1, 2), (0, 2), (0, 1))
 
 @dataclass(frozen=True)
 class Rectangles:
-    """Rectangles by index; where two are equally deep, the lower index is seen."""
+    """Rectangles by index; of two at equal depth, the one with the lower index is seen."""
 
     corners: np.ndarray
     """int64 (rectangles, 2, 3): two opposite corners in any order, in world units 0..511."""
@@ -29,25 +29,25 @@ class Rectangles:
     """bool (rectangles,)."""
 
     mirrors: np.ndarray = field(default_factory=lambda: np.array(2))
-    """int64 (rectangles,): how much each mirrors, in quarters 0..4; 2 everywhere where it is not given."""
+    """int64 (rectangles,): how much each mirrors, in quarters 0..4; 2 by default."""
 
     kinds: np.ndarray = field(default_factory=lambda: np.array(0))
-    """int64 (rectangles,): the patterns, 0 plain, 1 checker, 2 rows, 3 columns; plain where it is not given."""
+    """int64 (rectangles,): the patterns, 0 plain, 1 checker, 2 rows, 3 columns; plain by default."""
 
     cells: np.ndarray = field(default_factory=lambda: np.array(32))
-    """int64 (rectangles,): sizes of the patterns' cells, in world units, powers of two; 32 where it is not given."""
+    """int64 (rectangles,): sizes of the patterns' cells, in world units, powers of two; 32 by default."""
 
     colours_2: np.ndarray = field(default_factory=lambda: np.zeros(3, dtype=np.uint8))
-    """uint8 (rectangles, 3): colours of every other cell; black where it is not given."""
+    """uint8 (rectangles, 3): colours of every other cell; black by default."""
 
     def __post_init__(self):
         for name, shape in (("mirrors", ()), ("kinds", ()), ("cells", ()), ("colours_2", (3,))):
-            if (value := getattr(self, name)).shape == shape:  # a default, which is of every rectangle
+            if (value := getattr(self, name)).shape == shape:  # a default, which applies to every rectangle
                 object.__setattr__(self, name, np.full((len(self), *shape), value))
 
     @classmethod
     def of_scene(cls, scene: Scene) -> Rectangles:
-        """The scene's rectangles in the file's order, all enabled."""
+        """Return the scene's rectangles in the file's order, all enabled."""
         return cls(
             corners=np.array([rectangle.corners for rectangle in scene.rect], dtype=np.int64),
             colours=np.array([rectangle.colour for rectangle in scene.rect], dtype=np.uint8),

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""The system with a processor in simulation: the game, recorded or in a window."""
+"""Simulate the system with a processor: the game, recorded or in a window."""

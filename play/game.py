@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster game`: a recorded game on the simulated system, or a look around in a scene, as an animation; every pixel
-is checked."""
+"""`raycaster game`: film a recorded game, or a scene with a moving light or camera, and check every pixel."""
 
 from __future__ import annotations
 
@@ -16,9 +15,9 @@ from PIL import Image
 from rich.progress import Progress, track
 from rich.table import Table
 
-from raycaster.configuration import configure
+from raycaster.configuration import WORLD_SIZE, configure
 from raycaster.convert.provenance import Provenance
-from raycaster.design import Design, design_for
+from raycaster.design import Design
 from raycaster.errors import UserError
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong, shown
@@ -33,7 +32,8 @@ from raycaster.outcomes import Check, add_keep_option, keep, scope_of
 from raycaster.output import Console, emptied, printable
 from raycaster.play.machine import Machine, build_machine
 from raycaster.play.system import FASTEST, play
-from raycaster.play.walk import Walker
+from raycaster.play.walk import Walker, design_to_walk
+from raycaster.scene import Light
 from raycaster.sim.contact_sheet import write_contact_sheet
 from raycaster.sim.simulator import SYSTEM_BENCH, SimulationError, build_model
 from raycaster.sw.firmware import build_firmware
@@ -43,50 +43,56 @@ from raycaster.waits import building
 FRAMES = 240
 ANIMATION = "game.webp"
 SHOWN_HZ = 30
-"""Pictures a second of the animation: half the speed of the monitor, which browsers keep up with."""
+"""Pictures per second of the animation: half the rate of the monitor, which browsers keep up with."""
 
 SHEET = "sheet.png"
 SHEET_COLUMNS = 3
 SHEET_FRAMES = 9
-"""Of the game, evenly spread."""
+"""Frames of the game on the sheet, evenly spread."""
+
+CIRCLE = 60
+"""Smallest radius of a light's circle around the middle of the world, in world units."""
 
 LOOK = 35
-"""Degrees that a camera looks to each side."""
+"""Degrees that the camera turns to each side."""
 
 POLL_SECONDS = 0.5
 
 
 def write_animation(frames: list[Path], path: Path) -> None:
-    """Write pictures as a WebP that repeats, without loss."""
+    """Write pictures as a lossless, repeating WebP animation."""
     first, *others = (Image.open(frame) for frame in frames)
     first.save(path, save_all=True, append_images=others, duration=1000 // SHOWN_HZ, loop=0, lossless=True)
 
 
-def look_around(design: Design, frames: int, build: Path, output: Path, console: Console) -> int:
-    """Turn a scene's camera to both sides and back, and write each frame.
+def film_scene(design: Design, frames: int, build: Path, output: Path, console: Console) -> int:
+    """Move a scene's light around the room, or turn its camera to both sides and back, and write each frame.
 
     Args:
-        design: the scene, and what draws it.
-        frames: of all that, after which it could begin anew.
+        design: the scene, and the hardware that draws it.
+        frames: number of frames, after which the motion repeats.
         build: the directory that holds `model/`.
-        output: replaced; gets `frame_*.png`.
+        output: the output directory, replaced; gets `frame_*.png`.
         console: for the progress bar.
 
     Returns:
-        How many pixels of all frames are unlike exact arithmetic.
+        Number of pixels in all frames that differ from exact arithmetic.
 
     Raises:
         SimulationError: the design could not be compiled, or shows no scene.
     """
     config, scene, wrong = design.configuration, design.shown, 0
-    walker = Walker(scene, config)
+    walker, light = Walker(scene, config), scene.light
     yaws = [LOOK * math.sin(2 * math.pi * number / frames) for number in range(frames + 1)]
     command = build_machine(config, build, processor=False)
     emptied(output)
     with Machine(command, config) as machine:
         machine.frame(writes=walker.load())
         for number in track(range(frames), "frames", console=console, transient=True):
-            walker.turn(yaws[number + 1] - yaws[number])
+            if light:
+                walker.light = circling(light, (number + 1) / frames)
+            else:
+                walker.turn(yaws[number + 1] - yaws[number])
             frame = machine.frame(writes=walker.writes())
             live = frame.scene
             if live is None:
@@ -97,14 +103,32 @@ def look_around(design: Design, frames: int, build: Path, output: Path, console:
     return wrong
 
 
+def circling(light: Light, turns: float) -> Light:
+    """Return a light that has moved on a level circle around the middle of the world.
+
+    Args:
+        light: where the circle begins, at least `CIRCLE` from the middle; the world clips it.
+        turns: how far it has come, in whole turns.
+    """
+    middle, last = WORLD_SIZE / 2, WORLD_SIZE - 1
+    x, y, z = light.position
+    radius = max(CIRCLE, math.hypot(x - middle, y - middle))
+    angle = math.atan2(y - middle, x - middle) + 2 * math.pi * turns
+    x, y = (max(0, min(last, round(middle + radius * part))) for part in (math.cos(angle), math.sin(angle)))
+    return light.model_copy(update={"position": (x, y, z)})
+
+
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Make the command's parser."""
     parser = CommandParser("game", __doc__, "--frames 24")
-    add_scene_argument(parser, "look to the left and to the right in this scene instead of the game")
-    parser.add_argument("--script", type=Path, default=DEMO, help="the buttons of each frame (default: %(default)s)")
-    parser.add_argument("--frames", type=int, default=FRAMES, help="of the script, at most (default: %(default)s)")
+    add_scene_argument(
+        parser,
+        "scene to film instead of the game, with a light that circles, or else a camera that looks to both sides",
+    )
+    parser.add_argument("--script", type=Path, default=DEMO, help="buttons held in each frame (default: %(default)s)")
+    parser.add_argument("--frames", type=int, default=FRAMES, help="largest number of frames (default: %(default)s)")
     add_build_option(parser)
-    parser.add_argument("--output", type=Path, help="where frames and animation go (default: game/ in there)")
+    parser.add_argument("--output", type=Path, help="directory for frames and animation (default: below --build)")
     add_configuration_options(parser)
     add_keep_option(parser)
     return parser
@@ -113,7 +137,7 @@ def command_parser() -> CommandParser:
 def provenance(arguments: argparse.Namespace) -> Provenance:
     """Digest what decides the command's figures."""
     if arguments.scene:
-        design = design_for(arguments.scene, given_options(arguments), FASTEST | {"turn": True})
+        design = design_to_walk(arguments.scene, given_options(arguments))
         return Provenance([design.configuration], ["golden", "scenes"])
     sources = ["golden", "sw", "rtl/system"]
     return Provenance(
@@ -130,25 +154,25 @@ CHECKS = (
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """The command; returns its exit code.
+    """Run the command and return its exit code.
 
     Args:
-        argv: its arguments, those of the process by default.
+        argv: its arguments (default: those of the process).
     """
     arguments = command_parser().parse_args(argv)
     if arguments.frames < 1:
-        raise UserError(f"frames: at least 1, not {arguments.frames}")
+        raise UserError(f"frames: expected at least 1, got {arguments.frames}")
     return _film_scene(arguments) if arguments.scene else _film_game(arguments)
 
 
 def _film_scene(arguments: argparse.Namespace) -> int:
     console = Console()
-    design = design_for(arguments.scene, given_options(arguments), FASTEST | {"turn": True})
-    if not design.configuration.turn:
-        raise UserError("turn: the camera must be one that turns, TURN=1")
+    design = design_to_walk(arguments.scene, given_options(arguments))
+    if not design.configuration.turn and not design.scene.light:
+        raise UserError("turn: expected 1, as the camera must turn, got 0")
     output = arguments.output or arguments.build / "look" / design.name
     try:
-        wrong = look_around(design, arguments.frames, arguments.build, output, console)
+        wrong = film_scene(design, arguments.frames, arguments.build, output, console)
     except SimulationError as error:
         raise UserError(str(error)) from None
     write_animation(sorted(output.glob("frame_*.png")), output / ANIMATION)
@@ -156,8 +180,8 @@ def _film_scene(arguments: argparse.Namespace) -> int:
     figures = {"frames": arguments.frames, "pixels": arguments.frames * screen.columns * screen.rows, "wrong": wrong}
     keep(arguments, figures, scope_of(design.configuration), provenance)
     console.print(
-        f"{design.configuration.name}: {arguments.frames} frames, {wrong:,} pixels unlike exact arithmetic; "
-        f"{output / ANIMATION}, with each frame beside it",
+        f"{design.configuration.name}: {arguments.frames} frames, {wrong:,} pixels differ from exact arithmetic; "
+        f"{output / ANIMATION}, and each frame next to it",
         soft_wrap=True,
     )
     return int(wrong > 0)
@@ -197,5 +221,5 @@ def _film_game(arguments: argparse.Namespace) -> int:
     console.print(table)
     figures = {key: result[key] for key in ("frames", "pixels", "wrong")} | {"frames_a_second": round(speed, 2)}
     keep(arguments, figures, scope_of(configuration), provenance)
-    console.print(f"{output / ANIMATION}, with each frame beside it, and {SHEET}")
+    console.print(f"{output / ANIMATION}, and next to it each frame and {SHEET}")
     return 0

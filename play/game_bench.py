@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: a system with a processor runs a program; every frame is held against golden in every pixel.
+"""cocotb bench: a system with a processor runs a program; every pixel of every frame is compared with the golden model.
 
-Golden draws the scene that the program committed: the writes that the ray tracer took are followed on its bus.
+The golden model draws the scene that the program committed: the bench follows the ray tracer's accepted writes.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from raycaster.sim.register_model import SceneFollower
 
 
 class Tap:
-    """What comes out of the system beside pictures: text on the serial port, and scenes on the ray tracer's bus."""
+    """Records the system's other outputs: text on the serial port, and scenes on the ray tracer's bus."""
 
     def __init__(self, viewer: Viewer):
         self.text = Path(viewer.job.output) / "uart.txt"
-        """Holds what was sent so far."""
+        """File of the text that was sent so far."""
         self.text.write_bytes(b"")
         self.scenes = SceneFollower(viewer.configuration)
         self.writes = 0
-        """Taken by the ray tracer."""
+        """Number of writes that the ray tracer accepted."""
         self._bench = viewer.bench
         cocotb.start_soon(self._receive())
         cocotb.start_soon(self._follow())
@@ -45,7 +45,7 @@ class Tap:
         while True:
             await bench.bus_event.value_change
             clock = int(bench.bus_clock.value)
-            # What is written in StartScreen's clock is too late for it.
+            # A write in StartScreen's clock is too late for it.
             if int(bench.bus_start_screen.value):
                 self.scenes.start_screen(clock)
             if int(bench.bus_write.value):
@@ -57,7 +57,7 @@ class Tap:
 
 @cocotb.test()
 async def play(bench: Any) -> None:
-    """Show a frame for each of the job's buttons; write the pictures, `uart.txt` and `result.json` into its output."""
+    """Show a frame for each of the job's buttons; write the pictures, `uart.txt` and `result.json` to its output."""
     viewer = Viewer(bench)
     job, output = viewer.job, Path(viewer.job.output)
     bench.buttons.value = job.buttons[0]
@@ -66,7 +66,7 @@ async def play(bench: Any) -> None:
     tap = Tap(viewer)
     bench.ready.value = 1
 
-    # Time of this process, as others may work on the machine.
+    # CPU time of this process, as the machine may be busy with others.
     started, golden_seconds = time.process_time(), 0.0
     shown, pixels, wrong, complaints = 0, 0, 0, []
     for number in range(len(job.buttons)):
@@ -86,7 +86,7 @@ async def play(bench: Any) -> None:
             complaints.append(complaint)
         shown += scene is not None and scene.run
         golden_seconds += time.process_time() - before
-        assert not int(bench.halted.value), f"frame {number}: the processor halted; sent was {tap.text.read_bytes()!r}"
+        assert not int(bench.halted.value), f"frame {number}: the processor halted; it sent {tap.text.read_bytes()!r}"
     seconds = time.process_time() - started
 
     frames = len(job.buttons)

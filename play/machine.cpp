@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A machine at the end of two pipes: reads which buttons are held and what a driver would write, runs to the next
-// vertical sync, and writes what it did, over and over.
+// A machine between two pipes. In a loop it reads the held buttons and a driver's writes, runs to the next vertical
+// sync, and writes what happened.
 //
-// In: 32 bits each of the buttons and how many writes there are; word address and word of each write, which are written
-// as fast as they are taken. Out: 32 bits each of clocks, clocks in which a picture was computed, pixels, events and
-// characters; the pixels, four bytes each; the events; the characters.
+// Input, in words of 32 bits: the buttons and the number of writes; the word address and the word of each write. Writes
+// are sent as fast as they are accepted. Output, in words of 32 bits: the clocks, the clocks in which a picture was
+// computed, and the numbers of pixels, events and characters; then the pixels, four bytes each; the events; the
+// characters.
 
 #include <cstdio>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A design in a loop without a test bench: clocks, the pixels that a monitor would take, what happens on the ray tracer's
-// bus, and what the serial port says.
+// A design in a loop without a test bench: its clock, the pixels that a monitor would sample, the events on the ray
+// tracer's bus, and the text from the serial port.
 //
-// VS_ACTIVE: level of VS in its pulse; PIXELS: of a clock, the left one in the low half of each colour; COLOUR_BITS: of a
-// pixel's channel; CLOCKS_PER_BIT: of the serial port, 0 where there is none.
+// VS_ACTIVE: level of VS during its pulse; PIXELS: pixels per clock, the left one in the low half of each colour;
+// COLOUR_BITS: bits per channel of a pixel; CLOCKS_PER_BIT: of the serial port, 0 without one.
 
 #ifndef MACHINE_H
 #define MACHINE_H
@@ -14,12 +14,12 @@
 
 #include "Vmachine.h"
 
-// A StartScreen, a write, or both in a clock.
+// A StartScreen, a write, or both in one clock.
 struct Event {
     uint32_t clock, start_screen, written, address, writedata, byteenable;
 };
 
-// The receiving half: samples a byte in the middle of its bits.
+// Receiver: samples each bit in its middle.
 class SerialPort {
 public:
     std::string text;
@@ -48,7 +48,7 @@ private:
 
 class Machine {
 public:
-    std::vector<uint32_t> pixels; // red, green, blue and 255 in the order of their bytes; since the last vertical sync
+    std::vector<uint32_t> pixels; // since the last vertical sync; bytes red, green, blue, 255
     std::vector<Event> events;
     std::string text;
     uint64_t clocks = 0;
@@ -66,7 +66,7 @@ public:
 
     void hold(uint32_t buttons) { top.buttons = buttons; }
 
-    // A write over the ray tracer's bus, where no processor has it.
+    // Writes over the ray tracer's bus, if there is no processor.
     void write(uint32_t address, uint32_t word) {
         top.host_write = 1;
         top.host_address = address;
@@ -98,7 +98,7 @@ public:
 protected:
     Vmachine top;
 
-    // Called before each rising edge of the clock, for those who look at more.
+    // Called before each rising edge of the clock; to be overridden to observe more.
     virtual void see() {}
 
 private:
@@ -109,10 +109,10 @@ private:
     SerialPort serial;
 #endif
 
-    // A pixel's part of a colour, whose lowest bit that is.
+    // Extracts a pixel's channel, with its lowest bit at `low`.
     static uint32_t channel(uint32_t colour, int low) { return colour >> low & ((1u << COLOUR_BITS) - 1); }
 
-    // Holds a request until it is taken.
+    // Holds a request until it is accepted.
     void request() {
         for (bool waits = true; waits; clock()) {
             top.eval();
@@ -120,7 +120,7 @@ private:
         }
     }
 
-    // Returns whether the vertical sync begins.
+    // Runs a clock; returns true if the vertical sync begins.
     bool clock() {
         bool sync = false;
         busy += top.busy;

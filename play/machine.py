@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A design in Verilator, as fast as it goes: buttons or a driver's writes in, frames out."""
+"""Run a design in Verilator, as fast as possible: buttons or a driver's writes in, frames out."""
 
 from __future__ import annotations
 
@@ -22,37 +22,37 @@ from raycaster.sim.simulator import BUILD, SimulationError, build_program, conve
 TOP = "machine"
 BENCH, LOOP, MACHINE = (Path(__file__).with_name(f"{TOP}.{kind}") for kind in ("v", "cpp", "h"))
 SIGNS = Path(__file__).with_name("signs.h")
-"""What the compiler includes before a design."""
+"""Header that the compiler includes before a design."""
 
 EVENT_WORDS = 6
-"""Of 32 bits, that the loop writes for what happens in a clock."""
+"""Words of 32 bits that the loop writes for a clock's events."""
 
 
 @dataclass(frozen=True)
 class Frame:
-    """What a system did between two vertical syncs."""
+    """A system's outputs between two vertical syncs."""
 
     picture: np.ndarray
-    """uint8 (lines, pixels, 3), as the monitor shows it; the first frame after reset lacks what was over by then."""
+    """uint8 (lines, pixels, 3), as the monitor shows it; after reset the first frame may lack its beginning."""
 
     clocks: int
     busy: int
     """Clocks in which a picture was computed."""
 
     scene: LiveScene | None
-    """What the registers told the renderer for this picture; None before the first StartScreen."""
+    """Scene in the live registers for this picture; None before the first StartScreen."""
 
     text: str
-    """From the serial port."""
+    """Text from the serial port."""
 
 
 class Machine:
-    """A running design; a context manager, which ends it.
+    """A running design; a context manager that ends it.
 
     Args:
-        command: of `build_machine`.
+        command: the command from `build_machine`.
         config: the design in it.
-        program: for its processor, if it has one.
+        program: the file for its processor, if it has one.
     """
 
     def __init__(self, command: Sequence[str], config: Configuration, program: Path | None = None):
@@ -66,7 +66,7 @@ class Machine:
         )
         assert self._process.stdin and self._process.stdout  # they are pipes
         self._input, self._output = self._process.stdin, self._process.stdout
-        self.frame(0)  # that in which it comes up, of which the monitor sees a part
+        self.frame(0)  # the start-up frame, which the monitor sees only in part
 
     def __enter__(self) -> Machine:
         return self
@@ -81,7 +81,7 @@ class Machine:
         """Run to the next vertical sync.
 
         Args:
-            buttons: of a system with a processor, those held, a bit each.
+            buttons: the held buttons, one bit each; with a processor.
             writes: word addresses and words that a driver writes one after the other, from now on; without a processor.
 
         Raises:
@@ -101,7 +101,7 @@ class Machine:
         picture[len(picture) - len(shown) :] = shown
         words = np.frombuffer(self._read(4 * EVENT_WORDS * events), dtype="<u4").reshape(-1, EVENT_WORDS).tolist()
         for clock, start_screen, written, address, data, lanes in words:
-            # What is written in StartScreen's clock is too late for it.
+            # A write in StartScreen's clock is too late for it.
             if start_screen:
                 self._scenes.start_screen(clock)
             if written:
@@ -118,24 +118,24 @@ class Machine:
 
 @dataclass(frozen=True)
 class MachineSources:
-    """What a machine is compiled from."""
+    """Files and options that a machine is compiled from."""
 
     name: str
     files: tuple[Path, ...]
-    """Of Verilog; their top is `TOP`."""
+    """Verilog files; the top module is `TOP`."""
 
     flags: tuple[str, ...]
-    """For Verilator."""
+    """Flags for Verilator."""
 
     defines: tuple[str, ...]
-    """For the compiler."""
+    """Flags for the compiler."""
 
 
 def machine_sources(config: Configuration, build: Path = BUILD, *, processor: bool) -> MachineSources:
     """Convert a design; the arguments are those of `build_machine`.
 
     Raises:
-        UserError: the configuration has another bus than Avalon-MM.
+        UserError: the configuration's bus is not Avalon-MM.
     """
     need_avalon(config, "the simulated machine")
     files = convert(config, build, system=processor)
@@ -158,19 +158,19 @@ def machine_sources(config: Configuration, build: Path = BUILD, *, processor: bo
 
 
 def build_machine(config: Configuration, build: Path = BUILD, *, processor: bool) -> list[str]:
-    """Compile a design, or find it compiled.
+    """Compile a design, or reuse the compiled one.
 
     Args:
         config: the design.
         build: the directory that holds `model/`.
-        processor: whether a program drives it, or whoever calls `Machine.frame`.
+        processor: True if a program drives it, False if the caller of `Machine.frame` does.
 
     Returns:
         The command that runs it, for `Machine`.
 
     Raises:
-        UserError: Verilator, or what it needs, is missing, or PicoRV32.
-        SimulationError: it could not be compiled.
+        UserError: Verilator, something that it needs, or PicoRV32 is missing.
+        SimulationError: the design could not be compiled.
     """
     made_of = machine_sources(config, build, processor=processor)
     return build_program(

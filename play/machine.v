@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What is played, for a loop in C++, with what happens on the ray tracer's bus brought out: a system with a processor,
-// or the ray tracer alone, whose bus the loop drives.
+// Top level for a loop in C++: a system with a processor, or the ray tracer alone, whose bus the loop drives. Events on
+// the ray tracer's bus are brought out.
 //
-// SYSTEM: the system's module, where there is a processor. TAPS: how many signals of a ray unit a module `taps` brings
-// out, of 32 bits each, where there is one.
+// SYSTEM: the system's module, defined if there is a processor. TAPS: number of 32-bit signals of a ray unit that the
+// module `taps` brings out, defined if there is one.
 
 module machine #(
     parameter BUTTONS = 5,
@@ -12,8 +12,8 @@ module machine #(
 ) (
     input  wire                    clk,
     input  wire                    ready,
-    input  wire [BUTTONS-1:0]      buttons,         // of a system
-    input  wire                    host_read,       // of the ray tracer alone; both are held until they are taken
+    input  wire [BUTTONS-1:0]      buttons,         // with a processor
+    input  wire                    host_read,       // without a processor; read and write are held until accepted
     input  wire                    host_write,
     input  wire [ADDRESS_BITS-1:0] host_address,
     input  wire [31:0]             host_writedata,
@@ -27,9 +27,9 @@ module machine #(
     output wire                    vga_vs,
     output wire                    vga_blank_n,
     output wire                    vga_clk,
-    output wire                    busy,            // a picture is being computed
-    output wire                    start_screen,    // what was committed goes live with this clock
-    output wire                    written,         // the ray tracer takes a write with this clock
+    output wire                    busy,            // computing a picture
+    output wire                    start_screen,    // the committed scene goes live with this clock
+    output wire                    written,         // the ray tracer accepts a write with this clock
     output wire [ADDRESS_BITS-1:0] address,
     output wire [3:0]              byteenable,
     output wire [31:0]             writedata

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.play.system`: a program on the simulated system with a processor, every pixel checked."""
+"""`python -m raycaster.play.system`: run a program on the simulated system with a processor, and check every pixel."""
 
 from __future__ import annotations
 
@@ -28,23 +28,23 @@ from raycaster.sim.simulator import (
 )
 
 FASTEST = {"engine": "beam", "screen": "play"}
-"""What a system with a processor has where nothing is given: the configuration that simulates fastest."""
+"""Default options of a system with a processor: the configuration that simulates fastest."""
 
 
 def play(model: Model, program: Path, buttons: Sequence[int], output: Path) -> dict[str, Any]:
-    """Run a program from reset on, a frame for each of `buttons`.
+    """Run a program from reset on, for one frame per entry of `buttons`.
 
     Args:
-        model: built in `SYSTEM_BENCH`.
-        program: its words, in hexadecimal.
-        buttons: which are held from each frame's vertical sync on, a bit each, as `memory_map.BUTTON_NAMES`.
-        output: replaced; gets `frame_*.png`, `uart.txt`, `result.json` and the simulation's log.
+        model: a model with `SYSTEM_BENCH`.
+        program: the file of its words, in hexadecimal.
+        buttons: the buttons held from each frame's vertical sync on, one bit each, as in `memory_map.BUTTON_NAMES`.
+        output: the output directory, replaced; gets `frame_*.png`, `uart.txt`, `result.json` and the simulation's log.
 
     Returns:
-        What `result.json` says.
+        The contents of `result.json`.
 
     Raises:
-        UserError: the program is no list of words, or does not fit the memory.
+        UserError: the program is not a list of words, or does not fit the memory.
         SimulationError: a pixel is wrong, a row was late, the processor halted, or the video departs from the standard.
     """
     check_program(program)
@@ -56,24 +56,24 @@ def play(model: Model, program: Path, buttons: Sequence[int], output: Path) -> d
 
 
 def check_program(program: Path) -> None:
-    """See whether a file is what the memory can be loaded from.
+    """Check that the memory can be loaded from a file.
 
     Raises:
-        UserError: it is not.
+        UserError: it cannot.
     """
     try:
         words = [int(word, 16) for word in program.read_text().split()]
     except (OSError, ValueError) as error:
-        raise UserError(f"{program}: expected words in hexadecimal, one a line: {error}") from None
+        raise UserError(f"{program}: expected words in hexadecimal, one per line: {error}") from None
     if len(words) > MEMORY_WORDS or not all(0 <= word < 1 << 32 for word in words):
-        raise UserError(f"{program}: expected at most {MEMORY_WORDS} words of 32 bits, not {len(words)}")
+        raise UserError(f"{program}: expected at most {MEMORY_WORDS} words of 32 bits, got {len(words)}")
 
 
 def read_buttons(text: str) -> list[int]:
-    """What is held in each frame: names joined by `+`, with `*` and how many frames, separated by commas.
+    """Parse the buttons held in each frame: names joined by `+`, with `*` and a number of frames, separated by commas.
 
     Raises:
-        UserError: says which part is not understood.
+        UserError: a part is not understood.
     """
     frames: list[int] = []
     for part in text.split(","):
@@ -81,18 +81,20 @@ def read_buttons(text: str) -> list[int]:
         held = [name for name in names.split("+") if name not in ("", "none")]
         if not set(held) <= set(BUTTON_NAMES) or not (times or "1").isdecimal():
             known = ", ".join(BUTTON_NAMES)
-            raise UserError(f"buttons: {part!r} is not understood; like none*5,left+fire*20, of {known}")
+            raise UserError(f"buttons: {part!r} is not understood; an example is none*5,left+fire*20, of {known}")
         frames += [held_bits(held)] * int(times or "1")
     return frames
 
 
 def main() -> int:
-    """The command; returns its exit code."""
+    """Run the command and return its exit code."""
     parser = argparse.ArgumentParser(prog="python -m raycaster.play.system", description=__doc__)
     parser.add_argument("program", type=Path, help="file of 32-bit words in hexadecimal, from address 0 on")
-    parser.add_argument("--buttons", default="none*4", help="of each frame, like none*5,left+fire*20 (default: none*4)")
+    parser.add_argument(
+        "--buttons", default="none*4", help="buttons held in each frame, as in none*5,left+fire*20 (default: none*4)"
+    )
     add_simulator_option(parser)
-    parser.add_argument("--output", type=Path, default=Path("build/play"), help="(default: %(default)s)")
+    parser.add_argument("--output", type=Path, default=Path("build/play"), help="output folder (default: %(default)s)")
     add_configuration_options(parser)
     arguments = parser.parse_args()
     check_program(arguments.program)
@@ -109,8 +111,8 @@ def main() -> int:
     speed = rate / configuration.screen_geometry.frame_cycles
     Console().print(
         f"{configuration.name}: {result['frames']} frames, {result['shown']} of them with a scene, "
-        f"{result['wrong']:,} pixels are wrong; "
-        f"{rate:,} clocks a second, {speed:.2f} frames; pictures in {arguments.output}/",
+        f"{result['wrong']:,} wrong pixels; "
+        f"{rate:,} clocks and {speed:.2f} frames per second; pictures in {arguments.output}/",
         soft_wrap=True,
     )
     return 0

@@ -1,27 +1,32 @@
 # SPDX-License-Identifier: MIT
-"""A walk through a scene: what keys and the mouse do to its camera, and what a driver writes for that."""
+"""Walk through a scene: move its camera with keys and the mouse, and list what a driver writes for that."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+from pathlib import Path
+from typing import Any
 
 from raycaster.configuration import WORLD_SIZE, Configuration
-from raycaster.program import basis_fields, scene_words
+from raycaster.design import Design, design_for
+from raycaster.engines import ENGINES, EXACT
+from raycaster.play.system import FASTEST
+from raycaster.program import basis_fields, light_fields, scene_words
 from raycaster.registers import register_map
-from raycaster.scene import Camera, Scene
+from raycaster.scene import Camera, Light, Scene, load_scene
 
 STEP = 3.0
-"""World units that a held button moves the camera in a frame."""
+"""World units per frame that a held button moves the camera."""
 
 TURN = 2.0
-"""Degrees that a held button turns it in a frame."""
+"""Degrees per frame that a held button turns it."""
 
 DRAG = 0.25
-"""Degrees that the mouse turns it, a pixel of the window."""
+"""Degrees that the mouse turns it per pixel of the window."""
 
 STEEPEST = 89.0
-"""Degrees up or down beyond which walking on would turn around."""
+"""Steepest pitch in degrees, up or down; beyond the vertical, walking would change direction."""
 
 WALKS = ("forward", "back", "left", "right", "rise", "sink")
 """Buttons that move the camera: level along the view, level across it, and along z."""
@@ -30,31 +35,50 @@ TURNS = ("turn left", "turn right", "look up", "look down")
 """Buttons that turn it."""
 
 
+def design_to_walk(path: Path, options: Mapping[str, Any]) -> Design:
+    """Choose the hardware for a walk through a scene: the fastest that shows it, with a camera that turns if it can.
+
+    Args:
+        path: the scene file.
+        options: the configuration's options, as given.
+
+    Raises:
+        UserError: the scene or an option is wrong; one line.
+    """
+    defaults: dict[str, Any] = {"engine": EXACT.name} if load_scene(path).light else dict(FASTEST)
+    engine = ENGINES.get(options.get("engine", defaults["engine"]))
+    return design_for(path, options, defaults | ({"turn": True} if engine and "turn" in engine.looks else {}))
+
+
 class Walker:
-    """A camera that walks where it looks, level, within the world; where the design's camera does not turn, along x.
+    """A camera that walks level where it looks, within the world; along x if the design's camera does not turn.
 
     Args:
         scene: where it starts.
         config: the design.
+
+    Attributes:
+        light: the light, in a design that has one; None for none. It may be replaced between frames.
     """
 
     def __init__(self, scene: Scene, config: Configuration):
         self._config, self._scene = config, scene
         self._place = [float(value) for value in scene.camera.position]
         self._yaw, self._pitch = scene.camera.yaw, scene.camera.pitch
+        self.light: Light | None = scene.light
 
     @property
     def camera(self) -> Camera:
-        """The present one, as a scene file has it."""
+        """The current camera, as in a scene file."""
         x, y, z = map(round, self._place)
         return Camera(position=(x, y, z), yaw=self._yaw, pitch=self._pitch, roll=self._scene.camera.roll)
 
     def move(self, held: Collection[str], drag: tuple[int, int] = (0, 0)) -> None:
-        """A frame's time passes.
+        """Move and turn the camera for one frame.
 
         Args:
-            held: buttons of `WALKS` and `TURNS`.
-            drag: pixels to the right and down by which the mouse was moved to turn the view.
+            held: the held buttons, of `WALKS` and `TURNS`.
+            drag: pixels to the right and down that the mouse was dragged to turn the view.
         """
         if self._config.turn:
             yaw = TURN * (("turn right" in held) - ("turn left" in held)) + DRAG * drag[0]
@@ -75,17 +99,19 @@ class Walker:
         ]
 
     def turn(self, degrees: float) -> None:
-        """Turn to the right."""
+        """Turn to the right by some degrees."""
         self._yaw = math.remainder(self._yaw + degrees, 360)
 
     def load(self) -> list[tuple[int, int]]:
-        """Word addresses and words that load the scene and start it."""
+        """List the word addresses and words that load the scene and start it."""
         return scene_words(self._scene, self._config)
 
     def writes(self) -> list[tuple[int, int]]:
-        """The same for the camera alone; the last commits."""
+        """List the word addresses and words that update the camera and the light; the last one commits."""
         registers, camera = register_map(self._config.table), self.camera
         fields = [("camera", dict(zip("xyz", camera.position, strict=True)))]
         if self._config.turn:
             fields += basis_fields(camera.basis)
+        if self._config.light:
+            fields += light_fields(self.light)
         return [(registers[name].address, registers[name].pack(**values)) for name, values in fields] + self.load()[-1:]

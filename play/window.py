@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster play`: the simulated hardware in a window: the game, or a scene to walk through."""
+"""`raycaster play`: play the game, or walk through a scene, on the simulated hardware in a window."""
 
 from __future__ import annotations
 
@@ -14,8 +14,6 @@ from pathlib import Path
 import numpy as np
 
 from raycaster.configuration import Configuration, configure
-from raycaster.design import design_for
-from raycaster.engines import ENGINES
 from raycaster.errors import UserError, not_installed
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong, shown
@@ -31,7 +29,7 @@ from raycaster.options import (
 from raycaster.output import Console
 from raycaster.play.machine import Frame, Machine, build_machine
 from raycaster.play.system import FASTEST
-from raycaster.play.walk import TURNS, WALKS, Walker
+from raycaster.play.walk import TURNS, WALKS, Walker, design_to_walk
 from raycaster.sim.register_model import LiveScene
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware
@@ -41,17 +39,17 @@ GAME_KEYS = {"left": ("left", "a"), "right": ("right", "d"), "up": ("up", "w"), 
 GAME_KEYS |= {"fire": ("space", "return")}
 WALK_KEYS = {"forward": ("w",), "back": ("s",), "left": ("a",), "right": ("d",), "rise": ("e",), "sink": ("q",)}
 TURN_KEYS = {"turn left": ("left",), "turn right": ("right",), "look up": ("up",), "look down": ("down",)}
-"""By button, the names of the keys that hold it."""
+"""Names of the keys that hold each button."""
 
 LEAST_WIDTH = 960
-"""Of the window: smaller pictures are shown so many times larger."""
+"""Width in pixels up to which the window magnifies smaller pictures, by a whole factor."""
 
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
 BAR = 28
 
 
 class Judge:
-    """How many pixels of the pictures are not those of rational arithmetic, of as many pictures as there is time for.
+    """Counts the pixels that differ from exact arithmetic, in as many pictures as there is time for.
 
     Args:
         config: the design that draws.
@@ -62,12 +60,12 @@ class Judge:
         self._pool = ThreadPoolExecutor(1)
         self._asked: Future[int] | None = None
         self.wrong: int | None = None
-        """Of the last picture that was looked at; None: of none yet."""
+        """Wrong pixels in the last checked picture; None before the first."""
         self.pictures = self.all_wrong = 0
-        """That were looked at, and what was wrong in them together."""
+        """Number of checked pictures, and of all wrong pixels in them."""
 
     def look(self, frame: Frame) -> None:
-        """Have a picture looked at, unless the one before still is."""
+        """Start checking a picture, unless the previous check is still running."""
         if self._asked is not None and not self._asked.done():
             return
         self.finish()
@@ -75,7 +73,7 @@ class Judge:
             self._asked = self._pool.submit(self._count, frame.picture, frame.scene)
 
     def finish(self) -> None:
-        """Wait for the picture that is being looked at."""
+        """Wait for the running check."""
         if self._asked is not None:
             self.wrong, self._asked = self._asked.result(), None
             self.pictures += 1
@@ -87,7 +85,7 @@ class Judge:
 
 
 class Window:
-    """The picture, magnified, with a line of text below it. Closing it, or Escape, ends."""
+    """A window with the magnified picture and a line of text below it; closing it or pressing Escape ends the loop."""
 
     def __init__(self, config: Configuration, title: str, keys: dict[str, tuple[str, ...]], buttons: Sequence[str]):
         pygame = self._pygame = _pygame()
@@ -96,7 +94,7 @@ class Window:
         times = max(1, LEAST_WIDTH // width)
         self._size = times * width, times * height
         try:
-            # Without any of these SDL would draw where nobody sees it.
+            # Without any of these SDL would draw nothing visible.
             if sys.platform == "linux" and not any(name in os.environ for name in DISPLAYS):
                 raise pygame.error
             pygame.display.init()
@@ -113,7 +111,7 @@ class Window:
         self._drag = 0, 0
 
     def held(self) -> int | None:
-        """The buttons that are held, a bit each; None where the window is to close."""
+        """Return the held buttons, one bit each; None if the window is to close."""
         pygame = self._pygame
         self._drag = 0, 0
         for event in pygame.event.get():
@@ -129,7 +127,7 @@ class Window:
 
     @property
     def drag(self) -> tuple[int, int]:
-        """Pixels to the right and down by which the mouse was dragged before `held` was last asked."""
+        """Pixels to the right and down that the mouse was dragged before the last call of `held`."""
         return self._drag
 
     def show(self, picture: np.ndarray, text: str) -> None:
@@ -146,14 +144,14 @@ class Window:
         self._pygame.image.save(self._surface, str(path))
 
     def close(self) -> None:
-        """Close it."""
+        """Close the window."""
         self._pygame.quit()
 
 
 def _pygame():
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     try:
-        import pygame  # noqa: PLC0415 - wanted only where a window is
+        import pygame  # noqa: PLC0415 - only needed for a window
     except ImportError:
         raise UserError(not_installed("pygame", "play")) from None
     return pygame
@@ -171,14 +169,14 @@ def loop(
 
     Args:
         play: draws a frame while these buttons are held.
-        window: what shows.
-        judge: looks at pictures on the way.
+        window: shows the frames.
+        judge: checks pictures on the way.
         config: the design.
-        say: told what the serial port said.
-        frames: after which it ends, or None to go on until the window is closed.
+        say: called with the text from the serial port.
+        frames: number of frames, or None to go on until the window is closed.
 
     Returns:
-        Frames, and those a second.
+        Number of frames, and frames per second.
     """
     started, count, rate = time.perf_counter(), 0, 0.0
     while (frames is None or count < frames) and (held := window.held()) is not None:
@@ -188,17 +186,17 @@ def loop(
         judge.look(frame)
         took = time.perf_counter() - before
         rate = 0.9 * rate + 0.1 / took if rate else 1 / took
-        parts = [f"{config.engine} engine", f"{rate:.1f} frames a second"]
-        parts += [f"{frame.clocks:,} clocks a frame, {frame.busy:,} of them computing"]
+        parts = [f"{config.engine} engine", f"{rate:.1f} frames per second"]
+        parts += [f"{frame.clocks:,} clocks per frame, {frame.busy:,} of them computing"]
         if judge.wrong is not None:
-            parts += [f"{judge.wrong:,} pixels unlike exact arithmetic"]
+            parts += [f"{judge.wrong:,} pixels differ from exact arithmetic"]
         window.show(frame.picture, "    ".join(parts))
         count += 1
     return count, count / (time.perf_counter() - started)
 
 
 def walk_through(machine: Machine, walker: Walker, window: Window) -> Callable[[int], Frame]:
-    """Load a walker's scene, and return what moves it for a frame while these buttons are held."""
+    """Load a walker's scene, and return a function that moves it for a frame while these buttons are held."""
     machine.frame(writes=walker.load())
 
     def play(held: int) -> Frame:
@@ -209,46 +207,44 @@ def walk_through(machine: Machine, walker: Walker, window: Window) -> Callable[[
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Make the command's parser."""
     parser = CommandParser("play", __doc__, "")
-    add_scene_argument(parser, "walk through this scene instead of the game")
-    parser.add_argument("--frames", type=int, help="end after so many (default: when the window is closed)")
-    parser.add_argument("--screenshot", type=Path, metavar="PNG", help="write what the window showed last")
+    add_scene_argument(parser, "scene to walk through, instead of the game")
+    parser.add_argument("--frames", type=int, help="number of frames (default: until the window is closed)")
+    parser.add_argument("--screenshot", type=Path, metavar="PNG", help="file for the last picture in the window")
     add_build_option(parser)
     add_configuration_options(parser)
     return parser
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """The command.
+    """Run the command.
 
     Args:
-        argv: its arguments, those of the process by default.
+        argv: its arguments (default: those of the process).
     """
     arguments = command_parser().parse_args(argv)
     console = Console()
     options = given_options(arguments)
-    engine = ENGINES.get(options.get("engine", FASTEST["engine"]))
-    defaults = FASTEST | ({"turn": True} if engine and "turn" in engine.looks else {})
     if arguments.scene:
-        design = design_for(arguments.scene, options, defaults)
+        design = design_to_walk(arguments.scene, options)
         config, program, walker = design.configuration, None, Walker(design.shown, design.configuration)
         keys = WALK_KEYS | (TURN_KEYS if config.turn else {})
         names: Sequence[str] = WALKS + TURNS
     else:
-        config, walker = configure(**defaults | options), None
+        config, walker = configure(**FASTEST | options), None
         program = build_firmware((arguments.build / "firmware").absolute()).words
         keys, names = GAME_KEYS, BUTTON_NAMES
 
     judge = Judge(config)
     say = partial(console.print, end="")
-    # A window that cannot be opened is known before anything is built.
+    # Fail before anything is built if there can be no window.
     window = Window(config, "RayCaster", keys, names)
     try:
         for button, held in keys.items():
             console.print(f"{button}: {' or '.join(held)}")
         if walker and config.turn:
-            console.print("turn and look: drag with the mouse too")
+            console.print("turn and look: also drag with the mouse")
         with console.waiting(f"building {config.name}", building(config.engine)):
             command = build_machine(config, arguments.build, processor=walker is None)
         with Machine(command, config, program) as machine:
@@ -261,10 +257,10 @@ def main(argv: Sequence[str] | None = None) -> None:
         raise UserError(str(error)) from None
     finally:
         window.close()
-    # The serial port may stop within a line.
+    # The serial port's text may stop within a line.
     console.print()
     console.print(
-        f"{count} frames, {rate:.1f} a second; in {judge.pictures} of them, held against exact arithmetic, "
+        f"{count} frames, {rate:.1f} per second; in {judge.pictures} of them, compared with exact arithmetic, "
         f"{judge.all_wrong:,} pixels are wrong",
         soft_wrap=True,
     )

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """RayCaster: a real-time hardware ray tracer as a MyHDL library.
 
-`raycaster.rtl` is the hardware, a room for each topic, and `raycaster.convert` makes Verilog of it. `raycaster.golden`
-is the truth that the hardware is held against, `raycaster.verif` the benches that do so. `raycaster.fpga` has the ways
-to boards, `raycaster.fit` what a scene can do without, `raycaster.sw` the software beside it, and `raycaster.cli` the
-program `raycaster`. What all of them need (configuration, engines, screens, register map, scene files) is here.
+`raycaster.rtl` is the hardware, one folder per topic, and `raycaster.convert` converts it to Verilog.
+`raycaster.golden` has the golden models that the hardware is compared with, and `raycaster.verif` the test benches.
+`raycaster.fpga` builds designs for boards, `raycaster.fit` leaves out hardware that a scene does not need,
+`raycaster.sw` is the software, and `raycaster.cli` the program `raycaster`. Code that all of them share (configuration,
+engines, screens, register map, scene files) is here.
 """

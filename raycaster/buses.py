@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The buses that the registers may be behind."""
+"""Buses that can give access to the registers."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -7,16 +7,16 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, kw_only=True)
 class Bus:
-    """A bus.
+    """Names and timing of a bus.
 
     A cycle count runs from the first cycle in which the full request is on an idle bus to the one with the response.
 
     Attributes:
-        title: its name on pages.
-        port: the argument of `ray_caster_module`, and the prefix of its signals in Verilog.
-        unit: what an address counts, words or bytes.
-        write: cycles of a write.
-        read: cycles of a read.
+        title: name on pages.
+        port: argument of `ray_caster_module`, and prefix of the signals in Verilog.
+        unit: address unit, words or bytes.
+        write: cycles per write.
+        read: cycles per read.
     """
 
     title: str
@@ -32,6 +32,6 @@ BUSES: Mapping[str, Bus] = {
     "wishbone": Bus(title="Wishbone B4, classic", port="wb", unit="words", write=1, read=3),
     "apb": Bus(title="APB4", port="s_apb", unit="bytes", write=2, read=3),
 }
-"""By the name in `Configuration.bus`; the first is the bus of the registers, the others have a bridge to it."""
+"""Buses by their name in `Configuration.bus`. The registers are on the first; the others have a bridge to it."""
 
 OWN, *BRIDGED = BUSES

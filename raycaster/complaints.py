@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The words of one-line complaints: a word that was probably meant, a refused value, a fault in a block."""
+"""Texts for one-line error messages: a likely intended word, a refused value, a fault in a block."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ if TYPE_CHECKING:
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Suggest, behind a word that is none of these, the nearest one, if any is near."""
+    """Suggest the known word nearest to an unknown one, as an addition to a message; empty if none is near."""
     near = difflib.get_close_matches(word, known, 1)
     return f" (did you mean {near[0]}?)" if near else ""
 
 
 LONGEST_SHOWN = 60
-"""Characters of the longest value that a complaint shows whole."""
+"""Length in characters of the longest value that an error message shows in full."""
 
 EXPECTED: Mapping[str, str] = {
     "literal_error": "{expected}",
     **dict.fromkeys(("int_type", "int_parsing", "int_parsing_size", "int_from_float"), "a whole number"),
     **dict.fromkeys(("float_type", "float_parsing"), "a number"),
     **dict.fromkeys(("bool_type", "bool_parsing"), "1 or 0"),
-    "string_type": "a text",
+    "string_type": "a string",
     "greater_than_equal": "{ge} or more",
     "less_than_equal": "{le} or less",
     **dict.fromkeys(("dict_type", "model_type", "model_attributes_type"), "a table"),
@@ -37,18 +37,18 @@ EXPECTED: Mapping[str, str] = {
     "missing": "a value",
     "path_type": "a path",
 }
-"""What pydantic expects, by its type of error, instead of its own words."""
+"""Descriptions of expected values, by pydantic's error type, to replace its own."""
 
 
 def refusal(errors: Sequence[ErrorDetails], depth: int | None = None) -> str:
-    """One line for the first value that pydantic refuses: its place, what was expected, and what stood there.
+    """Return one line for the first value that pydantic refuses: its place, what was expected, and what was given.
 
     Args:
-        errors: as pydantic lists them.
-        depth: how many of the keys that lead to the value are its place; all by default.
+        errors: pydantic's list of errors.
+        depth: number of leading keys that give the value's place; all by default.
     """
     unknown = ("extra_forbidden", "unexpected_keyword_argument")
-    # A mistyped key leaves the right one missing; the mistake itself is the better thing to report.
+    # A mistyped key also leaves the right one missing; report the mistyped one.
     first = next((one for one in errors if one["type"] in unknown), errors[0])
     keys = first["loc"][:depth]
     place = f"{'.'.join(map(str, keys))}: " if keys else ""
@@ -57,7 +57,7 @@ def refusal(errors: Sequence[ErrorDetails], depth: int | None = None) -> str:
         return f"{place}is unknown{did_you_mean(str(keys[-1]), missing)}; remove it or correct its name"
     if first["type"] == "value_error":
         return f"{place}{first.get('ctx', {}).get('error')}"
-    # A value that may be of several kinds has an error of each.
+    # A value that may be of several types has an error for each.
     expected = [
         EXPECTED[one["type"]].format_map(one.get("ctx", {})).replace("'", "")
         for one in errors
@@ -72,7 +72,7 @@ def refusal(errors: Sequence[ErrorDetails], depth: int | None = None) -> str:
 
 
 def fault_in_block(error: BaseException) -> str | None:
-    """File, line and reason of a fault in a MyHDL block; None where the error is of something else."""
+    """Return file, line and reason of a fault in a MyHDL block, or None if the error is unrelated to MyHDL."""
     if found := re.fullmatch(r"in file (.+), line (\d+):\s*(.*)", str(error), re.DOTALL):
         return f"{found[1]}:{found[2]}: {found[3]}"
     if isinstance(error, SyntaxError):
@@ -82,7 +82,7 @@ def fault_in_block(error: BaseException) -> str | None:
     if not any(module.startswith("myhdl.") for module in modules):
         return None
     reason = f"{type(error).__name__}: {error}"
-    # What MyHDL reads of a process has its place in the syntax tree, and what runs has it in a frame.
+    # While MyHDL analyses a process, the place is in the syntax tree; while code runs, it is in a frame.
     values = [value for frame, _ in frames for value in frame.f_locals.values()]
     processes: list[Any] = [value.ast for value in values if hasattr(getattr(value, "ast", None), "sourcefile")]
     nodes = [value for value in values if isinstance(value, ast.stmt | ast.expr)]

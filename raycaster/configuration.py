@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The one home of what a design is: what a user chooses of it, and what is decided from that."""
+"""Configuration of a design: the options that a user chooses, and everything decided from them."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ from raycaster.screens import COORDINATE_BITS, Screen
 
 WORLD_SIZE = 1 << COORDINATE_BITS
 MOST_RECTANGLES = 32
-"""Entries that the largest rectangle table has."""
+"""Number of entries in the largest rectangle table."""
 
 MOST_REFLECTIONS = 4
-"""That a ray may have."""
+"""Largest number of reflections per ray."""
 
 CHANNEL_BITS = 8
-"""Bits a colour channel has until it leaves for the monitor."""
+"""Bits per colour channel inside the hardware, before the video output."""
 
 SLOW_HZ = 50_000_000
-"""A clock that designs meet on the chips of the boards without registers on long wires."""
+"""Clock frequency that designs meet on the boards' chips without registers on long wires."""
 
 
 if TYPE_CHECKING:
@@ -41,91 +41,96 @@ else:
 
 
 Rounding = Literal["truncate", "nearest"]
-"""How quotients are rounded: towards zero, or to the nearest."""
+"""Rounding of quotients: toward zero, or to nearest."""
 
 
 class ConfigurationError(UserError):
-    """A configuration that cannot be built, with one line that says what, where and what to do."""
+    """A configuration that cannot be built; its text is one line that says what is wrong, where, and what to do."""
 
 
 @validated_dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid"))
 class Options:
-    """The choices that a user makes for a design. `configure` decides what is None or "auto".
+    """Options that a user chooses for a design. `configure` decides those that are None or "auto".
 
     Raises pydantic's `ValidationError`.
     """
 
-    engine: EngineName = Field(SEED.name, description=f"what computes the rays: {listed(ENGINES)}")
+    engine: EngineName = Field(SEED.name, description=f"engine that computes the rays: {listed(ENGINES)}")
     units: int | None = Field(
-        None, ge=1, description="ray units in parallel, a divisor of the columns: 32; the fewest of the exact engine; 1"
+        None,
+        ge=1,
+        description="parallel ray units, a divisor of the columns; by default 32 (seed), the fewest that meet the row "
+        "budget (exact) or one per pixel of a clock (beam)",
     )
-    rectangles: int = Field(12, ge=1, le=MOST_RECTANGLES, description="rectangles that the scene memory holds")
-    reflections: int = Field(1, ge=0, le=MOST_REFLECTIONS, description="reflections a ray may have")
+    rectangles: int = Field(12, ge=1, le=MOST_RECTANGLES, description="capacity of the scene memory, in rectangles")
+    reflections: int = Field(1, ge=0, le=MOST_REFLECTIONS, description="most reflections per ray")
     rows: int | None = Field(
         None,
-        description="rows of rays: 240 (640x480@60), 200 (640x400@70); not beam: 120, 96 or 60 (640x480@60 at half the "
-        "clock); beam only: 180 (1280x720@60, or SCALE=6)",
+        description="rows of rays: 240 (640x480@60), 200 (640x400@70); seed and exact: 120, 96 or 60 (640x480@60 at "
+        "half the clock); beam: 180 (1280x720@60, or 1920x1080 with SCALE=3 or 6)",
     )
     scale: int | None = Field(
         None,
-        description="resolution scale: 1; beam: 1, 2 or 4, and as fine as the monitor where it is left out; "
-        "of 180 rows 3 or 6 too (1920x1080)",
+        description="resolution scale: 1; beam: 1, 2 or 4, by default one ray per monitor pixel; "
+        "with 180 rows also 3 or 6 (1920x1080)",
     )
-    pixels: int = Field(1, ge=1, le=2, description="pixels a clock: 1, or 2 (beam) where each has a column of its own")
+    pixels: int = Field(1, ge=1, le=2, description="pixels per clock: 1, or 2 (beam, if each has its own column)")
     fraction_bits: int = Field(0, ge=0, le=8, description="fraction bits of origins, planes and quotients")
-    rounding: Rounding = Field("truncate", description="of quotients")
-    divider_bits: int | Literal["auto"] = Field("auto", description="quotient bits a cycle: auto, 1, 2 or 3")
-    colour_bits: int = Field(8, ge=1, le=CHANNEL_BITS, description="bits a colour channel on the VGA output")
+    rounding: Rounding = Field("truncate", description="rounding of quotients: truncate or nearest")
+    divider_bits: int | Literal["auto"] = Field("auto", description="quotient bits per cycle: auto, 1, 2 or 3")
+    colour_bits: int = Field(8, ge=1, le=CHANNEL_BITS, description="bits per colour channel on the VGA output")
     screen: Literal["vga", "tiny", "play"] = Field(
         "vga",
-        description="vga, tiny (64x48) for slow simulators, or play (320x240, beam only), whose frames are short",
+        description="screen: vga, tiny (64x48, for slow simulators) or play (320x240 with short frames, beam only)",
     )
     allow_underrun: bool = Field(False, description="accept a design that cannot meet the row budget")
     culling: bool | None = Field(
-        None, description="give up early what no ray of a group can hit, 1 or 0: 1 of the seed engine's general design"
+        None,
+        description="abandon early the rectangles that no ray of a group can hit, 1 or 0; by default 1 for the seed "
+        "engine without a fixed scene",
     )
     turn: bool | None = Field(
-        None, description="a camera that turns, 1 or 0 (exact and beam): 1 where the scene's does"
+        None, description="camera that can turn, 1 or 0 (exact and beam); by default 1 if the scene's camera is turned"
     )
     materials: bool | None = Field(
-        None, description="rectangles that mirror more or less than half, 1 or 0: 1 where the scene has them"
+        None, description="rectangles that mirror more or less than half, 1 or 0; by default 1 if the scene has any"
     )
     patterns: bool | None = Field(
-        None, description="rectangles with a pattern of two colours, 1 or 0: 1 where the scene has them"
+        None, description="rectangles with a two-colour pattern, 1 or 0; by default 1 if the scene has any"
     )
     light: bool | None = Field(
-        None, description="a point light and exact shadows, 1 or 0 (exact): 1 where the scene has one"
+        None, description="point light with exact shadows, 1 or 0 (exact); by default 1 if the scene has one"
     )
-    bus: BusName = Field(OWN, description=f"what the registers are behind: {listed(BUSES)}")
-    fixed: FixedScene | None = Field(None, description="what of a scene is built in")
+    bus: BusName = Field(OWN, description=f"bus of the registers: {listed(BUSES)}")
+    fixed: FixedScene | None = Field(None, description="scene that is built into the hardware")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Configuration:
-    """Everything that distinguishes one generated design from another, all of it decided. `configure` makes one.
+    """Everything that distinguishes one generated design from another, with nothing left open; made by `configure`.
 
     Attributes:
-        engine: the name of what computes the rays.
-        units: ray units in parallel; of the beam engine one for each pixel of a clock.
-        rectangles: that the hardware holds; of a fixed scene those that it has.
-        reflections: that a ray may have.
-        rows: of rays.
-        scale: how many times finer than `rows` the picture is, in both directions.
-        pixels: a clock.
-        fraction_bits: of origins, planes and quotients; 0 where the engine does not divide.
-        rounding: of quotients.
-        divider_bits: quotient bits a cycle; 0 where the engine does not divide.
-        colour_bits: a channel, on the VGA output.
-        screen: its name.
-        allow_underrun: whether it may miss the row budget.
-        culling: whether units give up early what no ray of a group can hit. It saves cycles in most groups and none in
-            the worst case, so the row budget does not know of it.
-        turn: whether the camera turns.
-        materials: whether rectangles mirror more or less than half.
-        patterns: whether rectangles have patterns.
-        light: whether a point light casts shadows.
-        bus: the name of the bus.
-        fixed: what of a scene is built in.
+        engine: name of the engine.
+        units: number of parallel ray units; with the beam engine, one per pixel of a clock.
+        rectangles: number of rectangles in the hardware.
+        reflections: most reflections per ray.
+        rows: rows of rays, at scale 1.
+        scale: resolution of the picture in both directions, relative to `rows`.
+        pixels: pixels per clock.
+        fraction_bits: fraction bits of origins, planes and quotients; 0 if the engine does not divide.
+        rounding: rounding of quotients.
+        divider_bits: quotient bits per cycle; 0 if the engine does not divide.
+        colour_bits: bits per colour channel on the VGA output.
+        screen: name of the screen.
+        allow_underrun: True if the design may miss the row budget.
+        culling: True if units abandon early the rectangles that no ray of a group can hit. This saves cycles in most
+            groups but none in the worst case, so the row budget ignores it.
+        turn: True if the camera can turn.
+        materials: True if rectangles can mirror more or less than half.
+        patterns: True if rectangles can have patterns.
+        light: True if there is a point light that casts shadows.
+        bus: name of the bus.
+        fixed: scene that is built in, or None.
     """
 
     engine: str
@@ -151,39 +156,39 @@ class Configuration:
 
     @property
     def facts(self) -> Engine:
-        """The engine of this name."""
+        """The engine that `engine` names."""
         return ENGINES[self.engine]
 
     @property
     def looks(self) -> tuple[str, ...]:
-        """Of `LOOKS` those that it has."""
+        """Options of `LOOKS` that the design has."""
         return tuple(name for name in LOOKS if getattr(self, name))
 
     @property
     def table(self) -> int:
-        """Entries of the rectangle table that software writes: none where the rectangles are fixed."""
+        """Number of entries in the rectangle table that software writes; 0 if the rectangles are fixed."""
         return 0 if self.fixed else self.rectangles
 
     @property
     def passes(self) -> tuple[int, ...]:
-        """For the primary ray and each reflection, which rectangles are tested, as a mask."""
+        """Masks of the rectangles that are tested, for the primary ray and each reflection."""
         return self.fixed.passes if self.fixed else (self.reflections + 1) * ((1 << self.rectangles) - 1,)
 
     @property
     def shadows(self) -> tuple[int, ...]:
-        """For each pass, the rectangles that are tested from the light, as a mask; empty without a light."""
+        """Masks of the rectangles that are tested from the light, for each pass; empty without a light."""
         if not self.light:
             return ()
         return self.fixed.shadows if self.fixed else self.passes
 
     @property
     def capacity(self) -> int | None:
-        """The most rectangles that a scene may have; None where the scene is fixed, which may have lost some."""
+        """Most rectangles that a scene may have; None for a fixed scene, some of whose rectangles may be left out."""
         return None if self.fixed else self.rectangles
 
     @cached_property
     def whole_screen(self) -> Screen:
-        """The screen of this name, these rows and this scale, in single pixels."""
+        """The screen with this name, number of rows and scale, counted in single pixels."""
         return self.facts.screens[self.screen, self.rows].scaled(self.scale)
 
     @cached_property
@@ -193,27 +198,27 @@ class Configuration:
 
     @property
     def has_long_wires(self) -> bool:
-        """Two lanes spread over a chip, and above `SLOW_HZ` a wire across it leaves no time for logic on its way."""
+        """True if long wires leave no time for logic: two lanes, spread over the chip, and a clock above `SLOW_HZ`."""
         return self.pixels > 1 and self.screen_geometry.clock_hz > SLOW_HZ
 
     @property
     def groups(self) -> int:
-        """Groups of `units` columns that make a row; the seed's Max."""
+        """Number of groups of `units` columns per row; `Max` in the seed."""
         return self.screen_geometry.columns // self.units
 
     @property
     def quotient_bits(self) -> int:
-        """Bits of a quotient, and steps of the divider at one bit a cycle."""
+        """Bits of a quotient, and steps of the divider at one bit per cycle."""
         return COORDINATE_BITS + self.fraction_bits
 
     @property
     def divider_steps(self) -> int:
-        """Cycles of one division; only of engines that divide."""
+        """Cycles per division; only for engines that divide."""
         return -(-self.quotient_bits // self.divider_bits)
 
     @property
     def slot_cycles(self) -> int:
-        """Cycles from one rectangle to the next; the beam engine takes all at once."""
+        """Cycles from one rectangle to the next; 0 for the beam engine, which tests all at once."""
         return self.facts.slot_cycles(self)
 
     @property
@@ -223,22 +228,22 @@ class Configuration:
 
     @property
     def group_cycles(self) -> int:
-        """Cycles from one group's start to the next one's with all rectangles enabled: the worst case."""
+        """Cycles per group in the worst case, with all rectangles enabled."""
         return self.facts.group_cycles(self)
 
     @property
     def group_budget(self) -> int:
-        """Cycles that a group may take for a row to be ready before the row above it was shown."""
+        """Most cycles per group at which a row is ready before the row above it has been shown."""
         return (self.screen_geometry.row_cycles - 1) // self.groups
 
     @property
     def name(self) -> str:
-        """A short file name that differs wherever the generated hardware does."""
+        """Short file name, different for designs whose hardware differs."""
         rounding = "n" if self.rounding == "nearest" else "t"
         quotients = f"-f{self.fraction_bits}{rounding}-d{self.divider_bits}" if self.facts.divides else ""
         scale = f"-s{self.scale}" if not self.facts.line_buffered else ""
         fixed = f"-{self.fixed.name}" if self.fixed else ""
-        # Only what is not the default is told.
+        # Defaults are left out of the name.
         culling = "" if self.fixed or self.culling == self.facts.divides else f"-k{int(self.culling)}"
         looks = "".join(f"-{name}" for name in self.looks)
         bus = "" if self.bus == OWN else f"-{self.bus}"
@@ -249,10 +254,10 @@ class Configuration:
 
 
 def need_avalon(config: Configuration, what: str) -> None:
-    """Refuse another bus where what drives the registers is part of the design.
+    """Refuse any bus except Avalon-MM for a design that contains the host of its registers.
 
     Raises:
-        ConfigurationError: one line that says of what.
+        ConfigurationError: the design has another bus.
     """
     if config.bus != OWN:
         raise ConfigurationError(f"bus: {what} drives the registers itself, by Avalon-MM; leave out {config.bus}")
@@ -261,14 +266,14 @@ def need_avalon(config: Configuration, what: str) -> None:
 OPTIONS: Mapping[str, FieldInfo] = {
     name: field for name, field in vars(Options)["__pydantic_fields__"].items() if name != "fixed"
 }
-"""Every option by its name, with its bounds, default and help. `fixed` is not among them: it comes from a scene."""
+"""All options by name, with bounds, default and help, except `fixed`, which comes from a scene."""
 
 
 def decided(options: Options) -> Configuration:
-    """Decide what the user left open.
+    """Decide everything that the user left open.
 
     Raises:
-        ValueError: there is no such design; `option: why, and what to do instead`.
+        ValueError: no such design is possible; the text is `option: why, and what to do instead`.
     """
     engine, fixed = ENGINES[options.engine], options.fixed
     if fixed is not None and len(fixed.passes) != options.reflections + 1:
@@ -337,7 +342,7 @@ def _scale(options: Options, engine: Engine, rows: int) -> int:
 
 
 def configure(**values: Any) -> Configuration:
-    """Make a configuration from options, numbers or their texts.
+    """Make a configuration from options, given as values or as text.
 
     Raises:
         ConfigurationError: one line that names the option, what was given and what was expected.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A scene and the hardware that it is shown with: one home for what a scene file decides about the hardware."""
+"""A scene with the hardware that shows it, chosen from the scene file and the options."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ NEEDED_FOR = {
     "patterns": "rectangles with patterns",
     "light": "a light",
 }
-"""What an option of a configuration gives to a scene."""
+"""Scene features, by the configuration option that they need."""
 
 
 @dataclass(frozen=True)
 class Design:
-    """A scene file, the hardware for it, and the reflections that are asked of that hardware."""
+    """A scene file, the hardware for it, and the number of reflections to show."""
 
     path: Path
     scene: Scene
@@ -33,12 +33,12 @@ class Design:
 
     @property
     def name(self) -> str:
-        """The scene file's, without its suffix."""
+        """Name of the scene file, without its suffix."""
         return self.path.stem
 
     @property
     def shown(self) -> Scene:
-        """The scene with these reflections instead of its own."""
+        """The scene with the design's reflections instead of its own."""
         return self.scene.model_copy(update={"reflections": self.reflections})
 
 
@@ -47,13 +47,13 @@ class ProcessorDesign:
     """Hardware with a processor, and the program that it runs."""
 
     path: Path
-    """The program: words of 32 bits in hexadecimal, one a line, from address 0 on."""
+    """The program: 32-bit words in hexadecimal, one per line, from address 0 on."""
 
     configuration: Configuration
 
 
 def packaged_for(options: Mapping[str, Any]) -> list[Path]:
-    """The packaged scenes that hardware with these options shows: those that need nothing which it lacks."""
+    """List the packaged scenes that hardware with these options can show."""
     lacking = {name for name in NEEDED_FOR if str(options.get(name)) in ("0", "False")}
     engine = ENGINES.get(str(options.get("engine")))
     lacking.update(engine.lacks if engine else ())
@@ -65,17 +65,17 @@ def packaged_for(options: Mapping[str, Any]) -> list[Path]:
 
 
 def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, Any] | None = None) -> Design:
-    """Read a scene and choose its hardware: what is not given of rows, reflections and looks is the scene's.
+    """Read a scene and choose its hardware; rows, reflections and looks that are not given come from the scene.
 
-    A scene that the default engine cannot show chooses the exact engine, where no engine is given.
+    If no engine is given and the default one cannot show the scene, the exact engine is chosen.
 
     Args:
         path: the scene file.
-        options: of the configuration, as they are given.
-        defaults: for the hardware where nothing is given, instead of the scene's and the configuration's own.
+        options: options of the configuration that were given.
+        defaults: values for options that were not given, preferred to those of the scene and the configuration.
 
     Raises:
-        UserError: the scene or the options are not good; one line.
+        UserError: the scene or the options are invalid; one line.
     """
     scene = load_scene(path)
     chosen = {**(defaults or {}), **options}
@@ -99,7 +99,7 @@ def design_for(path: Path, options: Mapping[str, Any], defaults: Mapping[str, An
         raise ConfigurationError(f"{path}: {option}: {reason}") from None
     if lacking := scene.lacks(configuration.looks):
         raise UserError(f"{path}: the scene needs {NEEDED_FOR[lacking[0]]}; leave {lacking[0].upper()} out")
-    load_scene(path, configuration.rectangles)  # refuses more rectangles than that
-    # Those of the hardware where they were asked for; a default design may have more than the scene needs.
+    load_scene(path, configuration.rectangles)  # refuses more rectangles than the hardware holds
+    # Use the hardware's number if it was given; a default design may compute more than the scene needs.
     reflections = configuration.reflections if "reflections" in options else scene.reflections
     return Design(path, scene, configuration, reflections)

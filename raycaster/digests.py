@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Digests of the sources and tools that decide a result, so that a kept result is known to be stale."""
+"""Digests of the sources and tools that affect a result, to detect stale kept results."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from io import StringIO
 from pathlib import Path
 
 LEFT_OUT = "__pycache__", "build", "tests"
-"""Names of folders whose files decide no result."""
+"""Names of folders whose files affect no result."""
 
 DIGITS = 16
 """Hexadecimal digits of a kept digest."""
 
 PAGES = ".md", ".png", ".svg", ".webp"
-"""Endings of files that are only read by people."""
+"""Suffixes of files that only people read."""
 
 
 def sources_digest(*places: Path) -> str:
     """Compute a digest of source files: their names, relative to their place, and their bytes.
 
-    Every kind of file counts, so a new one cannot be forgotten; only `LEFT_OUT`, `PAGES` and hidden files do not.
+    All files count, so that a new kind cannot be forgotten, except hidden ones and those in `LEFT_OUT` and `PAGES`.
 
     Args:
-        places: files, which always count, and folders, which are searched with the folders in them.
+        places: files, which always count, and folders, which are searched recursively.
 
     Raises:
         FileNotFoundError: a place does not exist.
@@ -51,7 +51,7 @@ def digest(*parts: object) -> str:
 
 
 def code_digest(place: Path, root: Path) -> str:
-    """Compute a digest of a file, or of the files in a folder, that comments do not change.
+    """Compute a digest of a file, or of the files in a folder, that does not depend on comments.
 
     Comments, docstrings and empty lines of Python and Verilog files do not count.
 
@@ -68,12 +68,12 @@ def code_digest(place: Path, root: Path) -> str:
 
 
 def uncommented(verilog: str) -> str:
-    """Verilog without comments and empty lines."""
+    """Return Verilog without comments and empty lines."""
     return _filled(re.sub(r"//.*", "", line) for line in verilog.splitlines())
 
 
 def _code(text: str) -> str:
-    """Python without comments and docstrings: the text itself, as a syntax tree looks different in each Python."""
+    """Return Python without comments and docstrings; as text, since syntax trees differ between Python versions."""
     lines = text.splitlines()
     for token in tokenize.generate_tokens(StringIO(text).readline):
         if token.type == tokenize.COMMENT:
@@ -87,7 +87,7 @@ def _code(text: str) -> str:
 
 
 def _filled(lines: Iterable[str]) -> str:
-    """The lines that are not empty."""
+    """Join the lines that are not empty."""
     return "\n".join(line for line in map(str.rstrip, lines) if line)
 
 
@@ -100,7 +100,7 @@ def _files(folder: Path) -> Iterator[Path]:
 
 
 def tool_versions(*packages: str) -> dict[str, str]:
-    """Find the versions of packages; one that is not installed is left out."""
+    """Find the versions of packages, leaving out those that are not installed."""
     versions = {}
     for name in packages:
         with contextlib.suppress(importlib.metadata.PackageNotFoundError):

@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""What a user can mend is told in one line."""
+"""Errors that the user can fix, reported in one line."""
 
 from collections.abc import Iterable
 
 
 class UserError(Exception):
-    """Something that the user can mend; its text is the one line that they are shown."""
+    """An error that the user can fix; its text is the one line that they see."""
 
 
 def not_installed(what: str, extra: str) -> str:
-    """The line for something that an extra of this package brings; the package itself is on no index."""
-    return f"{what} is missing; it comes with the extra {extra}: in a clone of this project, pip install '.[{extra}]'"
+    """Return the message for a missing dependency that an extra installs; the package itself is on no index."""
+    return f"{what} is missing; it comes with the extra {extra}: in a clone of it, run pip install '.[{extra}]'"
 
 
 def listed(choices: Iterable[object]) -> str:
-    """Two or more choices as a sentence has them, such as `a, b or c`."""
+    """Join two or more choices as in a sentence, such as `a, b or c`."""
     *others, last = map(str, choices)
     return f"{', '.join(others)} or {last}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What of a scene is built into the hardware instead of being written to its registers."""
+"""Parts of a scene that are built into the hardware instead of being written to its registers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class FixedRectangle:
-    """A rectangle as the engines want it: its plane, and inclusive bounds on the other axes in the order x, y, z."""
+    """A rectangle as the engines take it: its plane, and inclusive bounds on the other axes in the order x, y, z."""
 
     axis: int
     position: int
@@ -22,26 +22,26 @@ class FixedRectangle:
     """24 bits, red above green above blue."""
 
     mirror: int = 2
-    """In quarters, 0..4."""
+    """Reflectivity in quarters, 0..4."""
 
     kind: int = 0
     cell: int = 2
     colour_2: int = 0
-    """With the pattern's kind and its cell's size as registers have them."""
+    """Second colour, like `colour`; `kind` and `cell` are the pattern and its cell size as coded in the registers."""
 
 
 @dataclass(frozen=True)
 class FixedScene:
-    """A scene whose rectangles are constants of the hardware, and its camera and background too where they are given.
+    """A scene whose rectangles, and optionally camera, background and light, are constants of the hardware.
 
     Attributes:
-        rectangles: those that the hardware has, in the scene's order, at least one.
-        passes: for the primary ray and each reflection, which of them it may meet: bit i for rectangle i.
-        camera: x, y, z, or None where it is live.
-        background: 24 bits, or None where it is live; it goes with the camera.
+        rectangles: rectangles in the hardware, in the scene's order; at least one.
+        passes: for the primary ray and each reflection, a mask of the rectangles it may meet: bit i for rectangle i.
+        camera: x, y, z, or None if it is live.
+        background: 24 bits, or None if it is live; fixed together with the camera.
         basis: forward, right and up of the fixed camera, times 256.
-        shadows: for each pass, which rectangles may shade what it hits, as in passes; empty without a light.
-        light: x, y, z of the fixed light and its shade in quarters, or None where there is none; it goes with the
+        shadows: for each pass, a mask of the rectangles that may shade its hit points; empty without a light.
+        light: x, y, z of the fixed light and its shade in quarters, or None without one; fixed together with the
             camera.
     """
 
@@ -57,7 +57,7 @@ class FixedScene:
 
     @property
     def camera_fields(self) -> dict[str, int]:
-        """The fixed camera's position and basis, as its record names them."""
+        """Fields of the fixed camera's record: position, basis and, if there is one, the light."""
         vectors = zip(("", "forward_", "right_", "up_"), (self._eye, *self.basis), strict=True)
         fields = {f"{name}{axis}": part for name, vector in vectors for axis, part in zip("xyz", vector, strict=True)}
         if self.light:
@@ -67,17 +67,17 @@ class FixedScene:
 
     @property
     def scope(self) -> str:
-        """What is fixed, by the option's name for it: rects, or all."""
+        """Scope of the fixed scene, as in the option: rects, or all."""
         return "rects" if self.camera is None else "all"
 
     @property
     def name(self) -> str:
-        """A short file name that differs where anything fixed does."""
+        """Short file name, different for scenes that differ in anything fixed."""
         return f"{self.scope}-{hashlib.sha256(repr(self).encode()).hexdigest()[:8]}"
 
     @property
     def distances(self) -> tuple[int, ...]:
-        """From the fixed camera to each rectangle's plane, with the sign."""
+        """Signed distances from the fixed camera to each rectangle's plane."""
         return tuple(rectangle.position - self._eye[rectangle.axis] for rectangle in self.rectangles)
 
     @property
@@ -87,12 +87,12 @@ class FixedScene:
         return self.camera
 
     def column(self, name: str) -> tuple[int, ...]:
-        """One attribute of every rectangle."""
+        """Return one attribute of every rectangle."""
         return tuple(getattr(rectangle, name) for rectangle in self.rectangles)
 
 
 def varying_bits(values: Sequence[int]) -> int:
-    """The bits, as a mask, that are not the same in all values."""
+    """Return a mask of the bits that are not the same in all values."""
     mask = 0
     for value in values:
         mask |= value ^ values[0]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Independent jobs with a progress bar: over processes here, or over the workers of a Dask cluster.
+"""Run independent jobs with a progress bar, in local processes or on the workers of a Dask cluster.
 
-Results can be kept, so that a command that was interrupted computes only what it has not yet.
+Results can be kept, so that an interrupted command resumes with the jobs that are left.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from raycaster.errors import UserError, not_installed
 from raycaster.output import Console
 
 ATTEMPTS = 3
-"""Times that a job is tried whose worker died."""
+"""Number of attempts at a job whose worker dies."""
 
 J = TypeVar("J")
 R = TypeVar("R")
 
 
 def positive(text: str) -> int:
-    """An option's number, 1 or more."""
+    """Parse an option's number, 1 or more."""
     value = int(text)
     if value < 1:
         raise ValueError
@@ -36,28 +36,28 @@ def positive(text: str) -> int:
 
 
 def add_job_options(parser: argparse.ArgumentParser, jobs: int = 2) -> None:
-    """Add `--jobs` and `--scheduler`, which are `executors`'s arguments."""
-    help_of_jobs = "at a time, here (default: %(default)s)"
+    """Add `--jobs` and `--scheduler`, the arguments of `executors`."""
+    help_of_jobs = "local processes at a time (default: %(default)s)"
     parser.add_argument("--jobs", type=positive, default=jobs, metavar="N", help=help_of_jobs)
     parser.add_argument(
         "--scheduler", metavar="ADDRESS",
-        help="of a Dask scheduler, such as tcp://host:8786, whose workers see this directory (default: processes here)",
+        help="Dask scheduler, such as tcp://host:8786, whose workers see this directory (default: local processes)",
     )  # fmt: skip
 
 
 def add_fresh_option(parser: argparse.ArgumentParser) -> None:
     """Add `--fresh`, for a command whose results are `Kept`."""
-    parser.add_argument("--fresh", action="store_true", help="compute again what an earlier run has kept")
+    parser.add_argument("--fresh", action="store_true", help="ignore results kept by an earlier run")
 
 
 @dataclass(frozen=True)
 class Kept:
-    """Files in which results of jobs stay from one run of a command to the next.
+    """Files that keep the results of jobs from one run of a command to the next.
 
     Attributes:
-        place: the file of a job's result; its path has a digest of all that decides the result.
+        place: returns the file of a job's result; its path contains a digest of everything that affects the result.
         fresh: overwrite the files without reading them.
-        complete: decides whether a result is kept; a failure is worth another try.
+        complete: returns whether to keep a result; failures, for example, are worth another try.
     """
 
     place: Callable[[Any], Path]
@@ -65,14 +65,14 @@ class Kept:
     complete: Callable[[Any], bool] = lambda result: True
 
     def find(self, job: object) -> tuple[bool, Any]:
-        """Whether a job's result is kept, and the result."""
+        """Return whether a job's result is kept, and the result."""
         try:
             return (False, None) if self.fresh else (True, pickle.loads(self.place(job).read_bytes()))
         except (FileNotFoundError, EOFError, pickle.UnpicklingError):
             return False, None
 
     def store(self, job: object, result: object) -> None:
-        """Keep a result, if it is complete."""
+        """Keep a result if it is complete."""
         if self.complete(result):
             place = self.place(job)
             place.parent.mkdir(parents=True, exist_ok=True)
@@ -83,20 +83,20 @@ class Kept:
 
 @contextmanager
 def executors(scheduler: str | None, jobs: int) -> Iterator[Callable[[], Executor]]:
-    """Something that makes executors: of processes here, or of a Dask cluster's workers.
+    """Yield a function that makes executors, for local processes or for the workers of a Dask cluster.
 
     Args:
-        scheduler: address of the cluster's scheduler, such as tcp://host:8786; None for processes here.
-        jobs: how many of these.
+        scheduler: address of the cluster's scheduler, such as tcp://host:8786; None for local processes.
+        jobs: number of local processes.
 
     Raises:
-        UserError: Dask is missing, or no scheduler answers there.
+        UserError: Dask is missing, or no scheduler answers at the address.
     """
     if scheduler is None:
         yield lambda: ProcessPoolExecutor(jobs)
         return
     try:
-        from distributed import Client  # noqa: PLC0415 - wanted only where a cluster is
+        from distributed import Client  # noqa: PLC0415 - needed only with a cluster
     except ImportError:
         raise UserError(not_installed("Dask", "report")) from None
     try:
@@ -119,18 +119,18 @@ def run_jobs(
     label: Callable[[J], str] = str,
     kept: Kept | None = None,
 ) -> list[R]:
-    """The function of each job, in the order of the jobs.
+    """Run a function on every job, and return the results in the order of the jobs.
 
     Args:
-        what: the jobs are, for the progress bar.
-        function: which a worker must be able to import, as its argument and result must be able to travel.
-        jobs: its arguments.
-        make_executor: as `executors` yields it.
-        console: for the progress bar.
-        finished: told of each result, here, as soon as it is there.
-        before: jobs that were done before, which the bar counts.
-        label: what a job is called where its workers die.
-        kept: where results of an earlier run are looked for, and new ones kept.
+        what: name of the jobs on the progress bar.
+        function: function that a worker can import; its argument and result must be picklable.
+        jobs: arguments of the function.
+        make_executor: function that `executors` yields.
+        console: console for the progress bar.
+        finished: called locally with each job and its result as soon as it arrives.
+        before: number of jobs done earlier, which the bar counts too.
+        label: returns a job's name for the message about workers that died.
+        kept: results of earlier runs, to which new ones are added.
 
     Raises:
         UserError: workers died on the same jobs `ATTEMPTS` times.
@@ -158,13 +158,13 @@ def run_jobs(
                         try:
                             results[place] = future.result()
                         except BrokenExecutor:
-                            continue  # a worker died, and took the others' work with it: once more
+                            continue  # a worker died, and took the others' work with it: try again
                         if kept:
                             kept.store(jobs[place], results[place])
                         finished(jobs[place], results[place])
                         progress.advance(task)
                 except BaseException:
-                    # What did not start yet shall not keep one from the error, or from the prompt.
+                    # Jobs that have not started must not delay the error or the prompt.
                     for future in futures:
                         future.cancel()
                     raise

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The command-line options of a configuration: one home for every command that takes one."""
+"""Command-line options, shared by all commands, with those of a configuration."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ from raycaster.scene import find_scene
 from raycaster.tools import ToolError
 
 BUILD = Path("build")
-"""Where everything that is made goes, unless told otherwise."""
+"""Default directory for all output."""
 
 SHORT_NAMES = {"sim": "simulator"}
-"""Options by what make's variables call them, where that is another name."""
+"""Options with another name as a make variable, by that name."""
 
 USUAL = ("engine", "rows", "reflections", "screen")
-"""Of the configuration, what each command's help explains; `raycaster options` explains all."""
+"""Configuration options in each command's help; `raycaster options` explains all."""
 
 FROM_MAKE = "RAYCASTER_FROM_MAKE"
-"""The environment variable by which the Makefile says that the user typed `make`."""
+"""Environment variable with which the Makefile says that the user typed `make`."""
 
 
 _ELSEWHERE = "choose another place for the output"
@@ -50,19 +50,19 @@ ADVICE = {
     errno.ENOSPC: f"free some space, or {_ELSEWHERE}",
     errno.EDQUOT: f"free some space, or {_ELSEWHERE}",
 }
-"""What to do about an error of the system, by its number."""
+"""Advice about operating system errors, by error number."""
 
 
 class CommandParser(argparse.ArgumentParser):
-    """The options of a subcommand, which may be given as make's variables too: `ENGINE=beam` for `--engine beam`."""
+    """Parser for a subcommand's options, also given as make variables: `ENGINE=beam` for `--engine beam`."""
 
     def __init__(self, name: str, doc: str | None, example: str):
-        """Begin with what every command's help begins with.
+        """Set up what the help of all commands has in common.
 
         Args:
-            name: of the subcommand, or subcommands, behind `raycaster`.
-            doc: the module's docstring, whose first line says what it does.
-            example: arguments that are worth trying.
+            name: name of the subcommand, or subcommands, after `raycaster`.
+            doc: docstring of the module, whose first line says what the command does.
+            example: arguments of an example.
         """
         purpose = re.sub(r"^`raycaster [\w ]+`: |: `make [\w ]+`", "", (doc or name).strip().splitlines()[0])
         super().__init__(
@@ -77,14 +77,14 @@ class CommandParser(argparse.ArgumentParser):
         self.example = f"raycaster {name} {example}".rstrip()
 
     def format_help(self) -> str:
-        """The example, what the command does, and its options."""
+        """Return the example, what the command does, and its options."""
         return f"{self.example}\n\n{super().format_help()}"
 
     def parse_args(self, args: Sequence[str] | None = None) -> argparse.Namespace:
-        """What `argparse` makes of the words.
+        """Parse words with argparse, after translating make variables to options.
 
         Raises:
-            UserError: one line that says which word is wrong.
+            UserError: one line that names the wrong word.
         """
         words = sys.argv[1:] if args is None else args
         given = [one for word in words for one in self._translated(str(word))]
@@ -94,14 +94,14 @@ class CommandParser(argparse.ArgumentParser):
         return arguments
 
     def error(self, message: str) -> NoReturn:
-        """One line instead of argparse's usage."""
+        """Raise one line instead of printing argparse's usage."""
         raise UserError(f"{message}; see {_program()} {self.name} --help")
 
     def _refuse_unknown(self, words: Sequence[str]) -> None:
-        """Look for options that there are not, before their values are taken for scenes.
+        """Refuse unknown options, before their values are taken for scenes.
 
         Raises:
-            UserError: there is one.
+            UserError: an option is unknown.
         """
         for word in words:
             option = word.partition("=")[0]
@@ -111,7 +111,7 @@ class CommandParser(argparse.ArgumentParser):
                 raise UserError(f"unknown option: {option}{near}; see {_program()} {self.name} --help")
 
     def _translated(self, word: str) -> list[str]:
-        """A variable of make's as an option; nothing where it is empty, or a switch that is off."""
+        """Translate a make variable to an option, or to nothing if it is empty or a switch that is off."""
         match = re.fullmatch(r"([A-Z][A-Z_]*)=(.*)", word, re.DOTALL)
         if not match:
             return [word]
@@ -132,7 +132,7 @@ class CommandParser(argparse.ArgumentParser):
 
 
 class _Help(argparse.HelpFormatter):
-    """Help without those options of the configuration that are seldom asked for."""
+    """Help without the less usual options of the configuration."""
 
     def add_argument(self, action: argparse.Action) -> None:
         if action.dest not in OPTIONS or action.dest in USUAL:
@@ -144,7 +144,7 @@ def _help_width() -> int:
 
 
 def _variable(option: str) -> str:
-    """What make calls an option."""
+    """Return the make variable for an option."""
     name = option.lstrip("-").replace("-", "_")
     return next((variable for variable, long in SHORT_NAMES.items() if long == name), name).upper()
 
@@ -154,17 +154,17 @@ def _from_make() -> bool:
 
 
 def _program() -> str:
-    """How the user calls the program, which make installs below `.venv`."""
+    """Return the program's name as the user types it; make installs it below `.venv`."""
     return ".venv/bin/raycaster" if _from_make() else "raycaster"
 
 
 def command_line(name: str, scene: Path | str | None = None, options: Mapping[str, Any] | None = None) -> str:
-    """A command for the user to run next, in the form that they use: make's, or the program's.
+    """Return a command for the user to run next, in the form that they use: make or the program.
 
     Args:
-        name: of the subcommand.
-        scene: its scene.
-        options: by name, as in `fraction_bits`; a switch is True.
+        name: name of the subcommand.
+        scene: scene to pass.
+        options: values of options by name, as in `fraction_bits`; a switch is True.
     """
     given = {
         option: int(value)
@@ -186,21 +186,21 @@ def command_line(name: str, scene: Path | str | None = None, options: Mapping[st
 
 
 def add_scene_argument(parser: argparse.ArgumentParser, what: str, *, many: bool = False, default: Any = None) -> None:
-    """Add `scene`, or `scenes` for several: a file, or one of the packaged scenes by its name."""
+    """Add `scene`, for one or several scenes: a file, or the name of a packaged scene."""
     parser.add_argument(
         "scene", nargs="*" if many else "?", type=find_scene, default=default, metavar="SCENE",
-        help=f"{what}: a file, or a name, such as boxes, that `raycaster scenes` lists",
+        help=f"{what}: a file, or a name listed by `raycaster scenes`, such as boxes",
     )  # fmt: skip
 
 
 def add_build_option(parser: argparse.ArgumentParser) -> None:
     """Add `--build`."""
-    parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where output goes (%(default)s)")
+    parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="output directory (%(default)s)")
 
 
 def add_configuration_options(parser: argparse.ArgumentParser) -> None:
-    """Add `--units`, `--fraction-bits` and the others, each with the configuration's own description."""
-    group = parser.add_argument_group("design", "more of it: raycaster options")
+    """Add `--units`, `--fraction-bits` and the other options, each with the configuration's description."""
+    group = parser.add_argument_group("design", "all design options: raycaster options")
     for name in OPTIONS:
         field = OPTIONS[name]
         option = "--" + name.replace("_", "-")
@@ -212,25 +212,25 @@ def add_configuration_options(parser: argparse.ArgumentParser) -> None:
 
 
 def shown_default(field: FieldInfo) -> str:
-    """What an option is where it is not given."""
+    """Return an option's default as shown in help."""
     if field.default is None:
-        return "what suits the rest"
+        return "automatic"
     return str(int(field.default) if isinstance(field.default, bool) else field.default)
 
 
 def _is_switch(field: FieldInfo) -> bool:
-    """Whether an option has no value, as its field is yes or no and nothing else."""
+    """Return True if an option takes no value, because its field can only be true or false."""
     return field.annotation in (bool, "bool")
 
 
 def given_options(arguments: argparse.Namespace) -> dict[str, Any]:
-    """The configuration's options that stood on the command line, by field name."""
+    """Return the configuration options given on the command line, by field name."""
     values = vars(arguments)
     return {name: values[name] for name in OPTIONS if values.get(name) is not None}
 
 
 def as_options(config: Configuration) -> list[str]:
-    """The options that make a configuration: those whose values are not the defaults."""
+    """Return the options that make a configuration: those whose values differ from the defaults."""
     words = []
     for name in OPTIONS:
         value = getattr(config, name)
@@ -243,13 +243,13 @@ def as_options(config: Configuration) -> list[str]:
 
 
 def run_command(main: Callable[[], int | None]) -> NoReturn:
-    """Run a command's body; what the user can mend becomes one line on standard error and exit code 2."""
+    """Run a command's body; errors that the user can fix become one line on standard error and exit code 2."""
     try:
         code = _flushed(main)
     except UserError as error:
         print(f"error: {printable(error, lines=isinstance(error, ToolError))}", file=sys.stderr)
         code = 2
-    except BrokenPipeError:  # nobody reads any more, as after `| head`
+    except BrokenPipeError:  # the reader has gone, as with `| head`
         code = 128 + signal.SIGPIPE
     except OSError as error:
         print(f"error: {printable(_complaint(error))}", file=sys.stderr)
@@ -266,22 +266,22 @@ def run_command(main: Callable[[], int | None]) -> NoReturn:
     try:
         sys.stdout.flush()
     except OSError:
-        # Python would try once more at its end, and complain.
+        # Python would flush again at exit, and complain.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     sys.exit(code)
 
 
 def _flushed(main: Callable[[], int | None]) -> int | str | None:
-    """Run it, with streams that take any text, and see that all it printed has gone; its exit code."""
+    """Run a body with streams that take any text, flush what it printed, and return its exit code."""
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:  # a shell may have closed it
             setattr(sys, name, open(os.devnull, "w"))  # noqa: SIM115
         elif isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")  # a terminal need not have every character
+            stream.reconfigure(errors="backslashreplace")  # a terminal may lack characters
     try:
         code = main() or 0
-    except SystemExit as ended:  # argparse ends so after help
+    except SystemExit as ended:  # argparse exits after help
         code = ended.code
     try:
         sys.stdout.flush()
@@ -292,7 +292,7 @@ def _flushed(main: Callable[[], int | None]) -> int | str | None:
 
 
 def _complaint(error: OSError) -> str:
-    """One line for what the system refused: the place, the reason, and what to do."""
+    """Return one line for an operating system error: the place, the reason, and what to do."""
     place = " -> ".join(str(name) for name in (error.filename, error.filename2) if name is not None)
     said = f"{place or 'output'}: {error.strerror or error}"
     return f"{said}; {ADVICE[error.errno]}" if error.errno in ADVICE else said

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Measured figures: kept in a file by `--keep results/<name>.json`, and published as tables of the pages.
+"""Measured figures, kept in files by `--keep results/<name>.json` and published as tables in the pages.
 
-A file has the command that measures its figures again, and digests of everything that decides them.
-`raycaster results --stale` compares these with the project as it is; `raycaster results --render` writes the pages.
+A file has the command that repeats the measurement, and digests of everything that affects the figures.
+`raycaster results --stale` compares these with the current project; `raycaster results --render` writes the pages.
 """
 
 from __future__ import annotations
@@ -22,34 +22,34 @@ from raycaster.errors import UserError
 
 RESULTS = Path(__file__).parents[1] / "results"
 WHERE = re.compile(r" --(?:output|build|keep|jobs)[ =](?:'[^']*'|\S+)")
-"""Options of a command that decide nothing of what it measures."""
+"""Options of a command that do not affect what it measures."""
 
 
 Digests = Mapping[str, Mapping[str, str]]
-"""Digests of what decides a command's figures: by kind (designs, sources, tools), and by name."""
+"""Digests of everything that affects a command's figures, by kind (designs, sources, tools) and by name."""
 
 
 class Provenance(Protocol):
-    """What decides a command's figures; `raycaster.convert.provenance` has it."""
+    """Everything that affects a command's figures; implemented in `raycaster.convert.provenance`."""
 
     def digests(self) -> Digests:
-        """Digest all of it."""
+        """Compute the digests."""
         ...
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """A kept file: what a command measured.
+    """Figures that a command measured, as kept in a file.
 
     Attributes:
-        name: of the file, without its suffix.
-        command: the command line, without the options that say where output goes.
-        date: the day, as 2026-11-24.
-        commit: the commit that was checked out; a plus means that files had been edited.
-        scope: what the figures are true of.
-        figures: what was measured.
-        provenance: the digests when it was measured; empty in a file that was kept before there were any.
-        changed: names in the provenance that have another digest by now.
+        name: name of the file, without its suffix.
+        command: command line, without the options that say where output goes.
+        date: day of the measurement, as 2026-11-24.
+        commit: commit that was checked out; a plus means that files had been edited.
+        scope: description of what the figures apply to.
+        figures: measured figures.
+        provenance: digests at the time of the measurement; empty in files from before there were digests.
+        changed: names in the provenance whose digests have changed since.
     """
 
     name: str
@@ -63,23 +63,23 @@ class Outcome:
 
     @property
     def when(self) -> str:
-        """The day, for a cell of a table; marked where the figures are stale."""
+        """Day of the measurement for a table cell, marked if the figures are stale."""
         return f"{self.date}, **stale**" if self.changed else self.date
 
     def asked(self, command: str = "") -> str:
-        """The command line without this beginning."""
+        """Return the command line without a given beginning."""
         return self.command.removeprefix(command).strip()
 
 
 @dataclass(frozen=True)
 class Published:
-    """A table of the pages, or a few words within a line.
+    """A table in the pages, or a few words within a line.
 
     Attributes:
-        name: on the pages, as in `<!--name-->`.
-        kept: the files that it is made of, by name; a pattern, as in `bitstream-*`, stands for several.
-        body: makes Markdown of these outcomes.
-        dated: says in the body itself when the figures were measured.
+        name: name of the marker in the pages, as in `<!--name-->`.
+        kept: names of its source files; a pattern, as in `bitstream-*`, stands for several.
+        body: makes Markdown from these outcomes.
+        dated: True if the body itself says when the figures were measured.
     """
 
     name: str
@@ -93,10 +93,10 @@ class Check:
     """A row of the table of long checks.
 
     Attributes:
-        title: what was checked.
-        engine: which engine, and what matters of its configuration.
-        kept: the files that it is made of, by name.
-        body: says in words what was found, from these outcomes.
+        title: name of the check.
+        engine: engine, with the relevant part of its configuration.
+        kept: names of its source files.
+        body: describes in words what was found, from these outcomes.
     """
 
     title: str
@@ -106,7 +106,7 @@ class Check:
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """A table in Markdown; numbers are aligned to the right."""
+    """Format a table in Markdown, with numbers aligned to the right."""
     rows = list(rows)
     texts = [[f"{cell:,}" if isinstance(cell, int) else str(cell) for cell in row] for row in rows]
     rules = ["---:" if all(isinstance(cell, int) for cell in column) else "---" for column in zip(*rows, strict=True)]
@@ -115,11 +115,11 @@ def table(headings: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 def add_keep_option(parser: argparse.ArgumentParser) -> None:
     """Add `--keep`."""
-    parser.add_argument("--keep", type=Path, metavar="JSON", help="write the figures, with their scope, to this file")
+    parser.add_argument("--keep", type=Path, metavar="JSON", help="write the figures and their scope to this file")
 
 
 def scope_of(configuration: Configuration) -> dict[str, Any]:
-    """The scope of a figure that is true of one design."""
+    """Return the scope of figures that apply to one design."""
     return {
         "configuration": configuration.name,
         "engine": configuration.engine,
@@ -137,11 +137,11 @@ def keep(
     """Write what was measured to the file that `--keep` names, if it was given.
 
     Args:
-        arguments: the command line, as `CommandParser` made it.
-        figures: what was measured.
+        arguments: command line, as parsed by `CommandParser`.
+        figures: measured figures.
         scope: `scope_of` the design, or another description.
-        provenance: the command's function that says what decides its figures.
-        left_out: what a reader might think was measured too, in a few words.
+        provenance: function that returns everything that affects the command's figures.
+        left_out: anything that a reader might think was measured too, in a few words.
     """
     if arguments.keep is None:
         return
@@ -160,10 +160,10 @@ def keep(
 
 
 def kept_outcome(path: Path) -> Outcome:
-    """Read a kept file; nothing is said of what has changed since.
+    """Read a kept file, without finding out what has changed since.
 
     Raises:
-        UserError: it cannot be read.
+        UserError: the file cannot be read.
     """
     try:
         kept: dict[str, Any] = json.loads(path.read_text())
@@ -175,7 +175,7 @@ def kept_outcome(path: Path) -> Outcome:
 
 
 def commit_of(directory: Path) -> str:
-    """What is checked out; with a plus where the files are not those of the commit, empty outside of a clone."""
+    """Return the commit that is checked out, with a plus if files have been edited; empty outside a clone."""
     words = ["git", "-C", str(directory), "describe", "--always", "--exclude=*", "--dirty=+"]
     try:
         return subprocess.run(words, capture_output=True, text=True, check=False).stdout.strip()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Output of commands: directories that appear whole or not at all, and text that a terminal shows as it is."""
+"""Output of commands: directories that appear whole or not at all, and text that is safe to print."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rich.text import Text
 from raycaster.errors import UserError
 
 MARK = ".raycaster"
-"""The file that says of a directory that a command made it, so that the next one may remove it."""
+"""File that marks a directory as made by a command, so that a later command may remove it."""
 
 
 def check_replaceable(directory: Path) -> None:
@@ -32,11 +32,11 @@ def check_replaceable(directory: Path) -> None:
         return
     if directory.is_symlink() or not directory.is_dir():
         raise UserError(f"{directory}: expected a directory; move away what is there, or choose another place")
-    # Models that were built before there was a mark have a stamp.
+    # Models built before there was a mark have a stamp.
     is_older = directory.parent.parent.name == "model" and (directory / "stamp.json").exists()
     if not (directory / MARK).exists() and not is_older and any(directory.iterdir()):
         raise UserError(
-            f"{directory}: has files in it, but no {MARK} that says that raycaster made it, so it is not replaced; "
+            f"{directory}: has files in it, but no {MARK} to show that raycaster made it, so it is not replaced; "
             "move it away, or choose another place"
         )
 
@@ -53,7 +53,7 @@ def remove(directory: Path) -> None:
 
 
 def emptied(directory: Path) -> Path:
-    """Make a directory, or replace it by an empty one; returns it.
+    """Make an empty directory, replacing any existing one, and return it.
 
     Raises:
         UserError: see `check_replaceable`.
@@ -65,7 +65,7 @@ def emptied(directory: Path) -> Path:
 
 
 def put(filled: Path, directory: Path) -> None:
-    """Move a directory to where the one of the run before may be.
+    """Move a directory into place, replacing the one from the previous run, if any.
 
     Raises:
         UserError: see `check_replaceable`.
@@ -77,9 +77,9 @@ def put(filled: Path, directory: Path) -> None:
 
 @contextmanager
 def replaced(directory: Path) -> Iterator[Path]:
-    """An empty directory to fill, which takes the place of `directory` once all is in it.
+    """Yield an empty directory to fill, which then replaces `directory`.
 
-    If the filling fails, `directory` stays as it was.
+    If filling it fails, `directory` stays as it was.
 
     Raises:
         UserError: see `check_replaceable`.
@@ -94,7 +94,7 @@ def replaced(directory: Path) -> Iterator[Path]:
             yield filled
             put(filled, directory)
     except OSError as error:
-        # A write to a full disk has no file's name, and the scratch directory's means nothing to a user.
+        # A write to a full disk names no file, and the name of the scratch directory means nothing to a user.
         if error.filename is None or (
             Path(error.filename).is_relative_to(directory.parent) and prefix in error.filename
         ):
@@ -107,11 +107,11 @@ def _mark(directory: Path) -> None:
 
 
 def printable(text: object, *, lines: bool = False) -> str:
-    r"""Text of files or of the command line as a terminal may get it: control characters are escaped, as in \x1b.
+    r"""Escape control characters, as in \x1b, in text from files or the command line, so that it is safe to print.
 
     Args:
-        text: what to show.
-        lines: whether it may have several lines.
+        text: text to show.
+        lines: True if the text may have several lines.
     """
     return "".join(
         one if one.isprintable() or (lines and one == "\n") else one.encode("unicode_escape").decode()
@@ -120,23 +120,23 @@ def printable(text: object, *, lines: bool = False) -> str:
 
 
 class Console(rich.console.Console):
-    """A console that takes text for text: brackets are no markup, and `printable` escapes control characters."""
+    """A console that prints text literally: brackets are not markup, and `printable` escapes control characters."""
 
     def __init__(self, **options: Any):
-        """Begin without markup, names of emojis and highlighting; the options are those of rich."""
+        """Turn off markup, emoji names and highlighting; the options are those of rich."""
         super().__init__(markup=False, emoji=False, highlight=False, **options)
 
     def render_str(self, text: str, **options: Any) -> Text:
-        """Render what is not yet a `Text`."""
+        """Render a string that is not yet a `Text`."""
         return super().render_str(printable(text, lines=True), **options)
 
     @contextmanager
     def waiting(self, what: str, usual: str = "") -> Iterator[None]:
-        """Show what is being waited for: with the time so far on a terminal, once at the start elsewhere.
+        """Show what is being waited for: on a terminal with the elapsed time, elsewhere once at the start.
 
         Args:
-            what: to show.
-            usual: duration, in words; see `raycaster.waits`.
+            what: text to show.
+            usual: usual duration, in words; see `raycaster.waits`.
         """
         text = f"{what} ({usual})" if usual else what
         if not self.is_terminal:
@@ -149,5 +149,5 @@ class Console(rich.console.Console):
             yield
 
     def on_broken_pipe(self) -> None:
-        """Leave it to `raycaster.options.run_command`."""
+        """Leave a broken pipe to `raycaster.options.run_command`."""
         raise BrokenPipeError

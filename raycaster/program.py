@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A scene as what software writes: words, in the order in which they go over the bus."""
+"""Words that software writes to load a scene, in the order in which they go over the bus."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from raycaster.scene import Basis, Light, Rectangle, Scene
 
 
 def rectangle_fields(index: int, rectangle: Rectangle, config: Configuration) -> Iterator[tuple[str, dict[str, int]]]:
-    """The registers of an enabled rectangle and their fields, the one that enables it last."""
+    """Yield the registers of an enabled rectangle and their fields; the one that enables it is last."""
     for corner, position in enumerate(rectangle.corners):
         yield f"rectangle[{index}].corner_{corner}", dict(zip("xyz", position, strict=True))
     if config.patterns:
@@ -24,7 +24,7 @@ def rectangle_fields(index: int, rectangle: Rectangle, config: Configuration) ->
 
 
 def basis_fields(basis: Basis) -> Iterator[tuple[str, dict[str, int]]]:
-    """The registers of a camera's basis and their fields."""
+    """Yield the registers of a camera's basis and their fields."""
     registers = register_map(1)
     for name, vector in zip(("forward", "right", "up"), basis, strict=True):
         widths = (field.width for field in registers[name].fields.values())
@@ -33,17 +33,17 @@ def basis_fields(basis: Basis) -> Iterator[tuple[str, dict[str, int]]]:
 
 
 def light_fields(light: Light | None) -> Iterator[tuple[str, dict[str, int]]]:
-    """The register of the light and its fields."""
+    """Yield the register of the light and its fields."""
     where = dict(zip("xyz", light.position, strict=True)) | {"shade": light.quarters} if light else {}
     yield "light", {**where, "on": int(light is not None)}
 
 
 def scene_fields(scene: Scene, config: Configuration) -> Iterator[tuple[str, dict[str, int]]]:
-    """The registers of a whole scene and their fields; entries of the table that it leaves are disabled.
+    """Yield the registers of a whole scene and their fields; unused entries of the table are disabled.
 
     Args:
-        scene: at most as many rectangles as the table has entries; fixed ones are not written.
-        config: the design; what it has not got is not written.
+        scene: scene with at most as many rectangles as the table has entries; fixed rectangles are not written.
+        config: the design; registers of features that it lacks are not written.
     """
     red, green, blue = scene.background
     yield "background", {"red": red, "green": green, "blue": blue}
@@ -59,12 +59,12 @@ def scene_fields(scene: Scene, config: Configuration) -> Iterator[tuple[str, dic
 
 
 def scene_words(scene: Scene, config: Configuration, reflections: int | None = None) -> list[tuple[int, int]]:
-    """Word addresses and words that load a scene and start it: the last one commits.
+    """Return the word addresses and words that load a scene and start it; the last one commits.
 
     Args:
-        scene: as for `scene_fields`.
-        config: as for `scene_fields`.
-        reflections: instead of the scene's own.
+        scene: see `scene_fields`.
+        config: see `scene_fields`.
+        reflections: number of reflections, instead of the scene's own.
     """
     registers = register_map(config.table)
     bounces = scene.reflections if reflections is None else reflections

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster registers`: the register map for C and for people, and the memory map for C."""
+"""`raycaster registers`: write the register map as a C header and a web page, and the memory map as a C header."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from raycaster.registers import compile_registers
 HEADER = "raycaster_regs.h"
 MEMORY_HEADER = Path("firmware") / "system.h"
 SOFTWARE = Path("sw")
-"""Folder of the headers that are kept with the sources, from the root."""
+"""Folder of the headers that are kept with the sources, relative to the root."""
 
 
 def write_header(rectangles: int, path: Path) -> None:
@@ -31,21 +31,21 @@ def write_header(rectangles: int, path: Path) -> None:
         path: the file; replaced.
     """
     with tempfile.TemporaryDirectory() as scratch:
-        # The guard of the header is made of the file's name.
+        # The header's include guard is made from the file's name.
         written = Path(scratch) / HEADER
         CHeaderExporter().export(compile_registers(rectangles), str(written), std=CStandard.gnu99)
         path.write_text(f"// SPDX-License-Identifier: MIT\n{written.read_text()}")
 
 
 def write_page(rectangles: int, directory: Path) -> Path:
-    """Write the page, which a browser opens without a server.
+    """Write the web page, which a browser opens without a server.
 
     Args:
         rectangles: entries of the hardware's table, 1 to 32.
         directory: replaced as a whole.
 
     Returns:
-        The page's first file.
+        The start page.
     """
     with replaced(directory) as written:
         HTMLExporter().export(compile_registers(rectangles), str(written), title="RayCaster registers")  # pyright: ignore[reportArgumentType]
@@ -53,17 +53,21 @@ def write_page(rectangles: int, directory: Path) -> Path:
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Return the command's parser."""
     parser = CommandParser("registers", __doc__, "")
-    parser.add_argument("--output", type=Path, default=Path("build/registers"), help="the page (default: %(default)s)")
-    parser.add_argument("--software", type=Path, default=SOFTWARE, help="the C headers (default: %(default)s)")
+    parser.add_argument(
+        "--output", type=Path, default=Path("build/registers"), help="directory of the page (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--software", type=Path, default=SOFTWARE, help="directory of the C headers (default: %(default)s)"
+    )
     default = configure().rectangles
-    parser.add_argument("--rectangles", default=default, help="entries of the table (default: %(default)s)")
+    parser.add_argument("--rectangles", default=default, help="entries of the rectangle table (default: %(default)s)")
     return parser
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+    """Run the command."""
     arguments = command_parser().parse_args(argv)
     rectangles = configure(rectangles=arguments.rectangles, allow_underrun=True).rectangles
     page = write_page(rectangles, arguments.output)

@@ -15,7 +15,7 @@ SOURCE = Path(__file__).with_name("registers.rdl")
 
 @dataclass(frozen=True)
 class RegisterField:
-    """Bits `lsb + width - 1` to `lsb` of a word."""
+    """A field: bits `lsb + width - 1` to `lsb` of a word."""
 
     lsb: int
     width: int
@@ -23,7 +23,7 @@ class RegisterField:
 
     @property
     def mask(self) -> int:
-        """The field's bits, set."""
+        """Mask of the field's bits."""
         return ((1 << self.width) - 1) << self.lsb
 
 
@@ -37,19 +37,19 @@ class Register:
 
     @property
     def implemented(self) -> int:
-        """The bits that belong to a field."""
+        """Mask of the bits that belong to a field."""
         return sum(field.mask for field in self.fields.values())
 
     @property
     def reset(self) -> int:
-        """The word after reset, where it says anything then."""
+        """Value after reset, with 0 for fields that have no reset value."""
         return sum(field.reset << field.lsb for field in self.fields.values())
 
     def pack(self, **values: int) -> int:
-        """The word with these fields set and the others 0.
+        """Return the word with these fields set and the others 0.
 
         Raises:
-            KeyError: no such field.
+            KeyError: there is no such field.
             ValueError: a value does not fit its field.
         """
         word = 0
@@ -61,12 +61,12 @@ class Register:
         return word
 
     def unpack(self, word: int) -> dict[str, int]:
-        """Every field's value in a word."""
+        """Return every field's value in a word."""
         return {name: (word & field.mask) >> field.lsb for name, field in self.fields.items()}
 
 
 def compile_registers(rectangles: int) -> AddrmapNode:
-    """The compiled map of a design with this many entries in its rectangle table."""
+    """Compile the map of a design with this many entries in its rectangle table."""
     compiler = RDLCompiler()
     compiler.compile_file(str(SOURCE), defines={"RECTANGLES": str(rectangles)} if rectangles else {"NO_TABLE": ""})
     return compiler.elaborate("ray_caster").top
@@ -74,7 +74,7 @@ def compile_registers(rectangles: int) -> AddrmapNode:
 
 @lru_cache
 def register_map(rectangles: int) -> dict[str, Register]:
-    """Every register by its path: `"control"`, `"camera"`, `"rectangle[3].corner_0"`, ..."""
+    """Return every register by its path: `"control"`, `"camera"`, `"rectangle[3].corner_0"`, ..."""
     registers = {}
     for node in compile_registers(rectangles).descendants(unroll=True):
         if isinstance(node, RegNode):
@@ -89,6 +89,6 @@ def _field(node: FieldNode) -> tuple[str, RegisterField]:
 
 
 def address_bits(rectangles: int) -> int:
-    """Width of the bus's word address."""
+    """Return the width of the bus's word address."""
     last = max(register.address for register in register_map(rectangles).values())
     return last.bit_length()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Scene files: a camera and a room of axis-parallel mirror rectangles, in TOML, checked on the way in."""
+"""Scene files: a camera and a room of axis-parallel mirror rectangles, in TOML, checked when read."""
 
 from __future__ import annotations
 
@@ -32,28 +32,28 @@ from raycaster.configuration import MOST_RECTANGLES, MOST_REFLECTIONS, WORLD_SIZ
 from raycaster.errors import UserError, listed
 
 BASIS_SCALE = 256
-"""A whole vector of a camera's basis."""
+"""Length of a vector in a camera's basis."""
 
 UNTURNED = ((BASIS_SCALE, 0, 0), (0, BASIS_SCALE, 0), (0, 0, BASIS_SCALE))
 """Forward, right and up of a camera that is not turned."""
 
 PATTERNS = ("plain", "checker", "rows", "columns")
-"""In the order of the registers' codes."""
+"""Pattern names, in the order of their register codes."""
 
 CELLS = (8, 16, 32, 64, 128, 256)
-"""Sizes of a pattern's cells, in world units, in the order of the registers' codes."""
+"""Sizes of a pattern's cells, in world units, in the order of their register codes."""
 
 
 class SceneError(UserError):
-    """A scene file that is refused: the file, the place in it, and what was expected."""
+    """A refused scene file; the text names the file, the place in it, and what was expected."""
 
 
 COMPLAINTS = {
     "missing": "is missing",
     "extra_forbidden": "is not a key of scene files; the keys here are {keys}",
     "model_type": "must be a table",
-    "string_type": "must be a text in quotes",
-    "no_colour2": "a pattern has a second colour; give colour2 beside {pattern}",
+    "string_type": "must be a string in quotes",
+    "no_colour2": "a pattern has a second colour; give colour2 with {pattern}",
     "no_pattern": f"colour2 is for a pattern; give pattern = {listed(map(json.dumps, PATTERNS[1:]))}",
     "too_many": (
         "rect: {count} rectangles, but the hardware holds {rectangles}; remove some or build it with RECTANGLES={count}"
@@ -63,31 +63,31 @@ COMPLAINTS = {
     "heading": "head each rectangle with [[rect]]",
     "syntax": "is not TOML at line {number}{line} ({reason})",
 }
-"""What is said of a file beside what the rules of its values expect; the first four by pydantic's types of errors."""
+"""Error messages, except those of the rules for values; the first four are listed by pydantic's error types."""
 
 MOST_BYTES = 1_000_000
-"""Bytes of the largest scene file that is read."""
+"""Size in bytes of the largest scene file that is read."""
 
 MOST_DOTS_SQUARED = 10**7
-"""Largest sum, over a file's lines, of the square of the number of dots: a fraction of a second to tomllib."""
+"""Largest sum, over a file's lines, of the squared number of dots, which tomllib parses in a fraction of a second."""
 
 
 _NO_NAME = re.compile("[\\0-\\x1f\\x7f-\\x9f\\ud800-\\udfff]")
-"""Characters that a file may have in its name, and the simulators' results, which are XML, may not."""
+"""Characters that are allowed in a file's name, but not in the simulators' results, which are XML."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Check:
-    """A rule for a value as a file has it, stated once: pydantic applies it, and the model's JSON schema tells it.
+    """A rule for a value in a scene file, stated once: pydantic applies it, and the model's JSON schema contains it.
 
-    In the schema, what is checked has a list `checks`: of each rule its `kind`, which is the function's name, and
-    `expected`, `after` and the parameters.
+    In the schema, a checked value has a list `checks`: for each rule its `kind`, which is the function's name, its
+    `expected`, `after` and parameters.
 
     Attributes:
-        holds: whether a value keeps the rule with these parameters.
-        expected: the words for what breaks it.
-        parameters: of `holds`, by name.
-        after: whether it is about a value whose parts have been checked.
+        holds: returns True if a value keeps the rule with these parameters.
+        expected: text about a value that breaks the rule.
+        parameters: parameters of `holds`, by name.
+        after: True if the rule applies to a value whose parts have been checked.
     """
 
     holds: Callable[..., bool]
@@ -96,10 +96,10 @@ class _Check:
     after: bool = False
 
     def __call__(self, value: object) -> object:
-        """The value.
+        """Return the value if it keeps the rule.
 
         Raises:
-            ValueError: it breaks the rule.
+            ValueError: the value breaks the rule.
         """
         if not self.holds(value, **self.parameters):
             raise ValueError(self.expected)
@@ -188,9 +188,10 @@ def _scaled(x: float, y: float, z: float) -> tuple[int, int, int]:
 
 
 class Camera(_Strict):
-    """Where all rays start, and how the view is turned, in degrees: not at all, it is along x with z upwards.
+    """Position where all rays start, and angles of the view in degrees; unturned, it is along x with z up.
 
-    yaw above 0 turns from x towards y, pitch looks up, roll lifts the right side; rolled first, yawed last.
+    Positive yaw turns from x towards y, positive pitch looks up, and positive roll lifts the right side. Roll is
+    applied first, yaw last.
     """
 
     position: Point
@@ -200,7 +201,7 @@ class Camera(_Strict):
 
     @property
     def basis(self) -> Basis:
-        """Forward, right and up, each the x, y, z of its vector, times 256 and rounded: what the registers hold."""
+        """Forward, right and up as in the registers: x, y, z of each vector, times 256 and rounded."""
         angles = (math.radians(angle) for angle in (self.yaw, self.pitch, self.roll))
         (cy, sy), (cp, sp), (cr, sr) = ((math.cos(angle), math.sin(angle)) for angle in angles)
         forward = _scaled(cy * cp, sy * cp, sp)
@@ -210,19 +211,19 @@ class Camera(_Strict):
 
     @property
     def turned(self) -> bool:
-        """Whether the view is along anything but x, or not upright."""
+        """True if the view is not along x, or not upright."""
         return self.basis != UNTURNED
 
 
 class Light(_Strict):
-    """A point light: what it reaches keeps its colour, all else keeps `shade` of it."""
+    """A point light: points that it reaches keep their colour, all others keep the fraction `shade` of it."""
 
     position: Point
     shade: Shade = 0.5
 
     @property
     def quarters(self) -> int:
-        """The colour that is left in the dark, in quarters: 0..3."""
+        """Fraction of the colour that is left in the dark, in quarters: 0..3."""
         return int(4 * self.shade)
 
 
@@ -247,17 +248,17 @@ class Rectangle(_Strict):
 
     @property
     def quarters(self) -> int:
-        """How much it mirrors, in quarters: 0..4."""
+        """Reflectivity in quarters: 0..4."""
         return int(4 * self.mirror)
 
     @property
     def kind(self) -> int:
-        """The pattern as registers have it: an index of `PATTERNS`."""
+        """Register code of the pattern, an index of `PATTERNS`."""
         return PATTERNS.index(self.pattern)
 
     @property
     def cell_code(self) -> int:
-        """The cell's size as registers have it: log2, less three."""
+        """Register code of the cell's size: log2, minus three."""
         return CELLS.index(self.cell)
 
     @property
@@ -268,7 +269,7 @@ class Rectangle(_Strict):
 
 
 class Scene(_Strict):
-    """A scene file's contents. Rectangles keep the file's order, which settles ties of depth."""
+    """A scene file's contents. Rectangles keep the file's order; of two at equal depth, the earlier is seen."""
 
     title: str = ""
     rows: Rows = 240
@@ -282,7 +283,7 @@ class Scene(_Strict):
 
     @property
     def needs(self) -> dict[str, bool]:
-        """Options of a configuration that add to what scenes may show, and whether the picture needs them."""
+        """Configuration options for optional features of scenes, each True if the picture needs it."""
         return {
             "turn": self.camera.turned,
             "materials": any(rectangle.mirror != Rectangle.model_fields["mirror"].default for rectangle in self.rect),
@@ -291,7 +292,7 @@ class Scene(_Strict):
         }
 
     def lacks(self, looks: Collection[str]) -> list[str]:
-        """The options that the picture needs, apart from these."""
+        """Return the options that the picture needs, except these."""
         return [name for name, is_needed in self.needs.items() if is_needed and name not in looks]
 
 
@@ -300,7 +301,7 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
 
     Args:
         path: the TOML file.
-        rectangles: how many the hardware holds, or None for no limit.
+        rectangles: number of rectangles that the hardware holds, or None for no limit.
 
     Raises:
         SceneError: the file cannot be read, is not TOML, or is not a scene; one line says where and what was expected.
@@ -308,7 +309,7 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
     path = Path(path)
     if not path.stem.strip(".") or _NO_NAME.search(path.stem):
         raise SceneError(
-            f"{path}: expected a name that is not all dots and has no control characters, as outputs get it; rename it"
+            f"{path}: expected a name that is not all dots and has no control characters, for use in outputs; rename it"
         )
     text = ""
     try:
@@ -318,11 +319,11 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
             read = file.read(MOST_BYTES + 1)
         if len(read) > MOST_BYTES:
             raise SceneError(
-                f"{path}: is larger than {MOST_BYTES:,} bytes, the most of a scene file; remove some of it"
+                f"{path}: is larger than {MOST_BYTES:,} bytes, the limit for scene files; remove some of it"
             )
-        # An editor may have written a byte order mark, which is not TOML to Python.
+        # An editor may have written a byte order mark, which tomllib refuses.
         text = io.TextIOWrapper(io.BytesIO(read), encoding="utf-8-sig").read()
-        # A key of many parts takes tomllib a time that grows with the square of their number.
+        # The time that tomllib takes for a key grows with the square of the number of its parts.
         if sum(line.count(".") ** 2 for line in text.split("\n")) > MOST_DOTS_SQUARED:
             raise SceneError(f"{path}: has too many dots in a line; a key of a scene has one part")
         contents = tomllib.loads(text)
@@ -334,7 +335,7 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
     except UnicodeDecodeError:
         raise SceneError(f"{path}: {COMPLAINTS['encoding']}") from None
     except (ValueError, RecursionError) as error:
-        # Beside what tomllib objects to: numbers of thousands of digits, and nesting as deep.
+        # Besides tomllib's own errors: numbers with thousands of digits, and nesting as deep.
         raise SceneError(f"{path}: {_syntax_complaint(str(error), text)}") from None
     try:
         scene = Scene.model_validate(contents)
@@ -348,7 +349,7 @@ def load_scene(path: Path | str, rectangles: int | None = None) -> Scene:
 
 
 def packaged_scenes(*, plain: bool = False) -> dict[str, Path]:
-    """The scenes that come with it, by name; plain: only those that need nothing which a design may lack."""
+    """Return the packaged scenes by name; with plain, only those that every design can show."""
     spec = importlib.util.find_spec("raycaster.scenes")
     folders = (spec and spec.submodule_search_locations) or ()
     paths = [path for folder in folders for path in sorted(Path(folder).glob("*.toml"))]
@@ -356,10 +357,10 @@ def packaged_scenes(*, plain: bool = False) -> dict[str, Path]:
 
 
 def find_scene(name: str) -> Path:
-    """A scene file, by its path or by the name of a packaged one.
+    """Return a scene file, given by its path or by the name of a packaged scene.
 
     Raises:
-        SceneError: it is neither.
+        SceneError: the name is neither.
     """
     path = Path(name)
     if path.suffix or path.exists():
@@ -367,12 +368,12 @@ def find_scene(name: str) -> Path:
     scenes = packaged_scenes()
     if name not in scenes:
         near = did_you_mean(name, scenes) or ": " + ", ".join(scenes)
-        raise SceneError(f"{name}: no such file, and none of the packaged scenes{near}")
+        raise SceneError(f"{name}: no such file or packaged scene{near}")
     return scenes[name]
 
 
 def dump_scene(scene: Scene) -> str:
-    """The text of a scene file; `load_scene` reads the same scene from it."""
+    """Return the text of a scene file, from which `load_scene` reads the same scene."""
 
     def colour(channels: Colour) -> str:
         return f'"#{bytes(channels).hex()}"'
@@ -408,37 +409,37 @@ def dump_scene(scene: Scene) -> str:
 
 
 def _syntax_complaint(said: str, text: str) -> str:
-    """One line for what tomllib says of a text: its place there, and what tomllib expected."""
+    """Return one line for an error of tomllib: its place in the text, and what tomllib expected."""
     parts = re.fullmatch(r"(.+) \(at (?:line (\d+), column \d+|end of document)\)", said)
     if parts is None:
         return f"is not TOML: {said}"
     lines = text.rstrip(" \t\n").split("\n")
-    # What is missed at the end is missed in the last line that has anything.
+    # An error at the end is reported for the last line that is not empty.
     number = min(int(parts[2] or len(lines)), len(lines))
     line = lines[number - 1].strip(" \t")
     shown = f": {line}" if line.isprintable() and len(line) <= LONGEST_SHOWN else ""
-    # With [rect] in some places a table is declared twice, or is no list.
+    # With [rect] in some places, a table is declared twice or is not a list.
     reason = COMPLAINTS["heading"] if re.match(r"\[+rect\]+", line) else parts[1]
     return COMPLAINTS["syntax"].format(number=number, line=shown, reason=reason)
 
 
 def _first_complaint(error: ValidationError, contents: Mapping) -> str:
-    """One line for the first thing that is wrong: its place, what was expected, and what stood there."""
+    """Return one line for the first error: its place, what was expected, and what was given."""
     errors = error.errors()
-    # A mistyped key leaves the right one missing; the mistake itself is the better thing to tell.
+    # A mistyped key also leaves the right one missing; report the mistyped one.
     first = next((details for details in errors if details["type"] == "extra_forbidden"), errors[0])
     return f"{_place(first, contents)}: {_expected(first)}"
 
 
 def _place(details: ErrorDetails, contents: Mapping) -> str:
-    """Keys and indices that lead to the mistake, with the rectangle's name: `rect[0] ("floor") corners[1]`."""
+    """Return the keys and indices of the mistake, with the rectangle's name: `rect[0] ("floor") corners[1]`."""
     place = ""
     separator = ""
     for depth, key in enumerate(details["loc"]):
         if isinstance(key, int):
             place += f"[{key}]"
         else:
-            # Keys may be quoted in TOML, and hold anything.
+            # Quoted keys in TOML may contain anything.
             place += separator + (key if re.fullmatch("[A-Za-z0-9_-]+", key) else json.dumps(key))
         separator = "."
         if depth == 1 and details["loc"][0] == "rect":
@@ -468,6 +469,6 @@ def _given(value: object) -> str:
     try:
         text = json.dumps(value, ensure_ascii=False, default=str)
     except (RecursionError, ValueError):
-        # Nested or an integer of digits beyond Python's limits.
+        # Nesting, or an integer's number of digits, beyond Python's limits.
         return ""
     return f", not {text}" if len(text) <= LONGEST_SHOWN else ""

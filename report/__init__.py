@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""The report: what fixed point costs in pixels, time and cells, and where it breaks."""
+"""The report: the cost of fixed point in pixels, time and cells, and the scenes that break it."""

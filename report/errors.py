@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The chapter of errors: how many pixels are wrong, by how much, where, and how errors grow and fall."""
+"""Chapter on errors: number, size and position of wrong pixels, and trends with fraction bits and reflections."""
 
 from __future__ import annotations
 
@@ -20,17 +20,18 @@ from raycaster.report.sweep import Sweep
 
 ROUNDINGS: tuple[Rounding, ...] = ("truncate", "nearest")
 REFLECTIONS = 1
-"""Of the pictures that designs are compared by."""
+"""Number of reflections in the pictures by which designs are compared."""
 
 FEW = 1e-3
-"""Share of wrong pixels that is held to be enough: one in a thousand."""
+"""Share of wrong pixels that counts as few: one in a thousand."""
 
 EARLY = 4
-"""Fraction bits up to which wrong pixels are mostly those of rounding, not ties that no number of bits decides."""
+"""Fraction bits up to which wrong pixels come mostly from rounding, not from ties that no number of bits resolves."""
 
 Results = Mapping[PicturePoint, Mapping[str, Any]]
 COLUMNS = (
-    "scene", "F", "rounding", "reflections", "pixels", "wrong", "wrong share", "PSNR dB", "SSIM", "exceeded",
+    "scene", "F", "rounding", "reflections", "pixels", "wrong", "wrong share", "PSNR dB", "SSIM",
+    "coordinates over bound",
 )  # fmt: skip
 
 
@@ -45,21 +46,21 @@ class Pictures:
     def of(
         self, views: Sequence[View], fraction: int, rounding: Rounding, reflections: int = REFLECTIONS
     ) -> list[Mapping]:
-        """One arithmetic's, a picture a view."""
+        """Return the results for one arithmetic, one per view."""
         return [self.results[PicturePoint(view, fraction, rounding, reflections)] for view in views]
 
     def shares(self, fraction: int, rounding: Rounding) -> list[float]:
-        """Of wrong pixels, of all worlds and scenes."""
+        """Return the shares of wrong pixels for all worlds and scenes."""
         return [one["wrong_share"] for one in self.of([*self.worlds, *self.scenes], fraction, rounding)]
 
     @property
     def exceeded(self) -> int:
-        """Coordinates of hit points over their bound."""
+        """Number of hit-point coordinates over their bound."""
         return sum(depth["exceeded"] for one in self.results.values() for depth in one["depths"])
 
 
 def find_pictures(what: Extent, scenes: Sequence[View], sweep: Sweep) -> Pictures:
-    """Draw all that the seed engine can show, with every arithmetic."""
+    """Draw every picture that the seed engine can show, with every arithmetic."""
     worlds = [View.of(f"{SEED}{number}") for number in range(what.worlds)]
     shown = [scene for scene in scenes if not scene.scene.camera.turned]
     fewest, most = what.fractions[0], max(what.reflections)
@@ -74,18 +75,18 @@ def find_pictures(what: Extent, scenes: Sequence[View], sweep: Sweep) -> Picture
         for view in views
         for reflections in several
     ]
-    # All pictures of a scene one after the other, as they share the exact one.
+    # Group the pictures of a scene, because they share the exact one, which is cached.
     points.sort(key=lambda point: (point.view.source, point.reflections))
     return Pictures(worlds, shown, sweep("pictures", points))
 
 
 def mean_errors(what: Extent, pictures: Pictures) -> dict[tuple[int, Rounding], float]:
-    """By fraction bits and rounding, the mean share of wrong pixels."""
+    """Return the mean share of wrong pixels, by fraction bits and rounding."""
     return {(f, r): float(np.mean(pictures.shares(f, r))) for f in what.fractions for r in ROUNDINGS}
 
 
 def error_sections(what: Extent, pictures: Pictures, directory: Path) -> tuple[list[Section], list[str]]:
-    """The sections, and what a reader should know of them in two sentences."""
+    """Write the plots and tables of the chapter, and return its sections and two summary sentences."""
     by = {r: {f: pictures.shares(f, r) for f in what.fractions} for r in ROUNDINGS}
     points = [[*_row(point, result), command(point)] for point, result in pictures.results.items()]
     write_csv((*COLUMNS, "command"), points, directory / "pictures.csv")
@@ -104,8 +105,9 @@ def _distribution(what: Extent, pictures: Pictures, by: Mapping, directory: Path
     every = [*pictures.worlds, *pictures.scenes]
     plots.save(plots.shares(by), directory / "shares.svg")
     columns = (
-        "F", "rounding", "worlds: median", "mean", "most", "scenes: least", "median", "most", "PSNR dB, median",
-        "SSIM, median", "SSIM, least", "without a wrong pixel",
+        "F", "rounding", "wrong pixels, worlds: median, %", "mean, %", "maximum, %", "scenes: minimum, %",
+        "median, %", "maximum, %", "PSNR dB, median", "SSIM, median", "SSIM, minimum",
+        "pictures without wrong pixels, %",
     )  # fmt: skip
     rows, psnr, ssim = [], {}, {}
     for rounding in ROUNDINGS:
@@ -140,31 +142,31 @@ def _distribution(what: Extent, pictures: Pictures, by: Mapping, directory: Path
     fewest, most = what.fractions[0], what.fractions[-1]
     at_first, at_last = (Spread.of(by["nearest"][f]) for f in (fewest, most))
     first = (
-        f"Rounding to nearest with F = {fewest} leaves {_percent(at_first.median)} of a picture's pixels wrong in the "
-        f"median world, {_percent(at_first.mean)} in the mean and {_percent(at_first.most)} in the worst of "
-        f"{len(every)}; with F = {most} it is {_percent(at_last.median)}, {_percent(at_last.mean)} and "
+        f"With F = {fewest}, rounding to nearest, the share of wrong pixels is {_percent(at_first.median)} in the "
+        f"median picture, {_percent(at_first.mean)} on average and {_percent(at_first.most)} in the worst of "
+        f"{len(every)} pictures; with F = {most}, it is {_percent(at_last.median)}, {_percent(at_last.mean)} and "
         f"{_percent(at_last.most)}."
     )
     text = (
-        f"The seed engine's pictures against exact arithmetic, with {REFLECTIONS} reflection: {len(pictures.worlds)} "
-        f"random worlds (seeds 0 to {len(pictures.worlds) - 1}, {pictures.worlds[0].scene.rows} rows; six styles, "
-        f"made so that ties, edges and slits are common) and the {len(pictures.scenes)} packaged scenes whose cameras "
-        "are not turned. The exact and the beam engine have no wrong pixel."
+        f"The seed engine's pictures are compared with exact arithmetic, with {REFLECTIONS} reflection, for "
+        f"{len(pictures.worlds)} random worlds (seeds 0 to {len(pictures.worlds) - 1}, {pictures.worlds[0].scene.rows} "
+        f"rows; six styles, in which ties, edges and slits are common) and the {len(pictures.scenes)} packaged scenes "
+        "whose camera is not turned. The exact and beam engines have no wrong pixels."
     )
     return Section(
-        "Error is a distribution", text, _enough(what, by),
+        "Distribution of errors", text, _enough(what, by),
         [
-            Plot("shares", "Wrong pixels of a world: a box from quartile to quartile, its line the median, the dot the "
-                 "mean, whiskers from the least to the most; by fraction bits and rounding."),
-            Plot("likeness", "PSNR of the pictures with wrong pixels, and SSIM of all: median, and from the least to "
-                 "the most.", "shares"),
+            Plot("shares", "Share of wrong pixels per picture, by fraction bits and rounding. Boxes span the "
+                 "quartiles, lines are medians, dots are means, whiskers reach from minimum to maximum."),
+            Plot("likeness", "PSNR of the pictures with wrong pixels, and SSIM of all pictures: medians, and bands "
+                 "from minimum to maximum.", "shares"),
         ],
         [Table("distribution", columns, rows)],
     ), first  # fmt: skip
 
 
 def _share(value: float) -> float:
-    """In per cent, as columns have it."""
+    """Convert a share to per cent, as in the columns."""
     return round(100 * value, 4)
 
 
@@ -177,20 +179,20 @@ def _enough(what: Extent, by: Mapping) -> list[str]:
     for rounding in ROUNDINGS:
         medians = {f: float(np.median(by[rounding][f])) for f in what.fractions}
         good = [f for f in medians if all(medians[more] <= FEW for more in medians if more >= f)]
-        least = f"from F = {good[0]} on" if good else f"with no F up to {max(medians)}"
-        said.append(f"In the median world at most {FEW:.1%} of the pixels are wrong {least}, rounding: {rounding}.")
+        least = f"from F = {good[0]}" if good else f"for no F up to {max(medians)}"
+        said.append(f"The median picture has at most {FEW:.1%} wrong pixels {least} (rounding: {rounding}).")
     return said
 
 
 def _trends(what: Extent, pictures: Pictures, by: Mapping, directory: Path) -> tuple[Section, str]:
-    """How errors fall with fraction bits, and grow with reflections."""
+    """Show that errors fall with fraction bits and grow with reflections."""
     every = [*pictures.worlds, *pictures.scenes]
     means = {r: {f: float(np.mean(values)) for f, values in of.items()} for r, of in by.items()}
     hits = {r: {f: _sums(pictures.of(every, f, r), (0,)) for f in what.fractions} for r in ROUNDINGS}
     mean_hits = {r: {f: float(total.sum() / count.sum()) for f, (total, count) in of.items()} for r, of in hits.items()}
     plots.save(plots.falling(means, mean_hits), directory / "falling.svg")
     write_csv(
-        ("rounding", "F", "mean share of wrong pixels", "mean error of a primary hit, world units"),
+        ("rounding", "F", "mean share of wrong pixels", "mean error of a primary hit point, world units"),
         [[r, f, means[r][f], mean_hits[r][f]] for r in ROUNDINGS for f in what.fractions],
         directory / "falling.csv",
     )
@@ -202,8 +204,8 @@ def _trends(what: Extent, pictures: Pictures, by: Mapping, directory: Path) -> t
         early = [f for f in what.fractions if f <= EARLY]
         pixels = slope(early, np.array([by[r][f] for f in early]).T, binary=True)
         said.append(
-            f"With each fraction bit a hit point's mean error is multiplied by 2 to the power of {falls[r]}, and up to "
-            f"F = {early[-1]} the share of wrong pixels by 2 to the power of {pixels}; rounding: {r}."
+            f"Each fraction bit multiplies a hit point's mean error by 2 to the power of {falls[r]}, and, up to "
+            f"F = {early[-1]}, the share of wrong pixels by 2 to the power of {pixels} (rounding: {r})."
         )
     fewest, most = what.fractions[0], max(what.reflections)
     depth_rows, grows = {}, {}
@@ -213,13 +215,13 @@ def _trends(what: Extent, pictures: Pictures, by: Mapping, directory: Path) -> t
         depth_rows[r] = [_depth_row(found, depth) for depth in depths]
         grows[r] = slope(list(depths), *_sums(found, depths))
         said.append(
-            f"With each reflection a hit point's mean error grows by {grows[r]} world units at F = {fewest}; "
-            f"rounding: {r}."
+            f"Each reflection increases a hit point's mean error by {grows[r]} world units at F = {fewest} "
+            f"(rounding: {r})."
         )
     plots.save(plots.hit_errors(depth_rows), directory / "hit_errors.svg")
     kinds = list(depth_rows["truncate"][0])
     depth_table = [[r, depth, *row.values()] for r in ROUNDINGS for depth, row in enumerate(depth_rows[r])]
-    write_csv(("rounding", "reflections before", *kinds), depth_table, directory / "hit_errors.csv")
+    write_csv(("rounding", "reflections so far", *kinds), depth_table, directory / "hit_errors.csv")
     of_scenes = {
         r: {m: [one["wrong_share"] for one in pictures.of(pictures.scenes, fewest, r, m)] for m in what.reflections}
         for r in ROUNDINGS
@@ -236,30 +238,30 @@ def _trends(what: Extent, pictures: Pictures, by: Mapping, directory: Path) -> t
     )  # fmt: skip
     summary = (
         f"A hit point's mean error halves with each fraction bit (2 to the power of {falls['nearest']}) and grows by "
-        f"{grows['nearest'].slope:.2g} world units with each reflection at F = {fewest} (nearest); of "
-        f"{len(pictures.results):,} pictures {pictures.exceeded} coordinates are over their derived bound."
+        f"{grows['nearest'].slope:.2g} world units with each reflection at F = {fewest} (nearest). In "
+        f"{len(pictures.results):,} pictures, {pictures.exceeded} coordinates exceed their derived bound."
     )
     text = (
-        "A hit point's coordinate u is off by at most d'[u] = d[u] + |D[u] / e| d[a] + q, where d are the errors of "
-        "the ray's origin, D its slopes, a the axis of the plane, e the slope along it, and q one unit in the last "
-        "place (truncated) or half of one (nearest). It holds for rays that hit what the exact ray hits; the others "
-        "are counted as flips. Intervals are of a bootstrap over worlds."
+        "A hit point's coordinate u is off by at most d'[u] = d[u] + |D[u] / e| d[a] + q, where d is the error of the "
+        "ray's origin, D is the ray's slope, a is the axis of the plane, e is the slope along a, and q is one unit in "
+        "the last place (truncated) or half a unit (nearest). The bound holds for rays that hit the same rectangle as "
+        "the exact ray; other rays are counted as flips. Intervals come from a bootstrap over pictures."
     )
     return Section(
-        "How errors fall and grow", text, said,
+        "Error against fraction bits and reflections", text, said,
         [
-            Plot("hit_errors", f"Errors of hit points by the reflections before, F = {fewest}, over all worlds, with "
-                               "the "
-                 "greatest bound of any ray."),
-            Plot("falling", "Means over all worlds, by fraction bits."),
-            Plot("by_reflections", f"Wrong pixels of the packaged scenes by reflections, F = {fewest}: a dot a scene."),
+            Plot("hit_errors", f"Errors of hit points by reflections so far, with F = {fewest}, over all pictures, and "
+                 "the greatest bound of any ray."),
+            Plot("falling", "Means over all pictures, by fraction bits."),
+            Plot("by_reflections", f"Wrong pixels of the packaged scenes by reflections, with F = {fewest}; one dot "
+                 "per scene."),
         ],
-        [Table("hit_errors", ("rounding", "reflections before", *kinds), depth_table)],
+        [Table("hit_errors", ("rounding", "reflections so far", *kinds), depth_table)],
     ), summary  # fmt: skip
 
 
 def _sums(found: Sequence[Mapping], depths: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
-    """Of each picture and depth, the sum of the rays' errors, and the rays."""
+    """Return the sum of the rays' errors and the number of rays, both (pictures, depths)."""
     counts = np.array([[one["depths"][depth]["rays"] for depth in depths] for one in found])
     return np.array([[one["depths"][depth]["mean"] for depth in depths] for one in found]) * counts, counts
 
@@ -269,10 +271,10 @@ def _depth_row(found: Sequence[Mapping], depth: int) -> dict[str, float]:
     totals, counts = _sums(found, [depth])
     return {
         "mean": float(totals.sum() / max(counts.sum(), 1)),
-        "median world's worst": float(np.median([one["worst"] for one in of])) if of else 0.0,
+        "worst, median picture": float(np.median([one["worst"] for one in of])) if of else 0.0,
         "worst": max((one["worst"] for one in of), default=0.0),
         "greatest bound": max((one["bound"] for one in of), default=0.0),
-        "greatest part of its bound": max((one["tightest"] for one in of), default=0.0),
+        "greatest error / bound": max((one["tightest"] for one in of), default=0.0),
         "rays": int(counts.sum()),
         "flips": sum(one["depths"][depth]["flips"] for one in found),
     }
@@ -297,13 +299,11 @@ def _places(what: Extent, pictures: Pictures, directory: Path) -> Section:
         ("scene", "command"), [[name, command(point)] for name, point in shares], directory / "wrong_by_scene.csv"
     )
     return Section(
-        "Where pixels are wrong",
+        "Positions of wrong pixels",
         plots=[
             Plot("heat", f"Share of wrong pixels in each block of the picture, over {len(pictures.worlds)} random "
-                         "worlds, "
-                 f"F = {fewest}."),
-            Plot("wrong_by_scene", "Every packaged scene whose camera is not turned: wrong pixels in pink on the "
-                                   "dimmed "
-                 "exact picture; F = 0, truncated, with the scene's own reflections."),
+                 f"worlds, with F = {fewest}."),
+            Plot("wrong_by_scene", "Packaged scenes whose camera is not turned: wrong pixels in pink on the dimmed "
+                 "exact picture, with F = 0, truncated, and the scene's own reflections."),
         ],
     )  # fmt: skip

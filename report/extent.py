@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How much the report sweeps: everything, or what takes less than three minutes."""
+"""Extent of the report: everything, or a sweep of less than three minutes."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from raycaster.engines import ENGINES
 from raycaster.golden.catalogue import Case, catalogue
 
 CASE_REFLECTIONS = 2
-"""That the catalogue is looked at with."""
+"""Number of reflections in the catalogue's cases."""
 
 
 @dataclass(frozen=True)
 class Extent:
-    """How much is swept."""
+    """Extent of a sweep."""
 
     fractions: Sequence[int]
     reflections: Sequence[int]
-    """Of the packaged scenes' pictures; random worlds have one and the most of these."""
+    """Numbers of reflections for the packaged scenes' pictures; random worlds use 1 and the greatest of these."""
 
     worlds: int
-    """Random ones."""
+    """Number of random worlds."""
 
     design_fractions: Sequence[int]
     units: Sequence[int]
-    """Of the seed engine."""
+    """Numbers of units for designs of the seed engine."""
 
     exact_units: Sequence[int]
     cases: Sequence[Case]
@@ -35,28 +35,28 @@ class Extent:
     case_screen: str
     probed_cases: Sequence[Case]
     probed: Sequence[Configuration]
-    """Whose hit points are looked at in simulation."""
+    """Designs whose hit points are checked in simulation."""
 
     shown: Sequence[Configuration]
-    """That draw all cases which they can draw in simulation."""
+    """Designs that are simulated with every case that they can draw."""
 
     screen: str
-    """Of the designs."""
+    """Screen of the designs."""
 
     frontier: int
-    """Designs of the frontiers that are simulated and counted, at most: the first of each."""
+    """Maximum number of designs per frontier that are simulated and counted, from its start."""
 
     culled: Sequence[str]
-    """Engines of which each scene is simulated with culling and without."""
+    """Engines with which each scene is simulated with and without culling."""
 
     left_scenes: int
-    """Packaged scenes for which designs are made smaller step by step, at most."""
+    """Maximum number of packaged scenes for which a design is reduced step by step."""
 
     left_engine: str = "exact"
 
 
 def extent(quick: bool) -> Extent:
-    """Everything, or what takes less than three minutes."""
+    """Return the full extent, or a quick one of less than three minutes."""
     cases = catalogue(LOOKS)
     plain = [case for case in cases if not case.scene.lacks(())]
     every = range(9)
@@ -74,7 +74,7 @@ def extent(quick: bool) -> Extent:
     ]
     shown = [
         configure(engine=engine, reflections=CASE_REFLECTIONS, turn=True, materials=True, patterns=True, **more)
-        for engine, more in (("exact", {}), ("beam", {"scale": 1}))
+        for engine, more in (("exact", {"light": True}), ("beam", {"scale": 1}))
     ]
     return Extent(
         fractions=every, reflections=range(MOST_REFLECTIONS + 1), worlds=200,

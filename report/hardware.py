@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a design costs in time and cells: foretold for many, simulated and counted for those that matter."""
+"""Time and cells of designs: estimated for many, simulated and counted for the ones that matter."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from raycaster.configuration import Configuration, ConfigurationError, configure
 from raycaster.fpga.area import with_units
 
 RESULTS = Path("results")
-"""What commands measured, of the clone that the report runs in."""
+"""Folder of kept measurements, in the clone that the report runs in."""
 
 BEAMS: Sequence[Mapping[str, Any]] = (
     {"scale": 1},
@@ -27,7 +27,7 @@ BEAMS: Sequence[Mapping[str, Any]] = (
     {"rows": 180, "scale": 6},
     {"rows": 180, "scale": 6, "pixels": 2},
 )
-"""The beam engine at scales 1, 2, 4 and 6, with one pixel and two a clock."""
+"""Options for the beam engine at scales 1, 2, 4 and 6, with one or two pixels per clock."""
 
 CULLED: Sequence[Mapping[str, Any]] = (
     {},
@@ -35,63 +35,63 @@ CULLED: Sequence[Mapping[str, Any]] = (
     {"fraction_bits": 4, "rounding": "nearest", "divider_bits": 3},
     {"engine": "exact"},
 )
-"""Designs that are looked at with culling, where the time is the scene's."""
+"""Options of designs with culling, whose time depends on the scene."""
 
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """A design, what it is foretold to need, and what it was found to need."""
+    """A design with its estimated and measured cost."""
 
     config: Configuration
     error: float
     """Mean share of wrong pixels."""
 
-    foretold: int | None = None
-    """LUT4 of an ECP5: the shared part, and one unit so many times."""
+    estimated: int | None = None
+    """Estimated ECP5 LUT4 count: the shared part plus the units times the size of one."""
 
     counted: Mapping[str, int] | None = None
-    """Its cells as a whole, by kind."""
+    """Counted cells of the whole design, by kind."""
 
     timing: Mapping[str, Any] | None = None
-    """What simulation found, as `raycaster.report.points.TimePoint`."""
+    """Simulation result of `raycaster.report.points.TimePoint`."""
 
     @property
     def cells(self) -> int:
-        """LUT4, counted where they were."""
+        """LUT4 count, or its estimate if the cells were not counted."""
         if self.counted:
             return self.counted["cells"]
-        if self.foretold is None:
-            raise ValueError(f"{self.config.name}: its cells are neither counted nor foretold")
-        return self.foretold
+        if self.estimated is None:
+            raise ValueError(f"{self.config.name}: its cells are neither counted nor estimated")
+        return self.estimated
 
     @property
     def frame_cycles(self) -> int:
-        """Cycles in which a frame is computed: its counter's, where it was simulated."""
+        """Cycles to compute a frame: from the hardware's counter if simulated, otherwise predicted."""
         if self.timing:
             return self.timing["frame_cycles"]
-        return foretold_cycles(self.config)
+        return predicted_cycles(self.config)
 
     @property
     def pixel_ns(self) -> float:
-        """Nanoseconds for each pixel of a frame, at the clock that the design needs."""
+        """Nanoseconds to compute a pixel, at the clock that the design needs."""
         return self.frame_ms * 1e6 / pixels(self.config)
 
     @property
     def frame_ms(self) -> float:
-        """Milliseconds in which a frame is computed, likewise."""
+        """Milliseconds to compute a frame, at the clock that the design needs."""
         return 1000 * self.frame_cycles / self.config.screen_geometry.clock_hz
 
     @property
     def is_found(self) -> bool:
-        """Nothing of it is foretold."""
+        """True if the design was simulated and its cells were counted."""
         return self.counted is not None and self.timing is not None
 
 
 Measure = Callable[[Candidate], float]
 
 
-def foretold_cycles(config: Configuration) -> int:
-    """Cycles of a frame in the worst case: rows of so many groups, each with all its rectangles.
+def predicted_cycles(config: Configuration) -> int:
+    """Predict the cycles per frame in the worst case, in which every group tests all rectangles.
 
     An engine without a line buffer computes a pixel as often as the monitor shows it.
     """
@@ -101,14 +101,14 @@ def foretold_cycles(config: Configuration) -> int:
 
 
 def pixels(config: Configuration) -> int:
-    """That are computed for a frame."""
+    """Return the number of computed pixels per frame."""
     return config.screen_geometry.columns * config.screen_geometry.rows
 
 
 def seed_designs(fractions: Iterable[int], units: Iterable[int], screen: str) -> list[Configuration]:
-    """Every design of the seed engine of these that meets the row budget, with one reflection.
+    """List the seed engine's designs with these options that meet the row budget, with one reflection.
 
-    Without culling, so that a design's time is one number, whatever the scene.
+    They have no culling, so that a design's time does not depend on the scene.
     """
     choices = itertools.product(fractions, units, ("truncate", "nearest"), (1, 2, 3))
     return _possible(
@@ -125,17 +125,17 @@ def seed_designs(fractions: Iterable[int], units: Iterable[int], screen: str) ->
 
 
 def exact_designs(units: Iterable[int], screen: str) -> list[Configuration]:
-    """The same of the exact engine."""
+    """List the exact engine's designs that meet the row budget, with one reflection."""
     return _possible({"engine": "exact", "units": count, "screen": screen} for count in units)
 
 
 def beam_designs(screen: str) -> list[Configuration]:
-    """The same of the beam engine; of a screen other than VGA, the one that it has."""
+    """List the beam engine's designs with one reflection; just one for screens other than VGA."""
     return _possible({"engine": "beam", "screen": screen, **one} for one in (BEAMS if screen == "vga" else [{}]))
 
 
 def culled_designs(fractions: Iterable[int], screen: str) -> list[Configuration]:
-    """Designs with culling, of those fraction bits."""
+    """List designs with culling that have one of these numbers of fraction bits."""
     return _possible(
         {"screen": screen, "culling": True, **one} for one in CULLED if one.get("fraction_bits", 0) in set(fractions)
     )
@@ -150,26 +150,29 @@ def _possible(choices: Iterable[Mapping[str, Any]]) -> list[Configuration]:
 
 
 def unit_of(config: Configuration) -> Configuration:
-    """The design whose unit is synthesised by itself."""
+    """Return the design whose unit is synthesised on its own, for all designs with the same unit."""
     return with_units(config, 1)
 
 
-def with_foretold(candidates: Sequence[Candidate], whole: Mapping[str, int], base: Configuration,
+def with_estimates(candidates: Sequence[Candidate], whole: Mapping[str, int], base: Configuration,
                   units: Mapping[Configuration, int]) -> list[Candidate]:  # fmt: skip
-    """The same designs, each with the cells that it is foretold.
+    """Add the estimated number of cells to each design.
 
     Args:
-        candidates: of one engine behind a line buffer.
-        whole: the cells of one of its designs.
-        base: that design.
-        units: by `unit_of` each design, the cells of one unit by itself.
+        candidates: designs of one engine with a line buffer.
+        whole: counted cells of `base`.
+        base: one design of the engine.
+        units: cells of a single unit, by `unit_of` each design.
     """
     shared = whole["cells"] - base.units * units[unit_of(base)]
-    return [replace(one, foretold=shared + one.config.units * units[unit_of(one.config)]) for one in candidates]
+    return [replace(one, estimated=shared + one.config.units * units[unit_of(one.config)]) for one in candidates]
 
 
 def frontier(candidates: Sequence[Candidate], *measures: Measure) -> list[Candidate]:
-    """Those that no other is better than: nowhere worse, and somewhere better; in the order of the first measure."""
+    """Return the designs that no other one dominates, ordered by the first measure.
+
+    A design dominates another if it is better by one measure and not worse by any.
+    """
     values = {one: tuple(measure(one) for measure in measures) for one in candidates}
 
     def dominated(one: Candidate) -> bool:
@@ -182,23 +185,23 @@ def frontier(candidates: Sequence[Candidate], *measures: Measure) -> list[Candid
 
 
 def time(one: Candidate) -> float:
-    """What is shown as time."""
+    """Return the time that plots show."""
     return one.pixel_ns
 
 
 def error(one: Candidate) -> float:
-    """What is shown as error."""
+    """Return the error that plots show."""
     return one.error
 
 
 def cells(one: Candidate) -> float:
-    """What is shown as size."""
+    """Return the size that plots show."""
     return one.cells
 
 
 @cache
 def routed_clocks() -> dict[str, float]:
-    """By name of a configuration, the MHz that the system clock of its placed and routed board design reached."""
+    """Return the MHz that the system clock reached in placed and routed board designs, by configuration name."""
     found: dict[str, float] = {}
     for path in sorted(RESULTS.glob("bitstream-*.json")):
         kept = json.loads(path.read_text())
@@ -210,12 +213,12 @@ def routed_clocks() -> dict[str, float]:
 
 
 def clock_words(config: Configuration) -> str:
-    """The clock that a time is at, and the one that was reached where the design was placed and routed."""
+    """Describe the clock that a design needs, and the clock it reached if it was placed and routed."""
     needed = f"{config.screen_geometry.clock_hz / 1e6:g} MHz"
     reached = routed_clocks().get(config.name)
     return f"{needed}, routed at {reached:g}" if reached else f"{needed}, required"
 
 
 def describe(config: Configuration) -> str:
-    """A design in a few words."""
+    """Describe a design in a few words."""
     return config.facts.describe(config) + (", culling" if config.culling else "")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The chapter of what scenes do not need: what leaving it out saves, in cells and in cycles."""
+"""Chapter on savings, in cells and cycles, from leaving out what a scene does not need."""
 
 from __future__ import annotations
 
@@ -16,18 +16,19 @@ from raycaster.report.points import CellsPoint, LeftPoint, Point, TimePoint, Vie
 from raycaster.report.sweep import Sweep
 
 COLUMNS = (
-    "scene", "without", "LUT4", "registers", "multipliers", "units", "cycles of a frame", "clock MHz", "frame, ms",
+    "scene", "left out", "LUT4", "registers", "multipliers", "units", "cycles per frame", "clock MHz", "ms per frame",
 )  # fmt: skip
 CULLING_COLUMNS = (
-    "scene", "engine", "rectangles", "reflections", "cycles without", "cycles with", "share", "wrong against golden",
+    "scene", "engine", "rectangles", "reflections", "cycles without culling", "cycles with culling", "share",
+    "pixels unlike the model",
 )  # fmt: skip
 
 
 def omission_sections(
     what: Extent, scenes: Sequence[View], directory: Path, sweep: Sweep
 ) -> tuple[list[Section], list[str], str]:
-    """The sections, alarms, and what a reader should know in one sentence."""
-    sections, alarms, summary = [], [], "What leaving out buys was not looked at in this quick report."
+    """Write the plots and tables of the chapter, and return its sections, alarms and summary sentence."""
+    sections, alarms, summary = [], [], "This quick report does not measure the savings from leaving parts out."
     if what.left_scenes:
         section, summary = _left(what, scenes[: what.left_scenes], directory, sweep)
         sections.append(section)
@@ -38,7 +39,7 @@ def omission_sections(
 
 
 def _point(view: View, engine: str, step: int, config: Configuration) -> Point:
-    """Designs for any scene are the same for many."""
+    """Return the point that counts a step's cells; designs for any scene share one between scenes."""
     return LeftPoint(view, engine, step) if config.fixed else CellsPoint(config)
 
 
@@ -49,12 +50,12 @@ def _left(what: Extent, scenes: Sequence[View], directory: Path, sweep: Sweep) -
         for view, several in steps.items()
         for step, (_, config) in enumerate(several)
     }
-    found = sweep("what is left", list(dict.fromkeys(points.values())))
+    found = sweep("reduced designs", list(dict.fromkeys(points.values())))
     rows, drawn, remaining = [], [], {}
     for view, several in steps.items():
         counts = [found[points[view, step]] for step in range(len(several))]
         for (step, (name, config)), count in zip(enumerate(several), counts, strict=True):
-            cycles = hardware.foretold_cycles(config)
+            cycles = hardware.predicted_cycles(config)
             clock = config.screen_geometry.clock_hz
             row = [view.name, name if step else "", *(count[kind] for kind in ("cells", "registers", "multipliers"))]
             rows.append([*row, config.units, cycles, clock / 1e6, 1000 * cycles / clock, command(points[view, step])])
@@ -62,30 +63,30 @@ def _left(what: Extent, scenes: Sequence[View], directory: Path, sweep: Sweep) -
         waterfall = [(name, count["cells"]) for (name, _), count in zip(several, counts, strict=True)]
         plots.save(plots.waterfall(view.name, waterfall), directory / f"{figure}.svg")
         write_csv((*COLUMNS, "command"), rows[-len(several) :], directory / f"{figure}.csv")
-        drawn.append(Plot(figure, f"{view.name}: from {several[0][1].name} on."))
+        drawn.append(Plot(figure, f"{view.name}, starting from {several[0][1].name}."))
         remaining[view.name] = counts[-1]["cells"] / counts[0]["cells"], counts[-1], counts[0]
     write_csv((*COLUMNS, "command"), rows, directory / "left.csv")
     least, most = (of(remaining, key=lambda name: remaining[name][0]) for of in (min, max))
     summary = (
-        f"Leaving out what a scene does not need leaves {remaining[least][0]:.0%} ({least}, "
+        f"Without the parts that a scene does not need, {remaining[least][0]:.0%} ({least}, "
         f"{remaining[least][1]['cells']:,} LUT4) to {remaining[most][0]:.0%} ({most}, "
-        f"{remaining[most][1]['cells']:,}) of "
-        f"the {what.left_engine} engine that draws any scene."
+        f"{remaining[most][1]['cells']:,} LUT4) of the {what.left_engine} engine for any scene remain."
     )
     text = (
-        f"The {what.left_engine} engine for any scene has reflections, turned cameras, mirrors of any strength and "
-        "patterns. Each step leaves out what the scene does not need, of the design before. As many units as meet the "
-        "row budget; cycles are the worst case's; the clock is the required one. A step that is not in a plot leaves "
-        "nothing out, though it may make the units fewer by leaving time. Counted by Yosys, before placing."
+        f"The {what.left_engine} engine for any scene has reflections, turned cameras, mirrors of any strength, "
+        "patterns and a light. Each step removes one thing that the scene does not need from the previous design. "
+        "Designs have just enough units to meet the row budget; a step that saves time can thus save units. Cycles are "
+        "for the worst case, and the clock is the required one. Steps that change no cells are missing from the plots. "
+        "Cells were counted by Yosys, before placement."
     )
     section = Section(
-        "What leaving out buys", text, plots=drawn, tables=[Table("left", COLUMNS, [r[:-1] for r in rows])]
+        "Savings from leaving parts out", text, plots=drawn, tables=[Table("left", COLUMNS, [r[:-1] for r in rows])]
     )
     return section, summary
 
 
 def _culling(what: Extent, scenes: Sequence[View], directory: Path, sweep: Sweep) -> tuple[Section, list[str]]:
-    """Cycles of a frame of every scene without culling and with it."""
+    """Compare the cycles per frame with and without culling, for every scene."""
     points = {}
     for engine in what.culled:
         for scene in scenes:
@@ -114,11 +115,11 @@ def _culling(what: Extent, scenes: Sequence[View], directory: Path, sweep: Sweep
     plots.save(plots.culling(shares), directory / "culling.svg")
     write_csv((*CULLING_COLUMNS, "command"), rows, directory / "culling.csv")
     wrong = sum(row[7] for row in rows)
-    alarms = [f"With culling or without, {wrong} pixels are not golden's."] if wrong else []
+    alarms = [f"With or without culling, {wrong} pixels differ from the golden model."] if wrong else []
     text = (
-        "System cycles in which a frame is computed, without culling and with it: what no ray of a group can hit is "
-        "given up early. The worst case, which the row budget is for, stays."
+        "Computing a frame takes fewer system cycles with culling, because rectangles that no ray of a group can hit "
+        "are abandoned early. The worst case, which must meet the row budget, is unchanged."
     )
-    plot = Plot("culling", "Cycles of a frame with culling, of those without.")
-    return Section("What culling saves", text, plots=[plot],
+    plot = Plot("culling", "Cycles per frame with culling, relative to those without.")
+    return Section("Savings from culling", text, plots=[plot],
                    tables=[Table("culling", CULLING_COLUMNS, [row[:-1] for row in rows])]), alarms  # fmt: skip

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The report's pages: one for a browser, which needs nothing else, and one in Markdown beside the plots."""
+"""Pages of the report: a self-contained one for a browser, and one in Markdown next to the plots."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ Cell = str | int | float | None
 
 @dataclass(frozen=True)
 class Plot:
-    """An SVG, `<name>.svg`, and the numbers that it shows, `<numbers>.csv`."""
+    """A plot, `<name>.svg`, and the numbers that it shows, `<numbers>.csv`."""
 
     name: str
     caption: str
     numbers: str = ""
-    """The name, where it is not given."""
+    """Name of the CSV file without its suffix; empty if it is `name`."""
 
     @property
     def csv(self) -> str:
-        """Name of the file of numbers, without its suffix."""
+        """Name of the CSV file, without its suffix."""
         return self.numbers or self.name
 
 
 @dataclass(frozen=True)
 class Table:
-    """Rows below headings, which a reader can sort; all columns of them are in `<name>.csv`."""
+    """A sortable table; `<name>.csv` has all columns."""
 
     name: str
     columns: Sequence[str]
@@ -45,7 +45,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Section:
-    """A heading, and what stands below it."""
+    """A heading with its content."""
 
     title: str
     text: str = ""
@@ -56,17 +56,17 @@ class Section:
 
 @dataclass(frozen=True)
 class Page:
-    """All of it."""
+    """Contents of the whole page."""
 
     alarms: Sequence[str]
-    """What must not be: each a red line at the top."""
+    """Faults, each shown as a red line at the top."""
 
     summary: Sequence[str]
     sections: Sequence[Section]
 
 
 def show(cell: Cell) -> str:
-    """A cell as text: numbers with as many digits as say something."""
+    """Convert a cell to text; numbers are rounded to significant digits."""
     if cell is None:
         return ""
     if isinstance(cell, str):
@@ -75,7 +75,7 @@ def show(cell: Cell) -> str:
 
 
 def write_html(page: Page, directory: Path) -> Path:
-    """Write `index.html`, with the plots and the CSV files in it."""
+    """Write `index.html`, which embeds the plots and the CSV files."""
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     template = environment.from_string(TEMPLATE.read_text())
     path = directory / "index.html"
@@ -92,7 +92,7 @@ def write_html(page: Page, directory: Path) -> Path:
 
 
 def _inline(directory: Path, name: str) -> Markup:
-    """An SVG for a page of several: its identifiers are its own, and its size is the page's to say."""
+    """Read an SVG for embedding: make its identifiers unique on the page, and remove its size, which CSS sets."""
     svg = (directory / f"{name}.svg").read_text()
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r'\bid="', f'id="{name}-', svg)
@@ -102,7 +102,7 @@ def _inline(directory: Path, name: str) -> Markup:
 
 
 def write_markdown(page: Page, directory: Path) -> Path:
-    """Write `report.md`, which shows the plots beside it."""
+    """Write `report.md`, which links to the plots next to it."""
     parts = [f"# {TITLE}", *(f"**{alarm}**" for alarm in page.alarms)]
     parts.append("\n".join(f"- {sentence}" for sentence in page.summary))
     for section in page.sections:
@@ -121,7 +121,7 @@ def write_markdown(page: Page, directory: Path) -> Path:
 
 
 def write_csv(columns: Sequence[str], rows: Sequence[Sequence[Cell]], path: Path) -> None:
-    """Write a table with every digit."""
+    """Write a table as CSV, with all digits."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(columns)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The report's plots: as wide as a phone's page at most, in colours that the colour-blind can tell apart."""
+"""Plots of the report, narrow enough for a phone, in colours that colour-blind readers can distinguish."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.typing import RcKeyType
 
 WIDTH = 4.6
-"""Inches: a printed page's column. A phone shows that at three quarters of its size, which 9 points survive."""
+"""Width in inches, a column of a printed page; 9-point text stays legible on a phone, at three quarters of the size."""
 
 STYLE: dict[RcKeyType, Any] = {
     "font.size": 9,
@@ -48,36 +48,36 @@ STYLE: dict[RcKeyType, Any] = {
 LABEL_POINTS = 7.5
 
 VERMILION, BLUE, ORANGE, GREY = SEED.colour, EXACT.colour, "#E69F00", "#7f7f7f"
-"""Of Okabe and Ito, as the engines' colours are, and a grey."""
+"""Colours of Okabe and Ito, like the engines' colours, and a grey."""
 
 COLOURS = {"truncate": VERMILION, "nearest": BLUE}
 
 LEAST_SHARE = 1e-5
-"""Shares of wrong pixels of a picture below it, less than a pixel, are drawn as none."""
+"""Lower limit for drawing a picture's share of wrong pixels: below one pixel, so smaller shares are drawn as 0."""
 
 LEAST_MEAN = 1e-4
-"""Means below it are drawn as none."""
+"""Lower limit for drawing mean shares; smaller ones are drawn as 0."""
 
 FLIPPED = 10
-"""Cases whose pictures are shown."""
+"""Number of cases whose pictures are shown."""
 
 
 def new_figure(height: float, rows: int = 1, columns: int = 1, **options) -> tuple[Figure, np.ndarray]:
-    """An empty figure of a height in inches, and its axes, (rows, columns)."""
+    """Create an empty figure of a height in inches, and its axes (rows, columns)."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(WIDTH, height), layout="constrained")
-        FigureCanvasAgg(figure)  # which knows how large texts are
+        FigureCanvasAgg(figure)  # provides the sizes of texts
         return figure, figure.subplots(rows, columns, squeeze=False, **options)
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write an SVG that is the same each time."""
+    """Write a reproducible SVG, without a date."""
     with mpl.rc_context(STYLE):
         figure.savefig(path, metadata={"Date": None})
 
 
 def crowded(figure: Figure) -> Iterator[str]:
-    """What makes labels of a figure illegible: those that touch one another, or the figure's edge."""
+    """Report labels of a figure that overlap each other or are cut off at its edge."""
     figure.draw_without_rendering()
     assert isinstance(figure.canvas, FigureCanvasAgg), "a figure of new_figure"
     renderer = figure.canvas.get_renderer()
@@ -96,7 +96,7 @@ def crowded(figure: Figure) -> Iterator[str]:
 
 
 def _percent(axes: Axes, none: float) -> None:
-    """A logarithmic axis of shares, its lowest tick none."""
+    """Make the y axis logarithmic, in per cent, with 0 as the label of shares up to `none`."""
     axes.set_yscale("log")
     axes.yaxis.set_major_formatter(FuncFormatter(lambda share, _: "0" if share <= none else f"{100 * share:g}%"))
     axes.yaxis.set_minor_formatter(NullFormatter())
@@ -104,7 +104,7 @@ def _percent(axes: Axes, none: float) -> None:
 
 
 def _plain(axis: Axis) -> None:
-    """Ticks of a logarithmic axis that are written as numbers."""
+    """Label the ticks of a logarithmic axis with plain numbers."""
     axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
     axis.set_minor_formatter(NullFormatter())
@@ -114,7 +114,7 @@ def _plain(axis: Axis) -> None:
 
 
 def _dots(axes: Axes, every: Sequence[Candidate], across: str, up: str) -> None:
-    """Each design, filled where it was simulated and counted; small where it has culling."""
+    """Draw a mark per design: filled if simulated and counted, small if it has culling."""
     for name, engine in ENGINES.items():
         for found in (False, True):
             dots = [one for one in every if one.config.engine == name and one.is_found == found]
@@ -124,7 +124,7 @@ def _dots(axes: Axes, every: Sequence[Candidate], across: str, up: str) -> None:
             axes.scatter(
                 xs, ys, marker=engine.marker, s=[10 if one.config.culling else 22 for one in dots], linewidths=0.8,
                 zorder=3, facecolors=engine.colour if found else "none", edgecolors=engine.colour,
-                alpha=1 if found else 0.45, label=name if found else f"{name}, foretold",
+                alpha=1 if found else 0.45, label=name if found else f"{name}, estimated",
             )  # fmt: skip
 
 
@@ -147,9 +147,9 @@ def _label(axes: Axes, labelled: Sequence[Candidate], across: str, up: str, ever
 
 
 WORDS = {
-    "pixel_ns": "time for a pixel, ns",
-    "cells": "cells, LUT4 of an ECP5",
-    "error": "wrong pixels, mean share",
+    "pixel_ns": "time per pixel, ns",
+    "cells": "cells, ECP5 LUT4",
+    "error": "mean share of wrong pixels",
 }
 
 
@@ -157,14 +157,14 @@ def designs(
     every: Sequence[Candidate], across: str, up: str, frontiers: Sequence[Sequence[Candidate]],
     labelled: Sequence[Candidate],
 ) -> Figure:  # fmt: skip
-    """Every design, by two of `pixel_ns`, `cells` and `error`.
+    """Plot all designs by two of `pixel_ns`, `cells` and `error`.
 
     Args:
-        every: the designs.
+        every: all designs.
         across: attribute along x.
         up: attribute along y.
-        frontiers: those through which a line goes, each in the order of what is along x.
-        labelled: those with a label.
+        frontiers: designs for each line, ordered along x.
+        labelled: designs with a label.
     """
     figure, [[axes]] = new_figure(4.2)
     with mpl.rc_context(STYLE):
@@ -189,7 +189,7 @@ def designs(
 
 
 def shares(by: Mapping[str, Mapping[int, Sequence[float]]]) -> Figure:
-    """By rounding and fraction bits, the shares of wrong pixels of all worlds."""
+    """Plot the distribution of the share of wrong pixels, by rounding and fraction bits."""
     figure, [[axes]] = new_figure(3.6)
     with mpl.rc_context(STYLE):
         for side, (rounding, of) in zip((-0.2, 0.2), by.items(), strict=False):
@@ -204,7 +204,7 @@ def shares(by: Mapping[str, Mapping[int, Sequence[float]]]) -> Figure:
             )  # fmt: skip
         fractions = list(next(iter(by.values())))
         axes.set_xticks(range(len(fractions)), fractions)
-        axes.set(xlabel="fraction bits F", ylabel="wrong pixels of a world")
+        axes.set(xlabel="fraction bits F", ylabel="wrong pixels per picture")
         _percent(axes, LEAST_SHARE)
         figure.legend(loc="outside upper center", ncols=2)
     return figure
@@ -213,7 +213,7 @@ def shares(by: Mapping[str, Mapping[int, Sequence[float]]]) -> Figure:
 def likeness(
     psnr: Mapping[str, Mapping[int, Sequence[float]]], ssim: Mapping[str, Mapping[int, Sequence[float]]]
 ) -> Figure:
-    """By rounding and fraction bits, median and extent of PSNR, of pictures with wrong pixels, and of SSIM."""
+    """Plot median and range of PSNR, for pictures with wrong pixels, and of SSIM, by rounding and fraction bits."""
     figure, [[upper], [lower]] = new_figure(4.4, 2, 1, sharex=True)
     with mpl.rc_context(STYLE):
         for axes, of in ((upper, psnr), (lower, ssim)):
@@ -232,28 +232,28 @@ def likeness(
 
 
 def hit_errors(by: Mapping[str, Sequence[Mapping[str, float]]]) -> Figure:
-    """By rounding and reflections, mean, median of the worlds' worst, and worst errors of hit points, and bounds."""
+    """Plot errors of hit points and their greatest bound, by rounding and reflections so far."""
     figure, [panels] = new_figure(3.4, 1, len(by), sharey=True)
     kinds = {
-        "greatest bound": (GREY, "--", "_"), "worst": (VERMILION, "-", "v"), "median world's worst": (ORANGE, "-", "s"),
-        "mean": (BLUE, "-", "o"),
+        "greatest bound": (GREY, "--", "_"), "worst": (VERMILION, "-", "v"),
+        "worst, median picture": (ORANGE, "-", "s"), "mean": (BLUE, "-", "o"),
     }  # fmt: skip
     with mpl.rc_context(STYLE):
         for axes, (rounding, rows) in zip(panels, by.items(), strict=True):
             for kind, (colour, line, marker) in kinds.items():
                 axes.plot([row[kind] for row in rows], line, color=colour, marker=marker, markersize=4, label=kind)
-            axes.set(title=rounding, yscale="log", xlabel="reflections before", xticks=range(len(rows)))
-        panels[0].set_ylabel("error of a hit point, world units")
+            axes.set(title=rounding, yscale="log", xlabel="reflections so far", xticks=range(len(rows)))
+        panels[0].set_ylabel("hit point error, world units")
         handles, labels = panels[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside upper center", ncols=2)
     return figure
 
 
 def falling(by: Mapping[str, Mapping[int, float]], hits: Mapping[str, Mapping[int, float]]) -> Figure:
-    """By rounding and fraction bits, the mean share of wrong pixels, and the mean error of primary hit points."""
+    """Plot the mean share of wrong pixels and the mean error of primary hit points, by rounding and fraction bits."""
     figure, [panels] = new_figure(3.0, 1, 2)
     with mpl.rc_context(STYLE):
-        for axes, of, label in zip(panels, (by, hits), (WORDS["error"], "mean error of a hit, units"), strict=True):
+        for axes, of, label in zip(panels, (by, hits), (WORDS["error"], "mean hit error, world units"), strict=True):
             for rounding, colour in COLOURS.items():
                 axes.plot(*zip(*of[rounding].items(), strict=True), "o-", markersize=4, color=colour, label=rounding)
             axes.set(yscale="log", xlabel="F", xticks=list(of["truncate"]))
@@ -270,7 +270,7 @@ def falling(by: Mapping[str, Mapping[int, float]], hits: Mapping[str, Mapping[in
 
 
 def by_reflections(by: Mapping[str, Mapping[int, Sequence[float]]]) -> Figure:
-    """By rounding and reflections, the shares of wrong pixels of the packaged scenes: each, and their mean."""
+    """Plot each packaged scene's share of wrong pixels and the mean of all, by rounding and reflections."""
     figure, [[axes]] = new_figure(3.0)
     with mpl.rc_context(STYLE):
         for side, (rounding, of) in zip((-0.06, 0.06), by.items(), strict=False):
@@ -279,14 +279,14 @@ def by_reflections(by: Mapping[str, Mapping[int, Sequence[float]]]) -> Figure:
                 axes.plot([place + side] * len(drawn), drawn, "o", color=COLOURS[rounding], markersize=3, alpha=0.5)
             means = [np.mean(values) for values in of.values()]
             axes.plot(list(of), means, color=COLOURS[rounding], label=f"{rounding}, mean")
-        axes.set(xlabel="reflections", ylabel="wrong pixels of a scene", xticks=list(of))
+        axes.set(xlabel="reflections", ylabel="wrong pixels per scene", xticks=list(of))
         _percent(axes, LEAST_SHARE)
         figure.legend(loc="outside upper center", ncols=2)
     return figure
 
 
 def heat(by: Mapping[str, np.ndarray]) -> Figure:
-    """By rounding, the share of wrong pixels in each block of the picture, over all worlds."""
+    """Plot the share of wrong pixels in each block of the picture over all worlds, by rounding."""
     figure, panels = new_figure(2.9 * len(by), len(by), 1)
     most = max(float(shares.max()) for shares in by.values())
     with mpl.rc_context(STYLE):
@@ -300,8 +300,8 @@ def heat(by: Mapping[str, np.ndarray]) -> Figure:
     return figure
 
 
-def _pictures(rows: Sequence[Sequence[tuple[str, np.ndarray]]], height: float) -> Figure:
-    """Pictures with titles, in rows."""
+def pictures(rows: Sequence[Sequence[tuple[str, np.ndarray]]], height: float) -> Figure:
+    """Show rows of pictures with titles."""
     figure, panels = new_figure(height * len(rows), len(rows), len(rows[0]))
     with mpl.rc_context(STYLE):
         for axes in panels.flat:
@@ -314,21 +314,21 @@ def _pictures(rows: Sequence[Sequence[tuple[str, np.ndarray]]], height: float) -
 
 
 def wrong_by_scene(scenes: Sequence[View], rounding: Rounding) -> Figure:
-    """Of each scene, where the seed engine is wrong without fraction bits."""
+    """Show the seed engine's wrong pixels without fraction bits, for each scene."""
     columns, shown = 3, []
     for scene in scenes:
         screen = SCREENS["vga", 240]
         perfect, picture = (model.render(scene.scene, screen) for model in (ExactModel(), SeedModel(rounding=rounding)))
         share = count_wrong(picture, perfect) / perfect[..., 0].size
         shown.append((f"{scene.name}: {share:.2%}", diff_picture(picture, perfect)))
-    return _pictures([shown[at : at + columns] for at in range(0, len(shown), columns)], 1.35)
+    return pictures([shown[at : at + columns] for at in range(0, len(shown), columns)], 1.35)
 
 
 # Stability ------------------------------------------------------------------------------------------------------------
 
 
 def flips(points: Sequence[PicturePoint]) -> Figure:
-    """Of each point the picture, the exact one, and where they differ."""
+    """Show each point's picture, the exact picture and their difference."""
     rows = []
     for point in points:
         screen = SCREENS["vga", 240]
@@ -343,16 +343,16 @@ def flips(points: Sequence[PicturePoint]) -> Figure:
                 (f"{count_wrong(picture, perfect):,} wrong", diff_picture(picture, perfect)),
             ]
         )
-    return _pictures(rows, 1.45)
+    return pictures(rows, 1.45)
 
 
 def _two_lines(name: str) -> str:
-    """A case's name, at most as wide as its picture."""
+    """Break a case's name into lines no wider than its picture."""
     return fill(name.replace("_", " "), 18)
 
 
 def stiffness(cases: Mapping[str, tuple[float, float, float]], labelled: Sequence[str]) -> Figure:
-    """Of each case how far a hit moves for a pixel, its worst error, and the bound that belongs to it."""
+    """Plot worst error and greatest bound against condition number, for each case."""
     figure, [[axes]] = new_figure(3.8)
     with mpl.rc_context(STYLE):
         conditions, errors, bounds = np.array(list(cases.values())).T
@@ -360,7 +360,7 @@ def stiffness(cases: Mapping[str, tuple[float, float, float]], labelled: Sequenc
         axes.scatter(conditions, bounds, marker="_", color=GREY, s=30, label="greatest bound")
         axes.scatter(conditions, errors, marker="o", color=BLUE, s=14, label="worst error", zorder=3)
         axes.set(
-            xscale="log", yscale="log", xlabel="condition: world units that a hit moves for a pixel",
+            xscale="log", yscale="log", xlabel="condition number, world units per pixel",
             ylabel="world units",
         )  # fmt: skip
         axes.margins(0.2, 0.1)
@@ -375,7 +375,7 @@ def stiffness(cases: Mapping[str, tuple[float, float, float]], labelled: Sequenc
 
 
 def growth(cases: Mapping[str, tuple[DepthErrors, ...]]) -> Figure:
-    """The worst error and its bound from bounce to bounce, a panel a case."""
+    """Plot errors and their bound by number of bounces, one panel per case."""
     columns = 2
     rows = -(-len(cases) // columns)
     figure, panels = new_figure(1.7 * rows + 0.5, rows, columns, sharex=True)
@@ -397,11 +397,11 @@ def growth(cases: Mapping[str, tuple[DepthErrors, ...]]) -> Figure:
     return figure
 
 
-# What is left out -----------------------------------------------------------------------------------------------------
+# Omissions ------------------------------------------------------------------------------------------------------------
 
 
 def waterfall(title: str, steps: Sequence[tuple[str, int]]) -> Figure:
-    """The cells of a design, and what each step takes away; steps that take nothing are left out."""
+    """Plot the cells of a design and the change by each step; omit steps without a change."""
     changed = [(what, before, after) for (_, before), (what, after) in pairwise(steps) if after != before]
     figure, [[axes]] = new_figure(0.9 + 0.24 * (len(changed) + 2))
     (first, whole), (_, left) = steps[0], steps[-1]
@@ -429,7 +429,7 @@ def waterfall(title: str, steps: Sequence[tuple[str, int]]) -> Figure:
 
 
 def culling(by: Mapping[str, Mapping[str, float]]) -> Figure:
-    """By engine and scene, the share of a frame's cycles that is left with culling: a bar each that is there."""
+    """Plot the cycles per frame with culling, relative to those without: one bar per engine and scene it can draw."""
     scenes = sorted({name for of_engine in by.values() for name in of_engine}, reverse=True)
     figure, [[axes]] = new_figure(1.0 + 0.34 * len(scenes))
     height = 0.8 / len(by)
@@ -440,7 +440,7 @@ def culling(by: Mapping[str, Mapping[str, float]]) -> Figure:
                              color=ENGINES[engine].colour)  # fmt: skip
             axes.bar_label(bars, fmt="%.0f", padding=3, fontsize=LABEL_POINTS)
         axes.axvline(100, color="black", linewidth=1)
-        axes.set(xlabel="cycles of a frame with culling, % of those without", xlim=(0, 118))
+        axes.set(xlabel="cycles per frame with culling, % of those without", xlim=(0, 118))
         axes.set_yticks(np.arange(len(scenes)), scenes)
         figure.legend(loc="outside upper center", ncols=2)
     return figure

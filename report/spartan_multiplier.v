@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A Spartan-3E's multiplier as Racing the Beam uses it: signed, with the product in a register.
+// Spartan-3E multiplier as used by Racing the Beam: signed, with a registered product.
 
 module MULT18X18SIO #(
     parameter AREG = 0,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The chapter of stability: stiff and extreme cases, on every engine, each error against its bound."""
+"""Chapter on stability: stiff and extreme cases on every engine, with each error and its bound."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ from raycaster.report.sweep import Sweep
 
 ROUNDINGS = ("truncate", "nearest")
 OF_SEED = ("materials", "patterns")
-"""What the seed engine's cases may need."""
+"""Looks that the seed engine's cases may need."""
 
 SHARE = 12
-"""Cases of one simulation."""
+"""Number of cases per simulation."""
 
 BOUNCES = 8
 GROWING = ("facing_y_40", "facing_z", "box_20", "box_off_centre", "corner_reflector", "box_in_box")
-"""Cases whose error is followed over all bounces."""
+"""Cases whose error is computed over all bounces."""
 
 LABELLED = 6
-"""Cases of the plot that have a label: the stiffest, and those with the greatest error."""
+"""Number of labelled cases in the plot: half are the stiffest, half have the greatest error."""
 
 LEAST = 0.1
-"""World units: smaller errors are drawn as this."""
+"""Lower limit for drawing errors, in world units; smaller errors are drawn at this value."""
 
-HOLDS, EXCEEDED, EXACT, WRONG = "holds", "EXCEEDED", "as the model", "WRONG"
+HOLDS, EXCEEDED, EXACT, WRONG = "holds", "EXCEEDED", "exact", "WRONG"
 COLUMNS = (
-    "case", "engine", "condition", "wrong pixels", "rays flipped", "worst error", "bound", "part of bound", "verdict",
+    "case", "engine", "condition", "wrong pixels", "rays flipped", "worst error", "bound", "error / bound", "verdict",
 )  # fmt: skip
-SEEN_COLUMNS = "case", "design", "hit points not golden's", "worst error", "bound", "over the bound"
+SEEN_COLUMNS = "case", "design", "hit points unlike the model", "worst error", "bound", "over the bound"
 
 Results = Mapping[PicturePoint, Mapping[str, Any]]
 
@@ -47,7 +47,7 @@ Results = Mapping[PicturePoint, Mapping[str, Any]]
 def stability_sections(
     what: Extent, directory: Path, sweep: Sweep
 ) -> tuple[list[Section], list[str], str, dict[str, int]]:
-    """The sections, alarms, what a reader should know in one sentence, and the figures to keep."""
+    """Write the plots and tables of the chapter, and return its sections, alarms, summary sentence and kept figures."""
     views = {case.name: View.of(f"{CASE}{case.name}") for case in what.cases}
     of_seed = [view for case in what.cases if not case.scene.lacks(OF_SEED) for view in [views[case.name]]]
     pictures = sweep(
@@ -83,27 +83,27 @@ def stability_sections(
     at_first = {point: result for point, result in pictures.items() if point.fraction_bits == what.case_fractions[0]}
     of_page = [row[:-1] for row in _rows(at_first, shown, conditions)]
     text = (
-        "Scenes that strain fixed point: grazed planes, corners, slits, points, mirrors face to face, turned cameras, "
-        "patterns on the borders of their cells. The condition number of a case is how far its hits move for a ray "
-        "that is off by one pixel, in world units: the greatest of all rays and reflections. The exact and the beam "
-        "engine round nothing, so that they have no error in any case; the seed engine's camera cannot turn."
+        "These scenes strain fixed-point arithmetic: grazed planes, corners, slits, points, facing mirrors, turned "
+        "cameras, and patterns hit on the borders of their cells. The condition number of a case is the distance, in "
+        "world units, by which a hit moves if its ray is off by one pixel: the maximum over all rays and reflections. "
+        "The exact and beam engines do not round, so they have no error in any case. The seed engine's camera cannot "
+        "turn."
     )
     sections = [
         Section(
             "Stiff and extreme cases", text, said,
             [
-                Plot("stiffness", f"Each case's condition, its worst error and its greatest bound, F = "
-                     f"{what.case_fractions[0]}, truncated; an error of {LEAST:g} stands for none or less."),
-                Plot("growth", f"From bounce to bounce over {BOUNCES} bounces of the golden model, F = 0, truncated."),
-                Plot("flips", "The cases with most wrong pixels: the seed engine's picture, the exact one, and where "
-                              "they "
-                     "differ."),
+                Plot("stiffness", f"Condition number, worst error and greatest bound of each case, with F = "
+                     f"{what.case_fractions[0]}, truncated. Errors below {LEAST:g} are drawn at this value."),
+                Plot("growth", f"Errors and bounds over {BOUNCES} bounces in the golden model, with F = 0, truncated."),
+                Plot("flips", "The cases with the most wrong pixels: the seed engine's picture, the exact picture and "
+                     "their difference."),
             ],
             [Table("catalogue", COLUMNS, of_page)],
         ),
         Section(
-            "The same hit points in the converted Verilog",
-            f"Read out of the simulated ray units, of {len(what.probed_cases)} cases and {len(what.probed)} designs.",
+            "Hit points in the converted Verilog",
+            f"Read from the simulated ray units, for {len(what.probed_cases)} cases and {len(what.probed)} designs.",
             tables=[Table("hit_points", SEEN_COLUMNS, seen)],
         ),
     ]  # fmt: skip
@@ -116,7 +116,7 @@ def stability_sections(
 
 
 def _shown(what: Extent, sweep: Sweep) -> dict[CasesPoint, dict[str, Any]]:
-    """Of the designs without rounding, every case that they can show."""
+    """Simulate every case that the designs without rounding can show."""
     points = []
     for config in what.shown:
         count = len(catalogue(config.looks))
@@ -125,7 +125,7 @@ def _shown(what: Extent, sweep: Sweep) -> dict[CasesPoint, dict[str, Any]]:
 
 
 def _rows(pictures: Results, shown: Mapping[CasesPoint, Mapping], conditions: Mapping[str, float | None]) -> list[list]:
-    """A row a case and engine, with the command last."""
+    """Return a row per case and engine, with the command last."""
     rows = []
     for point, result in pictures.items():
         depths = result["depths"]
@@ -153,7 +153,7 @@ def _judged(
     measured: Mapping[HitsPoint, Mapping],
     conditions: Mapping[str, float | None],
 ) -> tuple[list[str], list[str], str]:
-    """What is said, what is alarming, and the summary."""
+    """Return the sentences, the alarms and the summary."""
     cases = {point.view.name for point in pictures}
     over = [point for point, result in pictures.items() if any(depth["exceeded"] for depth in result["depths"])]
     tightest = max(pictures, key=lambda point: max(depth["tightest"] for depth in pictures[point]["depths"]))
@@ -164,7 +164,7 @@ def _judged(
     by_engine: dict[str, int] = {}
     for point, one in shown.items():
         by_engine[point.config.engine] = by_engine.get(point.config.engine, 0) + len(one)
-    engines = " and ".join(f"the {engine} engine {count}" for engine, count in by_engine.items())
+    engines = ", ".join(f"{engine} engine {count}" for engine, count in by_engine.items())
     stiffest = max((name for name in conditions if conditions[name]), key=lambda name: conditions[name] or 0)
     alarms = [
         f"A bound is exceeded: {point.view.name}, F = {point.fraction_bits}, {point.rounding}. {command(point)}"
@@ -172,34 +172,35 @@ def _judged(
     ]
     if over_seen or different:
         alarms.append(
-            f"In simulation {different} hit points are not golden's, {over_seen} coordinates over their bound."
+            f"In simulation, {different} hit points differ from the golden model, and {over_seen} coordinates exceed "
+            "their bound."
         )
     if wrong:
-        alarms.append(f"In simulation {wrong} pixels of the catalogue's cases are not golden's.")
+        alarms.append(f"In simulation, {wrong} pixels of the catalogue's cases differ from the golden model.")
     said = [
-        f"The stiffest of {len(conditions)} cases is {stiffest}: for a pixel a hit moves by up to "
-        f"{conditions[stiffest]:,.0f} world units.",
-        f"{len(over)} of {len(pictures)} pictures of the seed engine, of {len(cases)} cases, have a coordinate over "
-        f"its bound; the closest to it is {tightest.view.name} (F = {tightest.fraction_bits}, {tightest.rounding}), "
-        f"at {part:.2%} of it.",
+        f"The stiffest of {len(conditions)} cases is {stiffest}: hits move by up to {conditions[stiffest]:,.0f} world "
+        "units per pixel of error in the ray.",
+        f"{len(over)} of the seed engine's {len(pictures)} pictures, for {len(cases)} cases, have a coordinate over "
+        f"its bound. The closest to its bound is in {tightest.view.name} (F = {tightest.fraction_bits}, "
+        f"{tightest.rounding}), with {part:.2%} of it.",
     ]
     for rounding in ROUNDINGS:
         most = max((p for p in pictures if p.rounding == rounding), key=lambda point: pictures[point]["wrong"])
         result = pictures[most]
         said.append(
-            f"Most pixels are wrong in {most.view.name} with F = {most.fraction_bits}, rounding: {rounding}: "
+            f"The most wrong pixels are in {most.view.name} with F = {most.fraction_bits} (rounding: {rounding}): "
             f"{result['wrong']:,} of {result['pixels']:,}."
         )
     if measured:
         said.append(
-            f"The seed engine's converted Verilog: {different} hit points of {len(measured)} frames are not the "
-            f"model's to the bit, {over_seen} coordinates are over their bound."
+            f"In the seed engine's converted Verilog, {different} hit points of {len(measured)} frames differ from "
+            f"the golden model, and {over_seen} coordinates exceed their bound."
         )
     if shown:
-        said.append(f"In simulation {engines} cases drew: {wrong} pixels are not those of exact arithmetic.")
+        said.append(f"Cases drawn in simulation: {engines}; {wrong} pixels differ from exact arithmetic.")
     summary = (
-        f"In {len(conditions)} stiff and extreme cases {len(over)} bounds are exceeded, the closest error is at "
-        f"{part:.1%} of its bound, and the engines without rounding "
+        f"In {len(conditions)} stiff and extreme cases, {len(over)} bounds are exceeded, errors reach at most "
+        f"{part:.1%} of their bound, and the engines without rounding "
         + (f"have {wrong} wrong pixels in simulation." if shown else "were not simulated here.")
     )
     return said, alarms, summary

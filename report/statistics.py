@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Distributions over worlds, and lines through them with the interval that other worlds might have given."""
+"""Distributions over worlds, and fitted lines with confidence intervals from resampled worlds."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 
 RESAMPLED = 2000
-"""Times that worlds are drawn again, with replacement."""
+"""Number of bootstrap samples, drawn from the worlds with replacement."""
 
 RESAMPLING_SEED = 1
 LEVEL = 95
-"""Per cent of them that an interval holds."""
+"""Confidence level of intervals, in per cent."""
 
 
 @dataclass(frozen=True)
 class Spread:
-    """A distribution in short."""
+    """Summary of a distribution."""
 
     least: float
     median: float
@@ -27,13 +27,13 @@ class Spread:
 
     @classmethod
     def of(cls, values: Sequence[float]) -> Spread:
-        """Of at least one value."""
+        """Summarise at least one value."""
         return cls(*(float(of(values)) for of in (np.min, np.median, np.mean, np.max)))
 
 
 @dataclass(frozen=True)
 class Slope:
-    """A straight line's, with the interval."""
+    """Slope of a straight line, with its confidence interval."""
 
     slope: float
     low: float
@@ -46,18 +46,18 @@ class Slope:
 def slope(
     places: Sequence[float], sums: np.ndarray, counts: np.ndarray | None = None, *, binary: bool = False
 ) -> Slope:
-    """The line through the means of all worlds, by least squares; its interval by bootstrap over worlds.
+    """Fit a line to the means over all worlds by least squares; its interval comes from a bootstrap over worlds.
 
-    Rays of one world are alike, so worlds are drawn again, not rays.
+    Rays of one world are correlated, so worlds are resampled, not rays.
 
     Args:
-        places: where, one a column.
-        sums: float (worlds, places): of what is averaged.
-        counts: likewise, of how many; None for one each.
-        binary: of the means' logarithms to base 2.
+        places: x coordinate of each column.
+        sums: sums of the averaged values, float (worlds, places).
+        counts: numbers of averaged values, (worlds, places); None if all are 1.
+        binary: fit the means' logarithms to base 2.
 
     Raises:
-        ValueError: a place has nothing to average, or a logarithm of nothing is asked for.
+        ValueError: a place has no values to average, or a mean is 0 although its logarithm is needed.
     """
     sums = np.asarray(sums, dtype=float)
     counts = np.ones_like(sums) if counts is None else np.asarray(counts, dtype=float)

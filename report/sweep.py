@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A sweep over points: run through an executor, each point stored as it finishes, so that nothing is done twice."""
+"""Sweep over points: an executor computes them, and each result is stored at once, so nothing is computed twice."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ P = TypeVar("P", bound=Point)
 
 
 class Store:
-    """Results in a directory, a file a point, each written as a whole."""
+    """Directory of results, one atomically written file per point."""
 
     def __init__(self, directory: Path):
         self._directory = directory
         directory.mkdir(parents=True, exist_ok=True)
 
     def find(self, point: Point) -> dict[str, Any] | None:
-        """The result, if it was stored and nothing that it depends on has changed."""
+        """Return the stored result; None if there is none or something that it depends on has changed."""
         try:
             stored = json.loads(self._path(point).read_text())
         except (OSError, ValueError):
@@ -51,31 +51,31 @@ class Store:
 
 @dataclass(frozen=True)
 class Sweep:
-    """Finds points out, those that were stored before excepted."""
+    """Computes points, except those whose results are stored."""
 
     store: Store
     make_executor: Callable[[], Executor]
     console: Console
 
     def __call__(self, what: str, points: Sequence[P]) -> dict[P, dict[str, Any]]:
-        """As `run`."""
+        """Compute points; see `run`."""
         return run(what, points, self.store, self.make_executor, self.console)
 
 
 def run(
     what: str, points: Sequence[P], store: Store, make_executor: Callable[[], Executor], console: Console
 ) -> dict[P, dict[str, Any]]:
-    """All results, in the order of the points; those that the store has are not computed again.
+    """Return all results in the order of the points, computing only those that are not stored.
 
     Args:
-        what: the points are, for the progress bar.
-        points: to find out.
-        store: where results are looked for and kept, each as soon as it is there.
-        make_executor: as `raycaster.jobs.executors` yields it.
-        console: for the progress bar.
+        what: name of the points on the progress bar.
+        points: points to compute.
+        store: store of results; each new one is added as soon as it is computed.
+        make_executor: function that `raycaster.jobs.executors` yields.
+        console: console for the progress bar.
 
     Raises:
-        UserError: workers died on the same points again and again.
+        UserError: workers died repeatedly on the same points.
     """
     results = {point: result for point in points if (result := store.find(point)) is not None}
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The design's registers over cocotb-bus's Avalon-MM master."""
+"""Access the design's registers through cocotb-bus's Avalon-MM master."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from raycaster.configuration import Configuration
 from raycaster.sim.register_bus import RegisterBus
 
 MAX_WAIT = 4
-"""Clocks that waitrequest may last."""
+"""Maximum number of clocks that waitrequest may last."""
 
 
 class AvalonBus(RegisterBus):
-    """On a bench whose signals are named `avs_s0_*`."""
+    """Register access over Avalon-MM, on a bench whose signals are named `avs_s0_*`."""
 
     def __init__(self, bench: HierarchyObject, configuration: Configuration):
         super().__init__(configuration)
@@ -48,10 +48,10 @@ class AvalonBus(RegisterBus):
         return int(word)
 
     async def read_pipelined(self, addresses: Sequence[int]) -> list[int]:
-        """Read words with a new address as soon as the last was accepted, not waiting for the data.
+        """Read words, issuing each address as soon as the previous one is accepted, without waiting for the data.
 
         Raises:
-            AssertionError: an answer is missing or too many came, or waitrequest lasted more than `MAX_WAIT` clocks.
+            AssertionError: there are too few or too many answers, or waitrequest lasted more than `MAX_WAIT` clocks.
         """
         signals = self._signals
         answers: list[int] = []
@@ -65,11 +65,11 @@ class AvalonBus(RegisterBus):
         for _ in range(16):
             await self._sample(answers)
             await RisingEdge(self._clock)
-        assert len(answers) == len(addresses), f"{len(addresses)} reads were answered {len(answers)} times"
+        assert len(answers) == len(addresses), f"{len(addresses)} reads got {len(answers)} answers"
         return answers
 
     async def _accepted(self, answers: list[int] | None = None) -> None:
-        """Return just after the clock edge at which the present request was taken."""
+        """Return just after the clock edge at which the current request is accepted."""
         for _ in range(MAX_WAIT + 1):
             waiting = await self._sample(answers)
             await RisingEdge(self._clock)
@@ -78,7 +78,7 @@ class AvalonBus(RegisterBus):
         raise AssertionError(f"waitrequest lasted more than {MAX_WAIT} clocks")
 
     async def _sample(self, answers: list[int] | None) -> bool:
-        """The settled waitrequest before the next clock edge; collects an answer that is on the bus."""
+        """Return the settled waitrequest before the next clock edge; collect any answer on the bus."""
         await Timer(1, "ns")  # past the edge at which the inputs were driven
         await ReadOnly()
         if answers is not None and int(self._signals.readdatavalid.value):

@@ -6,25 +6,25 @@
 `timescale 1ns / 1ns
 
 module bench #(
-    parameter ADDRESS_BITS = 8,     // of the bus's word address
-    parameter COLOUR_BITS = 8,      // of a channel
-    parameter H_TOTAL = 800,        // pixels a line, blanking included
-    parameter HS_ACTIVE = 0,        // level of HS in its pulse
+    parameter ADDRESS_BITS = 8,     // bits of the bus's word address
+    parameter COLOUR_BITS = 8,      // bits per channel
+    parameter H_TOTAL = 800,        // pixels per line, blanking included
+    parameter HS_ACTIVE = 0,        // level of HS during its pulse
     parameter CLOCKS_PER_PIXEL = 2, // 1 or 2
-    parameter PIXELS = 1            // of a pixel clock, 1 or 2
+    parameter PIXELS = 1            // pixels per pixel clock, 1 or 2
 ) (`CLOCK_PORT);
     `OWN_CLOCK
 
-    // What Python drives
+    // Driven by Python
     reg reset /*verilator public_flat_rw*/;
     initial reset = 1'b1;
 
-    // What Python reads
+    // Read by Python
     wire irq /*verilator public_flat_rw*/;
 
-    // The bus, by the names that its drivers know. Python that waits for an edge of clk runs, in Verilator, when all
-    // registers have changed already. So drivers of a bus with a bridge have a clock that rises in mid-cycle: there they
-    // sample what has settled, and drive what the design sees from the next edge of clk on.
+    // The bus, with the names that its drivers expect. In Verilator, Python that waits for an edge of clk runs after
+    // all registers have changed. So drivers of a bus with a bridge use bus_clk, which rises in mid-cycle: there they
+    // sample settled signals, and drive signals that the design sees from the next edge of clk on.
     wire bus_clk /*verilator public_flat_rw*/;
     assign bus_clk = ~clk;
 `ifdef BRIDGED
@@ -69,7 +69,7 @@ module bench #(
         .vga_clk(vga_clk)
     );
 
-    // Cycles of rendering since the last StartScreen. A netlist does not keep the names, and has none.
+    // Rendering cycles since the last StartScreen; stays 0 in a netlist, which does not keep the names.
     reg [31:0] busy_cycles /*verilator public_flat_rw*/;
     initial busy_cycles = 0;
 `ifndef NETLIST
@@ -80,7 +80,7 @@ module bench #(
             busy_cycles = busy_cycles + 1;
 `endif
 
-    // A waveform of part of a frame, for who asks for one.
+    // Optional waveform of part of a frame
 `ifdef WAVE_WINDOW
     wave_window window (
         .clk(clk),

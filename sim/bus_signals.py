@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The part of the bench that a bus with a bridge needs: its signals, and how the design is connected to them."""
+"""Generate the part of the bench for a bus with a bridge: its signals, and the design's connections to them."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from raycaster.rtl.bus.buses import BRIDGES
 
 
 def bus_files(configuration: Configuration) -> dict[str, str]:
-    """The files that `bench.v` includes, by name.
+    """Generate the files that `bench.v` includes, by name.
 
-    A driver of the bus drives in mid-cycle; the design sees that from the next edge of the clock on, as `seen_` and the
-    signal's name.
+    A driver of the bus drives in mid-cycle; the design sees the signals from the next edge of the clock on, under their
+    names with the prefix `seen_`.
     """
     prefix, bridge = BUSES[configuration.bus].port, BRIDGES[configuration.bus]
     port = bridge.interface(address_bits(configuration.table))

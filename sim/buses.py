@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The design's registers over the buses that it may have instead of Avalon-MM, by others' drivers of these."""
+"""Access the design's registers over the buses that can replace Avalon-MM, through third-party drivers."""
 
 from __future__ import annotations
 
@@ -40,15 +40,15 @@ from raycaster.sim.register_bus import RegisterBus
 WORD_BYTES = 4
 
 for known in BUSES.values():
-    logging.getLogger(f"cocotb.bench.{known.port}").setLevel(logging.WARNING)  # they tell of each access
+    logging.getLogger(f"cocotb.bench.{known.port}").setLevel(logging.WARNING)  # they log each access
 
 
 class BridgedBus(RegisterBus):
-    """A bus in front of Avalon-MM.
+    """A bus with a bridge to Avalon-MM.
 
     Attributes:
-        begins: signals that are high, or with a mark low, in the first cycle of a write and of a read.
-        ends: those of the last cycle.
+        begins: signals that are high, or low if marked with `!`, in the first cycle of a write and of a read.
+        ends: likewise, signals of the last cycle.
     """
 
     begins: ClassVar[Mapping[str, tuple[str, ...]]]
@@ -56,17 +56,20 @@ class BridgedBus(RegisterBus):
 
     @abstractmethod
     def press_back(self, random: Random) -> None:
-        """Make wait at random, by other chances for each channel."""
+        """Make accesses wait at random, with a separate chance for each channel."""
 
 
 def _odds(random: Random, chance: float) -> Iterator[bool]:
-    """True as often as that, in each clock anew."""
+    """Yield True with this chance, anew in each clock."""
     while True:
         yield random.random() < chance
 
 
 class Axi4LiteBus(BridgedBus):
-    """On a bench whose signals are named `s_axi_*`, by cocotbext-axi's channels; each of them may be paused."""
+    """Register access over AXI4-Lite, on a bench whose signals are named `s_axi_*`.
+
+    Each of cocotbext-axi's channels may be paused.
+    """
 
     begins: ClassVar = {"write": ("s_axi_awvalid", "s_axi_wvalid"), "read": ("s_axi_arvalid",)}
     ends: ClassVar = {"write": ("s_axi_bvalid", "s_axi_bready"), "read": ("s_axi_rvalid", "s_axi_rready")}
@@ -84,27 +87,27 @@ class Axi4LiteBus(BridgedBus):
         self.read_data = channel(AxiLiteRSink, AxiLiteRBus)
 
     async def write_word(self, address: int, word: int, byteenable: int = 0b1111) -> None:
-        """As declared; the response must say that all is well."""
+        """Write the enabled bytes of a word; the response must be OKAY."""
         await self.write_address.send(AxiLiteAWTransaction(awaddr=WORD_BYTES * address))
         await self.write_data.send(AxiLiteWTransaction(wdata=word, wstrb=byteenable))
         response = await self.response.recv()
         assert response.bresp == AxiResp.OKAY, f"a write to {address} got the response {response.bresp}"
 
     async def read_word(self, address: int) -> int:
-        """As declared; the response must say that all is well."""
+        """Read a word; the response must be OKAY."""
         await self.read_address.send(AxiLiteARTransaction(araddr=WORD_BYTES * address))
         answer = await self.read_data.recv()
         assert answer.rresp == AxiResp.OKAY, f"a read of {address} got the response {answer.rresp}"
         return int(answer.rdata)
 
     def press_back(self, random: Random) -> None:
-        """Pause channels."""
+        """Pause channels at random."""
         for one in (self.write_address, self.write_data, self.response, self.read_address, self.read_data):
             one.set_pause_generator(_odds(random, random.choice((0.0, 0.3, 0.8))))
 
 
 class WishboneBus(BridgedBus):
-    """On a bench whose signals are named `wb_*`, by cocotbext-wishbone's master."""
+    """Register access over Wishbone by cocotbext-wishbone's master, on a bench whose signals are named `wb_*`."""
 
     begins: ClassVar = {"write": ("wb_cyc", "wb_stb", "wb_we"), "read": ("wb_cyc", "wb_stb", "!wb_we")}
     ends: ClassVar = dict.fromkeys(("write", "read"), ("wb_ack",))
@@ -116,11 +119,11 @@ class WishboneBus(BridgedBus):
         self._idle: Iterator[int] | None = None
 
     async def write_word(self, address: int, word: int, byteenable: int = 0b1111) -> None:
-        """As declared."""
+        """Write the enabled bytes of a word."""
         await self._access(WBOp(adr=address, dat=word, sel=byteenable, acktimeout=64))
 
     async def read_word(self, address: int) -> int:
-        """As declared."""
+        """Read a word."""
         return await self._access(WBOp(adr=address, acktimeout=64))
 
     async def _access(self, operation: WBOp) -> int:
@@ -130,13 +133,13 @@ class WishboneBus(BridgedBus):
         return int(result.datrd) if operation.dat is None else 0
 
     def press_back(self, random: Random) -> None:
-        """Leave idle clocks between the bus cycle's begin and each strobe."""
+        """Insert idle clocks between the start of the bus cycle and each strobe."""
         most = random.choice((0, 3))
         self._idle = iter(lambda: random.randint(0, most), None)
 
 
 class ApbRegisterBus(BridgedBus):
-    """On a bench whose signals are named `s_apb_*`, by cocotbext-axi's APB master, which may be paused."""
+    """Register access over APB by cocotbext-axi's master, which may pause, on a bench with signals named `s_apb_*`."""
 
     begins: ClassVar = {"write": ("s_apb_psel", "s_apb_pwrite"), "read": ("s_apb_psel", "!s_apb_pwrite")}
     ends: ClassVar = dict.fromkeys(("write", "read"), ("s_apb_penable", "s_apb_pready"))
@@ -146,7 +149,7 @@ class ApbRegisterBus(BridgedBus):
         self._master: Any = ApbMaster(ApbBus.from_prefix(bench, "s_apb"), bench.bus_clk, bench.reset)
 
     async def write_word(self, address: int, word: int, byteenable: int = 0b1111) -> None:
-        """As declared; the master's writes are of neighbouring bytes, so that others are two of them."""
+        """Write the enabled bytes of a word; the master writes adjacent bytes, so bytes with a gap take two writes."""
         data = word.to_bytes(WORD_BYTES, "little")
         lane = 0
         while lane < WORD_BYTES:
@@ -159,13 +162,13 @@ class ApbRegisterBus(BridgedBus):
             lane += length + 1
 
     async def read_word(self, address: int) -> int:
-        """As declared."""
+        """Read a word."""
         done = await self._master.read(WORD_BYTES * address, WORD_BYTES)
         assert done.resp == AxiResp.OKAY, f"a read of {address} failed"
         return int.from_bytes(done.data, "little")
 
     def press_back(self, random: Random) -> None:
-        """Begin no access in some clocks."""
+        """Start no access in some clocks."""
         self._master.set_pause_generator(_odds(random, random.choice((0.0, 0.5))))
 
 
@@ -175,4 +178,4 @@ DRIVERS: dict[str, Callable[[HierarchyObject, Configuration], RegisterBus]] = {
     "wishbone": WishboneBus,
     "apb": ApbRegisterBus,
 }
-"""By what `Configuration.bus` may be."""
+"""Drivers by value of `Configuration.bus`."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One picture of many frames."""
+"""Combine many frames into one picture."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from pathlib import Path
 from PIL import Image
 
 WIDTH = 320
-"""Pixels of each frame."""
+"""Width of each frame in pixels."""
 
 GAP = 8
-"""Pixels between frames."""
+"""Gap between frames in pixels."""
 
 
 def write_contact_sheet(frames: Sequence[Path], path: Path, columns: int) -> None:
     """Write frames side by side, each `WIDTH` pixels wide, as a PNG; a shorter frame leaves white below it.
 
     Args:
-        frames: pictures, one or more.
-        path: of the sheet.
-        columns: frames in a row.
+        frames: one or more pictures.
+        path: the sheet's file.
+        columns: frames per row.
     """
     pictures = [Image.open(frame).convert("RGB") for frame in frames]
     reduced = [

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.sim.ensure_tools icarus`: see that tools are there that pip does not have, or install them."""
+"""`python -m raycaster.sim.ensure_tools icarus`: find tools that pip does not have, or install them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ INSTALL: dict[str, tuple[str, ...]] = {
     "pacman": ("pacman", "-S", "--noconfirm", "--needed"),
     "brew": ("brew", "install"),
 }
-"""The command that installs, by the package manager's name; the first that is there is taken."""
+"""Install command by package manager; the first one found is used."""
 
 
 @dataclass(frozen=True)
@@ -27,10 +27,10 @@ class Tool:
     """A tool that pip does not have.
 
     Attributes:
-        name: for people.
-        programs: any of these is the tool.
-        packages: what the package manager is asked for, by its name.
-        site: where else it comes from.
+        name: the name to print.
+        programs: names or paths of the tool's executable; any of them will do.
+        packages: arguments to the install command, by package manager.
+        site: the tool's web site.
     """
 
     name: str
@@ -64,22 +64,22 @@ TOOLS = {
 
 
 def find(tool: str) -> str | None:
-    """The path of one of `TOOLS`, or None where it is not on the PATH."""
+    """Return the path of one of `TOOLS`, or None if it is not on the PATH."""
     return next(filter(None, map(shutil.which, TOOLS[tool].programs)), None)
 
 
 def install_command(tool: str) -> tuple[str, ...] | None:
-    """The command that installs one of `TOOLS` on this system, or None where no package manager is known."""
+    """Return the command that installs one of `TOOLS` on this system; None without a known package manager."""
     manager = next((name for name in INSTALL if shutil.which(name)), None)
     if manager is None:
         return None
     command = (*INSTALL[manager], *TOOLS[tool].packages[manager])
-    # Homebrew refuses to be run as root; the others want it.
+    # Homebrew refuses to run as root; the others need it.
     return command if manager == "brew" or os.geteuid() == 0 else ("sudo", *command)
 
 
 def missing(tool: str, why: str = "") -> UserError:
-    """The line for one of `TOOLS` that is not there: why, and what to run."""
+    """Make the error for a missing tool: the reason, and what to run."""
     command = install_command(tool)
     if command is None:
         line = f"is missing, and no package manager is known here; see {TOOLS[tool].site}"
@@ -89,7 +89,7 @@ def missing(tool: str, why: str = "") -> UserError:
 
 
 def ensure(tool: str) -> None:
-    """Install one of `TOOLS` where it is missing and this user may.
+    """Install one of `TOOLS` if it is missing and this user may.
 
     Raises:
         UserError: it is missing and could not be installed; says what to run.
@@ -119,7 +119,7 @@ def _run(*command: str) -> bool:
 
 
 def main() -> None:
-    """The command, whose arguments are names of `TOOLS`."""
+    """Run the command; its arguments are names of `TOOLS`."""
     for tool in sys.argv[1:]:
         ensure(tool)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: one scene through the design to one frame, held against golden and exact in every pixel."""
+"""cocotb bench: show one scene, and compare every pixel of the frame with the golden and the exact picture."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from raycaster.sim.harness import Harness
 
 @cocotb.test()
 async def one_frame(bench: HierarchyObject) -> None:
-    """Program the job's scene, capture a frame, write pictures and `result.json` into the job's output directory."""
+    """Program the job's scene, capture a frame, write pictures and `result.json` to the job's output directory."""
     harness = Harness(bench)
     job, configuration, bus = harness.job, harness.configuration, harness.bus
     scene = load_scene(job.scene, configuration.capacity)

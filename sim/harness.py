@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What every cocotb bench starts with: its job, the design's reset, the bus and the monitor."""
+"""Common start of every cocotb bench: its job, the design's reset, the bus and the monitor."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from raycaster.sim.monitor import CLOCK_NS, Monitor
 from raycaster.sim.register_model import LiveScene
 
 PROGRESS_LINES = 16
-"""Lines after which progress is told: a file takes longer to open than a line to simulate."""
+"""Lines between progress reports: opening a file takes longer than simulating a line."""
 
 RESET_CLOCKS = 4
 RESET_TOLERANCE = 8
-"""Clocks from the end of reset that registers on the way to the video output may add."""
+"""Clocks that registers on the way to the video output may add after the end of reset."""
 
 
 class Viewer:
-    """A monitor that watches a bench, and what it must show there."""
+    """A monitor that watches a bench, and the pictures that it must show."""
 
     def __init__(self, bench: HierarchyObject):
         self.bench: Any = bench
@@ -40,22 +40,22 @@ class Viewer:
         self.monitor = Monitor(bench, self.configuration)
 
     def shown(self, picture: np.ndarray) -> np.ndarray:
-        """What the monitor must show of a golden picture; see `raycaster.golden.picture.shown`."""
+        """Convert a golden picture to what the monitor must show; see `raycaster.golden.picture.shown`."""
         return shown(picture, self.configuration)
 
     def golden(self, scene: Scene, reflections: int) -> np.ndarray:
-        """The visible screen that this design must show of a scene; uint8, visible lines x visible pixels x 3."""
+        """Draw the screen that this design must show for a scene; uint8, visible lines x visible pixels x 3."""
         return self.shown(self.model.render(scene, self.screen, reflections))
 
     def golden_and_exact(self, scene: Scene, reflections: int) -> tuple[np.ndarray, np.ndarray]:
-        """The same, and that of exact arithmetic, which of an engine without quotients is the same picture."""
+        """Draw a scene's golden and exact screens; for an engine without quotients they are the same."""
         golden = self.golden(scene, reflections)
         if not self.configuration.facts.divides:
             return golden, golden
         return golden, self.shown(ExactModel().render(scene, self.screen, reflections))
 
     def golden_live(self, scene: LiveScene | None) -> np.ndarray:
-        """The same of what the registers say, or nothing, for the time before the first StartScreen."""
+        """Draw the golden screen of the live registers; black if stopped, or before the first StartScreen."""
         if scene is None or not scene.run:
             return self.shown(np.zeros((self.screen.rows, self.screen.columns, 3), dtype=np.uint8))
         return self.shown(scene.picture(self.model, self.screen))
@@ -64,7 +64,7 @@ class Viewer:
         """Check every visible pixel.
 
         Raises:
-            AssertionError: says how many differ, and the first one.
+            AssertionError: pixels differ; says how many, and the first one.
         """
         if wrong := count_wrong(seen, expected):
             line, pixel, _ = np.argwhere(seen != expected)[0]
@@ -92,14 +92,14 @@ class Harness(Viewer):
         await RisingEdge(self.bench.clk)
 
     async def frame_after_reset(self, released_ns: float, on_row: Callable[[int], None] | None = None) -> np.ndarray:
-        """The first frame after a reset, which restarts the video at the first pixel of the vertical front porch.
+        """Return the first frame after a reset, which restarts the video at the start of the vertical front porch.
 
         Args:
-            released_ns: when reset ended.
+            released_ns: the time at which reset ended.
             on_row: see `Monitor.frame`.
 
         Returns:
-            Its visible part, see `Monitor.frame`.
+            Its visible part; see `Monitor.frame`.
 
         Raises:
             AssertionError: HS or VS came too early or too late.
@@ -115,6 +115,6 @@ class Harness(Viewer):
         return frame
 
     def write_progress(self, visible_lines: int) -> None:
-        """Tell the parent now and then, if it asked, how many lines of the picture have come."""
+        """Report the number of visible lines so far to the parent now and then, if it asked."""
         if self.job.progress and visible_lines % PROGRESS_LINES == 0:
             Path(self.job.progress).write_text(str(visible_lines))

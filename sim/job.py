@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is handed from the process that starts a simulation to the bench that runs inside it."""
+"""Pass a job from the process that starts a simulation to the bench that runs inside it."""
 
 from __future__ import annotations
 
@@ -18,44 +18,44 @@ JOB_VARIABLE = "RAYCASTER_JOB"
 
 @dataclasses.dataclass(frozen=True)
 class Job:
-    """What a simulation is to do."""
+    """Task of a simulation."""
 
     configuration: Configuration
     scene: str = ""
-    """Path of a scene file, or nothing where a bench has scenes of its own."""
+    """Path of a scene file; empty if the bench makes its own scenes."""
 
     output: str = ""
     """Directory for pictures and results."""
 
     reflections: int | None = None
-    """Instead of the scene's own."""
+    """Number of reflections; None for the scene's number."""
 
     progress: str = ""
-    """File that is to hold the number of visible lines seen so far."""
+    """File for the number of visible lines so far."""
 
     seeds: tuple[int, ...] = ()
-    """Of random scenes, for a bench that shows them."""
+    """Seeds of random scenes, for a bench that shows them."""
 
     stiff: bool = False
-    """The seeds are places in the stiff catalogue instead."""
+    """True if the seeds are indices into the stiff catalogue instead."""
 
     registers: Mapping[str, Sequence[str]] = dataclasses.field(default_factory=dict)
-    """By module of the design, names of its registers, for a bench that writes them."""
+    """Names of registers, by module of the design, for a bench that writes them."""
 
     buttons: tuple[int, ...] = ()
-    """For a system with a processor: which are held from each frame's vertical sync on, a bit each."""
+    """Buttons held from each frame's vertical sync on, one bit each, for a system with a processor."""
 
     def reflections_of(self, scene: Scene) -> int:
-        """The number of reflections to show a scene with."""
+        """Return the number of reflections to show a scene with."""
         return scene.reflections if self.reflections is None else self.reflections
 
     def environment(self) -> dict[str, str]:
-        """The environment in which a simulation finds this job."""
+        """Return the environment variables that pass this job to a simulation."""
         return {JOB_VARIABLE: json.dumps(dataclasses.asdict(self))}
 
     @classmethod
     def from_environment(cls) -> Job:
-        """The job that this simulation was started with."""
+        """Read the job that this simulation was started with."""
         values: dict[str, Any] = json.loads(os.environ[JOB_VARIABLE])
         values["configuration"] = configure(**values["configuration"])
         return cls(**values)

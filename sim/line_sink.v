@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 // A line sink: hands Python a whole video line at once, and watches the monitor's clock.
 //
-// Waking Python costs more than simulating a line does, so everything that happens every clock is done here. Python
+// Waking Python costs more than simulating a line does, so all work of every clock is done here. Python
 // touches only the signals marked public.
 
 `timescale 1ns / 1ns
 
 module line_sink #(
-    parameter COLOUR_BITS = 8,      // of a channel
-    parameter H_TOTAL = 800,        // pixels a line, blanking included
-    parameter HS_ACTIVE = 0,        // level of HS in its pulse
+    parameter COLOUR_BITS = 8,      // bits per channel
+    parameter H_TOTAL = 800,        // pixels per line, blanking included
+    parameter HS_ACTIVE = 0,        // level of HS during its pulse
     parameter CLOCKS_PER_PIXEL = 2, // 1 or 2
-    parameter PIXELS = 1            // of a pixel clock, 1 or 2: the left one in the low half of each colour
+    parameter PIXELS = 1            // pixels per pixel clock, 1 or 2: the left one in the low half of each colour
 ) (
     input wire clk,
     input wire reset,
@@ -19,9 +19,9 @@ module line_sink #(
     input wire vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_clk
 );
     localparam SAMPLE_BITS = 4 + 3 * COLOUR_BITS;
-    localparam CAPACITY = H_TOTAL + PIXELS;     // more by a clock, so that a line that is too long shows
+    localparam CAPACITY = H_TOTAL + PIXELS;     // one clock more, so that a line that is too long shows
 
-    // What a pixel clock brings: a sample for each pixel, the left one's in the lowest bits.
+    // Samples of one pixel clock, one per pixel, with the left pixel in the lowest bits.
     wire [PIXELS*SAMPLE_BITS-1:0] sample;
     genvar pixel;
     generate
@@ -81,7 +81,7 @@ module line_sink #(
         vga_clk_before = vga_clk;
         sample_before = sample;
     end
-    // With a clock a pixel data changes at each clk, so what was taken must still stand just before the next one.
+    // With one clock per pixel, data changes at each edge, so sampled data must still be there just before the next.
     always @(posedge clk)
         if (!reset && CLOCKS_PER_PIXEL == 1 && sample !== sample_before)
             unstable_samples = unstable_samples + 1;

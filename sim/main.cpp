@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The main program of Verilator's models, in place of cocotb's lib/verilator/verilator.cpp, whose regions it keeps.
+// The main program of Verilator's models, instead of cocotb's lib/verilator/verilator.cpp; it keeps the regions.
 //
-// cocotb's main asks in each time slot, ten times, whether a callback is due. As Python does not drive the clock, it
-// only waits for a value to change in nearly all slots: those take one evaluation and one look here. And the clock
-// is toggled here, as one in the bench would be a coroutine, which makes the model evaluate once more at each edge.
+// cocotb's main program checks ten times per time slot whether a callback is due. As Python does not drive the clock,
+// it only waits for a value to change in nearly all slots: here these take one evaluation and one check. The clock is
+// also toggled here: in the bench it would be a coroutine, which makes the model evaluate once more at each edge.
 
 #include <algorithm>
 #include <memory>
@@ -23,7 +23,7 @@ using Trace = VerilatedVcdC;
 struct Trace {};
 #endif
 
-static constexpr int HALF_PERIOD_NS = 10;  // as the benches' own clocks under other simulators
+static constexpr int HALF_PERIOD_NS = 10;  // the same as the benches' own clocks in other simulators
 
 static QData now = 0;  // in units of the time precision
 
@@ -31,7 +31,7 @@ double sc_time_stamp() { return now; }
 
 extern "C" void vlog_startup_routines_bootstrap(void);
 
-// Calls back who waits for a value that has changed, until nothing changes any more; whether anybody was called.
+// Runs the callbacks of changed values until nothing changes any more; returns true if any ran.
 static bool call_value_callbacks() {
     bool called = false;
     while (VerilatedVpi::callValueCbs()) called = true;
@@ -40,7 +40,7 @@ static bool call_value_callbacks() {
 
 int main(int argc, char** argv) {
     Verilated::commandArgs(argc, argv);
-    Verilated::fatalOnVpiError(false);  // cocotb asks for what may not be there
+    Verilated::fatalOnVpiError(false);  // cocotb asks for objects that may not exist
     const std::unique_ptr<Vtop> top{new Vtop{""}};
 
     const std::unique_ptr<Trace> trace{new Trace};
@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
     for (int digits = Verilated::threadContextp()->timeprecision(); digits < -9; ++digits) half_period *= 10;
     QData edge = half_period;
 
-    // Only a callback registers callbacks. So while none is called nothing waits but for values and deadlines.
+    // Only callbacks register callbacks. So while none runs, nothing waits except for values and deadlines.
     bool awake = true;
     while (!Verilated::gotFinish()) {
         do {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A monitor in Python: takes the bench's lines, holds every sample against the video standard, yields pictures."""
+"""A monitor in Python: takes the bench's lines, checks every sample against the video standard, yields pictures."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from raycaster.configuration import CHANNEL_BITS, Configuration
 from raycaster.screens import Screen, Span
 
 CLOCK_NS = 20
-"""Period of the bench's clock, whatever the design's is; only cycles count here."""
+"""Period of the bench's clock, for any design; only cycles count here."""
 
 _CONTROL_BITS = 4
 """Bits of a sample before its colour: HS, VS, BLANK_N, SYNC_N."""
@@ -30,13 +30,13 @@ class VideoError(AssertionError):
 
 @dataclass(frozen=True)
 class Line:
-    """What the monitor saw from one leading edge of HS to the next."""
+    """Samples from one leading edge of HS to the next."""
 
     bits: str
-    """One character a bit, the last sample first; a sample is HS, VS, BLANK_N, SYNC_N, red, green, blue of a pixel."""
+    """One character per bit, last sample first; a sample is HS, VS, BLANK_N, SYNC_N, red, green, blue of a pixel."""
 
     samples: int
-    """Pixels."""
+    """Number of pixels."""
 
     end_ns: int
     """Simulation time at which the line ended."""
@@ -49,9 +49,9 @@ class Monitor:
         """Watch a bench's line sink.
 
         Args:
-            bench: it has a `sink`.
+            bench: a bench with a `sink`.
             configuration: the design in it.
-            blanking: whether its pins tell of blanking; see `decode_frame`.
+            blanking: True if the pins signal blanking; see `decode_frame`.
         """
         self._sink: Any = bench.sink
         self._blanking = blanking
@@ -74,7 +74,7 @@ class Monitor:
             self._lines.put_nowait(line)
 
     async def _watch(self) -> None:
-        """Give up a line that somebody has waited for too long. A timeout for each would take as long as the lines."""
+        """Give up on a line that is overdue. A timeout for each line would take as long as simulating the lines."""
         while True:
             await Timer(self._patience_ns, "ns")
             since = self._waiting_since
@@ -82,16 +82,16 @@ class Monitor:
                 self._lines.put_nowait(None)
 
     def forget(self) -> None:
-        """Drop what was seen so far and look for VS anew, as after a reset."""
+        """Drop all that was seen so far and search for VS again, as after a reset."""
         while not self._lines.empty():
             self._lines.get_nowait()
         self._synchronised = False
 
     async def line(self) -> Line:
-        """The next line.
+        """Wait for the next line.
 
         Raises:
-            VideoError: HS did not come in three line times.
+            VideoError: HS did not come within three line times.
         """
         self._waiting_since = int(get_sim_time("ns"))
         try:
@@ -103,13 +103,13 @@ class Monitor:
         return line
 
     async def frame(self, on_row: Callable[[int], None] | None = None) -> np.ndarray:
-        """The next whole frame, from VS's leading edge on; a frame follows the last one without a gap.
+        """Wait for the next whole frame, from VS's leading edge on; frames follow each other without a gap.
 
         Args:
-            on_row: called with the number of visible lines seen so far, as each comes.
+            on_row: called after each visible line, with the number of visible lines so far.
 
         Returns:
-            Visible lines x visible pixels x 3, uint8; a channel of fewer bits stands in the top bits.
+            Visible lines x visible pixels x 3, uint8; a channel of fewer than 8 bits is in the top bits.
 
         Raises:
             VideoError: a sample of the frame departs from the standard.
@@ -126,7 +126,7 @@ class Monitor:
         return decode_frame(lines, self._screen, self._colour_bits, blanking=self._blanking)
 
     async def _first_line(self) -> Line:
-        """The first line in which VS is active after one in which it was not."""
+        """Return the first line in which VS is active after a line in which it was inactive."""
         vertical = self._screen.vertical
         active = str(int(vertical.active_high))
         was_active = True
@@ -139,10 +139,10 @@ class Monitor:
         raise VideoError(f"no leading edge of VS in two frames ({2 * vertical.total} lines)")
 
     def check_pins(self) -> None:
-        """Check what the bench has watched at every clock.
+        """Check the faults that the bench counted at every clock.
 
         Raises:
-            VideoError: data changed at a rising edge of VGA_CLK, or that was not the halved system clock.
+            VideoError: data changed at a rising edge of VGA_CLK, or VGA_CLK has a wrong waveform.
         """
         unstable = int(self._sink.unstable_samples.value)
         faults = int(self._sink.clock_faults.value)
@@ -158,14 +158,15 @@ def decode_frame(lines: Sequence[Line], screen: Screen, colour_bits: int, *, bla
     Args:
         lines: one frame from VS's leading edge on, `screen.vertical.total` lines.
         screen: the standard.
-        colour_bits: bits a channel has.
-        blanking: whether BLANK_N tells of the picture; it is low all the time otherwise.
+        colour_bits: bits per channel.
+        blanking: True if BLANK_N is high in the picture; False if it is always low.
 
     Returns:
-        Visible lines x visible pixels x 3, uint8; a channel of fewer than 8 bits stands in the top bits, the others 0.
+        Visible lines x visible pixels x 3, uint8; a channel of fewer than 8 bits is in the top bits, the others are 0.
 
     Raises:
-        VideoError: names the line (from VS's leading edge), the sample (from HS's) and what was expected.
+        VideoError: a sample is wrong; names the line (from VS's leading edge), the sample (from HS's leading edge) and
+            what was expected.
     """
     horizontal, vertical = screen.horizontal, screen.vertical
     for number, line in enumerate(lines):
@@ -175,13 +176,13 @@ def decode_frame(lines: Sequence[Line], screen: Screen, colour_bits: int, *, bla
             )
     sample_bits = _CONTROL_BITS + 3 * colour_bits
     characters = np.frombuffer("".join(line.bits for line in lines).encode(), np.uint8)
-    # A line's characters are those of its last sample first, after those of samples that never came.
+    # A line's characters begin with its last sample; before that are characters of samples that never came.
     characters = characters.reshape(vertical.total, -1)[:, -horizontal.total * sample_bits :]
     bits = (characters ^ ord("0")).reshape(vertical.total, horizontal.total, sample_bits)
     if bits.max() > 1:
         unknown = (bits[:, ::-1] > 1).any(axis=-1)
         line, sample = np.argwhere(unknown)[0]
-        raise VideoError(f"line {line}, sample {sample}: an output is neither 0 nor 1; {unknown.sum()} samples are so")
+        raise VideoError(f"line {line}, sample {sample}: an output is neither 0 nor 1, in {unknown.sum()} samples")
 
     column = np.arange(horizontal.total)
     row = np.arange(vertical.total)[:, None]
@@ -191,7 +192,7 @@ def decode_frame(lines: Sequence[Line], screen: Screen, colour_bits: int, *, bla
     _check("VS", controls[..., 1], (row < vertical.sync) == vertical.active_high)
     _check("BLANK_N", controls[..., 2], in_picture & blanking)
     _check("SYNC_N", controls[..., 3], np.False_)
-    # Along an axis of 8 numpy packs a tenth as fast as all at once.
+    # Packing along an axis of 8 takes numpy ten times as long as packing everything at once.
     channels = np.zeros((*in_picture.shape, 3, CHANNEL_BITS), np.uint8)
     channels[..., :colour_bits] = bits[..., _CONTROL_BITS:].reshape(*in_picture.shape, 3, colour_bits)
     colours = np.packbits(channels).reshape(*in_picture.shape, 3)[:, ::-1]
@@ -200,13 +201,13 @@ def decode_frame(lines: Sequence[Line], screen: Screen, colour_bits: int, *, bla
 
 
 def _visible(position: np.ndarray, span: Span) -> np.ndarray:
-    """Where a position counted from the sync's leading edge is in the picture."""
+    """True for positions, counted from the sync's leading edge, that are in the picture."""
     start = span.sync + span.back
     return (position >= start) & (position < start + span.visible)
 
 
 def _check(what: str, seen: np.ndarray, expected: np.ndarray | np.bool) -> None:
-    """Compare lines x samples with what the standard expects of them."""
+    """Compare lines x samples with what the standard expects."""
     wrong = seen != expected
     if not wrong.any():
         return

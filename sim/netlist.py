@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Netlists: Verilog through Yosys into the cells of a chip, with Yosys's models of these cells to simulate."""
+"""Make netlists: synthesise Verilog into a chip's cells with Yosys, whose models of these cells are simulated."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class Library:
     """Yosys's library for a family of chips.
 
     Attributes:
-        synthesis: Yosys's command, with what it may use of the cells that have a model.
-        files: within its folder, which bears the family's name.
+        synthesis: Yosys's command, restricted to cells that have a model.
+        files: the library's files in its folder, which has the family's name.
         counted: cells that a netlist may consist of.
-        modelled: beside them what the models of those are made of.
+        modelled: further cells that the models of those consist of.
     """
 
     synthesis: str
@@ -42,15 +42,15 @@ _GOWIN_REGISTERS = tuple(f"DFF{kind}" for kind in ("", "E", "S", "SE", "R", "RE"
 
 LIBRARIES: Mapping[str, Library] = {
     # Look-up tables, flip-flops, carries, two kinds of multiplexer, RAM made of tables. Multipliers become tables and
-    # carries, and line buffers RAM made of tables, as Yosys has no models of the ECP5's own. The carry's model is made
-    # of others, one of which no netlist has.
+    # carries, and line buffers become RAM made of tables, as Yosys has no models of the ECP5's multipliers and block
+    # RAM. The carry's model consists of other cells, one of them (LUT2) in no netlist.
     "ecp5": Library(
         "synth_ecp5 -nodsp -nobram",
         ("common_sim.vh", "ccu2c_sim.vh"),
         ("LUT4", "TRELLIS_FF", "CCU2C", "PFUMX", "L6MUX21", "TRELLIS_DPR16X4"),
         ("LUT2",),
     ),
-    # Tables, carries, flip-flops, multipliers with their registers, blocks of RAM.
+    # Tables, carries, flip-flops, multipliers with their registers, block RAM.
     "ice40": Library(
         "synth_ice40 -dsp",
         ("cells_sim.v",),
@@ -64,16 +64,16 @@ LIBRARIES: Mapping[str, Library] = {
         ("MUX2",),
     ),
 }
-"""By family, as a board's description names it."""
+"""Libraries by family, with the names that boards' descriptions use."""
 
 _LONGEST_NAME = 95
-"""Of a signal that keeps its name: longer ones make Verilator fail where it writes waveforms of them."""
+"""Longest signal name that is kept; with longer ones Verilator fails to write waveforms."""
 
 _CELLS, _NETLIST, _COUNTS = "cells.v", "netlist.v", "cells.json"
 
 
 class NetlistError(UserError):
-    """Verilog that has no netlist which could be simulated."""
+    """Verilog without a netlist that can be simulated."""
 
 
 @dataclass(frozen=True)
@@ -81,17 +81,17 @@ class Netlist:
     """A synthesised design."""
 
     files: tuple[Path, ...]
-    """Verilog: the models of the cells, and the netlist itself, the last."""
+    """Verilog files: the models of the cells, then the netlist itself."""
 
     cells: Mapping[str, int]
-    """How many it has of each cell that its library counts."""
+    """Number of each cell that the library counts."""
 
     fresh: bool
-    """Whether it was synthesised just now, rather than found."""
+    """True if it was synthesised just now, not reused."""
 
 
 def find_yosys() -> Path:
-    """The directory in which Yosys keeps its libraries.
+    """Return the directory of Yosys's libraries.
 
     Raises:
         UserError: Yosys is missing; says what to install.
@@ -105,15 +105,15 @@ def find_yosys() -> Path:
 def synthesise(
     verilog: Sequence[Path], directory: Path, top: str = "ray_caster_module", family: str = "ecp5"
 ) -> Netlist:
-    """Synthesise a design, or find it synthesised; the same files give the same netlist.
+    """Synthesise a design, or reuse its netlist; the same files always give the same netlist.
 
-    Flip-flops start from 0, or from 1 where that is their reset value, as the chip's do; so a register that should
-    have been reset shows in the Verilog, where it starts unknown, and not here.
+    Flip-flops start from 0, or from 1 if that is their reset value, as in the chip. So a missing reset shows when the
+    Verilog is simulated, where registers start unknown, but not here.
 
     Args:
-        verilog: its files.
-        directory: replaced where it is not up to date.
-        top: its top module.
+        verilog: the design's files.
+        directory: the output directory, replaced if it is out of date.
+        top: the top module.
         family: one of `LIBRARIES`.
 
     Raises:
@@ -124,7 +124,7 @@ def synthesise(
     models = cell_models(library, find_yosys() / family)
     script = [
         *(f"read_verilog {source.name}" for source in verilog),
-        # Without its last step, which gives long names to all that is new.
+        # Without the last step, which gives long names to everything new.
         f"{library.synthesis} -run :check -top {top}",
         "delete t:$scopeinfo",
         f"rename -hide w:{_LONGEST_NAME * '?'}?*",
@@ -152,11 +152,11 @@ def synthesise(
 
 
 def cell_models(library: Library, directory: Path) -> str:
-    """Yosys's own models, of the cells that occur: some of the others are not Verilog that every simulator reads."""
+    """Extract Yosys's models of the library's cells: some other models are Verilog that not every simulator reads."""
     text = "".join((directory / name).read_text() for name in library.files)
     modules = re.findall(r"^module (\w+) ?(\(.*?^\s*endmodule\b)", text, re.MULTILINE | re.DOTALL)
     chosen = [f"module {cell} {rest}\n" for cell, rest in modules if cell in library.counted + library.modelled]
-    # Macros come before them.
+    # Macros come before the modules.
     return "\n".join([*re.findall(r"^`(?:define|ifndef|else|endif).*", text[: text.index("\nmodule ")], re.M), *chosen])
 
 

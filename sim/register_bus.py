@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The design's registers by name, over whichever bus it has."""
+"""Access the design's registers by name, over any bus."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from raycaster.scene import Basis, Rectangle, Scene
 
 
 class RegisterBus(ABC):
-    """Reads and writes registers of a design; every access returns in a phase in which the next may start at once."""
+    """Reads and writes registers of a design; when an access returns, the next may start at once."""
 
     def __init__(self, configuration: Configuration):
         self.registers: dict[str, Register] = register_map(configuration.table)
@@ -34,12 +34,12 @@ class RegisterBus(ABC):
         await self.write_word(register.address, register.pack(**fields))
 
     async def read(self, name: str) -> dict[str, int]:
-        """A register's fields."""
+        """Read a register's fields."""
         register = self.registers[name]
         return register.unpack(await self.read_word(register.address))
 
     async def write_camera(self, position: Sequence[int], basis: Basis | None = None) -> None:
-        """Write the camera's x, y, z to the shadow, and forward, right and up where they are given."""
+        """Write the camera's x, y, z to the shadow, and forward, right and up if they are given."""
         await self.write("camera", **dict(zip("xyz", position, strict=True)))
         if basis:
             await self._write_all(basis_fields(basis))
@@ -49,7 +49,7 @@ class RegisterBus(ABC):
         await self._write_all(rectangle_fields(index, rectangle, self._configuration))
 
     async def load_scene(self, scene: Scene) -> None:
-        """Write background, camera and rectangles to the shadow, and disable the entries that the scene leaves."""
+        """Write background, camera and rectangles to the shadow, and disable the unused entries."""
         await self._write_all(scene_fields(scene, self._configuration))
 
     async def _write_all(self, writes: Iterable[tuple[str, dict[str, int]]]) -> None:
@@ -57,5 +57,5 @@ class RegisterBus(ABC):
             await self.write(name, **fields)
 
     async def commit(self, *, run: int = 1, reflections: int) -> None:
-        """Have the shadow shown from the next StartScreen on, with this many reflections."""
+        """Commit the shadow, to be shown from the next StartScreen on with this many reflections."""
         await self.write("control", run=run, commit=1, reflections=reflections)

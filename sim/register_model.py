@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The registers in Python, clock by clock: what each answer must be, and which scene is shown."""
+"""Model the registers clock by clock: what each answer must be, and which scene is shown."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ EVERY_LANE = 0b1111
 
 
 class Word:
-    """What software writes, what waits, and what is shown."""
+    """A register's word in three stages: shadow, which software writes; pending; and live, which is shown."""
 
     def __init__(self, implemented: int, first: int = 0):
         self.implemented, self.first = implemented, first
         self.reset()
 
     def reset(self) -> None:
-        """Nothing is written, nothing is shown."""
+        """Reset all stages."""
         self.shadow = self.pending = self.live = self.first
 
     def clock(self, bus: dict[str, int], selected: bool) -> None:
-        """An edge of the clock, with what the bus within the design says before it."""
+        """Apply a clock edge, with the internal bus's signals before it."""
         if bus["bus_go_live"]:
             self.live = self.pending
         if bus["bus_commit"]:
@@ -44,7 +44,7 @@ class Word:
 
 
 class Table:
-    """The rectangle table, four words a slot; without patterns three."""
+    """The rectangle table: four words per slot, or three without patterns."""
 
     def __init__(self, config: Configuration):
         registers = register_map(config.rectangles)
@@ -64,12 +64,12 @@ class Table:
         self._config = config
 
     def slot(self, index: int) -> list[Word]:
-        """A rectangle's words, in the order of `names`."""
+        """Return a rectangle's words, in the order of `names`."""
         first = self._point.address + 4 * index
         return [self.words[first + offset] for offset in range(len(self.names))]
 
     def rectangles(self, stage: str) -> Rectangles:
-        """What a stage, `"shadow"` or `"live"`, says."""
+        """Decode the rectangles of a stage, `"shadow"` or `"live"`."""
         corners, colours, enabled, mirrors, kinds, cells, colours_2 = ([] for _ in range(7))
         for index in range(self._config.rectangles):
             corner_0, corner_1, surface, *pattern = (getattr(word, stage) for word in self.slot(index))
@@ -88,7 +88,7 @@ class Table:
         )  # fmt: skip
 
     def clock(self, inputs: dict[str, int]) -> None:
-        """An edge of the clock, with reset and the bus within the design before it."""
+        """Apply a clock edge, with reset and the internal bus's signals before it."""
         if inputs["reset"]:
             for word in self.words.values():
                 word.reset()
@@ -100,13 +100,13 @@ class Table:
 
 
 def camera_registers(config: Configuration) -> dict[str, Register]:
-    """Those of a design's camera, by name."""
+    """Return the registers of a design's camera and light, by name."""
     names = ("camera", *(VECTORS if config.turn else ()), *("light",) * config.light)
     return {name: register_map(config.rectangles)[name] for name in names}
 
 
 class CameraWords(dict[str, Word]):
-    """Those of a design's camera, by register."""
+    """Words of a design's camera and light, by the register's name."""
 
     def __init__(self, config: Configuration):
         self._registers = camera_registers(config)
@@ -116,17 +116,17 @@ class CameraWords(dict[str, Word]):
 
     @property
     def by_address(self) -> dict[int, Word]:
-        """The same by their addresses."""
+        """The words by address."""
         return {self._registers[name].address: word for name, word in self.items()}
 
     @property
     def position(self) -> tuple[int, int, int]:
-        """The live one."""
+        """The live position."""
         return self._vector("camera")
 
     @property
     def basis(self) -> Basis:
-        """The live one: forward, right and up."""
+        """The live basis: forward, right and up."""
         if VECTORS[0] not in self:
             return UNTURNED
         forward, right, up = (self._vector(name, 1 << 9) for name in VECTORS)
@@ -134,7 +134,7 @@ class CameraWords(dict[str, Word]):
 
     @property
     def light(self) -> Light | None:
-        """The live one, None where everything is lit."""
+        """The live light; None if everything is lit."""
         fields = self._registers["light"].unpack(self["light"].live) if "light" in self else {"on": 0}
         if not fields["on"]:
             return None
@@ -147,7 +147,7 @@ class CameraWords(dict[str, Word]):
 
 
 class Agent:
-    """The agent's contract: a write is known a cycle after it was accepted, a read answered two cycles after it was."""
+    """Model of the agent: a write takes effect a cycle after it is accepted, a read is answered two cycles after."""
 
     def __init__(self, config: Configuration):
         self.config = config
@@ -181,7 +181,7 @@ class Agent:
         self.reset()
 
     def reset(self) -> None:
-        """What holds from the clock edge at which reset is high: no request is known any more."""
+        """Enter the state after a clock edge with reset high: no request is pending."""
         self.control.reset()
         self.background.reset()
         self.waiting = True
@@ -193,7 +193,7 @@ class Agent:
         self.underrun = self.bad = self.irq_enable = self.irq_pending = False
 
     def read(self, inputs: dict[str, int]) -> int:
-        """The word at the bus's address in this cycle."""
+        """Return the word at the bus's address in this cycle."""
         name = self.addresses.get(self.bus["bus_address"], "")
         if name in self._constants:
             return self._constants[name]
@@ -216,7 +216,7 @@ class Agent:
         return words.get(name, inputs["rect_readback"])
 
     def outputs(self, inputs: dict[str, int]) -> dict[str, int]:
-        """Every output of the agent in this cycle."""
+        """Return every output of the agent in this cycle."""
         control = self.registers["control"].unpack(self.control.live)
         valid, data = self.answer
         return {
@@ -232,7 +232,7 @@ class Agent:
         }
 
     def clock(self, inputs: dict[str, int]) -> None:
-        """An edge of the clock, with the agent's inputs before it."""
+        """Apply a clock edge, with the agent's inputs before it."""
         if inputs["reset"]:
             self.reset()
             return
@@ -257,7 +257,7 @@ class Agent:
                 max(self.group, inputs["progress_group_cycles"]),
             )
         committing = name == "control" and bool(ones & 2)
-        # A commit counts from the cycle in which the shadow is copied; a StartScreen in that cycle is too early for it.
+        # A commit takes effect in the cycle in which the shadow is copied, too late for a StartScreen in that cycle.
         self.commit = committing or bool(bus["bus_commit"]) or (self.commit and not start_screen)
         accepted = not self.waiting
         self.waiting = False
@@ -275,25 +275,25 @@ class Agent:
 
 
 class Request(NamedTuple):
-    """A transfer that the bus's master asks for."""
+    """A transfer that the bus's master requests."""
 
     address: int
-    """In words."""
+    """Word address."""
 
     word: int | None = None
-    """What to write; None reads."""
+    """Word to write; None for a read."""
 
     lanes: int = EVERY_LANE
-    """The bytes that count when writing; a read returns all."""
+    """Bytes to write; a read returns all bytes."""
 
 
 @dataclass(frozen=True)
 class LiveScene:
-    """What the registers tell the renderer from a StartScreen on."""
+    """The scene that the registers give the renderer from a StartScreen on."""
 
     run: bool
     reflections: int
-    """As many as the hardware computes."""
+    """Number of reflections that the hardware computes."""
 
     background: tuple[int, ...]
     camera: tuple[int, ...]
@@ -302,14 +302,14 @@ class LiveScene:
     light: Light | None = None
 
     def picture(self, model: Model, screen: Screen) -> np.ndarray:
-        """Draw it with a golden model, as `Model.picture` does."""
+        """Draw the scene with a golden model, as `Model.picture` does."""
         return model.picture(
             screen, self.rectangles, self.camera, self.background, self.reflections, basis=self.basis, light=self.light
         )
 
 
 def read_live(config: Configuration, control: Word, background: Word, camera: CameraWords, table: Table) -> LiveScene:
-    """What live words say."""
+    """Decode the live words."""
     registers = register_map(config.rectangles)
     controls = registers["control"].unpack(control.live)
     colours = registers["background"].unpack(background.live)
@@ -325,11 +325,11 @@ def read_live(config: Configuration, control: Word, background: Word, camera: Ca
 
 
 COMMIT_CLOCKS = 3
-"""From the clock in which a write that commits is taken to the first in which StartScreen shows it."""
+"""Clocks from the one in which a committing write is accepted to the first in which StartScreen shows it."""
 
 
 class SceneFollower:
-    """Which scene each StartScreen makes live, from nothing but the writes that the ray tracer took, and when."""
+    """Derives the scene that each StartScreen makes live, from nothing but the accepted writes and their clocks."""
 
     def __init__(self, config: Configuration):
         self._config = config
@@ -343,10 +343,10 @@ class SceneFollower:
         self._control_address = registers["control"].address
         self._commits: list[tuple[int, dict[int, int]]] = []
         self.live: LiveScene | None = None
-        """What the last StartScreen made live; None before the first."""
+        """Scene that the last StartScreen made live; None before the first."""
 
     def write(self, clock: int, address: int, data: int, lanes: int) -> None:
-        """A write was taken in this clock."""
+        """Record that a write was accepted in this clock."""
         mask = sum(0xFF << 8 * lane for lane in range(4) if lanes >> lane & 1)
         if word := self._words.get(address):
             word.shadow = (word.shadow & ~mask | data & mask) & word.implemented
@@ -354,7 +354,7 @@ class SceneFollower:
             self._commits.append((clock, {address: word.shadow for address, word in self._words.items()}))
 
     def start_screen(self, clock: int) -> None:
-        """StartScreen was high in this clock."""
+        """Record that StartScreen was high in this clock."""
         while self._commits and self._commits[0][0] + COMMIT_CLOCKS <= clock:
             _, snapshot = self._commits.pop(0)
             for address, shadow in snapshot.items():
@@ -365,9 +365,10 @@ class SceneFollower:
 
 
 class RegisterFile:
-    """The registers of a whole design, which see nothing but reset and the bus, and know StartScreen by counting.
+    """Model of a whole design's registers, from nothing but reset and the bus; it finds StartScreen by counting clocks.
 
-    Underrun is taken not to happen. What the renderer measures (`status.busy`, `cycles`) is not foreseen but bounded.
+    Underrun is assumed not to happen. The renderer's measurements (`status.busy`, `cycles`) are not predicted: `busy`
+    is ignored, `cycles` is checked against bounds.
     """
 
     def __init__(self, config: Configuration):
@@ -378,25 +379,25 @@ class RegisterFile:
         screen = config.screen_geometry
         lines = screen.vertical.blank - screen.doubling
         self.start_screen_clock = lines * screen.line_cycles
-        """From the end of reset to the first StartScreen."""
+        """Clocks from the end of reset to the first StartScreen."""
         self._frame_cycles = screen.frame_cycles
         self.clocks = 0
-        """Since the end of reset, modulo a frame."""
+        """Clocks since the end of reset, modulo a frame."""
         self.live: LiveScene | None = None
-        """What the last StartScreen since reset made live."""
+        """Scene that the last StartScreen since reset made live."""
         self._answered = ""
         self._least_cycles = (0, 0)
 
     @property
     def in_flight(self) -> int:
-        """Accepted reads whose answer is still to be seen on the bus."""
+        """Number of accepted reads whose answer is not on the bus yet."""
         return int(self.agent.reading) + self.agent.answer[0]
 
     def clock(self, reset: bool, request: Request | None) -> bool:
-        """An edge of the clock, with reset and the bus's inputs before it.
+        """Apply a clock edge, with reset and the bus's inputs before it.
 
         Returns:
-            Whether the request was taken.
+            True if the request was accepted.
         """
         agent, bus = self.agent, self.agent.bus
         start_screen = int(self.clocks == self.start_screen_clock)
@@ -441,10 +442,10 @@ class RegisterFile:
         return taken
 
     def check_answer(self, word: int) -> None:
-        """Hold what stands on the bus against the answer that is due there now.
+        """Compare the word on the bus with the answer that is due now.
 
         Raises:
-            AssertionError: it is another; says which register was read.
+            AssertionError: they differ; says which register was read.
         """
         expected, name = self.agent.answer[1], self._answered
         if name == "cycles":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Show scenes through the converted hardware, and hold every pixel against golden: `make sim`."""
+"""Show scenes on the converted hardware, and compare every pixel with the golden model: `make sim`."""
 
 from __future__ import annotations
 
@@ -56,12 +56,12 @@ from raycaster.sim.simulator import (
 from raycaster.waits import building
 
 GATES_OPTIONS: Mapping[str, Any] = {"screen": "tiny", "units": 16, "reflections": 2}
-"""Of a netlist, where they are not given: the fewest units with which one design shows all packaged scenes in time."""
+"""A netlist's default options: the fewest units with which one design shows all packaged scenes in time."""
 
 SHEET = "scenes.png"
 SHEET_COLUMNS = 5
 RESULT = "result.json"
-"""What a bench writes last, when it has a picture."""
+"""File that a bench writes last, when it has a picture."""
 
 POLL_SECONDS = 0.1
 LOG_COLUMNS = 120
@@ -69,7 +69,7 @@ LOG_COLUMNS = 120
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a run: results as in `result.json`, or why there are none to trust."""
+    """Outcome of a run: results as in `result.json`, and the failure if there was one."""
 
     run: Design
     result: dict[str, Any] | None
@@ -84,20 +84,20 @@ def plan_runs(
     scope: str | None = None,
     console: Console | None = None,
 ) -> list[Design]:
-    """Plan all before anything is built, so that a mistake costs no time.
+    """Plan all runs before anything is built, so that a mistake costs no time.
 
     Args:
-        paths: of scenes.
-        options: as they are given.
-        defaults: for the hardware where nothing is given.
-        scope: what of each scene is built in; see `raycaster.fit.fixing`.
-        console: where what that leaves out is shown.
+        paths: the scene files.
+        options: the options given by the user.
+        defaults: the hardware's options if the user gives none.
+        scope: the part of each scene to build in; see `raycaster.fit.fixing`.
+        console: where to show what that leaves out of the hardware.
 
     Raises:
-        UserError: as `design_of`, or two scenes would write into one directory.
+        UserError: see `design_of`; or two scenes would write into one directory.
     """
     if scope:
-        # Units and reflections are the scene's business then.
+        # The scene determines units and reflections then.
         defaults = {name: value for name, value in defaults.items() if name == "screen"}
     paths = list(paths)
     shared = {} if scope else _shared({path: load_scene(path) for path in paths})
@@ -113,10 +113,10 @@ def plan_runs(
 
 
 def _shared(scenes: Mapping[Path, Scene]) -> dict[Path, dict[str, Any]]:
-    """Hardware for the scenes that need more than usual, by their paths.
+    """Choose hardware for the scenes that need extra features, by path.
 
-    They are few of a kind. So those that the default engine can show share a design, and so do the others: otherwise
-    most of the time would go into building.
+    Such scenes that the default engine can show share one design, and the others share another: with a design per
+    scene, most of the time would go into building.
     """
     groups: dict[bool, dict[Path, Scene]] = defaultdict(dict)
     for path, scene in scenes.items():
@@ -132,10 +132,10 @@ def _shared(scenes: Mapping[Path, Scene]) -> dict[Path, dict[str, Any]]:
 
 
 def simulate(run: Design, model: Model, sim: Path, progress: Path) -> Outcome:
-    """Run one scene; its directory in `sim` appears when all is in it.
+    """Run one scene; its directory in `sim` appears when it is complete.
 
-    If the simulation ends without a picture, as after an interruption, the picture of the last run stays, and the log
-    is in a directory beside it.
+    If the simulation ends without a picture, as after an interruption, the last run's picture stays, and the log is in
+    a directory next to it.
 
     Args:
         run: the scene.
@@ -170,18 +170,18 @@ def simulate(run: Design, model: Model, sim: Path, progress: Path) -> Outcome:
 
 
 def output_directory(build: Path, options: Mapping[str, Any], *, gates: bool = False) -> Path:
-    """The directory of a run's pictures; those of another engine or screen are kept apart."""
+    """Return the directory for a run's pictures; each engine and screen has another one."""
     apart = (str(options[name]) for name in ("engine", "screen", "rows", "scale") if name in options)
     return build / ("gates" if gates else "-".join(["sim", *apart]))
 
 
 def configurations(runs: list[Design]) -> list[Configuration]:
-    """The designs of these runs, each once."""
+    """List the designs of these runs, each once."""
     return list({run.configuration.name: run.configuration for run in runs}.values())
 
 
 def synthesise_all(runs: list[Design], build: Path, family: str, console: Console) -> dict[str, Netlist]:
-    """One netlist for each configuration, by its name."""
+    """Synthesise a netlist for each configuration, and return them by the configuration's name."""
     netlists: dict[str, Netlist] = {}
     for configuration in configurations(runs):
         name = configuration.name
@@ -198,11 +198,11 @@ def synthesise_all(runs: list[Design], build: Path, family: str, console: Consol
 def build_models(
     runs: list[Design], simulator: str, waves: bool, build: Path, netlists: Mapping[str, Netlist], console: Console
 ) -> dict[str, Model]:
-    """One model for each configuration, by its name; of its netlist, where it has one."""
+    """Build a model for each configuration, of its netlist if it has one; return them by the configuration's name."""
     models: dict[str, Model] = {}
     for configuration in configurations(runs):
         netlist = netlists.get(configuration.name)
-        # A netlist keeps no names for the bench to look at.
+        # A netlist does not keep the names that the bench reads.
         given = {"verilog": netlist.files, "defines": {"NETLIST": 1}} if netlist else {}
         with console.waiting(f"building {configuration.name} with {simulator}", building(configuration.engine)):
             started = time.perf_counter()
@@ -214,7 +214,7 @@ def build_models(
 
 
 def run_all(runs: list[Design], models: dict[str, Model], sim: Path, jobs: int, console: Console) -> list[Outcome]:
-    """Run scenes in parallel, and show how far each is."""
+    """Run scenes in parallel, and show the progress of each."""
     name, lines = TextColumn("{task.description}", markup=False), TextColumn("{task.completed}/{task.total} lines")
     with (
         tempfile.TemporaryDirectory() as directory,
@@ -235,18 +235,18 @@ def run_all(runs: list[Design], models: dict[str, Model], sim: Path, jobs: int, 
                     if text:
                         bars.update(bar, completed=int(text))
         except BaseException:
-            pool.shutdown(cancel_futures=True)  # an interruption ends the running ones only
+            pool.shutdown(cancel_futures=True)  # an interruption ends only the running scenes
             raise
         return [future.result() for future in futures]
 
 
 def _table(title: str | None = None) -> Table:
-    # As narrow as a terminal of 80 columns wants it.
+    # Narrow enough for a terminal of 80 columns.
     return Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False, padding=0)
 
 
 def show_cells(netlists: Mapping[str, Netlist], console: Console) -> None:
-    """Print a table of the cells that netlists are made of, a line each."""
+    """Print a table of the netlists' cells, one line per netlist."""
     table = _table()
     table.add_column("netlist", no_wrap=True)
     used = list({cell: None for netlist in netlists.values() for cell, count in netlist.cells.items() if count})
@@ -258,7 +258,7 @@ def show_cells(netlists: Mapping[str, Netlist], console: Console) -> None:
 
 
 def show(outcomes: list[Outcome], console: Console, title: str | None = None) -> None:
-    """Print a table, a line a scene, then what went wrong and where to look."""
+    """Print a table with one line per scene, then the waveforms and the failures."""
     table = _table(title)
     table.add_column("scene", overflow="fold")
     table.add_column("engine", no_wrap=True)
@@ -289,7 +289,7 @@ def write_sheet(outcomes: list[Outcome], path: Path) -> None:
 
 
 def summary(outcomes: list[Outcome], outputs: Path) -> str:
-    """The last line: how many scenes, how many pixels are wrong, and where the pictures are."""
+    """Compose the last line: how many scenes, how many pixels are wrong, and where the pictures are."""
     results = [outcome.result for outcome in outcomes if outcome.result is not None]
     wrong, pixels = (sum(result[name] for result in results) for name in ("wrong_vs_golden", "pixels"))
     scenes = f"{len(results)} scene{'' if len(results) == 1 else 's'}"
@@ -301,8 +301,10 @@ def summary(outcomes: list[Outcome], outputs: Path) -> str:
 
 
 def show_traces(outcomes: list[Outcome], options: Mapping[str, Any], simulator: str, console: Console) -> None:
-    """Print what to ask next of each scene that has a wrong pixel; a scene that is built in has no trace, and two
-    pixels a clock neither."""
+    """Print the command that traces the first wrong pixel of each scene.
+
+    A trace needs a scene that is not built in, and a design with one pixel per clock.
+    """
     for outcome in outcomes:
         configuration = outcome.run.configuration
         if outcome.result is None or not outcome.result["wrong_vs_golden"]:
@@ -313,11 +315,11 @@ def show_traces(outcomes: list[Outcome], options: Mapping[str, Any], simulator: 
         asked = {"pixel": f"{column},{row}", **options}
         asked |= {"sim": simulator} if simulator != SIMULATORS[0] else {}
         command = command_line("trace", outcome.run.path, asked)
-        console.print(f"to see where its first wrong pixel goes wrong: {command}", soft_wrap=True)
+        console.print(f"to trace the first wrong pixel: {command}", soft_wrap=True)
 
 
 def _frames_per_second(configuration: Configuration, row_cycles: int) -> float:
-    """How often a picture could be computed; the beam engine computes each line of a doubled row."""
+    """Pictures that could be computed per second; the beam engine computes each line of a doubled row."""
     screen = configuration.screen_geometry
     lines = screen.rows * (1 if configuration.facts.line_buffered else screen.doubling)
     return screen.clock_hz / (lines * row_cycles)
@@ -342,22 +344,22 @@ def _cells(outcome: Outcome) -> list[str | Text]:
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Make the command's parser."""
     parser = CommandParser("sim", __doc__, "mirror_room --engine beam")
-    add_scene_argument(parser, "what to show (all that come with it)", many=True)
+    add_scene_argument(parser, "scenes to show (default: all packaged ones)", many=True)
     add_simulator_option(parser)
     parser.add_argument(
         "--gates",
         action="store_true",
-        help="show them through the netlist that Yosys makes of the design, of a chip's cells; for a small design "
-        f"({', '.join(f'{name} {value}' for name, value in GATES_OPTIONS.items())}) where nothing else is given",
+        help="simulate the netlist that Yosys makes of the design from a chip's cells; the default is a small design "
+        f"({', '.join(f'{name} {value}' for name, value in GATES_OPTIONS.items())})",
     )
     parser.add_argument(
-        "--cells", default="ecp5", metavar="FAMILY", help=f"whose, {', '.join(LIBRARIES)} (%(default)s)"
+        "--cells", default="ecp5", metavar="FAMILY", help=f"chip of the netlist: {', '.join(LIBRARIES)} (%(default)s)"
     )
-    parser.add_argument("--waves", action="store_true", help="write waveforms beside the pictures")
+    parser.add_argument("--waves", action="store_true", help="write waveforms next to the pictures")
     add_build_option(parser)
-    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="scenes at a time (default: 2)")
+    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="scenes to simulate at a time (default: 2)")
     add_fix_option(parser)
     add_configuration_options(parser)
     add_keep_option(parser)
@@ -365,7 +367,7 @@ def command_parser() -> CommandParser:
 
 
 def _planned(arguments: argparse.Namespace, console: Console) -> list[Design]:
-    """The runs that were asked for; a netlist is made of one small design, which has no more than it must."""
+    """Plan the requested runs; by default a netlist is made of one small design, and shows only plain scenes."""
     options, gates = given_options(arguments), arguments.gates
     paths = arguments.scene or (list(packaged_scenes(plain=True).values()) if gates else packaged_for(options))
     return plan_runs(paths, options, GATES_OPTIONS if gates else {}, arguments.fix, console)
@@ -378,7 +380,7 @@ def provenance(arguments: argparse.Namespace) -> Provenance:
 
 
 def _scenes(kept: Kept, without_culling: Kept) -> str:
-    """The seed engine's default design, scene by scene, without culling and with it."""
+    """Make the table of the seed engine's default design, scene by scene, without and with culling."""
     without = {row["scene"]: row for row in without_culling.figures["scenes"]}
     rows = []
     for row in kept.figures["scenes"]:
@@ -391,8 +393,8 @@ def _scenes(kept: Kept, without_culling: Kept) -> str:
             ]
         )  # fmt: skip
     headings = [
-        "scene", "reflections", "pixels", "unlike the model", "unlike exact arithmetic", "slowest row", "slowest group",
-        "frame, `CULLING=0`", "frame", "share",
+        "scene", "reflections", "pixels", "differ from the model", "differ from exact arithmetic", "slowest row",
+        "slowest group", "frame, `CULLING=0`", "frame", "share",
     ]  # fmt: skip
     return markdown(headings, rows)
 
@@ -414,15 +416,15 @@ CHECKS = (
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """The command; returns its exit code."""
+    """Run the command and return its exit code."""
     arguments = command_parser().parse_args(argv)
-    # make hands its variables down in the environment, where cocotb would take them for its own.
+    # make exports its variables, which cocotb would take for its own.
     for name in ("WAVES", "GUI"):
         os.environ.pop(name, None)
     gates = arguments.gates
     if arguments.cells not in LIBRARIES:
-        raise UserError(f"cells: {' or '.join(LIBRARIES)}, not {arguments.cells}")
-    # Into a file or a pipe rich would print as if on 80 columns, which the table does not fit.
+        raise UserError(f"cells: expected {' or '.join(LIBRARIES)}, got {arguments.cells}")
+    # In a file or a pipe rich would assume 80 columns, too few for the table.
     console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
     runs = _planned(arguments, console)
     outputs = output_directory(arguments.build, given_options(arguments), gates=gates)

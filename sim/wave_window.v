@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Writes a waveform of part of a frame only: everything below the bench, from some clocks after StartScreen on.
 //
-// Plusargs: window_file=path, window_from and window_to, both in clocks. Python arms it when the scene is committed, so
-// that the next StartScreen is the scene's own, and ends the simulation when it closes: Verilator cannot stop writing.
+// Plusargs: window_file=path, window_from and window_to, both in clocks. Python arms the window when the scene is
+// committed, so that the next StartScreen shows the scene. It ends the simulation when the window closes, as Verilator
+// cannot stop writing.
 
 `timescale 1ns / 1ns
 

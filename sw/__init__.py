@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""The C that drives the ray tracer, and what builds and plays it."""
+"""The ray tracer's C driver and game, and the tools that build and play them."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.sw.firmware`: the game for a PicoRV32, as an ELF file and as words for `$readmemh`."""
+"""`python -m raycaster.sw.firmware`: build the game for a PicoRV32, as an ELF file and as words for `$readmemh`."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from raycaster.tools import ToolError, run_program
 SOFTWARE = Path(__file__).parent
 FIRMWARE = SOFTWARE / "firmware"
 START, DRIVER = FIRMWARE / "start.S", SOFTWARE / "raycaster.c"
-"""What any program has."""
+"""Sources of every program."""
 
 SOURCES = (START, FIRMWARE / "main.c", SOFTWARE / "game" / "game.c", DRIVER)
 
 COMPILER = ("-m", "ziglang", "cc", "-target", "riscv32-freestanding-none", "-mcpu=generic_rv32+m")
-"""For the Python that runs: clang for RV32IM without compressed instructions, and no C library."""
+"""Python's arguments to run clang for RV32IM, without compressed instructions and without a C library."""
 
 STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror")
 TIMEOUT = 300
@@ -36,13 +36,13 @@ TIMEOUT = 300
 
 @dataclass(frozen=True)
 class Firmware:
-    """What was built."""
+    """The files of a built program."""
 
     elf: Path
-    """With what a debugger wants."""
+    """The program with debug information."""
 
     words: Path
-    """All of the RAM, one word of 32 bits a line, in hexadecimal."""
+    """The whole RAM, one 32-bit word per line, in hexadecimal."""
 
     sections: dict[str, int]
     """Bytes of each section that takes up RAM."""
@@ -52,12 +52,12 @@ def build_firmware(output: Path, sources: Sequence[Path] = SOURCES, headers: Seq
     """Compile and link the game, or another program for the same memory.
 
     Args:
-        output: the directory; replaced as a whole.
-        sources: the program's, with what starts it and the driver.
-        headers: directories of more headers.
+        output: the output directory, replaced as a whole.
+        sources: the program's sources, with the start-up code and the driver.
+        headers: directories with more headers.
 
     Raises:
-        UserError: the compiler is missing, or did not accept the sources.
+        UserError: the compiler is missing, or rejected the sources.
     """
     for module in ("ziglang", "elftools"):
         if find_spec(module) is None:
@@ -83,7 +83,7 @@ def _compile(*arguments: str | Path) -> None:
 
 
 def _read_elf(path: Path) -> tuple[bytes, dict[str, int]]:
-    """The whole RAM before the start, and the sizes of the sections in it."""
+    """Read the RAM's initial contents, and the sizes of the sections in it."""
     # Only this command needs it.
     from elftools.elf.constants import SH_FLAGS  # noqa: PLC0415
     from elftools.elf.elffile import ELFFile  # noqa: PLC0415
@@ -100,7 +100,7 @@ def _read_elf(path: Path) -> tuple[bytes, dict[str, int]]:
 
 
 def show(sections: dict[str, int], console: Console) -> None:
-    """Print what takes up the RAM."""
+    """Print the RAM usage."""
     table = Table("section", "bytes", "share", title=f"{MEMORY_BYTES:,} bytes of RAM")
     for column in table.columns[1:]:
         column.justify = "right"
@@ -111,16 +111,18 @@ def show(sections: dict[str, int], console: Console) -> None:
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """The command.
+    """Run the command.
 
     Args:
-        argv: its arguments, those of the process by default.
+        argv: its arguments (default: those of the process).
     """
     parser = argparse.ArgumentParser(prog="python -m raycaster.sw.firmware", description=__doc__)
-    parser.add_argument("--output", type=Path, default=Path("build/firmware"), help="(default: %(default)s)")
+    parser.add_argument(
+        "--output", type=Path, default=Path("build/firmware"), help="output directory (default: %(default)s)"
+    )
     arguments = parser.parse_args(argv)
     console = Console()
-    # The compiler runs in a directory of its own.
+    # The compiler runs in another directory.
     built = build_firmware(arguments.output.absolute())
     show(built.sections, console)
     print(printable(f"{arguments.output / built.elf.name} and {arguments.output / built.words.name}"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A recorded game: which buttons are held in each frame."""
+"""Read and write recorded games: the buttons held in each frame."""
 
 from __future__ import annotations
 
@@ -12,25 +12,25 @@ DEMO = Path(__file__).parent / "game" / "demo.txt"
 
 
 MOST_FRAMES = 1_000_000
-"""In a script: hours."""
+"""Most frames in a script, hours of play."""
 
 
 class PlayScriptError(UserError):
-    """A play script that is refused: the file, the line, and what was expected."""
+    """A play script that is rejected; the text names the file, the line, and what was expected."""
 
 
 def load(path: Path | str) -> tuple[int, ...]:
     """Read a play script.
 
-    Each line has the frame from which on buttons are held, and their names; the last one has `end` in their place, and
-    the number of frames. What follows a `#` is a comment. Frames count from 0 and rise; before the first line nothing
-    is held.
+    Each line has a frame number and the names of the buttons held from that frame on; the last line has the number of
+    frames and `end`. A `#` starts a comment. Frame numbers begin at 0 and rise; before the first line no button is
+    held.
 
     Args:
         path: the text file.
 
     Returns:
-        For each frame the buttons, as bits in the order of `BUTTON_NAMES`.
+        The buttons held in each frame, as bits in the order of `BUTTON_NAMES`.
 
     Raises:
         PlayScriptError: the file cannot be read, or a line is wrong; one line says where and what was expected.
@@ -56,7 +56,7 @@ def load(path: Path | str) -> tuple[int, ...]:
         first, *names = words
         # Length before value, as Python refuses to read thousands of digits.
         if not (first.isascii() and first.isdigit() and len(first) < 20 and int(first) <= MOST_FRAMES):
-            raise PlayScriptError(f"{place}: must begin with a frame's number up to {MOST_FRAMES}, not {first[:20]}")
+            raise PlayScriptError(f"{place}: expected a frame number up to {MOST_FRAMES}, got {first[:20]}")
         frame = int(first)
         if frame <= previous:
             raise PlayScriptError(f"{place}: frame {frame} must come after {previous}")
@@ -67,15 +67,15 @@ def load(path: Path | str) -> tuple[int, ...]:
             continue
         for name in names:
             if name not in BUTTON_NAMES:
-                raise PlayScriptError(f"{place}: the buttons are {', '.join(BUTTON_NAMES)}, not {name}")
+                raise PlayScriptError(f"{place}: expected a button ({', '.join(BUTTON_NAMES)}), got {name}")
         held = held_bits(names)
     if not ended:
-        raise PlayScriptError(f"{path}: must end with the number of frames and the word end")
+        raise PlayScriptError(f"{path}: expected a last line with the number of frames and the word end")
     return tuple(frames)
 
 
 def dump(frames: tuple[int, ...]) -> str:
-    """The text of a play script, without comments; `load` reads the same frames from it."""
+    """Return the text of a play script, without comments; `load` reads the same frames from it."""
     lines = []
     held = 0
     for frame, buttons in enumerate(frames):

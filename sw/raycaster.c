@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The ray tracer's driver. Every offset and field is that of raycaster_regs.h, which is made of the register map.
+// The ray tracer's driver. Offsets and fields come from raycaster_regs.h, which is generated from the register map.
 
 #include "raycaster.h"
 
@@ -12,10 +12,10 @@ typedef ray_caster__rectangle_t entry_t;
 #define READ(device, name) RAYCASTER_READ((device)->base, offsetof(ray_caster_t, name))
 #define WRITE(device, name, word) RAYCASTER_WRITE((device)->base, offsetof(ray_caster_t, name), word)
 
-// By index, as the hardware may have more entries than the header.
+// Computed, as the hardware may have more entries than the header.
 #define ENTRY(index, name) (offsetof(ray_caster_t, rectangle) + (index) * sizeof(entry_t) + offsetof(entry_t, name))
 
-// A field's value in a word, a word with a field's value, and the greatest value.
+// Get a field's value from a word, put a value into a field, and a field's greatest value.
 #define GET(word, field) (((word) & RAY_CASTER__##field##_bm) >> RAY_CASTER__##field##_bp)
 #define PUT(value, field) ((uint32_t)(value) << RAY_CASTER__##field##_bp)
 #define MOST(field) (RAY_CASTER__##field##_bm >> RAY_CASTER__##field##_bp)
@@ -28,7 +28,7 @@ typedef ray_caster__rectangle_t entry_t;
 #define MOST_MIRROR 4
 #define LEAST_CELL_LOG 3
 
-// Sines of whole degrees, 0 to 90, times 2^30: as exact as the nearest 256ths of their products of three need.
+// Sines of whole degrees, 0 to 90, times 2^30: exact enough to round products of three to the nearest 256th.
 #define SINE_BITS 30
 static const int32_t sines[91] = {
     0, 18739379, 37473049, 56195305, 74900443, 93582766, 112236583, 130856211,
@@ -54,10 +54,10 @@ static int32_t sine(int degrees) {
     return sines[degrees > 90 ? 180 - degrees : degrees];
 }
 
-// A sum of products of two sines, rounded to the nearest, halves up, and with `bits` fraction bits left.
+// Round a sum of products of two sines to `bits` fraction bits: to the nearest, halves up.
 static int32_t rounded(int64_t products, int bits) {
     const int lost = 2 * SINE_BITS - bits;
-    // What is shifted is not negative, for which C leaves it open.
+    // The offset makes the shifted value positive: C leaves shifts of negative values to the compiler.
     const uint64_t offset = (uint64_t)1 << 62;
     return (int32_t)((int64_t)((offset + (uint64_t)products + ((uint64_t)1 << (lost - 1))) >> lost) -
                      (int64_t)(offset >> lost));
@@ -105,7 +105,7 @@ static enum raycaster_error check_index(const struct raycaster *device, unsigned
     return index < device->rectangles ? RAYCASTER_OK : RAYCASTER_NO_SUCH_RECTANGLE;
 }
 
-// The register with some bits changed. Commit reads 1 for a while, and must not be written back.
+// Change some bits of the register. Commit reads 1 for a while, and must not be written back.
 static void change_control(const struct raycaster *device, uint32_t mask, uint32_t bits) {
     const uint32_t word = READ(device, control) & ~(mask | RAY_CASTER__CONTROL__COMMIT_bm);
     WRITE(device, control, word | bits);

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# The driver for the board support packages of Nios II (HAL), of the component in raycaster_hw.tcl. It has not been run
-# in Quartus so far.
+# Driver of the component in raycaster_hw.tcl, for Nios II board support packages (HAL). It has not been run in Quartus
+# so far.
 
 create_driver raycaster_driver
 
@@ -8,7 +8,7 @@ set_sw_property hw_class_name ray_caster_module
 set_sw_property version 0.1
 set_sw_property min_compatible_hw_version 0.1
 
-# A program probes by itself, with the base address that system.h names.
+# A program calls raycaster_probe itself, with the base address from system.h.
 set_sw_property auto_initialize false
 
 set_sw_property bsp_subdirectory drivers

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Benches that hold the hardware against the golden models, and the commands that run them."""
+"""Benches that compare the hardware with the golden models, and the commands that run them."""

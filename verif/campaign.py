@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A long run of numbered cases through a bench, some per simulation, which an interrupted command resumes."""
+"""A long run of numbered cases through a bench, several per simulation, that can be resumed after an interruption."""
 
 from __future__ import annotations
 
@@ -25,23 +25,23 @@ from raycaster.waits import building
 
 @dataclass(frozen=True)
 class Campaign:
-    """Cases, or some of them for one simulation.
+    """All cases of a campaign, or those of one of its simulations.
 
     Attributes:
-        bench: the module of its cocotb test, which takes the job's seeds for the cases' numbers and writes a line of
-            JSON for each to `results.jsonl` in the job's output.
+        bench: module of the cocotb test. It takes case numbers from the job's seeds and writes a line of JSON per case
+            to `results.jsonl` in the job's output directory.
         configuration: the design.
-        cases: their numbers.
-        output: of all of them: `results.jsonl` is all results, `<digest>/from<number>` what a simulation wrote. The
-            digest is of all that decides the results.
-        build: the directory that holds `model/`.
+        cases: numbers of the cases.
+        output: directory of the campaign: `results.jsonl` holds all results, `<digest>/from<number>` the output of one
+            simulation. The digest covers everything that decides the results.
+        build: directory that holds `model/`.
         simulator: one of `SIMULATORS`.
         flags: for Verilator.
-        probes: Verilog beside the design's.
-        stiff: the job's.
-        registers: the job's.
-        share: cases of a simulation; 0 chooses.
-        fresh: run simulations again that an earlier run of the command has completed.
+        probes: Verilog files in addition to the design.
+        stiff: passed on to the job.
+        registers: passed on to the job.
+        share: number of cases per simulation; 0 chooses one.
+        fresh: repeat simulations that an earlier run of the command has completed.
     """
 
     bench: str
@@ -60,14 +60,14 @@ class Campaign:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a campaign.
+    """Results of a campaign.
 
     Attributes:
         results: in the order of the cases.
-        failures: what each failed simulation said.
-        missing: how many cases have no result.
-        seconds: that the simulations of this run took together.
-        directories: what each simulation wrote.
+        failures: message of each failed simulation.
+        missing: number of cases without a result.
+        seconds: wall-clock time of the simulations of this run.
+        directories: output directory of each simulation.
     """
 
     results: list[dict]
@@ -77,7 +77,7 @@ class Outcome:
     directories: list[Path]
 
     def verdict(self, cases: str, console: Console) -> int:
-        """Print what failed, and how many cases, as they are called, have no result; the command's exit code."""
+        """Print failures and how many `cases`, a plural noun, have no result; return the command's exit code."""
         for failure in self.failures:
             console.print(failure, style="red", soft_wrap=True)
         if self.missing:
@@ -91,7 +91,7 @@ def run_campaign(
     """Run all cases.
 
     Args:
-        campaign: they.
+        campaign: the cases.
         console: for the progress bar.
         make_executor: see `raycaster.jobs.executors`.
 
@@ -100,11 +100,11 @@ def run_campaign(
         SimulationError: the model cannot be built.
     """
     with console.waiting(f"building {campaign.configuration.name}", building(campaign.configuration.engine)):
-        model = _build(campaign)  # which the workers find
+        model = _build(campaign)  # once, for all workers
     started = time.perf_counter()
     output = campaign.output / bench_digest(campaign.bench, model, campaign.stiff, dict(campaign.registers))
     cases = campaign.cases
-    share = campaign.share or min(max(len(cases) // 20, 5), 20)  # starting one takes as long as showing a scene
+    share = campaign.share or min(max(len(cases) // 20, 5), 20)  # a simulation takes a scene's time to start
     firsts = range(0, len(cases), share)
     shares = [replace(campaign, output=output, cases=cases[first : first + share]) for first in firsts]
     kept = Kept(_place, campaign.fresh, complete=lambda found: not found[1])
@@ -117,9 +117,9 @@ def run_campaign(
 
 
 def bench_digest(bench: str, model: Model, *parts: object) -> str:
-    """A digest of a bench on a model, of the golden model, of what they import, and of anything else.
+    """Digest a bench on a model, the golden model, everything that they import, and `parts`.
 
-    The model's directory has a digest of its own, of the Verilog and how it was built.
+    The name of the model's directory already has a digest of the Verilog and of the options of the build.
     """
     spec = importlib.util.find_spec(bench)
     assert spec and spec.origin, f"{bench} is no module"
@@ -144,9 +144,9 @@ def _build(campaign: Campaign) -> Model:
 
 
 def run_share(share: Campaign) -> tuple[list[dict], str]:
-    """The results of one simulation, and what it said if it failed."""
+    """Run one simulation and return its results, and its message if it failed."""
     directory = (share.output / f"from{share.cases[0]}").resolve()
-    emptied(directory)  # a worker that died may have begun it
+    emptied(directory)  # a worker that died may have left files
     job = Job(
         share.configuration, output=str(directory), seeds=tuple(share.cases), stiff=share.stiff,
         registers=share.registers,

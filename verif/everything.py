@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster verify all`: all tests, those included that `make test` leaves out because they take long.
+"""`raycaster verify all`: run all tests, including the slow ones that `make test` leaves out.
 
-The outcome of each test is kept as soon as it is there. A run with the same sources as the last one runs only the
-tests that have not passed yet, those that took longest first; a change in a file of tests repeats that file only.
+The outcome of each test is kept as soon as it ends. If the sources are the same as in the last run, only the tests
+that have not passed yet are run, the longest first; a change in a test file repeats that file only.
 """
 
 from __future__ import annotations
@@ -30,25 +30,25 @@ from raycaster.sim import ensure_tools
 
 TESTS = Path(__file__).resolve().with_name("tests")
 STATE = Path("build/verify-all.jsonl")
-"""Lines of JSON, below the root: digests of the sources that begin a run, the tests of it, and outcomes of tests."""
+"""File of JSON lines, below the root: for each run digests of the sources, names of the tests, and their outcomes."""
 
 PAGES = (".md", ".png", ".svg", ".webp")
-"""Endings of files that are only read by people; the tests of the pages are quick."""
+"""Suffixes of files that only people read; the tests of the pages are quick."""
 
 
 class State:
-    """Outcomes of tests, of this run and of those before it.
+    """Outcomes of tests in this run and in earlier ones.
 
     Args:
-        path: where they are kept.
+        path: file in which outcomes are kept.
 
     Attributes:
-        sources: the digest of all sources except files of tests.
-        files: digests of the files of tests, by name.
-        wanted: names of all tests that were asked for since these sources.
-        outcomes: by test: outcome, seconds and, of a skipped one, its reason.
-        seconds: by test, of its last run with any sources.
-        walls: the seconds that each run with these sources took.
+        sources: digest of all sources except test files.
+        files: digests of test files, by name.
+        wanted: names of all tests that were requested with these sources.
+        outcomes: by test: outcome, seconds and, if it was skipped, the reason.
+        seconds: by test: duration of its last run, with any sources.
+        walls: wall-clock seconds of each run with these sources.
     """
 
     def __init__(self, path: Path):
@@ -58,11 +58,11 @@ class State:
         for line in path.read_text().splitlines() if path.exists() else ():
             try:
                 self._take(json.loads(line))
-            except json.JSONDecodeError:  # the line that was being written when the machine stopped
+            except json.JSONDecodeError:  # a line that was cut off when the machine stopped
                 continue
 
     def add(self, entry: Mapping[str, Any]) -> None:
-        """Take an entry, and keep it."""
+        """Apply an entry, and append it to the file."""
         self._path.parent.mkdir(parents=True, exist_ok=True)
         with self._path.open("a") as file:
             file.write(json.dumps(entry) + "\n")
@@ -110,7 +110,7 @@ def _file(test: str) -> str:
 
 
 class Recorder:
-    """Pytest's hooks in the process that distributes the tests: keeps each outcome."""
+    """Pytest hooks that keep each outcome, in the process that distributes the tests."""
 
     def __init__(self, state: State):
         self._state, self._start = state, time.monotonic()
@@ -122,7 +122,7 @@ class Recorder:
             self._state.add({"wanted": list(ids)})
 
     def pytest_runtest_logreport(self, report: Any) -> None:
-        """Keep an outcome after the last phase of a test. A worker that crashes reports one phase only."""
+        """Keep an outcome after the last phase of a test. A worker that crashes reports only one phase."""
         phases = self._phases.setdefault(report.nodeid, [])
         phases.append(report)
         if report.when in ("setup", "call"):
@@ -153,8 +153,8 @@ def pytest_configure(config: Any) -> None:
 
 
 def pytest_collection_modifyitems(config: Any, items: list[Any]) -> None:
-    """Pytest's hook, in each worker: leave out what has passed, and begin with what takes longest, or is not known."""
-    # A file of its own, which does not change: a worker that replaces one that crashed must find the same tests.
+    """Pytest's hook, in each worker: leave out tests that have passed, and begin with unknown and long ones."""
+    # A separate file that does not change: a worker that replaces a crashed one must find the same tests.
     before = json.loads(_before(config.getoption("outcomes")).read_text())
     if gone := [item for item in items if item.nodeid in before["passed"]]:
         config.hook.pytest_deselected(items=gone)
@@ -167,7 +167,7 @@ def _before(outcomes: Path) -> Path:
 
 
 def tested_sources(root: Path) -> tuple[str, dict[str, str]]:
-    """Digest all files of the clone that git does not ignore, except pages and kept figures; files of tests by name."""
+    """Digest all files that git does not ignore, except pages and kept figures; digest each test file by name."""
     listed = subprocess.run(
         ["git", "-C", str(root), "ls-files", "-coz", "--exclude-standard"], capture_output=True, text=True, check=True
     )
@@ -184,7 +184,7 @@ def tested_sources(root: Path) -> tuple[str, dict[str, str]]:
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Build the parser of the command line."""
     parser = CommandParser("verify all", __doc__, "--jobs 4")
     parser.add_argument("--jobs", type=positive, default=2, metavar="N", help="tests at a time (default: %(default)s)")
     add_fresh_option(parser)
@@ -193,7 +193,7 @@ def command_parser() -> CommandParser:
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what decides whether a page may say that all tests passed: the default design of each engine."""
+    """Digest the default design of each engine, which decides if a page may say that all tests passed."""
     return Provenance([configure(engine=name) for name in ENGINES])
 
 
@@ -209,10 +209,10 @@ CHECKS = (Check("all tests, slow ones included", "each", ["verify-all"], _found)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """The command; returns pytest's exit code, or 130 if it was interrupted.
+    """Run the command; return pytest's exit code, or 130 after an interruption.
 
     Raises:
-        UserError: there are no tests, as this is not a clone.
+        UserError: this is not a clone, so there are no tests.
     """
     arguments = command_parser().parse_args(argv)
     if not TESTS.is_dir():
@@ -227,13 +227,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     if state.outcomes:
         console.print(f"resumed: {len(state.passed)} of {len(state.wanted)} tests have passed with the same sources")
     _before(path).write_text(json.dumps({"passed": sorted(state.passed), "seconds": state.seconds}))
-    # A test at a time for each worker, so that the longest begin first.
+    # Each worker gets one test at a time, so that the longest begin first.
     words = ["-q", "-n", str(arguments.jobs), "--dist", "load", "--maxschedchunk", "1", "--durations", "10"]
     plugin = ["-p", "raycaster.verif.everything", "--outcomes", str(path)]
     process = subprocess.Popen([sys.executable, "-m", "pytest", *words, *plugin, str(TESTS)], cwd=root)
     try:
         code = process.wait()
-    except KeyboardInterrupt:  # which pytest got too
+    except KeyboardInterrupt:  # pytest gets it too
         process.wait()
         code = 130
     state = State(path)
@@ -244,5 +244,5 @@ def main(argv: Sequence[str] | None = None) -> int:
         f"{figures['passed']} of {figures['tests']} tests passed, {failed} failed, {skipped} skipped, "
         f"{figures['not_run']} not run; {figures['wall_seconds']} s in {figures['runs']} runs",
     )
-    # Pytest's 5: no test is left.
+    # Pytest's exit code 5: no test is left.
     return 0 if code == 5 and state.wanted == state.passed else code

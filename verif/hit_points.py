@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where the rays of a frame hit, as the converted Verilog stored it: for errors that no pixel shows."""
+"""Read the hit points of a frame from the converted Verilog, to find errors that no pixel shows."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PROBE = Path(__file__).with_name("hit_probe.v")
 
 
 def build_probed_model(configuration: Configuration, build: Path = BUILD) -> Model:
-    """A model of the seed engine, in Verilator, that writes down its hit points; see `build_model`."""
+    """Build a model of the seed engine, in Verilator, that records its hit points; see `build_model`."""
     return build_model(
         configuration,
         "verilator",
@@ -27,20 +27,20 @@ def build_probed_model(configuration: Configuration, build: Path = BUILD) -> Mod
 
 
 def hit_points(model: Model, scene: Scene, reflections: int, directory: Path) -> tuple[np.ndarray, ...]:
-    """Simulate a frame, every pixel of which is checked, and read what the probes wrote.
+    """Simulate a frame, check every pixel, and read the hit points that the probes recorded.
 
     Args:
-        model: of `build_probed_model`.
+        model: from `build_probed_model`.
         scene: what to show.
-        reflections: at most the hardware's.
+        reflections: no more than the hardware has.
         directory: for the frame's pictures, results and logs.
 
     Returns:
-        For the primary ray and each reflection, int64 (rays, 3): where it hit, in units of 2^-F, rays in the order of
-        rows and columns; -1 for a miss.
+        For the primary ray and each reflection, int64 (rays, 3): the hit point in units of 2^-F, -1 for a miss; rays
+        in the order of rows and columns.
 
     Raises:
-        SimulationError: the frame is not golden's.
+        SimulationError: the frame differs from the golden model.
     """
     directory.mkdir(parents=True, exist_ok=True)
     file = directory / "scene.toml"
@@ -50,12 +50,12 @@ def hit_points(model: Model, scene: Scene, reflections: int, directory: Path) ->
     screen = model.configuration.screen_geometry
     points = np.full((reflections + 1, screen.rows, screen.columns, 3), -1, dtype=np.int64)
     for path in sorted(directory.glob("hits.*")):
-        # The rays of the next frame's first rows follow, and are the same.
+        # The file goes on with the first rows of the next frame, whose rays are the same.
         lines = np.array(path.read_text().split(), dtype=np.int64).reshape(-1, 6)
         row, column, depth = lines[:, :3].T
         points[depth, row, column] = lines[:, 3:]
         path.unlink()
     for depth in range(1, reflections + 1):
-        # A ray that missed is led on by the control, which serves all units, and comes to nothing.
+        # The control, shared by all units, also continues rays that missed; their results are ignored.
         points[depth][points[depth - 1] < 0] = -1
     return tuple(points.reshape(reflections + 1, -1, 3))

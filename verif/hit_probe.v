@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Looks into every ray unit and writes down where its rays hit: a line for each ray that hits something, "row column
-// depth x y z" in units of 2^-F, into the file hits.<unit> of the directory in which the simulation runs.
+// Records where the rays of every ray unit hit: a line "row column depth x y z" for each ray that hits something, in
+// units of 2^-F, in the file hits.<unit> in the directory in which the simulation runs.
 
 `timescale 1ns / 1ns
 
@@ -10,7 +10,7 @@ module hit_probe #(
 ) (
     input wire clk,
     input wire initial_ray,         // the ray comes from the camera
-    input wire add_colour,           // a ray ends: what it found stands now
+    input wire add_colour,           // a ray ends: its result is valid in this cycle
     input wire found,
     input wire [15:0] row,
     input wire [15:0] unit,
@@ -24,7 +24,7 @@ module hit_probe #(
     integer depth = 0;              // of the ray that ended last
     reg [8*16-1:0] name;
 
-    // Both decide within the edge, so nothing is lost between them.
+    // Blocking assignments: each statement sees the updates of the same clock edge.
     always @(posedge clk)
         if (add_colour) begin
             depth = initial_ray ? 0 : depth + 1;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A bench for one block: the same inputs, cycle by cycle, through MyHDL's simulator and the converted Verilog."""
+"""A bench for one block, which runs the same inputs in MyHDL's simulator and in the converted Verilog."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ from raycaster.rtl.common.records import Record
 Cycle = Mapping[str, int]
 
 EARLY_OUT_AT = 2
-"""Cycles from the start of a rectangle that no ray runs towards to its early out, which is its slot's last."""
+"""Cycles from the start of a rectangle that no ray runs towards to its early out, the last cycle of its slot."""
 
 RECORD_VARIABLE = "RAYCASTER_RECORD"
-"""Names a directory in which `Leaf.run_both` leaves a recording of each run, under its test's name."""
+"""Environment variable: the directory in which `Leaf.run_both` records each run, under the name of its test."""
 
 
 @dataclass(frozen=True)
@@ -44,20 +44,20 @@ class Member:
     port: str
     width: int
     low: int = 0
-    """Of the port's bits, the lowest that it has."""
+    """Lowest bit of the member within the port."""
 
 
 class Leaf:
-    """One block with given parameters and fresh signals at its ports; a record's fields stand for its port.
+    """A block with given parameters and new signals at its ports; a record's fields replace its port.
 
     Args:
         function: the block.
-        arguments: makes its arguments, anew for each elaboration: signals, interfaces, configuration.
+        arguments: creates the block's arguments for each elaboration: signals, interfaces, configuration.
         directory: scratch space for the Verilog.
     """
 
     with_myhdl = True
-    """Whether `run_both` simulates MyHDL, too. That is slow, so tests do it for one parameter set of a block."""
+    """True if `run_both` also simulates MyHDL. As that is slow, tests do it for one parameter set per block."""
 
     def __init__(self, function: Callable, arguments: Callable[[], dict[str, Any]], directory: Path):
         self._function, self._arguments, self._directory = function, arguments, directory
@@ -70,18 +70,18 @@ class Leaf:
                 raise UserError(fault) from None
             raise
         self.verilog: Sequence[Path] = [module.path for module in self.modules]
-        """What `run_verilog` simulates; another form of the same block, such as its netlist, may stand in for it."""
+        """Files that `run_verilog` simulates; another form of the same block, such as its netlist, may replace them."""
         ports = self.modules[-1].ports
         self.inputs = {port.name: port for port in ports if not port.output and port.name != "clk"}
         self.outputs = {port.name: port for port in ports if port.output}
         layouts = _layouts(arguments())
         self.given, self.seen = (_members(ports, layouts) for ports in (self.inputs, self.outputs))
-        """By name, what a stimulus gives and what a run returns."""
+        """Members that a stimulus sets, and that a run returns, by name."""
         self._clocked = any(port.name == "clk" for port in ports)
 
     @elaboration()
     def run_myhdl(self, stimulus: Sequence[Cycle]) -> list[dict[str, int]]:
-        """Outputs of each cycle in MyHDL, as two's complement bit patterns, just before the clock rises."""
+        """Simulate MyHDL; return each cycle's outputs just before the clock rises, as two's complement bit patterns."""
         arguments = self._arguments()
         signals = port_signals(arguments)
         recorded: list[dict[str, int]] = []
@@ -116,7 +116,7 @@ class Leaf:
         return recorded
 
     def run_verilog(self, stimulus: Sequence[Cycle]) -> list[dict[str, int | None]]:
-        """The same in the converted Verilog under Icarus; None where an output has an unknown bit."""
+        """Simulate the converted Verilog in Icarus; as `run_myhdl`, with None for an output that has an unknown bit."""
         words = self._input_words(stimulus)
         (self._directory / "stimulus.hex").write_text("".join(f"{word:x}\n" for word in words))
         width = sum(port.width for port in self.inputs.values())
@@ -138,15 +138,15 @@ class Leaf:
         return recorded
 
     def run_both(self, stimulus: Sequence[Cycle], settled: int = 0) -> Sequence[Mapping[str, int | None]]:
-        """Run both and insist that they agree; without `with_myhdl`, run Verilog and insist on known values.
+        """Run both and check that they agree; without `with_myhdl`, run Verilog and check that values are known.
 
         Args:
-            stimulus: values for the inputs, by cycle; an input that a cycle does not mention keeps its value, and
-                starts from 0.
+            stimulus: values for the inputs, by cycle; an input that a cycle does not mention keeps its value, which
+                is 0 at first.
             settled: the first cycle from which Verilog's registers, which start unknown, must have known values.
 
         Returns:
-            The outputs of each cycle. Before `settled` those of Verilog may be unknown, which is None.
+            The outputs of each cycle; unknown outputs of Verilog, possible before `settled`, are None.
 
         Raises:
             AssertionError: the first difference, or unknown output, with its cycle.
@@ -172,12 +172,12 @@ class Leaf:
     def record(
         self, directory: Path, stimulus: Sequence[Cycle], expected: Sequence[Mapping[str, int]], settled: int
     ) -> None:
-        """Write what was run, so that it can be replayed without MyHDL.
+        """Record a run, so that it can be replayed without MyHDL.
 
         Args:
-            directory: replaced; gets the Verilog files, `leaf.json`, which describes them, and `vectors.txt`: a line a
-                cycle, all inputs and all outputs as one vector each, the first port in the highest bits, in 32-bit
-                hexadecimal words, the lowest first.
+            directory: replaced; gets the Verilog files, `leaf.json`, which describes them, and `vectors.txt`: one
+                line per cycle, with a vector of all inputs and a vector of all outputs, the first port in the highest
+                bits, in 32-bit hexadecimal words, the lowest first.
             stimulus: as for `run_both`.
             expected: outputs of each cycle.
             settled: the first cycle from which outputs must be as expected.
@@ -185,7 +185,7 @@ class Leaf:
         emptied(directory)
         data = set()
         for module in self.modules:
-            # Words that a memory starts with lie where the test put them, and pytest removes them.
+            # Initial words of a memory are in a file of the test, which pytest removes.
             text = module.path.read_text()
             for path in re.findall(r'\$readmemh\("(.+?)"', text):
                 shutil.copy(path, directory)
@@ -217,10 +217,10 @@ class Leaf:
         return [_joined(self.inputs, words) for words in self._port_words(stimulus)]
 
     def _port_words(self, stimulus: Sequence[Cycle]) -> Iterator[dict[str, int]]:
-        """Every input port's value in each cycle.
+        """Yield the value of every input port in each cycle.
 
         Raises:
-            KeyError: a stimulus names what is no input of the block.
+            KeyError: a stimulus has a name that is not an input of the block.
         """
         held = dict.fromkeys(self.given, 0)
         for cycle in stimulus:
@@ -264,12 +264,12 @@ endmodule
 
 
 def recording_name(test: str) -> str:
-    """The directory of a test's recording: its name with its parameters, without what a path had better not have."""
+    """Return the name of a recording's directory: its test with parameters, without characters unsuited to paths."""
     return re.sub(r"[^\w.-]+", "-", test).strip("-")
 
 
 def _layouts(arguments: Mapping[str, Any]) -> dict[str, Record]:
-    """The records among a block's arguments by the name of their port."""
+    """Return the records among a block's arguments, by the name of their port."""
     found = {}
     for name, value in arguments.items():
         if isinstance(value, Record):
@@ -280,7 +280,7 @@ def _layouts(arguments: Mapping[str, Any]) -> dict[str, Record]:
 
 
 def _members(ports: Mapping[str, Port], records: Mapping[str, Record]) -> dict[str, Member]:
-    """Each port, or in place of a record's word its fields."""
+    """Return each port as a member, or for the word of a record its fields."""
     found = {}
     for name, port in ports.items():
         if name not in records:
@@ -294,7 +294,7 @@ def _members(ports: Mapping[str, Port], records: Mapping[str, Record]) -> dict[s
 
 
 def _words(members: Mapping[str, Member], values: Cycle) -> dict[str, int]:
-    """Each port's value, put together of its members'."""
+    """Assemble the value of each port from its members."""
     words = dict.fromkeys((one.port for one in members.values()), 0)
     for name, one in members.items():
         words[one.port] |= values[name] % (1 << one.width) << one.low
@@ -313,14 +313,14 @@ def _split(vector: int, width: int) -> str:
 
 
 def reset_signal() -> ResetSignal:
-    """The reset of every module that has one: synchronous and active high."""
+    """Return a reset as all modules use it: synchronous and active high."""
     return ResetSignal(0, active=1, isasync=False)
 
 
 def sorted_rect(rectangles: Rectangles, index: int, prefix: str, config: Configuration | None = None) -> dict[str, int]:
-    """What `rect_sorter` must make of a rectangle: values for the ports of a `Rect` that is called `prefix`.
+    """Return what `rect_sorter` must output for a rectangle, as values for the ports of a `Rect` named `prefix`.
 
-    With a configuration those of its looks too.
+    Values of the looks are included if there is a configuration that has them.
     """
     axis = int(rectangles.axes[index])
     u, v = OTHER_AXES[axis]
@@ -345,29 +345,29 @@ def sorted_rect(rectangles: Rectangles, index: int, prefix: str, config: Configu
 
 @dataclass
 class TraceCycle:
-    """A cycle of what an engine's control must do while it traces one group of rays."""
+    """Expected behaviour of an engine's control in one cycle of tracing a group of rays."""
 
     steps: dict[str, int]
     """Values for the ports of `steps`."""
 
     bounce: int
-    """0 in the primary ray's pass, 1 and 2 in its reflections'."""
+    """0 in the pass of the primary ray, 1 and 2 in those of its reflections."""
 
     current: int | None = None
-    """The rectangle that holds still for the dividers to start on, None where it is don't care."""
+    """Rectangle that is held for the dividers to start on; None for don't care."""
 
     offered: int | None = None
-    """The rectangle whose quotients were stored last; of the exact engine the one whose verdict is due."""
+    """Rectangle whose quotients were stored last; in the exact engine the one whose verdict is due."""
 
     towards: int | None = None
-    """Whether a ray runs towards the rectangle that was started on, None where it is don't care."""
+    """1 if a ray runs towards the rectangle that was started; None for don't care."""
 
     alive: int | None = None
-    """Whether a ray still hits anything, None where it is don't care."""
+    """1 if a ray still hits anything; None for don't care."""
 
 
 def step_names(config: Configuration) -> list[str]:
-    """The attributes of `Steps` that a line-buffered engine's control drives."""
+    """List the attributes of `Steps` that the control of a line-buffered engine drives."""
     return [
         name
         for name in vars(Steps())
@@ -377,12 +377,12 @@ def step_names(config: Configuration) -> list[str]:
 
 
 def slot_length(config: Configuration) -> int:
-    """Cycles from one rectangle to the next: one, or those of a quotient's 9 bits and its fraction's."""
+    """Return the cycles from one rectangle to the next: one, or those for the 9 integer bits and the fraction bits."""
     return -(-(9 + config.fraction_bits) // config.divider_bits) if config.facts.divides else 1
 
 
 def ends_early(config: Configuration) -> bool:
-    """Whether a rectangle that no ray runs towards has a slot that is worth ending."""
+    """True if a rectangle that no ray runs towards has a slot long enough to be ended early."""
     return bool(config.culling) and slot_length(config) > EARLY_OUT_AT + 1
 
 
@@ -395,15 +395,15 @@ def trace_cycles(
     behind: Collection[tuple[int, int]] = (),
     lost: int | None = None,
 ) -> list[TraceCycle]:
-    """The cycles from the one that generates a group's rays to the last before `done`, from the timing that the
-    blocks' contracts state.
+    """List the cycles from the one that generates a group's rays to the last before `done`, timed as in the blocks'
+    contracts.
 
     Args:
-        config: for its engine, its divider and its culling.
+        config: gives the engine, the divider and culling.
         usable: indices of the rectangles that are enabled and have a plane, ascending.
-        reflections: of this scene.
-        may_hit: indices of those that a primary ray may hit; all where it is None.
-        behind: (bounce, index) of those that no ray runs towards.
+        reflections: number of reflections of the scene.
+        may_hit: indices of the rectangles that a primary ray may hit; None for all.
+        behind: (bounce, index) of the rectangles that no ray runs towards.
         lost: the bounce after which no ray is alive.
     """
     division = slot_length(config)
@@ -421,7 +421,7 @@ def trace_cycles(
         early = [ends_early(config) and (bounce, index) in behind for index in visited]
         starts = list(accumulate((EARLY_OUT_AT + 1 if ended else division for ended in early), initial=0))
         offered = [start + offered_after for start, ended in zip(starts, early, strict=False) if not ended]
-        # Where there is nothing to trace, a pass only looks for it and adds the background; a lost ray adds at once.
+        # A pass without rectangles only searches for one and adds the background; a lost ray adds it at once.
         traced = lost is None or bounce <= lost
         patterns = PATTERN_LATENCY if config.patterns and exact else 0
         length = 2 + max([starts[-1], *(end + patterns for end in offered)]) if traced else 1
@@ -449,7 +449,7 @@ def trace_cycles(
                 strobe(start + 4 + division, "write_z_buf")
                 for cycle in cycles[start + 3 + division :]:
                     cycle.offered = index
-    # What the last one finished holds still until another one has.
+    # A finished rectangle is held until the next one has finished.
     for before, cycle in pairwise(cycles):
         if not exact and cycle.offered is None:
             cycle.offered = before.offered

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Random scenes for soaking the whole design, in styles that each strain something else."""
+"""Random scenes for soak tests of the whole design, in styles that stress different parts."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ STYLES = ("room", "boxes", "slits", "degenerate", "extreme", "corners")
 
 
 def style_of(seed: int) -> str:
-    """The style of a seed's scene; each has its turn."""
+    """Return the style of a seed's scene; the styles take turns."""
     return STYLES[seed % len(STYLES)]
 
 
 def random_scene(seed: int, rectangles: int, reflections: int, looks: Collection[str] = ()) -> Scene:
-    """The scene of a seed; its title says the seed and the style.
+    """Generate the scene of a seed; its title has the seed and the style.
 
     Args:
-        seed: equal seeds make equal scenes.
-        rectangles: at most so many, 1 or more.
-        reflections: at most so many.
-        looks: the options of `LOOKS` that it may need; the rest of it is the same without them.
+        seed: the same seed always gives the same scene.
+        rectangles: maximum number of rectangles, 1 or more.
+        reflections: maximum number of reflections.
+        looks: options of `LOOKS` that the scene may need; the rest of it does not depend on them.
     """
     rng = np.random.default_rng(seed)
     style = style_of(seed)
@@ -62,13 +62,13 @@ def random_scene(seed: int, rectangles: int, reflections: int, looks: Collection
 
 
 def _angles(rng: np.random.Generator) -> dict[str, float]:
-    """Any, or steps of 15 degrees, whole right angles among them."""
+    """Return random angles, or multiples of 15 degrees, which include right angles."""
     some = rng.uniform(-180, 180, 3) if rng.random() < 0.5 else 15.0 * rng.integers(-12, 13, 3)
     return dict(zip(("yaw", "pitch", "roll"), np.where(rng.random(3) < 0.2, 0, some).tolist(), strict=True))
 
 
 def _look(table: Rectangles, index: int, looks: Collection[str]) -> dict[str, object]:
-    """What of a rectangle's look a scene file says."""
+    """Return the entries of a scene file for a rectangle's look."""
     look: dict[str, object] = {}
     if "materials" in looks:
         look["mirror"] = int(table.mirrors[index]) / 4
@@ -79,12 +79,12 @@ def _look(table: Rectangles, index: int, looks: Collection[str]) -> dict[str, ob
 
 
 def _corners(rng: np.random.Generator, style: str, count: int) -> tuple[np.ndarray, np.ndarray | None]:
-    """int64 (rectangles, 2, 3), each with a plane, and the camera, int64 (3,), where it matters."""
+    """Return corners, int64 (rectangles, 2, 3), each pair with a plane, and the camera, int64 (3,), if it matters."""
     camera = None
     if style == "corners":
         corners, camera = random_grid(rng, max(count, len(ROOM)))
     elif style == "degenerate":
-        # A room of its own takes six rectangles, and one to see in it.
+        # A closed room takes six rectangles, and one more to see in it.
         table = random_rectangles(rng, count, closed=None if count > len(ROOM) else False)
         corners = table.corners[table.visible]
     elif style == "extreme":
@@ -111,7 +111,7 @@ def _flatten(rng: np.random.Generator, corners: np.ndarray) -> np.ndarray:
 
 
 def _box(rng: np.random.Generator) -> np.ndarray:
-    """The six sides of a box; int64 (6, 2, 3)."""
+    """Return the six sides of a random box; int64 (6, 2, 3)."""
     low, high = np.sort(rng.integers(WORLD_SIZE, size=(2, 3)), axis=0)
     sides = np.broadcast_to([low, high], (6, 2, 3)).copy()
     for axis in range(3):

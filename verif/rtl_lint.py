@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.verif.rtl_lint`: what MyHDL converts wrongly, or not at all, in the sources of the hardware.
+"""`python -m raycaster.verif.rtl_lint`: find hardware sources that MyHDL converts wrongly, or not at all.
 
-MyHDL computes with integers of any size, Verilog with the width of the widest operand. So a carry that one keeps the
-other loses where a result is compared, shifted, sliced or added to again; no tool warns. Here each process computes
-one operator at a time, into a signal whose width is declared. What stands for a number at conversion (literals,
-constants, loop variables, and whatever is computed of these alone) is free.
+MyHDL computes with integers of any size, Verilog with the width of the widest operand. So where a result is compared,
+shifted, sliced or added to again, MyHDL keeps a carry that Verilog loses; no tool warns. In this project each process
+computes one operator at a time, into a signal of declared width. Expressions that are numbers at conversion (literals,
+constants, loop variables, and anything computed from these alone) are exempt.
 
-Rules, for functions that always, always_comb, always_seq or instance decorates, or is called with:
-  arithmetic  the result of an operator on signals is used in any way but assigned; (a + b) % (1 << n) may be assigned
-  call        something is called that Verilog does not have
-  slice       bits are taken of an expression that is no signal
+Rules, for functions that are decorated with always, always_comb, always_seq or instance, or passed to them:
+  arithmetic  the result of an operator on signals is not simply assigned; (a + b) % (1 << n) may be assigned
+  call        the called function does not exist in Verilog
+  slice       bits are taken from an expression that is not a signal
   return      converts to disable, which synthesis refuses
   docstring   breaks the conversion on newer Pythons
-  process     what becomes a process is no function of the same file, so that this lint does not see it
+  process     a process is not a function of the same file, so that this lint does not see it
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ ARITHMETIC = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.FloorDiv, ast.Mod, ast.Po
 
 @dataclass(frozen=True, order=True)
 class Finding:
-    """A place that breaks a rule, and what to do about it."""
+    """A place that breaks a rule, and how to fix it."""
 
     path: Path
     line: int
@@ -49,7 +49,7 @@ class Finding:
 
 
 def check(path: Path) -> list[Finding]:
-    """All findings in a source file, by line.
+    """Return all findings in a source file, by line.
 
     Raises:
         UserError: the file cannot be read or is not Python.
@@ -69,18 +69,18 @@ def check(path: Path) -> list[Finding]:
 
 
 Known = dict[str, bool]
-"""Names, and whether they are constant when the design is converted; the others are signals."""
+"""Names: True for constants when the design is converted, False for signals."""
 
 
 def processes(tree: ast.Module) -> list[ast.FunctionDef]:
-    """The functions that become processes: those with a decorator of MyHDL, or given to one in a call."""
+    """Return the functions that become processes, decorated by MyHDL or passed to one of its decorators."""
     given = {node.id for node in _given_to_makers(tree) if isinstance(node, ast.Name)}
     functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
     return [one for one in functions if one.name in given or any(_name(d) in DECORATORS for d in one.decorator_list)]
 
 
 def _given_to_makers(tree: ast.Module) -> Iterator[ast.expr]:
-    """Arguments that become processes: always_comb(this), instance(this), always(...)(this), always_seq(...)(this)."""
+    """Yield what becomes a process: always_comb(this), instance(this), always(...)(this), always_seq(...)(this)."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Call):
             maker = node.func.func if isinstance(node.func, ast.Call) else node.func
@@ -92,7 +92,7 @@ def _given_to_makers(tree: ast.Module) -> Iterator[ast.expr]:
 def _visit(
     made: Sequence[ast.FunctionDef], body: Sequence[ast.stmt], known: Known, path: Path, findings: set[Finding]
 ) -> None:
-    """Find the processes; names become known on the way down to them."""
+    """Check the processes; names become known on the way down to them."""
     known = dict(known)
     for statement in body:
         if isinstance(statement, ast.FunctionDef):
@@ -107,12 +107,12 @@ def _visit(
 
 
 def _module_constants(tree: ast.Module) -> Known:
-    """By the convention of names: what is written in capitals does not change."""
+    """Return all names in capitals, which are constants by convention."""
     return {node.id: True for node in ast.walk(tree) if isinstance(node, ast.Name) and node.id.isupper()}
 
 
 def _parameters(function: ast.FunctionDef) -> Known:
-    """A block's arguments; those with a type or a default are no ports."""
+    """Return a block's arguments; those with a type or a default are constants, not ports."""
     arguments = [*function.args.posonlyargs, *function.args.args]
     defaults = len(function.args.defaults)
     parameters = {argument.arg: argument.annotation is not None for argument in arguments}
@@ -121,7 +121,7 @@ def _parameters(function: ast.FunctionDef) -> Known:
 
 
 def _learn(statement: ast.stmt, known: Known) -> None:
-    """Add the names that a statement gives values."""
+    """Add the names that a statement assigns."""
     if not isinstance(statement, ast.Assign):
         return
     for target in statement.targets:
@@ -136,7 +136,7 @@ def _learn(statement: ast.stmt, known: Known) -> None:
 
 
 def _constant(node: ast.AST, known: Known) -> bool:
-    """Whether an expression is a number, or something else that is no signal, when the design is converted."""
+    """True if an expression is a number, or anything else than a signal, when the design is converted."""
     match node:
         case ast.Name():
             return known.get(node.id, False)
@@ -154,7 +154,7 @@ def _constant(node: ast.AST, known: Known) -> bool:
 
 
 def _constant_call(node: ast.Call, known: Known) -> bool:
-    """A function of constants is constant, but for what makes signals: classes, some functions, and slicing calls."""
+    """True for a function of constants, unless it makes signals: classes, some functions, and slicing calls."""
     name = _name(node.func)
     if name == "len":
         return True
@@ -168,7 +168,7 @@ def _constant_call(node: ast.Call, known: Known) -> bool:
 
 
 def _name(node: ast.expr) -> str:
-    """The last part of a name, of what is called where it is a call."""
+    """Return the last part of a name, or of the name that is called."""
     match node:
         case ast.Call():
             return _name(node.func)
@@ -180,7 +180,7 @@ def _name(node: ast.expr) -> str:
 
 
 class _Process:
-    """One function that becomes a process."""
+    """Checker of a function that becomes a process."""
 
     def __init__(self, known: Known, path: Path):
         self._known, self._path = dict(known), path
@@ -213,7 +213,7 @@ class _Process:
                     yield from self._statement(child)
 
     def _assigned(self, node: ast.expr) -> Iterator[Finding]:
-        """The whole right side: one operator may stand here, and the wrap of its result to the target's width."""
+        """Check a whole right side, which may have one operator and a wrap of its result to the target's width."""
         if isinstance(node, ast.BinOp) and self._wraps(node):
             node = node.left
         if isinstance(node, ast.BinOp) and self._operates(node):
@@ -225,7 +225,7 @@ class _Process:
             yield from self._expression(node)
 
     def _expression(self, node: ast.AST) -> Iterator[Finding]:
-        """Any other place: no operator on signals."""
+        """Check any other place, which must have no operator on signals."""
         if isinstance(node, ast.expr) and _constant(node, self._known):
             return
         if isinstance(node, (ast.Lambda, ast.ListComp, ast.GeneratorExp)):
@@ -233,12 +233,12 @@ class _Process:
             return
         if isinstance(node, ast.expr) and self._operates(node):
             yield self._finding(
-                node, "arithmetic", "assign it to a signal of declared width by itself, and use that one"
+                node, "arithmetic", "assign only this operation to a signal of declared width, and use that signal"
             )
         if isinstance(node, ast.Call):
             yield from self._call(node)
         if isinstance(node, ast.Subscript) and not isinstance(node.value, (ast.Name, ast.Attribute, ast.Subscript)):
-            yield self._finding(node, "slice", "assign the expression to a signal, and take bits of that one")
+            yield self._finding(node, "slice", "assign the expression to a signal, and take bits of that signal")
         for child in ast.iter_child_nodes(node):
             yield from self._expression(child)
 
@@ -261,7 +261,7 @@ class _Process:
         return False
 
     def _wraps(self, node: ast.expr) -> bool:
-        """`(...) % (1 << n)`: the literal makes Verilog compute in 32 bits, and the result is right in as many."""
+        """True for `(...) % (1 << n)`: the literal makes Verilog compute in 32 bits, and these are right."""
         match node:
             case ast.BinOp(op=ast.Mod(), right=ast.BinOp(left=ast.Constant(value=1), op=ast.LShift(), right=width)):
                 return _constant(width, self._known)
@@ -275,14 +275,14 @@ class _Process:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """The command; returns its exit code."""
+    """Run the command and return its exit code."""
     parser = argparse.ArgumentParser(
         prog="python -m raycaster.verif.rtl_lint",
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
-        "paths", nargs="*", type=Path, metavar="PATH", help="files and directories (default: the hardware's)"
+        "paths", nargs="*", type=Path, metavar="PATH", help="files and directories (default: all of the hardware)"
     )
     arguments = parser.parse_args(argv)
     files: list[Path] = []

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""A page in which the simulated hardware runs in a browser."""
+"""Web page that simulates the hardware in the browser."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A page in the system's Chromium, without a window, for tests and measurements of what runs in browsers."""
+"""A page in the system's Chromium, without a window, for tests and measurements in a browser."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 FLAGS = (
     "--headless",
-    "--no-sandbox",  # a container's root may not make one
+    "--no-sandbox",  # root in a container may not create a sandbox
     "--disable-gpu",
     "--disable-quic",
     "--no-first-run",
@@ -27,14 +27,14 @@ FLAGS = (
 
 @contextmanager
 def browser_page() -> Iterator[Page]:
-    """An empty page; the browser ends with the context.
+    """Yield an empty page; the browser closes with the context.
 
     Raises:
-        UserError: Chromium or Playwright is missing; says what to install.
-        AssertionError: at the end, with what the page's scripts did not catch.
+        UserError: Chromium or Playwright is missing; the message says what to install.
+        AssertionError: the page's scripts left errors uncaught; raised at the end.
     """
     try:
-        from playwright.sync_api import sync_playwright  # noqa: PLC0415 - wanted only where there is a browser
+        from playwright.sync_api import sync_playwright  # noqa: PLC0415 - needed only with a browser
     except ImportError:
         raise UserError(not_installed("Playwright", "test")) from None
     chromium = find("chromium")

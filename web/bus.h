@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How the driver reaches the registers: over the simulated bus.
+// Register access of the driver: over the simulated bus.
 
 #ifndef BUS_H
 #define BUS_H

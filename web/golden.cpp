@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What the scene in the registers must look like, drawn from the image contract with integers alone: no part of the
-// hardware or of its Verilog is in it. The page runs it beside the design, and compares.
+// Golden model in C++: draws the scene in the registers from the image contract, with integers only, and shares
+// nothing with the hardware or its Verilog. The page runs it alongside the design and compares the pictures.
 //
-// The caller puts the live words into golden_words(), each at its register's word address, and calls golden_draw;
-// golden_picture() then has red, green and blue of each pixel. golden_compare counts the differences from what the
-// caller put into golden_shown(), in the same layout. golden_ray explains one pixel of the last drawing in
-// golden_bounces(): a struct Bounce, eight numbers of 64 bits, for the camera's ray and for each reflection.
+// The caller writes the live words to golden_words(), each at its register's word address, and calls golden_draw;
+// golden_picture() then holds red, green and blue of each pixel. golden_compare counts the differences from the picture
+// in golden_shown(), which the caller writes in the same layout. golden_ray explains one pixel of the last drawing in
+// golden_bounces(): a struct Bounce, eight 64-bit numbers, for the camera's ray and for each reflection.
 
 #include <stddef.h>
 #include <stdint.h>
@@ -35,37 +35,38 @@ constexpr int OTHER_AXES[3][2] = {{1, 2}, {0, 2}, {0, 1}}; // u and v of a recta
 
 typedef int64_t Vector[3];
 
-// Lengths are in units of 2^-F, where F is 0 but for the seed engine; bounds are inclusive.
+// Lengths are in units of 2^-F; F is 0 except for the seed engine. Bounds are inclusive.
 struct Rectangle {
     Vector low, high;
     int index, axis;
     int colour, colour_2; // red above green above blue
-    int quarters;         // how much of it is a mirror, 0 to 4
-    int kind, cell_bits;  // enum raycaster_pattern; log2 of its cells' width
+    int quarters;         // share that reflects, in quarters, 0 to 4
+    int kind, cell_bits;  // enum raycaster_pattern; log2 of the cell width
 };
 
-// What a ray meets. The point is given over the denominator, in world units, and so is the numerator: of the exact
-// engines it is the ray's parameter t since the camera, of the seed engine the way along x since the last mirror.
+// Nearest hit of a ray. The point, in world units, and the distance are fractions with the same denominator. For the
+// exact engines the distance is the ray's parameter t from the camera on, for the seed engine the length along x since
+// the last mirror.
 struct Bounce {
-    int64_t winner; // index of what is hit, -1 for none; then only the colour, the background's, means something
+    int64_t winner; // index of the rectangle hit; -1 for none, then only the colour (background) is valid
     int64_t numerator, denominator;
     Vector point;
     int64_t colour; // red above green above blue
     int64_t quarters;
 };
 
-// It starts at the camera mirrored in all mirrors so far (exact), or where the last mirror was hit (seed).
+// Starts at the camera, mirrored in all mirrors so far (exact), or at the hit point on the last mirror (seed).
 struct Ray {
     Vector start, slope;
     int64_t mirror_n, mirror_e; // exact: t of the last mirror
-    int met;                    // exact: axes, a bit each, on which a plane through the mirror's very point is not hit
+    int met;                    // exact: bit per axis, 1 if a plane through the last hit point cannot be hit
 };
 
 struct Scene {
     bool run, seed, nearest;
     int fraction_bits, reflections, background;
     Vector camera;
-    Vector corner, right, up; // slope of the ray of row 0 and column 0, and what a column and a row change it by
+    Vector corner, right, up; // slope in row 0 and column 0, its step per column, and its step per row
     int visible;
     Rectangle rectangles[MOST_RECTANGLES];
 };
@@ -77,11 +78,11 @@ Bounce path[MOST_BOUNCES];
 
 int64_t magnitude(int64_t value) { return value < 0 ? -value : value; }
 
-// No division and no rounding: bounds and parameters t = n / e are compared by cross-multiplication, and a reflected
-// ray is the straight one from the mirrored eye, on which t runs on.
+// No division and no rounding: bounds and parameters t = n / e are compared by cross-multiplication. A reflected ray is
+// the straight ray from the mirrored eye, and t continues along it.
 const Rectangle *meet_exactly(const Ray &ray, Bounce &bounce) {
     const Rectangle *winner = nullptr;
-    int64_t best_n = 1, best_e = 0; // 1 / 0 lies beyond every t
+    int64_t best_n = 1, best_e = 0; // 1 / 0 is beyond every t
     for (const Rectangle *r = scene.rectangles; r != scene.rectangles + scene.visible; r++) {
         const int axis = r->axis, u = OTHER_AXES[axis][0], v = OTHER_AXES[axis][1];
         const int64_t slope = ray.slope[axis], way = r->low[axis] - ray.start[axis];
@@ -89,7 +90,7 @@ const Rectangle *meet_exactly(const Ray &ray, Bounce &bounce) {
         // On a tie the lower index wins.
         if (e == 0 || n * best_e >= best_n * e) continue;
         const int64_t beyond = n * ray.mirror_e - ray.mirror_n * e;
-        // A ray that meets two planes in one point reflects off both, or closed rooms have holes.
+        // A ray that hits two planes in one point reflects off both; otherwise closed rooms would have holes.
         if (beyond < 0 || (beyond == 0 && ray.met >> axis & 1)) continue;
         const int64_t way_u = ray.slope[u] * n, way_v = ray.slope[v] * n;
         if (way_u < (r->low[u] - ray.start[u]) * e || way_u > (r->high[u] - ray.start[u]) * e) continue;
@@ -101,7 +102,7 @@ const Rectangle *meet_exactly(const Ray &ray, Bounce &bounce) {
     return winner;
 }
 
-// The ways to the point are rounded quotients of magnitudes; one too large for the divider leads out of the world.
+// Distances to the point are rounded quotients of magnitudes. One too large for the divider leads out of the world.
 const Rectangle *meet_rounded(const Ray &ray, Bounce &bounce) {
     const Rectangle *winner = nullptr;
     bounce.denominator = 1 << scene.fraction_bits;
@@ -150,7 +151,7 @@ void reflect(Ray &ray, const Rectangle &hit, const Bounce &bounce) {
     ray.mirror_n = bounce.numerator, ray.mirror_e = bounce.denominator;
 }
 
-// Fill the path of a pixel's ray, and tell how many bounces it has: none while the design does not run.
+// Fill the path of a pixel's ray, and return its number of bounces: 0 while the design does not run.
 int follow(int column, int row) {
     if (!scene.run) return 0;
     Ray ray;
@@ -171,8 +172,8 @@ int follow(int column, int row) {
     }
 }
 
-// A channel of the path's pixel. What is seen in a mirror weighs as many quarters as it mirrors, the mirror's own
-// colour the others; the last hit shows its own alone. Nothing is rounded before the end.
+// Return one channel of the path's pixel. A mirror's reflection counts as many quarters as the mirror reflects, and its
+// own colour the remaining ones; the last hit shows only its own colour. The sum is rounded only at the end.
 int blended(int count, int shift) {
     if (count == 0) return 0;
     int total = path[count - 1].colour >> shift & 0xff;
@@ -184,7 +185,7 @@ int blended(int count, int shift) {
     return total >> 2 * (count - 1);
 }
 
-// Keep the entries of the table that are enabled and have a plane: on the first axis on which both corners agree.
+// Keep the table entries that are enabled and have a plane, on the first axis on which both corners agree.
 void read_rectangles(int count, bool materials, bool patterns) {
     scene.visible = 0;
     for (int index = 0; index < count; index++) {
@@ -216,7 +217,7 @@ void read_camera(bool turn, int columns, int horizon_row, int scale) {
     const int sign = 1 << (RAY_CASTER__FORWARD__X_bw - 1);
     for (int axis = 0; axis < 3; axis++) {
         int basis[3];
-        // Only ratios of a slope's components count, so vectors that are not turned need no scale.
+        // Only ratios of a slope's components matter, so the basis of a camera that does not turn needs no scale.
         for (int i = 0; i < 3; i++) basis[i] = turn ? (vectors[i][axis] ^ sign) - sign : i == axis;
         scene.camera[axis] = camera[axis] << scene.fraction_bits;
         scene.right[axis] = basis[1];
@@ -232,12 +233,13 @@ EXPORT(golden_picture) uint8_t *golden_picture() { return picture; }
 EXPORT(golden_shown) uint8_t *golden_shown() { return shown; }
 EXPORT(golden_bounces) int64_t *golden_bounces() { return &path[0].winner; }
 
-// Draw what a design must show.
+// Draw the picture that a design must show.
 //
-// engine: enum raycaster_engine. rectangles: entries of its table. materials, patterns, turn: whether it has them; what
-// it lacks it ignores. columns, rows, horizon_row: of its picture, at its scale. fraction_bits, nearest: the seed
-// engine's. colour_bits: of a channel at its pins; the lower ones are 0. Reflections are those of the control register,
-// which must be no more than the design computes.
+// engine: enum raycaster_engine. rectangles: number of table entries. materials, patterns, turn: 1 if the design has
+// the feature; registers of other features are ignored. columns, rows, horizon_row: size of the picture in rays, and
+// the horizon's row. scale: scale of the picture. fraction_bits, nearest: arithmetic of the seed engine. colour_bits:
+// bits per channel at the pins; the lower bits are 0. The number of reflections comes from the control register, and
+// must not exceed the number that the design computes.
 EXPORT(golden_draw)
 void golden_draw(
     int engine, int rectangles, int materials, int patterns, int turn, int columns, int rows, int horizon_row,
@@ -260,7 +262,7 @@ void golden_draw(
         }
 }
 
-// How many of the first pixels of golden_shown() are not golden_picture()'s.
+// Return how many of the first pixels of golden_shown() and golden_picture() differ.
 EXPORT(golden_compare) int golden_compare(int pixels) {
     int wrong = 0;
     for (int i = 0; i < 3 * pixels; i += 3)
@@ -268,6 +270,5 @@ EXPORT(golden_compare) int golden_compare(int pixels) {
     return wrong;
 }
 
-// Fill golden_bounces() for a pixel of the last drawing, and tell how many there are: none while the design does not
-// run.
+// Fill golden_bounces() for a pixel of the last drawing, and return their number: 0 while the design does not run.
 EXPORT(golden_ray) int golden_ray(int column, int row) { return follow(column, row); }

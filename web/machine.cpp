@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A design in a page: the driver's functions and frames, called from JavaScript.
+// A design in a page: driver functions and frames, called from JavaScript.
 //
-// Colours are 0xRRGGBB. What the driver refuses is told by enum raycaster_error, 0 for what it does not.
+// Colours are 0xRRGGBB. Functions that return int return an enum raycaster_error from the driver, 0 for success.
 
 #include <cstdlib>
 #include <cstring>
@@ -16,12 +16,12 @@
 
 namespace {
 
-// From the clock in which a write that commits is taken to the first in which StartScreen shows it.
+// Clocks from the one that accepts a committing write to the first StartScreen that shows it.
 constexpr uint32_t COMMIT_CLOCKS = 3;
 constexpr uint32_t CONTROL = offsetof(ray_caster_t, control) / sizeof(uint32_t);
 constexpr int MOST_WORDS = 1024;
 
-// The register words that the renderer is told, from nothing but the writes that the ray tracer took.
+// Derives the renderer's register words only from the writes that the ray tracer accepted.
 class Follower {
 public:
     uint32_t live[MOST_WORDS] = {};
@@ -31,7 +31,7 @@ public:
             std::memcpy(live, committed, sizeof live);
             waiting = false;
         }
-        // What is written in StartScreen's clock is too late for it.
+        // A write in the clock of StartScreen is too late for it.
         if (!event.written) return;
         uint32_t mask = 0;
         for (int lane = 0; lane < 4; lane++)
@@ -53,14 +53,14 @@ private:
 };
 
 #ifdef TAPS
-// Records the tapped signals of a unit in each clock in which it computes a pixel.
+// Records the tapped signals of a unit in every clock in which it computes a chosen pixel.
 class WatchedMachine : public Machine {
 public:
-    std::vector<uint32_t> samples; // TAPS numbers a clock
+    std::vector<uint32_t> samples; // TAPS numbers per clock
 
     explicit WatchedMachine(VerilatedContext *context) : Machine{context} { top.tapped_unit = NONE; }
 
-    // Records a unit's next computation of its pixel in this row and group.
+    // Record the unit's next computation of its pixel in this row and group.
     void watch(uint32_t unit, uint32_t row, uint32_t group) {
         top.tapped_unit = unit;
         watched_row = row;
@@ -81,7 +81,7 @@ protected:
 
 private:
     static constexpr uint8_t NONE = 0xff;
-    enum { ROW, GROUP, SCREEN_TO_RAY, DONE }; // the first of taps.py
+    enum { ROW, GROUP, SCREEN_TO_RAY, DONE }; // FIRST of taps.py
 
     uint32_t watched_row, watched_group;
     bool records = false;
@@ -111,10 +111,10 @@ raycaster_point point(int x, int y, int z) {
 uint32_t bus_read(uint32_t offset) { return machine->read(offset / sizeof(uint32_t)); }
 void bus_write(uint32_t offset, uint32_t word) { machine->write(offset / sizeof(uint32_t), word); }
 
-// Where the page puts the processor's program, before it starts the machine.
+// Allocate the buffer to which the page writes the processor's program before it starts the machine.
 EXPORT(program) char *program(uint32_t size) { return program_text = static_cast<char *>(std::calloc(size + 1, 1)); }
 
-// Come up, and see what is on the bus.
+// Start the machine and identify the ray tracer on its bus.
 EXPORT(start) int start() {
     static VerilatedContext context;
     machine = new std::remove_pointer_t<decltype(machine)>{&context};
@@ -152,7 +152,7 @@ EXPORT(set_run) void set_run(int run) { raycaster_set_run(&device, run); }
 
 EXPORT(commit) int commit() { return raycaster_commit(&device); }
 
-// Run to the next vertical sync while these buttons are held; returns the clocks that it took.
+// Run to the next vertical sync with these buttons held; return the number of clocks.
 EXPORT(frame) uint32_t frame(uint32_t buttons) {
     static uint64_t before;
     machine->busy = 0;
@@ -165,25 +165,25 @@ EXPORT(frame) uint32_t frame(uint32_t buttons) {
     return taken;
 }
 
-// Clocks of the last frame in which a picture was computed.
+// Number of clocks in which the last frame was being computed.
 EXPORT(busy) uint32_t busy() { return machine->busy; }
 
-// What the last frame showed: red, green, blue and 255 of each pixel.
+// Picture of the last frame: red, green, blue and 255 of each pixel.
 EXPORT(pixels) const uint32_t *pixels() { return machine->pixels.data(); }
 EXPORT(pixel_count) uint32_t pixel_count() { return machine->pixels.size(); }
 
-// The register words that it is a picture of.
+// Register words that this picture shows.
 EXPORT(live_words) const uint32_t *live_words() { return follower.live; }
 
-// What the serial port said.
+// Output of the serial port during the last frame.
 EXPORT(text) const char *text() { return machine->text.data(); }
 EXPORT(text_size) uint32_t text_size() { return machine->text.size(); }
 
 #ifdef TAPS
-// Record what a ray unit does for its pixel of a row and group, when it computes it next.
+// Record a ray unit's next computation of its pixel in a row and group.
 EXPORT(watch) void watch(uint32_t unit, uint32_t row, uint32_t group) { machine->watch(unit, row, group); }
 
-// TAPS numbers for each of its clocks.
+// Recorded taps: TAPS numbers per clock.
 EXPORT(samples) const uint32_t *samples() { return machine->samples.data(); }
 EXPORT(sample_count) uint32_t sample_count() { return machine->samples.size(); }
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Verilator's library for a system without threads.
+// Verilator's library, for a system without threads.
 
 #include <verilated.cpp>
 #include <verilated_threads.h>

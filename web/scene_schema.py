@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What `page/scene.js` knows of scene files: all of it is derived from the model that checks them in the shell."""
+"""Rules of scene files for `page/scene.js`, all derived from the model that checks them on the command line."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from raycaster.scene import COMPLAINTS, PATTERNS, Scene
 
 
 def scene_schema() -> dict[str, object]:
-    """A JSON object for `RayCasterScene.read`.
+    """Build the JSON object for `RayCasterScene.read`.
 
     `model` is the JSON schema of `Scene`: tables, their keys in order, defaults, and the `checks` of each value in the
-    order in which they are applied. `complaints` are the other words, with names in braces. `longest_shown` is in
-    characters, and `most_rectangles` the most of any hardware. `patterns` are in the order of the registers' codes.
+    order in which they are applied. `complaints` are the other messages, with placeholders in braces. `longest_shown`
+    is in characters, and `most_rectangles` is the limit of any hardware. `patterns` are in the order of the register
+    codes.
     """
     return {
         "model": Scene.model_json_schema(),

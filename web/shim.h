@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What Verilator's library asks of a system, and WebAssembly's has not: threads, of which there is one, so that locks
-// need not lock, and files, of which there is one, the processor's program, whatever it is called.
+// Stand-ins for system features that Verilator's library needs and WebAssembly lacks. Threads: there is only one, so
+// locks do nothing. Files: there is only one, the processor's program, and any name opens it.
 
 #ifndef SHIM_H
 #define SHIM_H
@@ -62,7 +62,7 @@ inline thread::id get_id() { return {}; }
 inline void yield() {}
 } // namespace this_thread
 
-// Opens nothing.
+// A stream that opens no file.
 template <> class basic_ifstream<char> : public istream {
 public:
     template <class Name> explicit basic_ifstream(Name &&) : istream(nullptr) {}

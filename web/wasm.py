@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""C and C++ as WebAssembly for a page, each program compiled once."""
+"""Compile C and C++ to WebAssembly for a page, each program once."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from raycaster.web.taps import tapped_signals, taps_verilog
 HERE = Path(__file__).parent
 GOLDEN = HERE / "golden.cpp"
 MACHINE = tuple(HERE / name for name in ("machine.cpp", "runtime.cpp", "shim.h", "bus.h"))
-"""What a machine is compiled from beside its design; the first two are sources."""
+"""Files that a machine is compiled from, besides its design; the first two are sources."""
 
 SOFTWARE = Path(raycaster.sw.__path__[0])
 DRIVER = SOFTWARE / "raycaster.c"
@@ -30,16 +30,16 @@ DRIVER_HEADERS = tuple(SOFTWARE / name for name in ("raycaster.h", "raycaster_re
 GOLDEN_FLAGS = ("-std=c++17", f"-I{SOFTWARE}", "-Wall", "-Wextra", "-Werror")
 
 WASI = "wasm32-wasi"
-"""With C's and C++'s libraries, which know no exceptions; what of the system they call is imported from the page."""
+"""Target with the C and C++ libraries, without exceptions; their system calls are imported from the page."""
 
 FREESTANDING = "wasm32-freestanding"
-"""Without a library: imports nothing."""
+"""Target without libraries, which imports nothing."""
 
 _LINKED = {
     WASI: ("-mexec-model=reactor",),
     FREESTANDING: ("-nostdlib", "-Wl,--no-entry"),
 }
-"""By target, how it becomes a program without main, which is called function by function."""
+"""Flags by target, for a program without `main` whose functions are called one by one."""
 
 
 def compile_wasm(
@@ -52,22 +52,22 @@ def compile_wasm(
     exports: Sequence[str] = (),
     build: Path = BUILD,
 ) -> Path:
-    """Compile and link a program, or find it compiled.
+    """Compile and link a program, unless it is already compiled.
 
     Args:
-        name: of the program, for people.
-        sources: of C or C++.
+        name: name of the program, for messages and file names.
+        sources: C or C++ sources.
         target: `WASI` or `FREESTANDING`.
         headers: files that the sources include and that may change.
-        flags: for the compiler and the linker, after this function's own.
-        exports: functions that the page calls, beside those that the sources mark themselves.
-        build: the directory that holds `model/`.
+        flags: further flags for the compiler and the linker.
+        exports: functions that the page calls, in addition to those that the sources export themselves.
+        build: directory that holds `model/`.
 
     Returns:
         The file, `<name>.wasm`.
 
     Raises:
-        UserError: the compiler is missing, or did not accept the sources.
+        UserError: the compiler is missing, or rejected the sources.
     """
     arguments = (*flags, *(f"-Wl,--export={function}" for function in exports))
     files = [source.resolve() for source in sources]
@@ -78,10 +78,10 @@ def compile_wasm(
 
 
 def _compiler() -> str:
-    """The compiler's version.
+    """Return the compiler's version.
 
     Raises:
-        UserError: it is missing.
+        UserError: the compiler is missing.
     """
     if find_spec("ziglang") is None:
         raise UserError(not_installed("ziglang", "play"))
@@ -101,16 +101,16 @@ def _link(directory: Path, name: str, target: str, arguments: Sequence[str | Pat
 
 
 def machine_wasm(config: Configuration, *, processor: bool = False, taps: bool = False, build: Path = BUILD) -> Path:
-    """A design that a page runs clock by clock, `machine.cpp`.
+    """Compile a design, with `machine.cpp`, that a page runs clock by clock.
 
     Args:
-        config: the design.
+        config: configuration of the design.
         processor: as for `build_machine`.
-        taps: whether the page can watch a ray unit; see `taps.py`. Not with a processor.
+        taps: True if the page can watch a ray unit, see `taps.py`; not supported with a processor.
         build: as for `build_machine`.
 
     Raises:
-        UserError: Verilator or the compiler is missing, or what they need; or the compiler failed.
+        UserError: Verilator, the compiler or one of their dependencies is missing, or the compiler failed.
         SimulationError: Verilator failed.
     """
     tool, design = find_tool("verilator"), machine_sources(config, build, processor=processor)
@@ -132,7 +132,7 @@ def machine_wasm(config: Configuration, *, processor: bool = False, taps: bool =
             includes = (directory, HERE, MACHINE_HEADER.parent, SOFTWARE, library, library / "vltstd")
             _link(
                 directory, TOP, WASI,
-                # The driver is C, which narrows.
+                # The driver is C, which allows narrowing conversions.
                 ("-std=gnu++20", "-Wno-c++11-narrowing", "-fno-exceptions", *VERILATED_DEFINITIONS, *design.defines,
                  *defines, *(f"-I{path}" for path in includes), "-include", HERE / "bus.h", "-include", HERE / "shim.h",
                  "-include", SIGNS, "-x", "c++", "all.cc", DRIVER),
@@ -141,5 +141,5 @@ def machine_wasm(config: Configuration, *, processor: bool = False, taps: bool =
 
 
 def golden_wasm(build: Path = BUILD) -> Path:
-    """The golden check, `golden.cpp`, which imports nothing; arguments and errors are those of `compile_wasm`."""
+    """Compile the golden check, `golden.cpp`, which imports nothing; raises the errors of `compile_wasm`."""
     return compile_wasm("golden", [GOLDEN], FREESTANDING, headers=DRIVER_HEADERS, flags=GOLDEN_FLAGS, build=build)

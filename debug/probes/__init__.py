@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Where each engine has, in a waveform, what golden knows of a ray."""
+"""Map each engine's signals in a waveform to the golden model's values of a ray."""

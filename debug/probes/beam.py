@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Where the beam engine's modules hand on what golden knows of a ray: a pipeline through which each column passes.
+"""Probes for the beam engine: a pipeline through which each column passes.
 
-A straight ray folds back into the room at each mirror, so what is compared is seen from the camera. When a column is
-where follows from the latencies that the hardware's own blocks declare.
+A straight ray folds back into the room at each mirror, so values are compared as seen from the camera. The latencies
+that the hardware's own blocks declare say when a column reaches each stage.
 """
 
 from __future__ import annotations
@@ -62,13 +62,13 @@ BLEND = f"{LANE}.colour_blend_i"
 VIDEO = f"{RENDERER}.video_generator_i"
 
 EXTENT = ((1, 2), (0, 2), (1, 0))
-"""p and q by the plane's axis: p is y unless that is the axis, so that along a row only it changes."""
+"""Axes p and q by the plane's axis: p is y unless y is the plane's axis, so that only p changes along a row."""
 
 BOUNDS = ("low_p", "high_p", "low_q", "high_q")
 
 
 def products(ray: Ray, rectangle: int, slopes: Sequence[int]) -> tuple[int, int, list[int]]:
-    """For a slope from the camera: the way along p, the way along q, and the ways to the four bounds."""
+    """Compute the products of a camera ray's slope: the ways along p and q, and the ways to the four bounds."""
     axis, eye = int(ray.rectangles.axes[rectangle]), ray.scene.camera.position
     p, q = EXTENT[axis]
     away = distance(ray, rectangle)
@@ -78,13 +78,13 @@ def products(ray: Ray, rectangle: int, slopes: Sequence[int]) -> tuple[int, int,
 
 
 def distance(ray: Ray, rectangle: int) -> int:
-    """From the camera to a rectangle's plane."""
+    """Distance from the camera to a rectangle's plane."""
     axis, position, _ = ray.plane(Place(0, rectangle))
     return position - ray.scene.camera.position[axis]
 
 
 def setup_facet(ray: Ray, place: Place) -> Sequence[Value]:
-    """What all columns of the row have in common."""
+    """Facet fields, shared by all columns of the row."""
     _, way_q, _ = products(ray, place.index, ray.of_ray(0, "slopes"))
     axis = int(ray.rectangles.axes[place.index])
     return 1, axis, distance(ray, place.index), way_q, ray.colour(place.index)
@@ -98,51 +98,51 @@ def setup_start(ray: Ray, place: Place) -> Sequence[Value]:
 
 
 def way_p(ray: Ray, place: Place) -> Sequence[Value]:
-    """The way along p of the column; that of the ray from the camera is read a cycle later, with the bounds."""
+    """The column's way along p; for the camera ray it is read a cycle later, with the bounds."""
     return products(ray, place.index, ray.of_ray(0, "slopes"))[:1]
 
 
 def walked(ray: Ray, place: Place) -> Sequence[Value]:
-    """The ways to the bounds of the column."""
+    """The column's ways to the bounds."""
     return products(ray, place.index, ray.of_ray(0, "slopes"))[2]
 
 
 def mirrored(ray: Ray, place: Place) -> Sequence[Value] | None:
-    """What mirrors add to a point, by axis: the way from the camera to its image."""
+    """Offset that mirrors add to a point, by axis: from the camera to its image."""
     eyes = zip(ray.of_ray(place.bounce, "origins"), ray.scene.camera.position, strict=True)
     return [image - coordinate for image, coordinate in eyes] if place.bounce else None
 
 
 def turned(ray: Ray, place: Place) -> Sequence[Value] | None:
-    """Along which axes the folded ray runs the other way; nothing where it does not run at all."""
+    """Flags of the axes along which the folded ray runs backwards; None for an axis along which it does not move."""
     slopes = zip(ray.of_ray(place.bounce, "slopes"), ray.of_ray(0, "slopes"), strict=True)
     return [int(slope != before) if before else None for slope, before in slopes] if place.bounce else None
 
 
 def last_mirror(ray: Ray, place: Place) -> Sequence[Value] | None:
-    """The axis of the mirror that the ray left last, and how far away its plane is."""
+    """Axis and plane distance of the mirror that the ray left last."""
     return met(ray, Place(place.bounce - 1)) if place.bounce else None
 
 
 def met(ray: Ray, place: Place) -> Sequence[Value] | None:
-    """The axis and the distance of what a ray has hit."""
+    """Axis and plane distance of the rectangle that a ray hit."""
     winner = ray.winner(place.bounce)
     return (int(ray.rectangles.axes[winner]), distance(ray, winner)) if winner >= 0 else None
 
 
 def numbered(module: str, number: int, count: int) -> str:
-    """The name of an instance that is one of several."""
+    """Name one of `count` instances of a module."""
     return f"{module}_i" if count == 1 else f"{module}_{number}_i"
 
 
 def seen_channels(ray: Ray, place: Place) -> Sequence[Value] | None:
-    """What a ray sees, channel by channel; None where golden has no expectation."""
+    """Channels of the colour that a ray sees; None if the golden model has no expectation."""
     seen = seen_colour(ray, place)
     return channels_of(*seen, CHANNEL_BITS) if seen else None
 
 
 def nearest_of(size: int) -> Read:
-    """Reads which rectangle is the nearest of so many neighbours, or of all for 0, and whether there is one."""
+    """Make a reader of whether any of `size` neighbours (all for 0) is hit, and of the nearest one."""
 
     def read(ray: Ray, place: Place) -> Sequence[Value]:
         first = place.rectangle or 0
@@ -153,18 +153,18 @@ def nearest_of(size: int) -> Read:
 
 
 def of_mirrors(passes: int, read: Read) -> Read:
-    """Reads the same, but of no last pass, which leaves no mirror."""
+    """Restrict a reader to passes that leave a mirror: all but the last."""
     return lambda ray, place: read(ray, place) if place.bounce < passes - 1 else None
 
 
 class BeamProbes(Description):
-    """The description; see `raycaster.debug.probes.ray.Description`."""
+    """The beam engine's description; see `raycaster.debug.probes.ray.Description`."""
 
     video = VIDEO
-    tells: Mapping[str, tuple[str, str]] = {
-        "column": ("the column is announced", f"{RENDERER}.scan_next_column"),
-        "load": ("the rectangle is set up", f"{SETUP}.load"),
-        "shown": ("the pixel is shown", f"{VIDEO}.y"),
+    event_names: Mapping[str, tuple[str, str]] = {
+        "column": ("column announced", f"{RENDERER}.scan_next_column"),
+        "load": ("rectangle set up", f"{SETUP}.load"),
+        "shown": ("pixel shown", f"{VIDEO}.y"),
     }
 
     def __init__(self, config: Configuration, unit: int):
@@ -173,7 +173,7 @@ class BeamProbes(Description):
         self.starts = [beam.ENTRY_LATENCY + number * beam.pass_latency(config) for number in range(passes)]
 
     def named(self, signal: str, place: Place, ray: Ray) -> str:
-        """A signal of the instances that a place has."""
+        """Return the full name of a signal in the instances of a place."""
         config, bounce, rectangle = self.config, place.bounce, place.rectangle or 0
         passes, count = len(self.starts), config.rectangles
         one = f"{LANE}.{numbered('beam_pass', bounce, passes)}"
@@ -193,7 +193,7 @@ class BeamProbes(Description):
         )
 
     def _contest(self, turn: int, rectangle: int) -> str:
-        """In a pass, the winner of the contest in which a rectangle, or who has won against it, stands in a round."""
+        """Name, within a pass, the winner of the contest that covers a rectangle in a round."""
         left, number = -(-self.config.rectangles >> turn), rectangle >> turn + 1
         one = (
             f"{numbered('nearest_of_two', number, left // 2)}.nearest" if 2 * number + 1 < left else "delay_line_i.late"
@@ -201,7 +201,7 @@ class BeamProbes(Description):
         return ".".join([*["nearest_of_i"] * (turn + 1), one])
 
     def _joined(self) -> Probe:
-        """The first mirror's channels with all that is behind it: mixed in registers, or a mean before them."""
+        """Probe the first mirror's channels, with their reflections: mixed in registers, or a mean before them."""
         mirrors, mixes = self.config.reflections, beam.mixes(self.config)
         block, port, low = ("colour_mix", "mixed", 2 * mirrors) if mixes else ("colour_mean", "mean", mirrors)
         low += CHANNEL_BITS - self.config.colour_bits
@@ -213,20 +213,20 @@ class BeamProbes(Description):
         )  # fmt: skip
 
     def controls(self) -> Iterable[str]:
-        """The signals that `events` reads."""
+        """List the signals that `events` reads."""
         names = ("start_line", "scan_next_column", "row_slope", "in_picture", "rects_fetch", "rects_index")
         video = (f"{VIDEO}.{name}" for name in ("x", "y", "pixel_end"))
         return [*(f"{RENDERER}.{name}" for name in names), f"{SETUP}.load", *video]
 
     def expected(self, ray: Ray) -> Iterable[tuple[str, Place]]:
-        """The events that golden knows must happen."""
+        """List the events that the golden model says must happen."""
         yield "column", Place(0)
         for rectangle in range(len(ray.rectangles)):
             yield "load", Place(0, rectangle)
         yield "shown", Place(ray.reflections)
 
     def events(self, samples: Samples, ray: Ray) -> list[Event]:
-        """What the hardware did for the pixel, in the first line that shows it."""
+        """List what the hardware did for the pixel, in the first line that shows it."""
         values, screen = samples.values, ray.config.screen_geometry
         bits = factor_bits(self.config)
         line, passed, column = 0, 0, None
@@ -265,7 +265,7 @@ class BeamProbes(Description):
 
     @property
     def probes(self) -> list[Probe]:
-        """In the order in which values depend on each other."""
+        """Probes in the order in which values depend on each other."""
         config = self.config
         facet, walk = facet_of(config), Walk(walk_bits(config))
         sight = (Sight if config.patterns else Winner)(index_bits(config))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The description of whatever engine a design has."""
+"""Select the description of a design's engine."""
 
 from raycaster.configuration import Configuration
 from raycaster.debug.probes.beam import BeamProbes
@@ -9,9 +9,9 @@ from raycaster.debug.probes.seed import SeedProbes
 from raycaster.engines import BEAM, EXACT, SEED
 
 DESCRIPTIONS = {SEED.name: SeedProbes, EXACT.name: ExactProbes, BEAM.name: BeamProbes}
-"""By engine."""
+"""Descriptions by engine."""
 
 
 def description_of(config: Configuration, unit: int) -> Description:
-    """What the engine has of the pixels of a unit."""
+    """Return the engine's description for the pixels of a ray unit."""
     return DESCRIPTIONS[config.engine](config, unit)

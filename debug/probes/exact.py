@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where the exact engine's modules hand on what golden knows of a ray: a mirrored eye, and t as a fraction."""
+"""Probes for the exact engine: a mirrored eye, and t as a fraction."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SURFACE = ("axis", "position", "colour")
 
 
 def mirror(ray: Ray, place: Place) -> Sequence[Value]:
-    """Whether the ray has left a mirror, and that one's axis and distance from the eye."""
+    """1 if the ray has left a mirror, else 0; then the mirror's axis and distance from the eye."""
     if place.bounce == 0:
         return 0, None, None
     left = Place(place.bounce - 1, ray.winner(place.bounce - 1))
@@ -26,7 +26,7 @@ def mirror(ray: Ray, place: Place) -> Sequence[Value]:
 
 
 def hit(ray: Ray, place: Place) -> Sequence[Value]:
-    """Whether the rectangle is hit."""
+    """1 if the rectangle is hit, else 0."""
     return (int(ray.of_rectangle(place, "hits")),)
 
 
@@ -38,7 +38,7 @@ def fraction(ray: Ray, place: Place) -> Sequence[Value] | None:
 
 
 def light_on(ray: Ray, place: Place) -> Light | None:
-    """Return the scene's light, or None where the ray has hit nothing that it could reach."""
+    """Return the scene's light; None if the ray hit nothing that it could light."""
     return ray.scene.light if ray.alive(place.bounce) and ray.winner(place.bounce) >= 0 else None
 
 
@@ -54,7 +54,7 @@ def lighting(ray: Ray, place: Place) -> Sequence[Value] | None:
 
 
 def hardware_lighting(ray: Ray, place: Place, facing: int, shaded: int) -> Sequence[Value]:
-    """Say what the unit found, in golden's words where they agree: the unit does not know which rectangle shades."""
+    """Say what the unit found, in the model's words if they agree: the unit does not know which rectangle shades."""
     found = "on the dark side" if not facing else "shaded" if shaded else "lit"
     golden = lighting(ray, place)
     return golden if golden and str(golden[0]).startswith(found) else (found,)
@@ -70,13 +70,13 @@ def shadow_slope(ray: Ray, place: Place) -> Sequence[Value] | None:
 
 
 class ExactProbes(UnitProbes):
-    """The description; see `raycaster.debug.probes.ray.Description`."""
+    """The exact engine's description; see `raycaster.debug.probes.ray.Description`."""
 
     def __init__(self, config: Configuration, unit: int):
         super().__init__(config, unit, "exact_control_i", "exact_unit")
 
     def _tried(self, samples: Samples, tried: list[tuple[int, int]], bounce: int, end: int) -> list[Event]:
-        """A verdict comes for each rectangle, in their order."""
+        """Pair rectangles with verdicts, which come in the same order."""
         begin = tried[0][0] if tried else end
         strobe = samples.values[f"{self.control}.steps_write_z_buf"]
         verdicts = (cycle for cycle in range(begin, end) if strobe[cycle])
@@ -88,7 +88,7 @@ class ExactProbes(UnitProbes):
 
     @property
     def probes(self) -> list[Probe]:
-        """In the order in which values depend on each other."""
+        """Probes in the order in which values depend on each other."""
         memory, tester, keeper = (f"{self.unit}.{name}_i" for name in ("eye_register", "rect_tester", "nearest_hit"))
         kept = fields(keeper, "found_surface", SURFACE, surface_of(self.config))
         t = tuple(f"{tester}.{name}" for name in ("numerator", "denominator"))

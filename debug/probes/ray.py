@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""One ray's life in a waveform, held against golden: what the descriptions of the engines share.
+"""Compare one ray's life in a waveform with the golden model: the part that the engines' descriptions share.
 
-A description says at which events of the control which signals hold a value, and what golden says the value is. Events
-come from strobes and states in the waveform itself; a register shows what it took at an event in the cycle after it.
+A description says which signals hold a value at which event of the control, and what the golden model says the value
+is. Events come from strobes and states in the waveform itself; a register shows the value that it captures at an event
+from the next cycle.
 """
 
 from __future__ import annotations
@@ -35,16 +36,16 @@ COLOURS = ("red", "green", "blue")
 PINS = ("vga_r", "vga_g", "vga_b")
 
 ENDS = ("blend", "done")
-"""Events after which a ray has seen all that it will see."""
+"""Events after which a ray sees nothing more."""
 
 OF_LOST_RAYS = (*ENDS, "shown")
-"""Events at which a ray counts that came after one which hit nothing."""
+"""Events that are compared even for a ray after a miss."""
 
 Number = int | Fraction | None
-"""A value without rounding; None where there is none."""
+"""A value without rounding; None if there is none."""
 
 Value = Number | str
-"""What is held against what; None means nothing, and is like everything."""
+"""A value to compare; None is don't care, and equals everything."""
 
 
 @dataclass(frozen=True)
@@ -52,15 +53,15 @@ class Place:
     """A moment of a ray's life."""
 
     bounce: int
-    """0 for the primary ray, then one more for each reflection."""
+    """0 for the primary ray, then one more per reflection."""
 
     rectangle: int | None = None
 
     @property
     def index(self) -> int:
-        """The index of the place's rectangle, which must have one."""
+        """Index of the place's rectangle, which must exist."""
         if self.rectangle is None:
-            raise ValueError("the place is of no rectangle")
+            raise ValueError("the place has no rectangle")
         return self.rectangle
 
 
@@ -70,126 +71,126 @@ class Event:
 
     kind: str
     cycle: int
-    """Index of the sample; what is sampled there stood in the event's cycle."""
+    """Index of the sample that has the values of the event's cycle."""
 
     place: Place
 
 
 Read = Callable[["Ray", Place], Sequence[Value] | None]
-"""Golden's values at a place; components in the order of the signals. None where they all mean nothing."""
+"""Function for the golden model's values at a place, in the order of the signals; None if all are don't care."""
 
 
 @dataclass(frozen=True)
 class Probe:
-    """Where the hardware has a value, and what golden says that it is."""
+    """A quantity: the signals that hold it in the hardware, and the golden model's value."""
 
     quantity: str
     signals: tuple[str, ...]
-    """Whole names, or what a description makes such of; the module that contains a signal answers for it."""
+    """Full names, or patterns that the description completes; a difference is blamed on the module with the signal."""
 
     event: str
     golden: Read
     late: int = 0
-    """Cycles after the event's."""
+    """Cycles from the event until the signals hold the value."""
 
     decode: Callable[..., Sequence[Value]] | None = None
-    """Makes values of the ray, the place and the signals' samples, where they are not the same."""
+    """Function of the ray, the place and the samples that returns the values; None if the samples are the values."""
 
     signed: bool | tuple[int, ...] = False
-    """Whether the signals are in two's complement, or the numbers of those that are."""
+    """True if the signals are in two's complement, or the indices of those that are."""
 
     true: Callable[[Ray, Place], Sequence[Number]] | None = None
-    """The value without any rounding, where that may be another."""
+    """Value without any rounding, if rounding can change it."""
 
     scale: bool = False
     """Values are in units of 2^-F."""
 
     colour: bool | tuple[int, ...] = False
-    """Whether the values are colours, or the numbers of those that are."""
+    """True if the values are colours, or the indices of those that are."""
 
     parts: Sequence[str] = ()
-    """What the values are called, where that is not in the quantity."""
+    """Names of the values, if the quantity does not name them."""
 
     module: str = ""
-    """Which one answers for it, where that is not the one that contains the signal."""
+    """Module that a difference is blamed on, if not the one that contains the signal."""
 
     shown: bool = True
-    """Whether it has a place in the table even where it is right."""
+    """True if the table shows the value even when it is right."""
 
     def is_signed(self, number: int) -> bool:
-        """Whether that one of the signals is in two's complement."""
+        """True if the signal with this index is in two's complement."""
         return self.signed is True or bool(self.signed and number in self.signed)
 
     def is_colour(self, number: int) -> bool:
-        """Whether that one of the values is a colour."""
+        """True if the value with this index is a colour."""
         return self.colour is True or bool(self.colour and number in self.colour)
 
 
 @dataclass(frozen=True)
 class Reading:
-    """A probe's values at one event: golden's beside the hardware's."""
+    """A probe's values at one event, from the golden model and from the hardware."""
 
     probe: Probe
     place: Place
     cycle: int
     time_ns: float
-    """When the cycle begins in which the values stand."""
+    """Start of the cycle that has the values."""
 
     golden: tuple[Value, ...]
     found: tuple[Value, ...]
 
     @property
     def wrong(self) -> int | None:
-        """The first component that is not as golden has it."""
+        """Index of the first component that differs from the golden model; None if all agree."""
         pairs = zip(self.golden, self.found, strict=True)
         return next((i for i, (golden, found) in enumerate(pairs) if golden is not None and golden != found), None)
 
     @property
     def signal(self) -> str:
-        """The signal that is wrong, or the first one."""
+        """Name of the wrong signal, or of the first one."""
         signals = self.probe.signals
         return signals[min(self.wrong or 0, len(signals) - 1)]
 
     @property
     def module(self) -> str:
-        """The module that answers for it."""
+        """Module that a difference is blamed on."""
         return self.probe.module or module_of(self.signal)
 
 
 class Description:
-    """What an engine's description offers."""
+    """Base class of the engines' descriptions."""
 
     probes: Sequence[Probe]
-    """In the order in which values depend on each other."""
+    """Probes in the order in which values depend on each other."""
 
-    tells: Mapping[str, tuple[str, str]]
-    """By kind of event, what it is called and which signal tells of it."""
+    event_names: Mapping[str, tuple[str, str]]
+    """Each kind of event's name, and the signal that shows it."""
 
     video: str
-    """The video generator's instance."""
+    """Instance of the video generator."""
 
     states: Sequence[str] = ()
-    """Signals that are no events and no values, but which a viewer shows."""
+    """Signals that a viewer shows, although they are neither events nor values."""
 
     def events(self, samples: Samples, ray: Ray) -> list[Event]:
-        """What the hardware did for the pixel."""
+        """List what the hardware did for the pixel."""
         raise NotImplementedError
 
     def expected(self, ray: Ray) -> Iterable[tuple[str, Place]]:
-        """The events, by kind and place, that golden knows must happen."""
+        """List the events, by kind and place, that the golden model says must happen."""
         raise NotImplementedError
 
     def controls(self) -> Iterable[str]:
-        """The signals that `events` reads."""
+        """List the signals that `events` reads."""
         raise NotImplementedError
 
     def named(self, signal: str, place: Place, ray: Ray) -> str:
-        """The whole name of a probe's signal at a place."""
+        """Return the full name of a probe's signal at a place."""
         return signal
 
     def groups(self, ray: Ray) -> Mapping[str, Sequence[str]]:
-        """What a viewer shows, by the group's name: whole names, with `:signed` or `:hex` behind those that are not
-        unsigned numbers or single bits. Of all rectangles that one which the pixel shows."""
+        """Group the signals for a viewer, by group name: full names, with `:signed` or `:hex` after those that are not
+        unsigned numbers or single bits. The only rectangle is the one that the pixel shows."""
         place, values = Place(0, max(0, ray.winner(0))), {}
         for probe in self.probes:
             for number, signal in enumerate(probe.signals):
@@ -202,36 +203,37 @@ class Description:
         bus = {f"{DUT}.avs_s0_{name}": kind for name, kind in words.items()}
         bus |= {f"{DUT}.avs_s0_{name}": "" for name in ("readdatavalid", "waitrequest")} | {f"{DUT}.irq": ""}
         control = dict.fromkeys(["bench.clk", *self.states, *self.controls()], "")
-        groups, told = {}, {}
+        groups, listed = {}, {}
         for name, signals in {"video": video, "bus": bus, "control": control, "values": values}.items():
-            groups[name] = [signal + kind for signal, kind in signals.items() if signal not in told]
-            told |= signals
+            groups[name] = [signal + kind for signal, kind in signals.items() if signal not in listed]
+            listed |= signals
         return {name: groups[name] for name in ("control", "values", "video", "bus")}
 
 
 class Ray:
-    """All that golden knows of one pixel."""
+    """The golden model's knowledge of one pixel."""
 
     def __init__(self, design: Design, row: int, column: int):
-        """Trace it.
+        """Trace the pixel's rays.
 
         Raises:
-            UserError: there is no such pixel, or a clock has two.
+            UserError: there is no such pixel, or the design computes two pixels per clock.
         """
         self.design, self.config, self.scene = design, design.configuration, design.scene
         if self.config.pixels > 1:
-            raise UserError("pixels: a trace follows a pixel a clock, as both lanes compute theirs alike; leave 2 out")
+            raise UserError("pixels: expected 1 for a trace, got 2; leave it out, as both lanes work alike")
         screen = self.config.screen_geometry
         if not (0 <= row < screen.rows and 0 <= column < screen.columns):
             raise UserError(
-                f"pixel: column from 0 to {screen.columns - 1} and row from 0 to {screen.rows - 1}, not {column},{row}"
+                f"pixel: expected column from 0 to {screen.columns - 1} and row from 0 to {screen.rows - 1}, "
+                f"got {column},{row}"
             )
         self.row, self.column = row, column
         self.rectangles = Rectangles.of_scene(self.scene)
         basis = self.scene.camera.basis
         slopes = primary_slopes(screen, basis)[row, column][None]
         if self.config.turn and basis == UNTURNED:
-            # Golden's are the shorter ones then; the hardware's are as long as of any other basis.
+            # The golden model uses shorter slopes then; the hardware scales them as for any other basis.
             slopes = slopes * BASIS_SCALE
         arguments = self.rectangles, self.scene.camera.position, self.scene.background, slopes, design.reflections
         self.true, self.golden = (
@@ -241,73 +243,73 @@ class Ray:
 
     @property
     def reflections(self) -> int:
-        """Of the scene, as it is shown."""
+        """Number of reflections with which the scene is shown."""
         return self.design.reflections
 
     @property
     def unit(self) -> int:
-        """The ray unit that has the pixel; see the seed engine's ray_generator."""
+        """Ray unit that computes the pixel; see the seed engine's ray_generator."""
         return self.column % self.config.units
 
     @property
     def offset(self) -> int:
-        """The group that it is in."""
+        """Group that the pixel is in."""
         return self.column // self.config.units
 
     def alive(self, bounce: int) -> bool:
-        """Whether there is such a ray: everything before it has hit something."""
+        """True if there is such a ray: every ray before it hit something."""
         return bounce <= self.reflections and bool(self.golden.bounces[bounce].alive[0])
 
     def of_rectangle(self, place: Place, name: str) -> Any:
-        """One of golden's arrays by rectangle, at a place; int, bool, or a tuple of them."""
+        """Read one of the golden model's arrays by rectangle, at a place: an int, a bool, or a tuple of them."""
         value = getattr(self.golden.bounces[place.bounce], name)[place.index, 0]
         return tuple(value.tolist()) if value.ndim else value.item()
 
     def of_ray(self, bounce: int, name: str) -> tuple[int, ...]:
-        """One of golden's arrays by ray."""
+        """Read one of the golden model's arrays by ray."""
         return tuple(getattr(self.golden.bounces[bounce], name)[0].tolist())
 
     def winner(self, bounce: int) -> int:
-        """The rectangle that is hit, -1 for none."""
+        """Return the rectangle that is hit, -1 for none."""
         return int(self.golden.winners[bounce][0]) if self.alive(bounce) else -1
 
     def nearest(self, place: Place) -> int:
-        """The nearest rectangle of those up to the place's, -1 for none."""
+        """Return the nearest rectangle of those up to the place's rectangle, -1 for none."""
         return self.nearest_of(place.bounce, range(place.index + 1))
 
     def nearest_of(self, number: int, candidates: Iterable[int]) -> int:
-        """The nearest rectangle of some, at a bounce; -1 for none."""
+        """Return the nearest of some rectangles at a bounce, -1 for none."""
         bounce = self.golden.bounces[number]
         hits = [i for i in candidates if i < len(self.rectangles) and bounce.hits[i, 0]]
         return min(hits, key=lambda i: (Fraction(int(bounce.depths[i, 0]), int(bounce.scales[i, 0])), i), default=-1)
 
     def colour(self, rectangle: int) -> int:
-        """A rectangle's, or the background for -1; 24 bits, red above green above blue."""
+        """Return a rectangle's colour, or the background for -1: 24 bits, red highest, blue lowest."""
         channels = self.scene.background if rectangle < 0 else self.rectangles.colours[rectangle]
         return packed(channels, CHANNEL_BITS)
 
     @cached_property
     def pixel(self) -> int:
-        """The pixel's colour, as wide as the design has it."""
+        """The pixel's colour, with the design's number of bits."""
         bits = self.config.colour_bits
         picture = shown(self.golden.colours[0].reshape(1, 1, 3), self.config)[0, 0]
         return packed(picture >> (CHANNEL_BITS - bits), bits)
 
     def plane(self, place: Place) -> tuple[int, int, tuple[int, ...]]:
-        """A rectangle's axis, its plane's coordinate, and its bounds as the hardware sorts them."""
+        """Return a rectangle's axis, its plane's coordinate, and its bounds as the hardware sorts them."""
         axis = int(self.rectangles.axes[place.index])
         low, high = self.rectangles.low[place.index], self.rectangles.high[place.index]
         u, v = OTHER_AXES[axis]
         return axis, int(low[axis]), tuple(int(value) for value in (low[u], high[u], low[v], high[v]))
 
     def true_origin(self, bounce: int) -> tuple[Fraction, ...]:
-        """Where a ray starts without rounding; a ray that misses leads nowhere."""
+        """Compute where a ray starts without rounding; after a miss the result means nothing."""
         if bounce == 0:
             return tuple(Fraction(coordinate) for coordinate in self.scene.camera.position)
         return self._true_point(self.true.points[bounce - 1][0], self.true.denominators[bounce - 1][0])
 
     def true_hit(self, place: Place) -> tuple[Fraction, ...] | None:
-        """Where a ray meets a rectangle's plane without rounding, or None where it runs along it or away from it."""
+        """Compute where a ray meets a rectangle's plane without rounding; None if it runs along or away from it."""
         bounce, (axis, position, _) = self.true.bounces[place.bounce], self.plane(place)
         ahead = (position - self.true_origin(place.bounce)[axis]) * int(bounce.slopes[0, axis])
         if not bounce.alive[0] or ahead <= 0:
@@ -320,26 +322,26 @@ class Ray:
 
 
 def packed(channels: Iterable[int], bits: int) -> int:
-    """Red, green and blue side by side."""
+    """Pack red, green and blue into a word."""
     red, green, blue = (int(channel) for channel in channels)
     return (red << 2 * bits) | (green << bits) | blue
 
 
 def channels_of(colour: int, bits: int) -> tuple[int, int, int]:
-    """And apart again."""
+    """Split a colour's word into red, green and blue."""
     mask = (1 << bits) - 1
     return colour >> 2 * bits & mask, colour >> bits & mask, colour & mask
 
 
 def fields(scope: str, group: str, names: Iterable[str], record: Record | None = None) -> tuple[str, ...]:
-    """The signals of an interface by its attributes.
+    """Name the signals of an interface's attributes.
 
     Args:
         scope: the instance.
         group: the interface or record in it.
-        names: of attributes, with a viewer's number format behind a colon where that matters.
-        record: one of the group's layout, where that is a record: of its word the fields' bits are named, which are
-            there whether the instance reads the field or not.
+        names: the attributes, with a viewer's number format after a colon where it matters.
+        record: a record with the group's layout, if the group is one: its fields are named as bits of its word, which
+            exist whether or not the instance reads the field.
     """
     if record is None:
         return tuple(f"{scope}.{group}_{name}" for name in names)
@@ -352,21 +354,21 @@ def fields(scope: str, group: str, names: Iterable[str], record: Record | None =
 
 
 def module_of(signal: str) -> str:
-    """The module in which a signal stands, by the name of its instance."""
+    """Return the module that contains a signal, from the name of its instance."""
     instance = signal.split(".")[-2]
     match = re.fullmatch(r"(\w+?)(?:_\d+)?_i", instance)
     return match[1] if match else {"dut": "ray_caster_module"}.get(instance, instance)
 
 
 def unit_name(module: str, config: Configuration, unit: int) -> str:
-    """The instance of a module that there is one of for each unit."""
+    """Name a unit's instance of a module that each unit has."""
     return f"{module}_i" if config.units == 1 else f"{module}_{unit}_i"
 
 
 def read(waves: Waves, description: Description, ray: Ray) -> list[Reading]:
-    """All that the waveform has of a pixel's life, in the order in which it happened.
+    """Read everything that the waveform has of a pixel's life, in the order in which it happened.
 
-    What should have happened and did not is a reading too, which is wrong; it stands at the end of its ray.
+    An expected event that did not happen is a wrong reading at the end of its ray.
 
     Raises:
         UserError: the waveform is of another design.
@@ -396,11 +398,11 @@ def read(waves: Waves, description: Description, ray: Ray) -> list[Reading]:
         if (kind, place) not in happened:
             ends = (event.cycle for event in events if event.kind in ENDS and event.place.bounce >= place.bounce)
             cycle = min(ends, default=len(samples.times_ns) - 1)
-            quantity, signal = description.tells[kind]
+            quantity, signal = description.event_names[kind]
             probe = Probe(quantity, (signal,), kind, _happens)
             omissions.append(Reading(probe, place, cycle, _begin(samples, cycle), ("yes",), ("no",)))
-    # Sorting keeps the order of the description within a cycle, which is that in which values depend on each other; and
-    # what is missed by then should have happened before.
+    # Within a cycle, sorting keeps the description's order, in which values depend on each other. Omissions come
+    # first, as these events should have happened earlier.
     return sorted(omissions + readings, key=lambda reading: reading.cycle)
 
 
@@ -423,10 +425,10 @@ def _reading(
 
 
 def _begin(samples: Samples, cycle: int) -> float:
-    """When a cycle begins, which is where a viewer shows what stands in it."""
+    """Return the start of a cycle, where a viewer shows the cycle's values."""
     return samples.times_ns[max(0, cycle - 1)]
 
 
 def first_difference(readings: Iterable[Reading]) -> Reading | None:
-    """The first reading that is not as golden has it."""
+    """Return the first reading that differs from the golden model."""
     return next((reading for reading in readings if reading.wrong is not None), None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where the seed engine's modules hand on what golden knows of a ray: a division a coordinate, a stored hit point."""
+"""Probes for the seed engine: one division per coordinate, and a stored hit point."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from raycaster.rtl.common.records import Ray as RayRecord
 
 
 def of_rectangle(name: str, when: str) -> Read:
-    """Reads an array of golden's, as far as another one says that it means something."""
+    """Make a reader of one of the golden model's arrays; None where the array `when` is false."""
 
     def read(ray: Ray, place: Place) -> Sequence[Value]:
         value, means = ray.of_rectangle(place, name), ray.of_rectangle(place, when)
@@ -30,7 +30,7 @@ def of_rectangle(name: str, when: str) -> Read:
 
 
 def of_nearest(name: str) -> Read:
-    """Reads an array of golden's of the nearest rectangle up to this one."""
+    """Make a reader of one of the golden model's arrays, for the nearest rectangle up to this one."""
 
     def read(ray: Ray, place: Place) -> Sequence[Value] | None:
         nearest = ray.nearest(place)
@@ -40,53 +40,53 @@ def of_nearest(name: str) -> Read:
 
 
 def colour_there(ray: Ray, place: Place) -> Sequence[Value]:
-    """A rectangle's colour where it is hit."""
+    """A rectangle's colour at its hit point."""
     winner, point = np.array([place.index]), np.array([ray.of_rectangle(place, "points")])
     colours = hit_colours(ray.rectangles, ray.scene.background, winner, point, 1 << ray.config.fraction_bits)
     return (packed(colours[0], CHANNEL_BITS),)
 
 
 def found_colour(ray: Ray, place: Place) -> Sequence[Value] | None:
-    """The colour of what a ray has hit, where it has; nothing for a miss."""
+    """Colour at the point that a ray hit; None for a miss."""
     winner = ray.winner(place.bounce)
     return colour_there(ray, Place(place.bounce, winner)) if winner >= 0 else None
 
 
 def nearest_surface(ray: Ray, place: Place) -> Sequence[Value] | None:
-    """Axis and colour of the nearest rectangle up to this one; nothing where there is none."""
+    """Axis and colour of the nearest rectangle up to this one; None if there is none."""
     nearest = Place(place.bounce, ray.nearest(place))
     return (ray.plane(nearest)[0], *colour_there(ray, nearest)) if nearest.index >= 0 else None
 
 
 def of_reflected(read: Read) -> Read:
-    """Reads the same, but of no ray that starts at the camera."""
+    """Restrict a reader to reflected rays."""
     return lambda ray, place: read(ray, place) if place.bounce else None
 
 
 def origin(ray: Ray, place: Place) -> Sequence[Value]:
-    """Where the ray starts."""
+    """Start of the ray."""
     return ray.of_ray(place.bounce, "origins")
 
 
 def products(ray: Ray, place: Place) -> Sequence[Value]:
-    """What is divided, for u and v: magnitudes of the slope times n."""
+    """Dividends for u and v: magnitudes of the slope times n."""
     slopes, n = ray.of_ray(place.bounce, "slopes"), ray.of_rectangle(place, "numerators")
     return [abs(slopes[u] * n) for u in OTHER_AXES[ray.plane(place)[0]]]
 
 
 def towards(ray: Ray, place: Place) -> Sequence[Value]:
-    """Whether the ray runs towards the plane, as both helpers find."""
+    """1 if the ray runs towards the plane, else 0; for both helpers."""
     return 2 * (int(ray.of_rectangle(place, "numerators") * ray.of_rectangle(place, "denominators") > 0),)
 
 
 def coordinates(ray: Ray, place: Place) -> Sequence[Value]:
-    """The hit point on u and v, where there is one."""
+    """The hit point on u and v; None where there is none."""
     points, valid = ray.of_rectangle(place, "points"), ray.of_rectangle(place, "valid")
     return [points[u] if fits else None for u, fits in zip(OTHER_AXES[ray.plane(place)[0]], valid, strict=True)]
 
 
 def true_coordinates(ray: Ray, place: Place) -> Sequence[Number]:
-    """The same without rounding."""
+    """The hit point on u and v, without rounding."""
     point, (axis, _, _) = ray.true_hit(place), ray.plane(place)
     return [point[u] for u in OTHER_AXES[axis]] if point else (None, None)
 
@@ -98,24 +98,24 @@ def true_depth(ray: Ray, place: Place) -> Sequence[Number]:
 
 
 def true_inside(ray: Ray, place: Place) -> Sequence[Number]:
-    """Whether the rectangle is hit, without rounding."""
+    """1 if the rectangle is hit, else 0, without rounding."""
     bounce = ray.true.bounces[place.bounce]
     return (int(bounce.hits[place.index, 0]) if bounce.alive[0] else None,)
 
 
 class SeedProbes(UnitProbes):
-    """The description; see `raycaster.debug.probes.ray.Description`."""
+    """The seed engine's description; see `raycaster.debug.probes.ray.Description`."""
 
     def __init__(self, config: Configuration, unit: int):
         super().__init__(config, unit, "ray_control_i", "ray_unit")
 
     def controls(self) -> Iterable[str]:
-        """The signals that `events` reads."""
+        """List the signals that `events` reads."""
         steps = [f"{self.control}.steps_{name}" for name in ("load_divider", "store_quotient")]
         return [*super().controls(), *steps, f"{self.sequencer}.early_out"]
 
     def _tried(self, samples: Samples, tried: list[tuple[int, int]], bounce: int, end: int) -> list[Event]:
-        """Follow each rectangle through the divider, in which one may wait while another one is loaded."""
+        """Follow each rectangle through the divider, in which one may wait while another is loaded."""
         values = samples.values
         started, dividing, finishing = [], [], []
         starts, events = dict(tried), []
@@ -138,14 +138,14 @@ class SeedProbes(UnitProbes):
         return events
 
     def expected(self, ray: Ray) -> Iterable[tuple[str, Place]]:
-        """The events that golden knows must happen; a rectangle behind the ray may be left early."""
+        """List the events that must happen; with culling, a rectangle that is not hit may end before its verdict."""
         for kind, place in super().expected(ray):
             if kind != "write" or not self.config.culling or ray.of_rectangle(place, "hits"):
                 yield kind, place
 
     @property
     def probes(self) -> list[Probe]:
-        """In the order in which values depend on each other."""
+        """Probes in the order in which values depend on each other."""
         finder, memory, buffer = (f"{self.unit}.{name}_i" for name in ("intersection_finder", "ray_mem", "z_buffer"))
         helpers = [f"{finder}.intersection_helper_{number}_i" for number in range(2)]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the engines with ray units and a line buffer have in common: their life cycle, and a pixel's way to the pins."""
+"""Probes of all engines with ray units and a line buffer: the units' life cycle, and a pixel's path to the pins."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def sorted_rect(ray: Ray, place: Place) -> Sequence[Value]:
 
 
 def surface(ray: Ray, rectangle: int) -> Sequence[Value] | None:
-    """A rectangle's axis, plane and colour; nothing for -1."""
+    """A rectangle's axis, plane and colour; None for -1."""
     if rectangle < 0:
         return None
     axis, position, _ = ray.plane(Place(0, rectangle))
@@ -46,28 +46,28 @@ def surface(ray: Ray, rectangle: int) -> Sequence[Value] | None:
 
 
 def slope_signs(ray: Ray, place: Place) -> Sequence[Value]:
-    """Which components of the slope are negative; nothing of one that is 0."""
+    """Signs of the slope's components, 1 if negative; None for a component that is 0."""
     return [None if slope == 0 else int(slope < 0) for slope in ray.of_ray(place.bounce, "slopes")]
 
 
 def ended_before(ray: Ray, place: Place) -> Sequence[Value]:
-    """Whether there is no such ray."""
+    """1 if there is no such ray, else 0."""
     return (int(not ray.alive(place.bounce)),)
 
 
 def found(ray: Ray, place: Place) -> Sequence[Value] | None:
-    """Whether a ray has hit anything; nothing of one that is lost."""
+    """1 if a ray hit anything, else 0; None for a ray after a miss."""
     return (int(ray.winner(place.bounce) >= 0),) if ray.alive(place.bounce) else None
 
 
 def found_colour(ray: Ray, place: Place) -> Sequence[Value] | None:
-    """The colour of what a ray has hit; nothing for a miss."""
+    """Colour of the rectangle that a ray hit; None for a miss."""
     winner = ray.winner(place.bounce)
     return (ray.colour(winner),) if winner >= 0 else None
 
 
 def seen_colour(ray: Ray, place: Place) -> tuple[int] | None:
-    """What a ray sees, background included; nothing of a ray after a surface that does not mirror."""
+    """Colour that a ray sees, background included; None for a ray after a surface that does not mirror."""
     if ray.config.materials and not ray.alive(place.bounce):
         return None
     return (int.from_bytes(bytes(ray.golden.seen[place.bounce][0])),)
@@ -79,17 +79,17 @@ def pixel(ray: Ray, place: Place) -> Sequence[Value]:
 
 
 def pixel_channels(ray: Ray, place: Place) -> Sequence[Value]:
-    """Its three channels."""
+    """The pixel's three channels."""
     return channels_of(ray.pixel, ray.config.colour_bits)
 
 
 def hit_mask(ray: Ray, place: Place) -> Sequence[int]:
-    """The rectangles that the ray hits, a bit each: those that must be tried."""
+    """Mask of the rectangles that the ray hits, and that must therefore be tested."""
     return (sum(1 << i for i, hit in enumerate(ray.golden.bounces[place.bounce].hits[:, 0]) if hit),)
 
 
 def scene_probes(event: str, config: Configuration) -> list[Probe]:
-    """What the scene's registers say, from an event on."""
+    """Probes of the scene's registers, from an event on."""
     bus = f"{DUT}.avalon_interface_i.picture"
     camera = fields(f"{DUT}.camera_mem_i", "camera", AXES, camera_of(config))
     return [
@@ -100,7 +100,7 @@ def scene_probes(event: str, config: Configuration) -> list[Probe]:
 
 
 def monitor_probes(renderer: str, port: str, video: str, config: Configuration) -> list[Probe]:
-    """The pixel's last steps."""
+    """Probes of the pixel's last steps."""
     channels = fields(renderer, port, COLOURS, Pixel(config.colour_bits))
     return [
         Probe("pixel to the monitor", channels, "shown", pixel_channels, parts=COLOURS),
@@ -109,7 +109,7 @@ def monitor_probes(renderer: str, port: str, video: str, config: Configuration) 
 
 
 def shown_events(samples: Samples, ray: Ray, video: str, after: int) -> list[Event]:
-    """When the pixel was on its way to the pins, for the first time after a cycle."""
+    """Find when the pixel first goes to the pins after a cycle."""
     screen = ray.config.screen_geometry
     x, y, ends = (samples.values[f"{video}.{name}"] for name in ("x", "y", "pixel_end"))
     place = ray.column * screen.doubling, ray.row * screen.doubling
@@ -127,11 +127,11 @@ class UnitProbes(Description):
     video = VIDEO
 
     def __init__(self, config: Configuration, unit: int, control: str, unit_module: str):
-        """Name everything.
+        """Name the signals.
 
         Args:
             config: the design.
-            unit: which one has the pixel.
+            unit: the unit that computes the pixel.
             control: the control's instance.
             unit_module: the name of the unit's module.
         """
@@ -144,18 +144,18 @@ class UnitProbes(Description):
         self.generator = "turned_generator" if config.turn else "ray_generator"
         self.states = [f"{self.sequencer}.{name}" for name in ("state", "bounce")]
         steps = f"{self.sequencer}.steps"
-        self.tells = {
-            "start": ("the group starts", f"{steps}_screen_to_ray"),
-            "ray": ("the ray is kept", f"{steps}_store_ray"),
-            "find": ("the rectangle is tried", f"{self.sequencer}.rect_sequencer_i.starting"),
-            "write": ("the hit is offered", f"{self.control}.steps_write_z_buf"),
-            "blend": ("the colour is added", f"{steps}_add_colour"),
-            "done": ("the group is done", f"{self.sequencer}.done"),
-            "shown": ("the pixel is shown", f"{VIDEO}.y"),
+        self.event_names = {
+            "start": ("group started", f"{steps}_screen_to_ray"),
+            "ray": ("ray kept", f"{steps}_store_ray"),
+            "find": ("rectangle tested", f"{self.sequencer}.rect_sequencer_i.starting"),
+            "write": ("hit offered", f"{self.control}.steps_write_z_buf"),
+            "blend": ("colour added", f"{steps}_add_colour"),
+            "done": ("group done", f"{self.sequencer}.done"),
+            "shown": ("pixel shown", f"{VIDEO}.y"),
         }
 
     def controls(self) -> Iterable[str]:
-        """The signals that `events` reads."""
+        """List the signals that `events` reads."""
         steps = ("screen_to_ray", "find_intersection", "add_colour", "store_ray")
         return [
             *(f"{RENDERER}.place_{name}" for name in ("row", "column_offset")),
@@ -167,7 +167,7 @@ class UnitProbes(Description):
         ]
 
     def expected(self, ray: Ray) -> Iterable[tuple[str, Place]]:
-        """The events that golden knows must happen."""
+        """List the events that the golden model says must happen."""
         yield "start", Place(0)
         for bounce in range(ray.reflections + 1):
             if ray.alive(bounce):
@@ -182,7 +182,7 @@ class UnitProbes(Description):
         yield "shown", Place(ray.reflections)
 
     def events(self, samples: Samples, ray: Ray) -> list[Event]:
-        """What the hardware did for the pixel."""
+        """List what the hardware did for the pixel."""
         values, step = samples.values, f"{self.sequencer}.steps"
         places = (values[f"{RENDERER}.place_{name}"] for name in ("row", "column_offset"))
         begun = zip(values[f"{step}_screen_to_ray"], *places, strict=True)
@@ -201,7 +201,7 @@ class UnitProbes(Description):
                 tried.append((cycle, at_hand))
             if values[f"{self.sequencer}.rects_fetch"][cycle]:
                 at_hand = values[f"{self.sequencer}.rects_index"][cycle]
-                # In the cycle in which a ray ends, the next one's first is fetched.
+                # The next ray's first rectangle is fetched in the cycle in which a ray ends.
                 events.append(Event("fetch", cycle, Place(bounce + int(ends), at_hand)))
             if ends:
                 events += self._tried(samples, tried, bounce, cycle)
@@ -217,20 +217,20 @@ class UnitProbes(Description):
             for event in events
             if event.place.bounce <= ray.reflections and (event.place.rectangle or 0) < len(ray.rectangles)
         ]
-        # Where nothing is left to fetch, the index means nothing.
+        # The index is don't care when nothing is left to fetch.
         found = {event.place for event in known if event.kind == "find"}
         return [event for event in known if event.kind != "fetch" or event.place in found] + shown
 
     def _tried(self, samples: Samples, tried: list[tuple[int, int]], bounce: int, end: int) -> list[Event]:
-        """What became of the rectangles that a ray was tried against, in their order."""
+        """List the events of the rectangles that were tested for a ray, in their order."""
         raise NotImplementedError
 
     def first_probes(self) -> list[Probe]:
-        """From the scene's memories to the primary ray."""
+        """Probes from the scene's memories to the primary ray."""
         rects, generator = f"{DUT}.rect_mem_i", f"{self.unit}.{self.generator}_i"
         layout = rect_of(self.config)
         culling = Probe(
-            # For those that the scene has not got, the mask is don't care.
+            # The mask is don't care for rectangles that the scene does not have.
             "rectangles that may be hit", (f"{self.sequencer}.wanted",), "start", hit_mask,
             decode=lambda ray, place, wanted: (wanted & hit_mask(ray, place)[0],), module="group_culler", shown=False,
         )  # fmt: skip
@@ -250,7 +250,12 @@ class UnitProbes(Description):
         ]  # fmt: skip
 
     def last_probes(self, kept_colour: str, golden_colour: Read = found_colour) -> list[Probe]:
-        """From what a ray has found to the pins; given are the signal of its colour, and what golden says of that."""
+        """Probes from a ray's found rectangle to the pins.
+
+        Args:
+            kept_colour: the signal with the rectangle's colour.
+            golden_colour: reads the golden model's value of it.
+        """
         combiner, bits = f"{self.unit}.colour_combiner_i", 3 * self.config.colour_bits
         buffer = f"{RENDERER}.{unit_name('line_buffer', self.config, self.number)}"
         channels = tuple(f"{combiner}.colour_sum_{number}_i.blended" for number in range(3))

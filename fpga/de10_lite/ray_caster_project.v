@@ -4,8 +4,8 @@
 
 // RayCaster on the pins of a DE10-Lite, named as in its manual.
 //
-// KEY[1] left, KEY[0] right: the camera moves while one is pressed, which is low.
-// SW[0] up, SW[1] down, SW[3] back, SW[4] forward: it moves while one is high. SW[2] high: reset.
+// KEY[1] left, KEY[0] right: the camera moves while a key is pressed (low).
+// SW[0] up, SW[1] down, SW[3] back, SW[4] forward: it moves while a switch is high. SW[2] high: reset.
 module ray_caster_project #(
     parameter COLOUR_BITS = 4
 ) (
@@ -23,8 +23,8 @@ wire [COLOUR_BITS-1:0] red;
 wire [COLOUR_BITS-1:0] green;
 wire [COLOUR_BITS-1:0] blue;
 
-// buttons, from bit 5 on: down, up, right, left, back, forward. The DAC is of resistors, and needs no clock; what is
-// blanked is black already.
+// buttons[5:0]: down, up, right, left, back, forward. The DAC consists of resistors and needs no clock; blanked pixels
+// are already black.
 scene_system system (
     .clk(MAX10_CLK1_50),
     .ready(~SW[2]),

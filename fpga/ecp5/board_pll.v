@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// From the board's oscillator, shift_clk for the DVI link, five times the pixel clock, and clk for the design, which is
-// the pixel clock or twice that. board_clocks.v, made with the design, says which.
+// Makes two clocks from the board's oscillator: shift_clk for the DVI link, five times the pixel clock, and clk for the
+// design, the pixel clock or twice that. The generated board_clocks.v sets the parameters.
 
 module board_pll #(
-    // clk_in / CLKI_DIV * CLKFB_DIV is shift_clk, and SHIFT_DIV times that the oscillator's, within its 400 to 800 MHz;
-    // that by CLK_DIV is clk.
+    // shift_clk = clk_in / CLKI_DIV * CLKFB_DIV. The PLL's oscillator runs at shift_clk * SHIFT_DIV, 400 to 800 MHz.
+    // clk is the oscillator divided by CLK_DIV.
     parameter CLKI_DIV = 1,
     parameter CLKFB_DIV = 5,
     parameter SHIFT_DIV = 4,
@@ -16,8 +16,8 @@ module board_pll #(
     output wire locked
 );
 
-// A phase of the divider less one puts the rising edges together. nextpnr takes an analogue setting that is not given as
-// 0, no charge pump among them; these are those of ecppll.
+// A phase of the divider minus one aligns the rising edges. nextpnr sets missing analogue parameters to 0, for example
+// to no charge pump; these values come from ecppll.
 (* ICP_CURRENT="12" *) (* LPF_RESISTOR="8" *) (* MFG_ENABLE_FILTEROPAMP="1" *) (* MFG_GMCREF_SEL="2" *)
 EHXPLLL #(
     .CLKI_DIV(CLKI_DIV),

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A link's pairs of pins: the standard of the one that has a port makes the other its inverse.
+// Differential pins of a link. Only link_p has pins; with their I/O standard, the other pin of a pair is the inverse.
 
 module link_pins (
     input  wire [3:0] link,
     output wire [3:0] link_p,
-    output wire [3:0] link_n            // no pins
+    output wire [3:0] link_n            // not on pins
 );
 
 assign link_p = link;

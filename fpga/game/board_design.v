@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A program on a processor; forward and back are both fire, the others what they say.
+// A program on a processor. The buttons forward and back both fire; the others keep their meaning.
 
 module board_design #(
     parameter COLOUR_BITS = 8

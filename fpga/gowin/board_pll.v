@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// From the board's oscillator, shift_clk for the DVI link, five times the pixel clock, and clk for the design, which is
-// the pixel clock or twice that. board_clocks.v, made with the design, says which.
+// Makes two clocks from the board's oscillator: shift_clk for the DVI link, five times the pixel clock, and clk for the
+// design, the pixel clock or twice that. The generated board_clocks.v sets the parameters.
 
 module board_pll #(
-    // clk_in / (IDIV_SEL + 1) * (FBDIV_SEL + 1) is fast, and ODIV_SEL times that the oscillator's, within its 500 to
-    // 1250 MHz. A fifth of fast is clk; half of it is shift_clk if HALVED, or all of it.
+    // fast = clk_in / (IDIV_SEL + 1) * (FBDIV_SEL + 1). The PLL's oscillator runs at fast * ODIV_SEL, 500 to 1250 MHz.
+    // clk = fast / 5; shift_clk = fast / 2 if HALVED, otherwise fast.
     parameter FCLKIN = "27",
     parameter IDIV_SEL = 3,
     parameter FBDIV_SEL = 36,

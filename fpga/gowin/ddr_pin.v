@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Two bits each cycle of shift_clk, first bits[0].
+// Sends two bits per cycle of shift_clk, bits[0] first.
 
 module ddr_pin (
     input  wire       shift_clk,

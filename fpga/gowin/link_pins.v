@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A link's pairs of pins, each with its buffer.
+// Differential pins of a link, with a buffer per pair.
 
 module link_pins (
     input  wire [3:0] link,

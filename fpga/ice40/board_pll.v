@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// From the board's oscillator, clk for the design. board_clocks.v, made with the design, says which.
+// Makes clk for the design from the board's oscillator. The generated board_clocks.v sets the parameters.
 
 module board_pll #(
-    // clk_in / (DIVR + 1) * (DIVF + 1) is the oscillator's, within its 533 to 1066 MHz; that by 2 to the DIVQ is clk.
+    // The PLL's oscillator runs at clk_in / (DIVR + 1) * (DIVF + 1), 533 to 1066 MHz; clk is that divided by 2^DIVQ.
     parameter DIVR = 0,
     parameter DIVF = 66,
     parameter DIVQ = 5,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A clock on a pin: low while clk is high, with no more delay than the pins of registers have.
+// Drives a clock on a pin: low while clk is high, with no more delay than the pins of registers.
 
 module clock_pin (
     input  wire clk,

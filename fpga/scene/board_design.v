@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A scene, its camera moved by the board's buttons.
+// A scene, with its camera moved by the board's buttons.
 
 module board_design #(
     parameter COLOUR_BITS = 8

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The engines: what each can do, how long it takes, and how much of it a design has."""
+"""The engines: their features, timing and size."""
 
 from collections.abc import Mapping
 
@@ -10,4 +10,4 @@ from raycaster.engines.seed import Seed
 
 SEED, EXACT, BEAM = Seed(), Exact(), Beam()
 ENGINES: Mapping[str, Engine] = {engine.name: engine for engine in (SEED, EXACT, BEAM)}
-"""By name."""
+"""Engines by name."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What every engine tells of itself."""
+"""Interface of the engines: the facts that each of them states."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 LOOKS = ("turn", "materials", "patterns", "light")
-"""Options that add to what scenes may show."""
+"""Options for optional features of scenes."""
 
 SMALLEST_CELL_BITS = 3
 """log2 of the size of a pattern's smallest cell, in world units."""
@@ -25,21 +25,21 @@ SETUP_LATENCY = 5
 
 
 class Engine(ABC):
-    """What computes the rays.
+    """An engine, the hardware that computes the rays.
 
     Attributes:
-        name: as users choose it.
-        code: what the register `engine` reads.
-        colour: of its marks and lines in plots; one that Okabe and Ito chose for this.
-        marker: of its points in plots, as Matplotlib names it.
-        usual_build: how long its default design usually takes to convert and to build with Verilator, on two cores;
-            estimated from processor time.
-        screens: those that it can fill, by name and rows.
+        name: name for users.
+        code: value of the register `engine`.
+        colour: colour of its marks and lines in plots, from the palette of Okabe and Ito.
+        marker: Matplotlib's name for the marker of its points in plots.
+        usual_build: usual time to convert its default design and to build it with Verilator on two cores, estimated
+            from processor time.
+        screens: screens that it can fill, by name and rows.
         rect_latency: cycles from `fetch` to the rectangle.
-        margin: how far outside a rectangle's bounds a primary ray may pass that hits it, in world units.
-        lacks: the options of `LOOKS` that it refuses, each with the reason.
-        divides: whether it forms quotients, which have a fraction and are rounded.
-        line_buffered: whether units fill a line buffer ahead of the monitor, group after group.
+        margin: distance by which a primary ray that hits a rectangle may pass outside its bounds, in world units.
+        lacks: options of `LOOKS` that it refuses, each with the reason.
+        divides: True if it forms quotients, which have fraction bits and are rounded.
+        line_buffered: True if units fill a line buffer ahead of the monitor, group by group.
     """
 
     name: ClassVar[str]
@@ -56,18 +56,18 @@ class Engine(ABC):
 
     @property
     def looks(self) -> tuple[str, ...]:
-        """The options of `LOOKS` that a design can have."""
+        """Options of `LOOKS` that a design can have."""
         return tuple(look for look in LOOKS if look not in self.lacks)
 
     def scales(self, screen: Screen) -> tuple[int, ...]:
-        """The resolution scales that it offers on a screen, the default first."""
+        """Return the resolution scales that it offers on a screen, the default first."""
         return (1,)
 
     def refuse(self, options: Options) -> None:
-        """Refuse what the engine cannot do.
+        """Refuse options that the engine does not support.
 
         Raises:
-            ValueError: `option: why, and what to do instead`.
+            ValueError: an option is refused; the text is `option: why, and what to do instead`.
         """
         if not self.divides:
             if options.fraction_bits:
@@ -79,50 +79,50 @@ class Engine(ABC):
                     f"divider_bits: the {self.name} engine has no divider; leave out {options.divider_bits}"
                 )
         if options.culling and options.fixed is not None:
-            raise ValueError("culling: is for scenes that change; leave it out, or what is fixed")
+            raise ValueError("culling: does not apply to a fixed scene; leave out CULLING or FIX")
 
     def culls(self, options: Options) -> bool:
-        """Whether a design has culling where the user does not say."""
+        """Return True if a design has culling by default."""
         return False
 
     @abstractmethod
     def sized(self, config: Configuration, options: Options) -> Configuration:
-        """Choose the units and, of an engine that divides, the divider.
+        """Choose the number of units and, for an engine that divides, the divider.
 
         Args:
-            config: the design, in which these are not decided.
-            options: what the user gave.
+            config: the design, with these undecided.
+            options: the user's options.
 
         Raises:
-            ValueError: what the user gave is not possible.
+            ValueError: the user's options are not possible.
         """
 
     @abstractmethod
     def slot_cycles(self, config: Configuration) -> int:
-        """Cycles from one rectangle to the next; 0 where it takes all at once."""
+        """Return the cycles from one rectangle to the next; 0 if all are tested at once."""
 
     @abstractmethod
     def pass_latency(self, config: Configuration) -> int:
-        """Cycles from the end of a pass's last slot to the first cycle of the next pass."""
+        """Return the cycles from the end of a pass's last slot to the first cycle of the next pass."""
 
     @abstractmethod
     def group_cycles(self, config: Configuration) -> int:
-        """Cycles from one group's start to the next one's with all rectangles enabled: the worst case."""
+        """Return the cycles per group in the worst case, with all rectangles enabled."""
 
     @abstractmethod
     def describe(self, config: Configuration) -> str:
-        """A design in a few words."""
+        """Describe a design in a few words."""
 
     @abstractmethod
     def label(self, config: Configuration) -> str:
-        """What distinguishes a design from others of the engine, as short as a plot wants it."""
+        """Return a label for plots that distinguishes a design from others of the engine."""
 
     @abstractmethod
     def check(self, config: Configuration) -> None:
         """Refuse a design that is too slow for its screen.
 
         Raises:
-            ValueError: by how much, and what to do.
+            ValueError: the design is too slow; the text says by how much, and what to do.
         """
 
 
@@ -130,36 +130,36 @@ class LineBufferedEngine(Engine):
     """An engine whose units fill a line buffer, a group of neighbouring columns at a time."""
 
     GROUP_OVERHEAD: ClassVar[int] = 4
-    """Cycles a group pays once: the write to the line buffer with the reset of two cycles, idling, ray generation."""
+    """Fixed cycles per group: the write to the line buffer with the two-cycle reset, idling, ray generation."""
 
     def refuse(self, options: Options) -> None:
-        """Refuse two pixels a clock."""
+        """Refuse two pixels per clock."""
         if options.pixels != 1:
-            raise ValueError(f"pixels: 2 a clock need the beam engine, ENGINE=beam, not {self.name}")
+            raise ValueError(f"pixels: 2 per clock need the beam engine, ENGINE=beam, not {self.name}")
         super().refuse(options)
 
     def group_cycles(self, config: Configuration) -> int:
-        """Slots for the rectangles of each pass, what follows each pass, and the overhead of a group."""
+        """Add the slots for the rectangles of each pass, the latency of each pass, and the overhead of a group."""
         slots = sum(mask.bit_count() for mask in config.passes) * self.slot_cycles(config)
         return slots + len(config.passes) * self.pass_latency(config) + self.GROUP_OVERHEAD
 
     def fewest_units(self, config: Configuration) -> Configuration:
-        """The design with the fewest units that meet the row budget, or one for each column where none do."""
+        """Return the design with the fewest units that meet the row budget, or one unit per column if none do."""
         columns = config.screen_geometry.columns
         tried = (replace(config, units=units) for units in range(1, columns + 1) if columns % units == 0)
         return next((one for one in tried if self.fits(one)), replace(config, units=columns))
 
     def fits(self, config: Configuration) -> bool:
-        """Whether a row is ready before the row above it was shown."""
+        """Return True if a row is ready before the row above it has been shown."""
         return self.group_cycles(config) <= config.group_budget
 
     def check(self, config: Configuration) -> None:
-        """Hold a group's cycles against the row budget."""
+        """Compare a group's cycles with the row budget."""
         if config.allow_underrun or self.fits(config):
             return
         raise ValueError(
             f"row budget: a group of {config.units} columns takes {config.group_cycles} cycles with "
-            f"{config.rectangles} rectangles, {config.reflections} reflections and {config.slot_cycles} cycles a "
+            f"{config.rectangles} rectangles, {config.reflections} reflections and {config.slot_cycles} cycles per "
             f"rectangle, but a row leaves it {config.group_budget} (less than {config.screen_geometry.row_cycles} "
             f"cycles over {config.groups} groups); take more units or divider bits, fewer rectangles, reflections or "
             "fraction bits, or ALLOW_UNDERRUN=1"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The engine that compares products instead of dividing."""
+"""The exact engine, which compares products instead of dividing."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ if TYPE_CHECKING:
     from raycaster.configuration import Configuration, Options
 
 WRITE_AT = 2
-"""The bit of in_flight that comes three cycles after find_intersection: the latency of a unit's test."""
+"""Bit of in_flight that is set three cycles after find_intersection, the latency of a unit's test."""
 
 PATTERN_LATENCY = 6
-"""Cycles until the cells of a pattern are known, of u and of v: a dividend, and three cycles of two bits each."""
+"""Cycles until the cells of a pattern are known: three each for u and v, with two bits per cycle."""
 
 
 AIM_CYCLES = 4
@@ -23,7 +23,7 @@ AIM_CYCLES = 4
 
 
 class Exact(LineBufferedEngine):
-    """Units that test a rectangle a clock."""
+    """Units that test one rectangle per clock."""
 
     name, code = "exact", 1
     colour, marker = "#0072B2", "s"
@@ -36,22 +36,22 @@ class Exact(LineBufferedEngine):
         return self.fewest_units(config)
 
     def describe(self, config: Configuration) -> str:
-        """Units."""
+        """Return the number of units."""
         return f"exact, {config.units} units"
 
     def label(self, config: Configuration) -> str:
-        """Units."""
+        """Return the number of units."""
         return str(config.units)
 
     def slot_cycles(self, config: Configuration) -> int:
-        """Each clock has a rectangle."""
+        """Return 1, a rectangle per clock."""
         return 1
 
     def pass_latency(self, config: Configuration) -> int:
-        """The test's stages after the slot, depth compared, ray stored; the cells of a pattern come before that."""
+        """Add the stages after the slot: test, depth comparison, cells of a pattern, and storing the ray."""
         return WRITE_AT + 2 + (PATTERN_LATENCY if config.patterns else 0)
 
     def group_cycles(self, config: Configuration) -> int:
-        """A shadow pass follows each pass."""
+        """Add a shadow pass to each pass."""
         shadows = sum(mask.bit_count() for mask in config.shadows)
         return super().group_cycles(config) + shadows + len(config.shadows) * (AIM_CYCLES + self.pass_latency(config))

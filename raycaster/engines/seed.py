@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The seed's engine: it divides, and rounds what it divided."""
+"""The seed engine, which divides and rounds the quotients."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ if TYPE_CHECKING:
     from raycaster.configuration import Configuration, Options
 
 UNIT_CELLS = {1: 559, 2: 607, 3: 647}
-"""LUT4 of an ECP5 that a unit takes, by quotient bits a cycle; from `make area DIVIDER_BITS=`."""
+"""ECP5 LUT4s per unit, by quotient bits per cycle; from `make area DIVIDER_BITS=`."""
 
 DEFAULT_UNITS = 32
 
 LOAD_AT = 2
-"""Cycles from find_intersection to load_divider; store_quotient comes as many after that as a division takes."""
+"""Cycles from find_intersection to load_divider; store_quotient follows after the cycles of a division."""
 
 WRITE_AFTER = 2
 """Cycles from store_quotient to write_z_buf."""
 
 
 class Seed(LineBufferedEngine):
-    """A divider a unit, which a rectangle occupies for as long as a division takes.
+    """Units with a divider each, which a rectangle occupies for the duration of a division.
 
     A rounded coordinate is off by less than one, and the depth is measured along x.
     """
@@ -39,11 +39,11 @@ class Seed(LineBufferedEngine):
     }
 
     def culls(self, options: Options) -> bool:
-        """Its slots are long enough to be worth it; a fixed scene has left out what it does not need."""
+        """Return True, as culling shortens the long slots, except for a fixed scene, which leaves out more."""
         return options.fixed is None
 
     def sized(self, config: Configuration, options: Options) -> Configuration:
-        """Take 32 units, or as few as a fixed scene needs; the divider as small as the row budget allows."""
+        """Take 32 units, or the fewest that a fixed scene needs, and the smallest divider that meets the row budget."""
         given = options.divider_bits
         if given not in ("auto", *UNIT_CELLS):
             raise ValueError(f"divider_bits: must be auto, 1, 2 or 3, not {given}")
@@ -55,18 +55,18 @@ class Seed(LineBufferedEngine):
         return next((one for one in designs if self.fits(one)), designs[-1])
 
     def describe(self, config: Configuration) -> str:
-        """Fraction, rounding, units and divider."""
-        bits = f"{config.divider_bits} bit{'s' if config.divider_bits > 1 else ''} a cycle"
+        """Return fraction, rounding, units and divider."""
+        bits = f"{config.divider_bits} bit{'s' if config.divider_bits > 1 else ''} per cycle"
         return f"seed F = {config.fraction_bits} {config.rounding}, {config.units} units, {bits}"
 
     def label(self, config: Configuration) -> str:
-        """Fraction and rounding."""
+        """Return fraction and rounding."""
         return f"F{config.fraction_bits}{config.rounding[0]}"
 
     def slot_cycles(self, config: Configuration) -> int:
-        """A division."""
+        """Return the cycles of a division."""
         return config.divider_steps
 
     def pass_latency(self, config: Configuration) -> int:
-        """Slope and plane latched, product, divider loaded, hit point, depth compared, ray stored."""
+        """Add the stages: slope and plane latched, product, divider loaded, hit point, depth compared, ray stored."""
         return LOAD_AT + WRITE_AFTER + 2

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""The beam engine: exact, all rectangles at once, a pixel a clock."""
+"""The beam engine: exact, all rectangles at once, one or two pixels per clock."""

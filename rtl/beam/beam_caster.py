@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The beam engine: every rectangle at once, one pixel a clock or two."""
+"""The beam engine: all rectangles at once, one or two pixels per clock."""
 
 from collections.abc import Mapping
 
@@ -18,7 +18,7 @@ from raycaster.rtl.engine.rect_setup import rect_setup
 
 
 def known_facet(number: int, config: Configuration) -> dict[str, int]:
-    """What is known of a rectangle's facet: nothing, but of a fixed scene."""
+    """Return the known fields of a rectangle's facet; empty unless the scene is fixed."""
     if config.fixed is None:
         return {}
     rectangle = config.fixed.rectangles[number]
@@ -28,9 +28,10 @@ def known_facet(number: int, config: Configuration) -> dict[str, int]:
 
 
 def known_growth(number: int, config: Configuration) -> dict[str, int]:
-    """The same for its growth: along a row either its way along p grows, or its bounds do, as rect_setup has it.
+    """Return the known fields of a rectangle's growth; empty unless the scene is fixed and the camera does not turn.
 
-    Where the camera turns, a row's start passes through.
+    Along a row either the way along p grows, or the bounds do; see rect_setup. If the camera turns, the growth
+    registers also carry a row's start.
     """
     if config.fixed is None or config.turn:
         return {}
@@ -46,14 +47,14 @@ def known_growth(number: int, config: Configuration) -> dict[str, int]:
 
 
 def fixing(record: Record, known: Mapping[str, int]) -> dict[str, Tied]:
-    """A row_register's ports for a record of which these fields' values are known."""
+    """Return the ports of a row_register for a record with these known field values."""
     live = {name: -1 for name in record.layout if name not in known}
     return {"live": tied(record.pack(live), record.word), "known": tied(record.pack(known), record.word)}
 
 
 @block
 def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture, rects, pixel, config: Configuration):
-    """Compute a row's pixels: those of a clock at each next_column, `beam_latency` cycles later.
+    """Compute a row's pixels: each next_column starts those of one clock, which follow `beam_latency` cycles later.
 
     Each column of a clock has its own lane. Lane i is i columns further along the row than lane 0, and every lane
     advances by as many columns as there are lanes.
@@ -61,13 +62,13 @@ def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture,
     Args:
         clk: the clock.
         reset: synchronous, active high.
-        start_line: strobe; begins a line. The last column of the line before has left by then.
-        next_column: strobe; begins the columns of a clock. The first one comes at least `start_cycles` cycles after
+        start_line: strobe; begins a line. The last column of the previous line must have left by then.
+        next_column: strobe; begins the columns of a clock. The first one must come at least `start_cycles` cycles after
             start_line.
         row_slope: signed, `factor_bits` bits; rows above the horizon. Constant from the third cycle after start_line
             on.
-        camera: `Camera`; the live one.
-        picture: `Picture`; the live one. run is not read.
+        camera: `Camera` of the live scene.
+        picture: `Picture` of the live scene; run is not read.
         rects: `Rects`; drives index and fetch, reads usable and rect.
         pixel: `Pixel`; output, laid out as in `Vga`: with two pixels per clock, the low half of each channel is the
             left pixel.
@@ -86,7 +87,7 @@ def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture,
     aim = aims[0]
 
     if config.turn:
-        # All that walks along a row starts from 0, by a step that is as long as the start; its steps are growth then.
+        # Everything that walks along a row starts at 0, and its first step is the start value; later steps are growth.
         start_sweep, enter = bit(), unsigned(config.pixels)
         grown = new_start
         starter = line_starter(
@@ -122,14 +123,14 @@ def beam_caster(clk, reset, start_line, next_column, row_slope, camera, picture,
         row_register(clk, load(i + 1, i), new_facet.word, word=word, **fixing(new_facet, known_facet(i, config)))
         for i, word in enumerate(facet_words)
     ]
-    # A register a field: a simulator need not take words apart to add growth in every column.
+    # One register per field, so that a simulator need not split words to add growth in every column.
     growth_registers = [
         row_register(clk, load(i + 1, i), grown.word(grown.slice(name)[0] + 1, grown.slice(name)[1]), word=word,
             **fixing(Record({name: bits}), known_growth(i, config)))
         for i, words in enumerate(growth_words)
         for (name, bits), word in zip(grown.layout.items(), words, strict=True)
     ]  # fmt: skip
-    # Of a camera that does not turn they are a column's, and a step of two lanes is twice that.
+    # If the camera does not turn, growth is per column, and a step of two lanes is twice that.
     doubled = [] if config.turn or config.pixels == 1 else ["0"]
     all_growths = side_by_side(
         [part for words in growth_words for word in reversed(words) for part in [*doubled, word]]

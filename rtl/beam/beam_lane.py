@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A lane of the beam engine: all that a column goes through, from a row's start to its pixel."""
+"""A lane of the beam engine: the whole pipeline of a column, from a row's start to its pixel."""
 
 from itertools import pairwise
 
@@ -40,17 +40,17 @@ def beam_lane(
         clk: the clock.
         start_line: strobe; begins a line.
         next_column: strobe; begins a column.
-        enter: strobe, read where the camera turns. In the cycle after it, growths and aim are the start, and all that
-            walks along the row takes it; next_column is low in both cycles.
-        load: `config.rectangles` bits, high for the rectangle that start belongs to; not read where the camera turns,
-            and start_line loads all of them.
-        start: `Walk`; the start of the rectangle that load names, for the first column of this lane. 0 where the camera
+        enter: strobe, read if the camera turns. In the next cycle, growths and aim are the start values, and everything
+            that walks along the row takes them; next_column is low in both cycles.
+        load: `config.rectangles` bits, high for the rectangle that start belongs to; not read if the camera turns:
+            start_line then loads all of them.
+        start: `Walk`; the start of the rectangle that load names, for the first column of this lane. 0 if the camera
             turns.
-        aim: `Direction`; D of the first column of this lane or, where the camera turns, what a step adds to D.
+        aim: `Direction`; D of the first column of this lane or, if the camera turns, the change of D per step.
         facets: `Facet` of each rectangle, side by side, the first in the lowest bits.
-        growths: what a step adds to the `Walk` of each rectangle, side by side, the first in the lowest bits.
-        camera: `Camera`; the live one.
-        picture: `Picture`; the live one. run is not read.
+        growths: the change per step of each rectangle's `Walk`, side by side, the first in the lowest bits.
+        camera: `Camera` of the live scene.
+        picture: `Picture` of the live scene; run is not read.
         pixel: `Pixel`; output, `beam_latency` cycles after next_column.
         config: the design.
     """
@@ -61,16 +61,16 @@ def beam_lane(
     seen = starts[-1] + winner_latency(config) + cell_latency(config)
     every_step = (1 << seen) - 1
 
-    # Bit i: a column was announced i + 1 cycles ago. next_column comes a long way, so it is registered before its use.
+    # Bit i: a column was announced i + 1 cycles ago. next_column has a long route, so it is registered before its use.
     steps = unsigned(seen)
 
     if config.turn:
-        # All that walks along a row starts from 0, by a step that is as long as the start; its steps are growth then.
+        # Everything that walks along a row starts at 0, and its first step is the start value; later steps are growth.
         entered, restart = bit(), bit()
 
         @always(clk.posedge)
         def follow_columns():
-            # It resets all that walks, all over the chip.
+            # restart goes to all walkers, all over the chip, so it is registered.
             restart.next = start_line
             entered.next = enter
             if enter:
@@ -103,13 +103,13 @@ def beam_lane(
         )
     ]  # fmt: skip
 
-    # The slope of a ray that has just got its winner: for its fold at the mirror, and for the pattern that it sees.
+    # The slope of a ray whose winner was just found: for its fold at the mirror, and for the pattern that it sees.
     late_slopes = [ray_slope(aim, config) for _ in range(passes if config.patterns else reflections)]
     late_walkers = [
         slope_walker(clk, restart, step_after(first + looked_up + 1), aim=aim, slope=slope, config=config)
         for first, slope in zip(starts, late_slopes, strict=False)
     ]
-    # The image of the room that a ray is in, when it is known what it meets there.
+    # The image of the room that a ray is in, at the time when its hit is known.
     images = [turn_of(config).tie({}), *(turn_of(config) for _ in range(reflections))]
 
     if config.patterns:
@@ -123,19 +123,20 @@ def beam_lane(
     else:
         sights = winners
 
-    # What each pass sees, and the same delayed until the last pass sees something too.
+    # The sight of each pass, delayed until that of the last pass is known.
     stages = [[one, *(one.twin() for _ in sights[number:])] for number, one in enumerate(sights, 1)]
     delays = [
         delay_line(clk, now.word, late.word, pass_latency(config)) for one in stages for now, late in pairwise(one)
     ]
-    # The last ray's image serves its pattern alone.
+    # The last ray's image is used only for its pattern.
     image_delays = [
         delay_line(clk, fold.image, image.word, fold_lead(config) + looked_up)
         for fold, image in zip(folds[1:], images[1:], strict=True)
         if config.patterns or fold is not folds[-1]
     ]
 
-    # What is between two columns' steps is of neither: a column that is more than a clock wide keeps what it has seen.
+    # Values between the steps of two columns belong to neither: a column of several clocks keeps its own until the next
+    # step.
     step_seen = step_after(seen)
 
     sees = [seen_of(config) for _ in numbers]
@@ -143,7 +144,7 @@ def beam_lane(
         look_up(clk, step_seen, facets=facets, sight=one[-1], seen=seen, config=config)
         for one, seen in zip(stages, sees, strict=True)
     ]
-    # A reflection that the design does not have sees nothing.
+    # A reflection without a pass sees nothing.
     missing = ["0" * len(seen_of(config).word)] * (config.reflections - reflections)
     all_seen = side_by_side([*(seen.word for seen in sees), *missing])
     blender = colour_blend(clk, seen=all_seen, picture=picture, pixel=pixel, config=config)

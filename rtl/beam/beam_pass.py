@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The primary ray, or one of its reflections: every rectangle at once, a column a clock."""
+"""A pass of the primary ray or of one of its reflections: all rectangles at once, one column per clock."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -33,15 +33,16 @@ def beam_pass(
         clk: the clock.
         start_line: strobe; begins a line, as in slope_walker. With a camera that turns it loads the start of all
             rectangles.
-        load: `config.rectangles` bits, high for the rectangle that start belongs to; not read where the camera turns.
+        load: `config.rectangles` bits, high for the rectangle that start belongs to; not read if the camera turns.
         step: strobe; a column's ray begins.
-        step_way: strobe; step or, for rays from the camera, which read their ways with the bounds, step_bounds.
-        step_bounds: strobe; step one cycle later, for what is read and done then.
-        step_slope: strobe; step two cycles later, for what is read and done then.
+        step_way: strobe; equal to step, or to step_bounds for rays from the camera, which read their ways with the
+            bounds.
+        step_bounds: strobe; step one cycle later.
+        step_slope: strobe; step two cycles later.
         start: `Walk`; the start of the rectangle that load names.
         aim: `Direction`; as in slope_walker.
         facets: `Facet` of each rectangle, side by side, the first in the lowest bits.
-        growths: what a step adds to the `Walk` of each rectangle, side by side, the first in the lowest bits.
+        growths: the change per step of each rectangle's `Walk`, side by side, the first in the lowest bits.
         fold: `Fold` of the ray, `fold_lead` cycles before its step; read only if reflected.
         nearest: `Candidate`; output, the nearest hit.
         winner: `Winner`; output, the rectangle of the nearest hit.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Pixel after pixel, just as the monitor takes them: no line buffer."""
+"""The renderer without a line buffer, which computes each pixel just in time for the monitor."""
 
 from myhdl import always_comb, always_seq, block, instances
 
@@ -14,7 +14,7 @@ from raycaster.rtl.video.video_generator import video_generator
 
 @block
 def beam_renderer(clk, reset, picture, camera, rects, progress, vga, config: Configuration):
-    """Show the live scene, each pixel computed just as the monitor takes it.
+    """Show the live scene, and compute each pixel just in time for the monitor.
 
     Every line is computed while it is shown, again for each line of a doubled row, so nothing can be late: underrun
     stays low. The video generator announces each column `beam_latency` cycles before its pixel is due.
@@ -22,8 +22,8 @@ def beam_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
     Args:
         clk: the monitor's clock.
         reset: synchronous, active high.
-        picture: `Picture`; the live one.
-        camera: `Camera`; the live one.
+        picture: `Picture` of the live scene.
+        camera: `Camera` of the live scene.
         rects: `Rects`; drives index and fetch, reads usable and rect.
         progress: `Progress`; output. row_cycles: cycles since the line's first column, including the present one; it
             saturates. group_cycles: cycles of a pixel or a pair of pixels, which is 1. underrun: low.
@@ -67,7 +67,7 @@ def beam_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
     def aim():
         row_slope.next = horizon_row - row
 
-    # A line is set up from the leading edge of its horizontal sync on; its row has been counted by then.
+    # The setup of a line starts at the leading edge of its horizontal sync; its row has been counted by then.
     @always_seq(clk.posedge, reset=reset)
     def remember_sync():
         hs_before.next = vga.hs
@@ -76,7 +76,7 @@ def beam_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
     def find_line():
         start_line.next = (vga.hs == hs_active) and (hs_before != hs_active)
 
-    # Which lines show rows: a row has `doubling` of them.
+    # in_picture: the line shows a row; each row has `doubling` lines.
     @always_seq(clk.posedge, reset=reset)
     def count_lines():
         if scan.start_row:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whether a ray meets a plane between a rectangle's two bounds on one axis, by products that are there already."""
+"""A test of a ray against a rectangle's two bounds on one axis, from existing products."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -8,20 +8,21 @@ from raycaster.rtl.common.widths import bit, signed
 
 @block
 def bound_tester(clk, step, back, way, low, high, between):
-    """Test whether a ray meets a plane between a rectangle's two bounds on one of the axes beside the plane's.
+    """Test whether a ray meets a plane between a rectangle's two bounds on an axis other than the plane's axis.
 
     On that axis, the ray meets the plane at way / D[a], and the bounds are at low / D[a] and high / D[a]. If D[a] is
-    negative the bounds have changed places, and way <= low is 2 way < 2 low + 1: one comparison per bound, with the
-    sign as its lowest bit.
+    negative, the bounds change places. As way <= low is the same as 2 way < 2 low + 1, one comparison per bound serves
+    both signs, with the sign as the lowest bit.
 
     Args:
         clk: the clock.
         step: strobe; takes back, way, low and high.
         back: flag; D[a] is negative.
-        way: signed; what is added to the eye, times D[a].
-        low: signed; from the eye to the lower bound, times D[a].
-        high: signed, as wide as low; from the eye to the upper bound, times D[a].
-        between: output flag; the ray meets the plane between the bounds. Valid from the cycle after step to the next.
+        way: signed; distance from the eye to the point on the plane, times D[a].
+        low: signed; distance from the eye to the lower bound, times D[a].
+        high: signed, as wide as low; distance from the eye to the upper bound, times D[a].
+        between: output flag; the ray meets the plane between the bounds. Valid from the cycle after step until the next
+            step.
     """
     edge_bits, bound_bits = len(way) + 1, len(low) + 1
     twice, way_edge = signed(edge_bits), signed(edge_bits)

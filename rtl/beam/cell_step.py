@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A step of the division that tells in which cell of a pattern a ray hits."""
+"""A step of the division that finds the pattern cell of a hit."""
 
 from myhdl import always, always_comb, block, concat, instances
 
@@ -11,13 +11,13 @@ from raycaster.rtl.common.widths import bit, signed, unsigned
 def cell_step(clk, before, after, place: int):
     """Find one bit of the quotient of before.rest and before.divisor: a step of restoring division.
 
-    The bit is worth 1 << place. If nothing is hit the quotient may be too large, and is don't care.
+    The bit's weight is 1 << place. If nothing is hit, the quotient may be too large, and is don't care.
 
     Args:
         clk: the clock.
         before: `CellDivision` of place + 1; a new one each cycle.
-        after: `CellDivision` of place; output, a cycle after before. odd becomes the quotient's bit where a cell is as
-            large as that bit is worth, and is before.odd otherwise.
+        after: `CellDivision` of place; output, a cycle after before. odd becomes the quotient's bit if its weight is
+            the cell size, and is before.odd otherwise.
         place: the number of the quotient's bit.
     """
     divisor_bits = len(before.divisor)
@@ -44,7 +44,7 @@ def cell_step(clk, before, after, place: int):
     def bring_down():
         remaining.next = concat(rest, before.rest[place:])
 
-    # Where nothing is hit the quotient may be too large, and is don't care.
+    # If nothing is hit, the quotient may be too large, and is don't care.
     @always_comb
     def choose():
         rest.next = high[divisor_bits:]

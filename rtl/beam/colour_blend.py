@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The colour of a pixel: what its ray and the reflections of it saw, all at once."""
+"""The colour of a pixel, blended from its ray and all the ray's reflections at once."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -18,12 +18,12 @@ from raycaster.rtl.common.widths import bit, unsigned
 def colour_blend(clk, seen, picture, pixel, config: Configuration):
     """Blend the colours that a ray and its reflections saw into a pixel, one per clock, `blend_latency` cycles later.
 
-    From the first ray that found nothing onwards, the background is shown.
+    From the first ray that misses on, the background is shown.
 
     Args:
         clk: the clock.
         seen: `Seen` of the ray and of each of its reflections, side by side, the ray in the lowest bits.
-        picture: `Picture`; the live one. run is not read.
+        picture: `Picture` of the live scene; run is not read.
         pixel: `Pixel`; output, `blend_latency` cycles after seen.
         config: the design.
     """
@@ -39,7 +39,7 @@ def colour_blend(clk, seen, picture, pixel, config: Configuration):
         for number, one, shade in zip(rays, ones, shades, strict=True)
     ]  # fmt: skip
 
-    # From the last mirror to the first, what is behind it joins its own colour.
+    # From the last mirror to the first, a mirror's own colour is joined with the colour behind it.
     behind = [[shades[-1].red, shades[-1].green, shades[-1].blue]]
     for _ in range(mirrors):
         behind.append([unsigned(len(channel) + (2 if mixes(config) else 1)) for channel in behind[-1]])
@@ -53,7 +53,7 @@ def colour_blend(clk, seen, picture, pixel, config: Configuration):
     )
 
     if mixes(config):
-        # A mirror's own colour waits until it is known what is behind.
+        # A mirror's own colour waits until the colour behind it is known.
         nears = [*(shade.twin() for shade in shades[: mirrors - 1]), shades[mirrors - 1]]
         waits = [
             delay_line(clk, shades[number].word, nears[number].word, (mirrors - 1 - number) * MIX_LATENCY)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One channel of what a ray sees in a mirror that shows half."""
+"""A channel of the colour of a mirror that reflects half."""
 
 from myhdl import always_comb, block, instances
 
@@ -8,13 +8,14 @@ from raycaster.rtl.common.widths import unsigned
 
 @block
 def colour_mean(own, behind, reflections, mean, number: int):
-    """Add the two halves of one channel in a mirror that shows half: mean = own + behind, in units of a half.
+    """Add the two halves of one channel of a mirror that reflects half: mean = own + behind, in units of a half.
 
     No bit is lost. Combinational.
 
     Args:
         own: unsigned, 8 bits; the mirror's colour.
-        behind: unsigned, the width of own and a fraction bit for each mirror behind this one; what the mirror shows.
+        behind: unsigned, the width of own and a fraction bit for each mirror behind this one; the colour that the
+            mirror shows.
         reflections: unsigned, `REFLECTION_BITS` bits; the number of reflections that the scene asks for. If it equals
             number, own counts twice, as nothing is behind; if it is less, mean is don't care.
         mean: unsigned, one bit wider than behind; output.

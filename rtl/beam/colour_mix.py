@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One channel of what a mirror shows: its own colour, and as much of what is behind it as it mirrors."""
+"""A channel of a mirror's colour, mixed from its own colour and the colour that it mirrors."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -15,8 +15,9 @@ def colour_mix(clk, near, mirror, far, mixed):
     Args:
         clk: the clock.
         near: unsigned, 8 bits; the mirror's own colour.
-        mirror: unsigned, `MIRROR_BITS` bits, 0 to 4; how much it mirrors, in quarters.
-        far: unsigned, the width of near and two fraction bits for each mirror behind this one; what the mirror shows.
+        mirror: unsigned, `MIRROR_BITS` bits, 0 to 4; the share that it mirrors, in quarters.
+        far: unsigned, the width of near and two fraction bits for each mirror behind this one; the colour that the
+            mirror shows.
         mixed: unsigned, two bits wider than far; output, `MIX_LATENCY` cycles after the other ports.
     """
     near_bits, far_bits, mixed_bits = len(near), len(far), len(mixed)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a ray adds to its pixel."""
+"""The colour that a ray adds to its pixel."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -11,15 +11,15 @@ from raycaster.rtl.common.widths import MIRROR_BITS, bit, unsigned
 def colour_seen(clk, reached, seen, picture, found, shade, number: int):
     """Choose the colour that a ray adds to its pixel, `SEEN_LATENCY` cycles later.
 
-    It is the colour that the ray saw, or, from the first ray that found nothing onwards, the background. Nothing is
-    behind the last hit that a scene asks for.
+    It is the colour that the ray saw or, from the first ray that missed on, the background. The last hit that a scene
+    asks for mirrors nothing.
 
     Args:
         clk: the clock.
-        reached: flag; all rays before this one have found something.
+        reached: flag; all rays before this one have hit something.
         seen: `Seen` of this ray.
-        picture: `Picture`; the live one. run is not read.
-        found: flag; output, combinational: this ray and all before it have found something.
+        picture: `Picture` of the live scene; run is not read.
+        found: flag; output, combinational: this ray and all before it have hit something.
         shade: `Shade`; output, `SEEN_LATENCY` cycles after seen.
         number: the number of reflections before this ray.
     """
@@ -30,7 +30,7 @@ def colour_seen(clk, reached, seen, picture, found, shade, number: int):
         here.next = reached and seen.found
 
     @always_comb
-    def tell():
+    def report():
         found.next = here
 
     @always_comb

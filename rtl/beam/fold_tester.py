@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whether a folded ray hits a rectangle."""
+"""A test of a folded ray against a rectangle."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -13,12 +13,12 @@ from raycaster.rtl.common.widths import bit, signed, unsigned
 
 @block
 def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope, fold, index, hit, staged: bool):
-    """Test whether a ray that ray_fold folds hits a rectangle: a ray per clock, the hit `TESTER_LATENCY` cycles later.
+    """Test whether a ray folded by ray_fold hits a rectangle: one ray per clock, the hit `TESTER_LATENCY` cycles later.
 
-    Along p the folded ray meets the plane at W = +-n D[p] + fold.p, over D[a]: it hits if that is between the two
-    bounds. It must be beyond its last mirror, on the side that it runs to: on
-    another axis W is compared with the mirror's border, on the same axis the planes' distances are compared. Right at
-    the mirror it hits rectangles on an axis on which it has met no mirror in that point.
+    Along p the folded ray meets the plane at W / D[a], with W = +-n D[p] + fold.p: it hits if that is between the two
+    bounds. The hit must be beyond the last mirror, on the side that the ray runs to: for a rectangle on another axis W
+    is compared with the mirror's border, on the same axis the planes' distances are compared. Exactly at the mirror,
+    the ray hits only rectangles on an axis on which it has met no mirror at that point.
 
     The ray's cycle is the one in which step_way is high. A stage without its strobe keeps its contents. The block takes
     its widths from its ports.
@@ -35,7 +35,7 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
         fold: `Fold` of the ray; read a cycle before the ray's cycle if staged, otherwise in the ray's cycle.
         index: unsigned, as wide as hit.index; the rectangle's number, constant.
         hit: `Candidate`; output, `TESTER_LATENCY` cycles after the ray's cycle.
-        staged: registers the fields that the block chooses from fold and slope; see is_staged.
+        staged: register the fields that the block chooses from fold and slope; see is_staged.
     """
     way_q = walk.way_q if walk.has("way_q") else facet.way_q
     numerator_bits, slope_bits = len(hit.numerator), len(slope.dy)
@@ -44,7 +44,7 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
     back, turned, turned_p, turned_q, on_p, on_q, met = (bit() for _ in range(7))
     offset_p, offset_q, border, turn = signed(sum_bits), signed(sum_bits), signed(product_bits), signed(turn_bits)
     on_x, on_y, on_z, flip_p, flip_q = (bit() for _ in range(5))
-    # What belongs to the plane's axis of the fold; mirror_on_p: the last mirror is across p.
+    # The fields of fold for the plane's axis; mirror_on_p: the last mirror is across p.
     seen = Record({
         "turned": 1, "flip_p": 1, "flip_q": 1, "mirror_on_p": 1, "mirror_on_q": 1, "mirror_back": 1, "met": 1,
         "offset_p": Signed(sum_bits), "offset_q": Signed(sum_bits), "border": Signed(product_bits),
@@ -67,7 +67,7 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
     numerator_2 = unsigned(numerator_bits)
     e, size_a = unsigned(slope_bits), unsigned(slope_bits)
 
-    # D[a] is negative; e is |D[a]|; turned: a mirror has turned the ray around.
+    # back: D[a] is negative; e is |D[a]|; turned: mirrors have reversed the ray along a.
     of_back, of_mirror = (fold.back_x, fold.back_y, fold.back_z), (on_x, on_y, on_z)
     choices = [
         by_axis(facet.axis, *along(*values), chosen, width=len(chosen))
@@ -89,7 +89,7 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
             (folded_p_1, walk.low_p, walk.high_p, inside_p), (folded_q_1, walk.low_q, walk.high_q, inside_q),
         )
     ]  # fmt: skip
-    # While a row is loaded it may overflow, and is don't care.
+    # While a row is loaded, numerator may overflow, and is don't care.
     size = magnitude(distance_1, numerator)
 
     @always_comb
@@ -128,7 +128,7 @@ def fold_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slop
         else:
             beyond_plane.next = facet.distance > seen.distance
 
-    # ~way is one less than -way; the fold's offset is one more in return.
+    # ~way is one less than -way; the fold's offset is one more to compensate.
     @always_comb
     def turn_ways():
         turned_way_p.next = walk.way_p

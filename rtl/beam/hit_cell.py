@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""In which cell of its pattern a rectangle is hit, along one axis."""
+"""The cell of its pattern in which a rectangle is hit, along one axis."""
 
 from itertools import pairwise
 
@@ -14,10 +14,10 @@ from raycaster.rtl.common.widths import CELL_BITS, bit, signed, unsigned
 
 @block
 def hit_cell(clk, turn, eye, back, slope, numerator, denominator, cell_size, odd):
-    """Find in which cell of its pattern a rectangle is hit along one axis, a hit per clock.
+    """Find the cell of its pattern in which a rectangle is hit, along one axis; one hit per clock.
 
-    The quotient of E' * denominator + D' * numerator and the denominator is a world coordinate, with the mirrored eye
-    E' = E + T and slope D' = +-D. A restoring division finds its bit that is worth a cell.
+    (E' * denominator + D' * numerator) / denominator is a world coordinate, with the mirrored eye E' = E + T and slope
+    D' = +-D. A restoring division finds the quotient's bit whose weight is the cell size.
 
     Args:
         clk: the clock.
@@ -26,8 +26,8 @@ def hit_cell(clk, turn, eye, back, slope, numerator, denominator, cell_size, odd
         back: flag; D' is -D. Read with turn.
         slope: signed; D, read a cycle after turn.
         numerator: unsigned; t = numerator / denominator of the hit, read with turn.
-        denominator: unsigned, a bit narrower than slope; read with turn.
-        cell_size: unsigned, 3 bits; log2 of the cell's size in world units, less three. Read with turn.
+        denominator: unsigned, one bit narrower than slope; read with turn.
+        cell_size: unsigned, 3 bits; log2 of the cell's size in world units, minus three. Read with turn.
         odd: output flag; the lowest bit of floor(coordinate / cell), `CELL_LATENCY` - 1 cycles after turn. A cell as
             large as the world, or larger, is even.
     """
@@ -79,7 +79,7 @@ def hit_cell(clk, turn, eye, back, slope, numerator, denominator, cell_size, odd
         if back_4:
             total.next = base_way - way
 
-    # Of a hit it is within the world. Otherwise it is don't care.
+    # For a hit the quotient is within the world; otherwise it is don't care.
     start = dividend.joined(rest=total(dividend_bits, 0), divisor=denominator_4, cell=cell_4, odd=False)
 
     @always(clk.posedge)

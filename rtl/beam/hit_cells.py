@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""In which cells of its pattern a rectangle is hit."""
+"""The cells of its pattern in which a rectangle is hit, along both axes."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -23,10 +23,10 @@ from raycaster.rtl.common.widths import (
 
 @block
 def hit_cells(clk, turn, nearest, winner, slope, camera, sight, config: Configuration):
-    """Find in which cells of its pattern a rectangle is hit: a hit per clock, the cells `CELL_LATENCY` cycles later.
+    """Find the cells of its pattern in which a rectangle is hit: one hit per clock, `CELL_LATENCY` cycles later.
 
     With the mirrored eye E' and slope D' (Heckbert and Hanrahan 1984), the ray is at E' + D' t, and t is the hit's
-    numerator / denominator: `hit_cell` has the division. Only the nearest rectangle's cells are found.
+    numerator / denominator; `hit_cell` divides. Only the nearest rectangle's cells are found.
 
     Args:
         clk: the clock.
@@ -34,7 +34,7 @@ def hit_cells(clk, turn, nearest, winner, slope, camera, sight, config: Configur
         nearest: `Candidate`; the nearest hit.
         winner: `Winner`; the rectangle of nearest, in the same cycle.
         slope: `Direction`; D, read `CELL_SLOPE_AT` cycles after nearest.
-        camera: `Camera`; the live one.
+        camera: `Camera` of the live scene.
         sight: `Sight`; output, winner with odd_u and odd_v, `CELL_LATENCY` cycles after it.
         config: the design.
     """

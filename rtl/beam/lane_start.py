@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the columns of two lanes start from: the second's a column further than the first's."""
+"""The start values of two lanes, one column apart."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -10,15 +10,15 @@ from raycaster.rtl.common.widths import signed
 def lane_start(clk, load, start, growth, late_load, first_start, second_start):
     """Form the starts of two lanes: the second lane is a column further along the row than the first.
 
-    The outputs follow load and start a cycle later. The first lane could do without a register, but its start goes all
-    over the chip, from the multipliers' own registers.
+    The outputs follow load and start a cycle later. The first lane's start has a register too, because it goes all over
+    the chip from the multipliers' own registers.
 
     Args:
         clk: the clock.
-        load: a bit for each rectangle, high for the rectangle that start and growth belong to.
+        load: one bit per rectangle, high for the rectangle that start and growth belong to.
         start: `Walk`; the start of the row's first column.
-        growth: `Walk`; what a column adds to start.
-        late_load: a bit for each rectangle; output, load a cycle later.
+        growth: `Walk`; the change of start per column.
+        late_load: one bit per rectangle; output, load a cycle later.
         first_start: `Walk`; output, start a cycle later.
         second_start: `Walk`; output, the sum of start and growth a cycle later.
     """

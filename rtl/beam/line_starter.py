@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What each line of a camera that turns begins with: its first ray, and then what a column adds."""
+"""The start of a line, for a camera that turns: its first ray, and then the change per column."""
 
 from myhdl import always, always_comb, block, concat, instances
 
@@ -10,25 +10,25 @@ from raycaster.rtl.common.widths import BASIS_BITS, exact_slope_bits, factor_bit
 
 @block
 def line_starter(clk, reset, start_line, camera, row_slope, loaded, aim, start_sweep, enter, config: Configuration):
-    """Let rect_setup go through the rectangles twice: with the first ray's slope, and with what a column adds to it.
+    """Run rect_setup through the rectangles twice: with the first ray's slope, and with its change per column.
 
-    With two pixels per clock there are three sweeps: with the first ray's slope, the second one's, and what two columns
-    add.
+    With two pixels per clock there are three sweeps: with the first ray's slope, the second ray's slope, and the change
+    per two columns.
 
     Args:
         clk: the clock.
         reset: synchronous, active high.
         start_line: strobe; begins a line.
-        camera: `Camera`, with its basis; the live one.
+        camera: `Camera` of the live scene, with its basis.
         row_slope: signed, `factor_bits` bits; rows above the horizon. Constant from the third cycle after start_line
             on.
         loaded: strobe; rect_setup's last load of a sweep.
         aim: `Direction`; output, D = view distance * forward - centre column * right + row_slope * up of the line's
-            first ray, and from the second cycle after enter on right. With two pixels per clock, aim goes on with each
+            first ray and, from the second cycle after enter, right. With two pixels per clock, aim advances with each
             bit of enter: to D of the second ray, and then to twice right.
         start_sweep: strobe; output, rect_setup starts.
-        enter: `config.pixels` bits, output; bit i is high with loaded of sweep i, so that in the cycle after it all
-            that walks along the row in lane i may take its start.
+        enter: `config.pixels` bits, output; bit i is high with loaded of sweep i, so that in the next cycle everything
+            that walks along the row in lane i takes its start.
         config: the design.
     """
     slope_bits = exact_slope_bits(config) + 1
@@ -45,7 +45,8 @@ def line_starter(clk, reset, start_line, camera, row_slope, loaded, aim, start_s
     def shift():
         later.next = sweeps << 1
 
-    # ages, bit i: the line started i + 1 cycles ago; sweeps, bit i: sweep i is next or goes on, which enters lane i.
+    # ages, bit i: the line started i + 1 cycles ago; sweeps, bit i: sweep i, which enters lane i, is next or in
+    # progress.
     @always(clk.posedge)
     def follow():
         ages.next = concat(ages[AIM_LATENCY - 2 :], start_line)
@@ -89,7 +90,8 @@ def line_starter(clk, reset, start_line, camera, row_slope, loaded, aim, start_s
         y_product.next = factor * y
         z_product.next = factor * z
 
-    # Before the last lane's sweep aim is a column's, and in the end it is what a step of all lanes adds.
+    # aim advances by one column before each further lane's sweep, and in the end it is the change per step of all
+    # lanes.
     @always(clk.posedge)
     def accumulate():
         if ages[0]:

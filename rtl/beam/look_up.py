@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a ray sees."""
+"""The look of the rectangle that a ray sees."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -12,7 +12,7 @@ from raycaster.rtl.engine.pattern_colour import pattern_colour
 
 @block
 def look_up(clk, step, facets, sight, seen, config: Configuration):
-    """Look up what a ray sees: the look of the rectangle that sight names, `LOOK_UP_LATENCY` cycles after a step.
+    """Look up the colour that a ray sees on the rectangle that sight names, `LOOK_UP_LATENCY` cycles after a step.
 
     Args:
         clk: the clock.

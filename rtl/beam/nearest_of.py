@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The nearest of several hits, in rounds of contests of two."""
+"""The nearest of several hits, by comparing pairs in rounds."""
 
 from myhdl import block, instances
 
@@ -10,17 +10,17 @@ from raycaster.rtl.common.widths import side_by_side
 
 @block
 def nearest_of(clk, candidates, nearest, rounds: int, latency: int):
-    """Find the nearest of several candidates, or the first of the nearest ones, rounds * latency cycles later.
+    """Find the nearest of several candidates, the first one at equal t, rounds * latency cycles later.
 
-    Neighbours meet in the first round, and their winners in the later ones; the last of an odd number is unopposed, and
-    so is a single one.
+    Neighbours are compared in the first round, and their winners in later rounds; the last of an odd number wins
+    unopposed, and so does a single one.
 
     Args:
         clk: the clock.
         candidates: at most 2^rounds words of `Candidate`, side by side, the first in the lowest bits.
         nearest: `Candidate`; output, rounds * latency cycles after candidates.
         rounds: the number of rounds.
-        latency: cycles of a round, as in nearest_of_two.
+        latency: cycles per round, as in nearest_of_two.
     """
     ones = [nearest.twin().cut(candidates, i) for i in range(len(candidates) // len(nearest.word))]
     winners = [nearest] if rounds == 1 else [nearest.twin() for _ in ones[::2]]

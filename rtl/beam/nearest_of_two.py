@@ -6,22 +6,22 @@ from myhdl import always, always_comb, block, concat, instances, intbv
 from raycaster.rtl.common.widths import bit, unsigned
 
 MULTIPLIER_BITS = 18
-"""Of a factor that one hard multiplier takes; a denominator has some more, which are added up."""
+"""Width of a factor of one hard multiplier; the remaining bits of a wider denominator use adders."""
 
 
 @block
 def nearest_of_two(clk, first, second, nearest, latency: int):
-    """Find the nearer of two candidates, a pair per clock, latency cycles later; the first where both are at one t.
+    """Find the nearer of two candidates, one pair per clock, latency cycles later; the first one at equal t.
 
-    t = numerator / denominator is nearer than another where numerator * other denominator < other numerator *
-    denominator. A candidate that is not valid loses; where neither is valid, nearest is not valid either.
+    t = numerator / denominator is nearer than another if numerator * other denominator < other numerator * denominator.
+    A candidate that is not valid loses; if neither is valid, nearest is not valid either.
 
     Args:
         clk: the clock.
         first: `Candidate`.
         second: `Candidate`.
         nearest: `Candidate`; output, latency cycles after first and second.
-        latency: 2, or 3 where products are registered twice.
+        latency: 2, or 3 if products are registered twice.
     """
     numerator_bits, denominator_bits = len(first.numerator), len(first.denominator)
     product_bits = numerator_bits + denominator_bits
@@ -35,7 +35,8 @@ def nearest_of_two(clk, first, second, nearest, latency: int):
         second_1.word.next = second.word
 
     if denominator_bits > MULTIPLIER_BITS:
-        # What the bits above a multiplier's add is registered by itself, and joins the product in the second cycle.
+        # The part of a product from the bits above a multiplier's width has its own register, and is added in the
+        # second cycle.
         high_bits = denominator_bits - MULTIPLIER_BITS
         more_bits = numerator_bits + high_bits
         first_high, second_high = unsigned(high_bits), unsigned(high_bits)
@@ -49,7 +50,7 @@ def nearest_of_two(clk, first, second, nearest, latency: int):
             first_high.next = first.denominator[:MULTIPLIER_BITS]
             second_high.next = second.denominator[:MULTIPLIER_BITS]
 
-        # A sum of what the bits weigh, as a product would take a multiplier.
+        # A sum of shifted numerators, because a product would use a multiplier.
         @always_comb
         def weigh_high_bits():
             first_weight = intbv(0)[more_bits:]
@@ -109,7 +110,7 @@ def nearest_of_two(clk, first, second, nearest, latency: int):
     def compare():
         take_second.next = late_second.valid and ((not late_first.valid) or (second_way < first_way))
 
-    # Where the first is taken and is not valid, neither is.
+    # If the first is taken and is not valid, neither is valid.
     @always(clk.posedge)
     def choose():
         nearest.word.next = late_first.word

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How a straight ray folds back into the room at one more mirror."""
+"""The folding of a straight ray back into the room at one more mirror."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -9,19 +9,20 @@ from raycaster.rtl.common.widths import AXIS_BITS, bit, signed, unsigned
 
 @block
 def ray_fold(clk, before, last, slope, fold):
-    """Fold a straight ray back into the room at one more mirror, a ray per clock, `FOLD_LATENCY` cycles later.
+    """Fold a straight ray back into the room at one more mirror, one ray per clock, `FOLD_LATENCY` cycles later.
 
-    A mirror leaves the ray straight and turns the room behind it (Heckbert and Hanrahan 1984 mirror the eye in the same
-    way): to a point X on the straight ray from the eye E belongs the point x - E = +-(X - E) + T in the room, component
-    by component. A mirror at the distance n on its axis makes that 2 n - (x - E). A plane at the distance n on axis a
-    is then met where X[a] - E[a] = +-(n - T[a]), and there the ray's component p, times D[a], is +-n D[p] + C, with C =
-    T[p] D[a] -+ T[a] D[p]: the same for all rectangles on the axis, so no rectangle needs a multiplier.
+    The ray stays straight, and each mirror reflects the room instead (Heckbert and Hanrahan 1984 mirror the eye in the
+    same way): a point X on the straight ray from the eye E is the point x in the room with x - E = +-(X - E) + T,
+    component by component. A mirror at the distance n changes that to 2 n - (x - E) on its axis. A plane at the
+    distance n on axis a is then met where X[a] - E[a] = +-(n - T[a]), and there the ray's component p, times D[a], is
+    +-n D[p] + C, with C = T[p] D[a] -+ T[a] D[p]. C is the same for all rectangles on the axis, so no rectangle needs a
+    multiplier.
 
     The block takes its widths from its ports.
 
     Args:
         clk: the clock.
-        before: `Turn` of the fold at the mirror before, all 0 where there was none.
+        before: `Turn` of the fold at the previous mirror, all 0 if there was none.
         last: `Reflector`; the mirror, read in the same cycle as before.
         slope: `Direction`; D, read a cycle after before and last.
         fold: `Fold`; output, `FOLD_LATENCY` cycles after before and last.
@@ -75,7 +76,7 @@ def ray_fold(clk, before, last, slope, fold):
     def fit():
         turned.next = difference[turn_bits:].signed()
 
-    # T, which components of the folded ray run back, and the axes of all mirrors in the point that it leaves.
+    # T, the axes along which mirrors have reversed the ray, and the axes of all mirrors at the point that it leaves.
     @always(clk.posedge)
     def stage_1():
         met_x.next = last.at_mirror and before.met_x
@@ -131,7 +132,7 @@ def ray_fold(clk, before, last, slope, fold):
         y_back.next = slope.y < 0
         z_back.next = slope.z < 0
 
-    # Which components of the folded ray run back; mirror_back: that along the mirror's axis.
+    # folds_x ...: components of the folded ray that are negative; mirror_back: the one along the mirror's axis.
     @always_comb
     def fold_back():
         folds_x.next = back_x != x_back
@@ -144,7 +145,7 @@ def ray_fold(clk, before, last, slope, fold):
     def leave_mirror():
         mirror_back_2.next = mirror_back
 
-    # C for planes whose two components run alike.
+    # C if the ray is reversed along both axes or along neither.
     @always_comb
     def combine():
         xy.next = y_by_x - x_by_y
@@ -157,7 +158,7 @@ def ray_fold(clk, before, last, slope, fold):
         not_z_by_x.next = ~z_by_x
         not_z_by_y.next = ~z_by_y
 
-    # C where they do not, one more than the sum, as it is added to a complement: a + b + 1 = a - ~b.
+    # C + 1 if it is reversed along one of them, as C is then added to a complement: a + b + 1 = a - ~b.
     @always_comb
     def make_good():
         sum_xy_1.next = x_by_y - not_y_by_x
@@ -182,7 +183,7 @@ def ray_fold(clk, before, last, slope, fold):
             q_y.next = sum_yz_1
             p_z.next = sum_yz_1
 
-    # A register a field: a simulator need not take the word apart for every rectangle.
+    # One register per field, so that a simulator need not split the word for every rectangle.
     @always(clk.posedge)
     def stage_3():
         mirror_back_3.next = mirror_back_2

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whether a ray from the camera hits a rectangle."""
+"""A test of a ray from the camera against a rectangle."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -11,9 +11,9 @@ from raycaster.rtl.common.widths import bit, unsigned
 
 @block
 def ray_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope, index, hit, staged: bool):
-    """Test whether a ray from the camera hits a rectangle: a ray per clock, the hit `TESTER_LATENCY` cycles later.
+    """Test whether a ray from the camera hits a rectangle: one ray per clock, the hit `TESTER_LATENCY` cycles later.
 
-    Along p the ray meets the plane at W = n D[p], over D[a]: it hits if that is between the two bounds.
+    Along p the ray meets the plane at W / D[a], with W = n D[p]: it hits if that is between the two bounds.
 
     The ray's cycle is the one in which step_way is high. The block takes its widths from its ports.
 
@@ -27,8 +27,8 @@ def ray_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope
         signs: `Signs` of D; read with step_way.
         slope: `Slope`, the magnitudes of D; read with step_bounds if staged, otherwise with step_slope.
         index: unsigned, as wide as hit.index; the rectangle's number, constant.
-        hit: `Candidate`; output, `TESTER_LATENCY` cycles after the ray's cycle, and never at a mirror.
-        staged: registers the component that the block chooses from slope; see is_staged.
+        hit: `Candidate`; output, `TESTER_LATENCY` cycles after the ray's cycle; at_mirror is 0.
+        staged: register the component that the block chooses from slope; see is_staged.
     """
     way_q = walk.way_q if walk.has("way_q") else facet.way_q
     numerator_bits, slope_bits = len(hit.numerator), len(slope.dy)
@@ -38,7 +38,7 @@ def ray_tester(clk, step_way, step_bounds, step_slope, facet, walk, signs, slope
     size, numerator = unsigned(len(facet.distance) - 1), unsigned(numerator_bits)
     e, size_a = unsigned(slope_bits), unsigned(slope_bits)
 
-    # D[a] is negative; e is |D[a]|.
+    # back: D[a] is negative; e is |D[a]|.
     sign = by_axis(facet.axis, signs.dx, signs.dy, signs.dz, back, width=len(back))
     size_chosen = by_axis(facet.axis, slope.dx, slope.dy, slope.dz, size_a if staged else e, width=len(size_a))
     along_p = bound_tester(clk, step_bounds, back_1, way=walk.way_p, low=walk.low_p, high=walk.high_p, between=inside_p)

@@ -8,11 +8,11 @@ from raycaster.rtl.common.widths import signed
 
 @block
 def rect_walker(clk, load, step_way, step_bounds, start, growth, walk):
-    """Walk a rectangle's products from column to column, without a multiplier.
+    """Advance a rectangle's products from column to column, without a multiplier.
 
     Integers at their full width do not drift, so the products of every column are exact (forward differences).
     fold_tester reads the ways and the bounds in different cycles, so they have separate steps. Each field has its own
-    register: a simulator need not take the word of walk apart to add to it.
+    register, so that a simulator need not split the word of walk to add to it.
 
     Args:
         clk: the clock.
@@ -20,8 +20,8 @@ def rect_walker(clk, load, step_way, step_bounds, start, growth, walk):
         step_way: strobe; adds growth to the ways. load takes precedence.
         step_bounds: strobe; adds growth to the bounds. load takes precedence.
         start: `Walk`, as wide as walk; read with load.
-        growth: `Walk`; what a step adds, read with the steps.
-        walk: `Walk`; output, start from the cycle after load on, and more by growth after each step.
+        growth: `Walk`; the change per step, read with the steps.
+        walk: `Walk`; output, start from the cycle after load on, plus growth after each step.
     """
     product_bits = len(walk.way_p)
     way_p, way_q, low_p, high_p, low_q, high_q = (signed(product_bits) for _ in range(6))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What all columns of a row have in common, for one rectangle."""
+"""A register for the data that all columns of a row share, for one rectangle."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -8,9 +8,9 @@ from raycaster.rtl.common.widths import unsigned
 
 @block
 def row_register(clk, load, given, live, known, word):
-    """Keep the word of a record from load to load.
+    """Hold the word of a record from load to load.
 
-    Synthesis removes the registers of what a fixed scene makes known.
+    Synthesis removes the registers of the bits that are known in a fixed scene.
 
     Args:
         clk: the clock.

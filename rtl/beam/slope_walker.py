@@ -9,7 +9,7 @@ from raycaster.rtl.common.widths import exact_slope_bits
 
 
 def ray_slope(aim: Direction, config: Configuration) -> Direction:
-    """What a `slope_walker` walks: of a camera that does not turn, the column changes one component."""
+    """Return the slope that a `slope_walker` drives; if the camera does not turn, only y changes with the column."""
     slope = Direction(exact_slope_bits(config) + 1)
     if not config.turn:
         slope.x, slope.z = aim.x, aim.z
@@ -18,18 +18,18 @@ def ray_slope(aim: Direction, config: Configuration) -> Direction:
 
 @block
 def slope_walker(clk, start_line, step, aim, slope, config: Configuration):
-    """Walk a ray's slope D from column to column.
+    """Advance a ray's slope D from column to column.
 
-    A step is as many columns as a clock has pixels.
+    A step covers as many columns as a clock has pixels.
 
     Args:
         clk: the clock.
         start_line: strobe; begins a line.
-        step: strobe; goes on to the next column.
-        aim: `Direction`; D of the first column where the camera does not turn, and only D[y] changes. Otherwise what a
-            step adds to D, which is 0 after start_line.
+        step: strobe; advances to the next column.
+        aim: `Direction`; if the camera turns, the change of D per step, and D is 0 after start_line. Otherwise D of the
+            first column, and only D[y] changes.
         slope: `Direction`; output, D. Valid from the cycle after start_line, for the first column, and from the cycle
-            after each step, for the next one. Where the camera does not turn, x and z are those of aim.
+            after each step, for the next one. If the camera does not turn, x and z are those of aim.
         config: the design.
     """
     columns = config.pixels

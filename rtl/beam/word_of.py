@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""The word of one of several records that are side by side, for a list that is looked up in."""
+"""The word of one of several records side by side, as an element of a lookup list."""
 
 from myhdl import always_comb, block, instances
 
 
 @block
 def word_of(record, word):
-    """Connect a record's word to a signal, combinational.
+    """Connect a record's word to a signal. Combinational.
 
     Args:
         record: a record.

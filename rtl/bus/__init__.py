@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Avalon-MM, and what answers a processor."""
+"""The registers behind Avalon-MM, bridges from other buses, and the processor's bus."""

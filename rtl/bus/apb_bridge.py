@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From APB to an Avalon-MM agent."""
+"""A bridge from APB to an Avalon-MM agent."""
 
 from myhdl import always_comb, always_seq, block, instances
 
@@ -8,19 +8,19 @@ from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, unsigned
 
 
 class ApbPort(BusPort):
-    """APB4, 32 bits, as a completer has it; without protection types, to which no register pays regard.
+    """A 32-bit APB4 port of a completer, without PPROT, which no register needs.
 
-    address_bits: of a word's address; paddr has two more, as it counts bytes.
+    address_bits: width of a word address; paddr is two bits wider, as it counts bytes.
 
     Attributes:
-        paddr: byte offset of the register; the lowest two bits are not read.
-        psel: a transfer to this block, from its setup cycle to pready.
+        paddr: byte offset of the register; the lowest two bits are ignored.
+        psel: selects this block for a transfer, from its setup cycle to pready.
         penable: high in all cycles of a transfer after the first.
         pwrite: 1: write, 0: read.
         pready: the transfer is done in this cycle.
         pslverr: always 0.
         pwdata: word to write.
-        pstrb: a bit for each byte of pwdata; only bytes whose bit is 1 are written.
+        pstrb: one bit per byte of pwdata; only bytes whose bit is 1 are written.
         prdata: word that was read, valid with pready.
     """
 
@@ -34,11 +34,11 @@ class ApbPort(BusPort):
 
 @block
 def apb_bridge(clk, reset, s_apb, avm_m0):
-    """Bridge APB4 to an Avalon-MM agent: each access is one transfer, and never an error.
+    """Bridge APB4 to an Avalon-MM agent: each access becomes one transfer, and none is an error.
 
-    A write goes to the agent in its access phase, and is ready when the agent takes it: without a wait state where
-    waitrequest is low. A read goes there in its setup phase already, and is ready when the agent answers it: one wait
-    state with an agent that takes two cycles. The agent ignores byteenable for reads.
+    A write is sent to the agent in its access phase, and completes when the agent accepts it: without a wait state if
+    waitrequest is low. A read is sent in its setup phase, and completes when the agent answers: with one wait state if
+    the agent takes two cycles. The agent must ignore byteenable for reads.
 
     Args:
         clk: the clock.
@@ -56,7 +56,7 @@ def apb_bridge(clk, reset, s_apb, avm_m0):
         avm_m0.writedata.next = s_apb.pwdata
         avm_m0.byteenable.next = s_apb.pstrb
 
-    # reading: a read was taken and is not answered.
+    # reading: a read was accepted and is not answered yet.
     @always_seq(clk.posedge, reset=reset)
     def follow():
         if reading:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From the processor's bus to an Avalon-MM agent."""
+"""A bridge from the processor's bus to an Avalon-MM agent."""
 
 from myhdl import always_comb, always_seq, block, instances
 
@@ -10,16 +10,16 @@ from raycaster.rtl.common.widths import LANES, bit
 def avalon_host(clk, reset, access, strobe, address, data, avm_m0):
     """Pass the processor's accesses to an Avalon-MM agent, each as one transfer of a word.
 
-    One read at a time is outstanding. The agent answers a read with readdatavalid in a later cycle than the one in
-    which it took it.
+    At most one read is outstanding. The agent answers a read with readdatavalid in a later cycle than the one in which
+    it accepts it.
 
     Args:
         clk: the clock.
         reset: synchronous, active high.
         access: `Access`; reads select, drives ready and word.
-        strobe: unsigned, 4 bits; which bytes of data to write, or 0 for a read. Still while access.select is high.
-        address: unsigned, as wide as avm_m0.address; word address. Still while access.select is high.
-        data: unsigned, 32 bits; the word to write. Still while access.select is high.
+        strobe: unsigned, 4 bits; the bytes of data to write, or 0 for a read. Stable while access.select is high.
+        address: unsigned, as wide as avm_m0.address; word address. Stable while access.select is high.
+        data: unsigned, 32 bits; the word to write. Stable while access.select is high.
         avm_m0: `AvalonPort`, this block as the host: reads readdata, readdatavalid and waitrequest, drives the rest.
     """
     every_lane = (1 << LANES) - 1
@@ -30,7 +30,7 @@ def avalon_host(clk, reset, access, strobe, address, data, avm_m0):
         reading.next = access.select and (strobe == 0)
         writing.next = access.select and (strobe != 0)
 
-    # A write is there until it is taken, and so is a read, which then only waits for its answer.
+    # A write or read is requested until it is accepted; a read then waits for its answer.
     @always_comb
     def request():
         avm_m0.read.next = reading and not waiting
@@ -41,7 +41,7 @@ def avalon_host(clk, reset, access, strobe, address, data, avm_m0):
         if writing:
             avm_m0.byteenable.next = strobe
 
-    # waiting: a read was taken and is not answered.
+    # waiting: a read was accepted and is not answered yet.
     @always_seq(clk.posedge, reset=reset)
     def follow():
         if waiting:
@@ -49,7 +49,7 @@ def avalon_host(clk, reset, access, strobe, address, data, avm_m0):
         else:
             waiting.next = reading and not avm_m0.waitrequest
 
-    # A write is done when it is taken, a read when it is answered.
+    # A write is done when it is accepted, a read when it is answered.
     @always_comb
     def answer():
         access.ready.next = False

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The registers, and the way to the scene memories."""
+"""The registers, and the access to the scene memories."""
 
 from myhdl import Signal, always_comb, always_seq, block, instances
 
@@ -13,7 +13,7 @@ FIXED_CODES = {"rects": 1, "all": 2}
 
 
 def engine_word(config: Configuration) -> int:
-    """What the engine register of a design reads."""
+    """Return the value of a design's engine register."""
     return register_map(config.table)["engine"].pack(
         engine=config.facts.code,
         fraction_bits=config.fraction_bits,
@@ -29,7 +29,7 @@ def engine_word(config: Configuration) -> int:
 
 
 def size_word(config: Configuration) -> int:
-    """What the size register of a design reads."""
+    """Return the value of a design's size register."""
     return register_map(config.table)["size"].pack(units=config.units, rectangles=config.table, rows=config.rows)
 
 
@@ -40,11 +40,10 @@ def avalon_interface(
 ):  # fmt: skip
     """Hold the registers and give access to the scene memories, as an Avalon-MM agent.
 
-    Words have 32 bits. A transfer takes a cycle, and an accepted read is answered with readdatavalid two cycles later.
-    waitrequest follows the synchronous reset a cycle late, and is never high otherwise: in the first cycle of a reset
-    it is still low, and what it accepts there is lost. Every other accepted read is answered once, in order. Writes
-    pass through a register: they take effect in the cycle after they were accepted, before any read that is accepted
-    later is answered.
+    Words have 32 bits. A transfer takes one cycle, and an accepted read is answered with readdatavalid two cycles
+    later. waitrequest is reset delayed by one cycle: in the first cycle of a reset it is still low, and a transfer
+    accepted then is lost. Every other accepted read is answered once, in order. Writes pass through a register: they
+    take effect in the cycle after they are accepted, before any later read is answered.
 
     Args:
         clk: the clock.
@@ -53,8 +52,8 @@ def avalon_interface(
         irq: level; output, high while the StartScreen interrupt is pending and enabled.
         bus: `SceneBus`; output.
         camera_readback: unsigned, 32 bits; the camera memory's word at bus.address, read at the camera's addresses
-            only. 0 where the camera is fixed.
-        rect_readback: unsigned, 32 bits; the rectangle memory's word at bus.address, 0 where there is none.
+            only. 0 if the camera is fixed.
+        rect_readback: unsigned, 32 bits; the rectangle memory's word at bus.address, 0 if there is none.
         bad_rectangle: flag; the shadow holds an enabled rectangle without a plane. Read with bus.commit.
         picture: `Picture`; output. With a fixed camera only run is driven.
         progress: `Progress`; input.
@@ -116,7 +115,7 @@ def avalon_interface(
         bus.go_live.next = progress.start_screen
         picture.run.next = live_control[run_bit]
 
-    # Byte lanes become a mask of bits.
+    # Byte enables become a mask of bits.
     @always_seq(clk.posedge, reset=reset)
     def accept():
         bus.write.next = avs_s0.write and not wait_request
@@ -150,7 +149,7 @@ def avalon_interface(
     if config.turn:
         up_address = tied(registers["up"].address, len(bus.address))
 
-        # The camera's registers follow one another.
+        # The camera's registers have consecutive addresses.
         @always_comb
         def find_camera():
             at_camera.next = bus.address >= camera_address
@@ -163,7 +162,7 @@ def avalon_interface(
         def find_camera():
             at_camera.next = bus.address == camera_address
 
-    # The shadow is copied in the cycle after the write that asked for it, which is then part of it.
+    # The shadow is copied in the cycle after the write that requests it.
     @always_seq(clk.posedge, reset=reset)
     def commit():
         bus.commit.next = bus.write and select_control and written_ones[commit_bit]
@@ -172,7 +171,7 @@ def avalon_interface(
         elif progress.start_screen:
             commit_pending.next = False
 
-    # A set in the cycle of a clear wins.
+    # If a bit is set and cleared in the same cycle, it is set.
     @always_seq(clk.posedge, reset=reset)
     def keep_status():
         if bus.write and bus.address == status_address:
@@ -196,7 +195,7 @@ def avalon_interface(
         if progress.start_screen:
             irq_pending.next = True
 
-    # The most that a row and a group took since the last write here.
+    # The most cycles that a row and a group took since the last write to this register.
     @always_seq(clk.posedge, reset=reset)
     def keep_cycles():
         if bus.write and bus.address == cycles_address and bus.mask != 0:
@@ -258,7 +257,7 @@ def avalon_interface(
         def decode_background():
             select_background.next = bus.address == background_address
 
-        # More reflections than there are count as all.
+        # More reflections than the design has count as all of them.
         @always_comb
         def drive_picture():
             picture.background.next = live_background[RGB_BITS:]

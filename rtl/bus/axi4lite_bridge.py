@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From AXI4-Lite to an Avalon-MM agent."""
+"""A bridge from AXI4-Lite to an Avalon-MM agent."""
 
 from myhdl import always_comb, always_seq, block, instances
 
@@ -8,28 +8,28 @@ from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, unsigned
 
 
 class Axi4LitePort(BusPort):
-    """AXI4-Lite, 32 bits, as a subordinate has it; without protection types, to which no register pays regard.
+    """A 32-bit AXI4-Lite port of a subordinate, without AWPROT and ARPROT, which no register needs.
 
-    address_bits: of a word's address; awaddr and araddr have two more, as they count bytes.
+    address_bits: width of a word address; awaddr and araddr are two bits wider, as they count bytes.
 
     Attributes:
-        awaddr: byte offset of the register to write; the lowest two bits are not read.
-        awvalid: awaddr waits to be taken.
-        awready: awaddr is taken at the end of this cycle.
+        awaddr: byte offset of the register to write; the lowest two bits are ignored.
+        awvalid: awaddr waits to be accepted.
+        awready: awaddr is accepted at the end of this cycle.
         wdata: word to write.
-        wstrb: a bit for each byte of wdata; only bytes whose bit is 1 are written.
-        wvalid: wdata and wstrb wait to be taken.
-        wready: wdata and wstrb are taken at the end of this cycle.
+        wstrb: one bit per byte of wdata; only bytes whose bit is 1 are written.
+        wvalid: wdata and wstrb wait to be accepted.
+        wready: wdata and wstrb are accepted at the end of this cycle.
         bresp: response to a write, always 0, which is OKAY.
-        bvalid: a write is done, and its response waits to be taken.
-        bready: bresp is taken at the end of this cycle.
-        araddr: byte offset of the register to read; the lowest two bits are not read.
-        arvalid: araddr waits to be taken.
-        arready: araddr is taken at the end of this cycle.
+        bvalid: a write is done, and its response waits to be accepted.
+        bready: bresp is accepted at the end of this cycle.
+        araddr: byte offset of the register to read; the lowest two bits are ignored.
+        arvalid: araddr waits to be accepted.
+        arready: araddr is accepted at the end of this cycle.
         rdata: word that was read.
         rresp: response to a read, always 0, which is OKAY.
-        rvalid: rdata waits to be taken.
-        rready: rdata is taken at the end of this cycle.
+        rvalid: rdata waits to be accepted.
+        rready: rdata is accepted at the end of this cycle.
     """
 
     outputs = "awready", "wready", "bresp", "bvalid", "arready", "rdata", "rresp", "rvalid"
@@ -44,13 +44,13 @@ class Axi4LitePort(BusPort):
 
 @block
 def axi4lite_bridge(clk, reset, s_axi, avm_m0):
-    """Bridge AXI4-Lite to an Avalon-MM agent: a write and a read at a time, in either order, each answered with OKAY.
+    """Bridge AXI4-Lite to an Avalon-MM agent: one write and one read at a time, in any order, answered with OKAY.
 
-    A write reaches the agent once its address and its data are there, and before a read that comes with it; its
-    response comes two cycles later. A read's data comes with the agent's answer, two cycles after its address with an
-    agent of that latency; a write may go between. A cycle of waitrequest takes one more. No output depends on an input
-    of the same cycle. The agent answers after two cycles or more, and keeps readdata until it answers again; it ignores
-    byteenable for reads, where that is don't care.
+    A write is sent to the agent when its address and data are both valid, before a simultaneous read; its response
+    comes two cycles later. A read's data comes with the agent's answer, two cycles after its address if the agent has
+    that latency; a write may come in between. Each cycle of waitrequest adds one. No output of s_axi depends on an
+    input of s_axi in the same cycle. The agent must answer after two cycles or more, hold readdata until its next
+    answer, and ignore byteenable for reads, which is don't care there.
 
     Args:
         clk: the clock.
@@ -62,7 +62,7 @@ def axi4lite_bridge(clk, reset, s_axi, avm_m0):
     writing, write_taken, responding = bit(), bit(), bit()
     asking, read_taken, reading, read_waits, answered, answer_kept = (bit() for _ in range(6))
 
-    # A read that waits for the agent holds still until it is taken.
+    # A write does not interrupt a read that waits for the agent to accept it.
     @always_comb
     def choose_write():
         writing.next = (
@@ -83,7 +83,7 @@ def axi4lite_bridge(clk, reset, s_axi, avm_m0):
         if writing:
             avm_m0.address.next = s_axi.awaddr[:2]
 
-    # Address and data are taken in the cycle after the agent took them.
+    # Address and data are accepted in the cycle after the agent accepted them.
     @always_seq(clk.posedge, reset=reset)
     def follow_write():
         write_taken.next = writing and not avm_m0.waitrequest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Who answers the processor."""
+"""The address decoder of the processor's bus."""
 
 from myhdl import always_comb, block, instances
 
@@ -10,17 +10,17 @@ from raycaster.rtl.common.widths import WORD_BITS, bit
 
 @block
 def bus_decoder(bus, memory, tracer, uart, buttons_word, tracer_address_bits: int):
-    """Select what is at the address of the processor's access, by memory_map, and return its answer. Combinational.
+    """Select the device at the address of the processor's access, by memory_map, and return its answer. Combinational.
 
-    The word of the buttons is there at once. So is the answer where there is nothing, which reads 0 and ignores writes.
+    The buttons answer in the same cycle. So do addresses without a device, which read 0 and ignore writes.
 
     Args:
         bus: `ProcessorBus`; reads valid and address, drives ready and word.
         memory: `Access` to the memory; drives select, reads ready and word.
         tracer: `Access` to the ray tracer's registers; drives select, reads ready and word.
         uart: `Access` to the serial port; drives select, reads ready and word.
-        buttons_word: unsigned, 32 bits; what the address of the buttons reads.
-        tracer_address_bits: the width of the ray tracer's addresses, which count words.
+        buttons_word: unsigned, 32 bits; the word to read at the address of the buttons.
+        tracer_address_bits: width of the ray tracer's addresses, which count words.
     """
     memory_end = (4 * MEMORY_WORDS - 1).bit_length()
     tracer_end = tracer_address_bits + 2

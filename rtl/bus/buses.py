@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The bridges from the buses that the registers can be behind."""
+"""The bridges from other buses to the registers' Avalon-MM port."""
 
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from raycaster.rtl.common.interfaces import BusPort
 
 
 class Bridge(NamedTuple):
-    """A bus that is not Avalon-MM: what makes its port, of the width of a word's address, and the block between."""
+    """The bridge of a bus other than Avalon-MM: its port's constructor, given a word address width, and its block."""
 
     interface: Callable[[int], BusPort]
     block: Callable
@@ -22,4 +22,4 @@ BRIDGES: Mapping[str, Bridge] = {
     "wishbone": Bridge(WishbonePort, wishbone_bridge),
     "apb": Bridge(ApbPort, apb_bridge),
 }
-"""By the bus's name."""
+"""Bridges by bus name."""

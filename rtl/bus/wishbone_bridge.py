@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From Wishbone to an Avalon-MM agent."""
+"""A bridge from Wishbone to an Avalon-MM agent."""
 
 from myhdl import always, always_comb, always_seq, block, instances
 
@@ -8,15 +8,15 @@ from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, unsigned
 
 
 class WishbonePort(BusPort):
-    """Wishbone B4, classic cycles, 32 bits in lanes of 8, as a slave has it; adr counts words.
+    """A Wishbone B4 port of a slave for classic cycles, 32 bits in lanes of 8; adr counts words.
 
     Attributes:
         cyc: high for the whole bus cycle.
         stb: request, held until ack.
         we: 1: write, 0: read.
         ack: the request is done in this cycle.
-        adr: number of the register, its byte offset over four.
-        sel: a bit for each byte of dat_w; only bytes whose bit is 1 are written.
+        adr: register number, the byte offset divided by four.
+        sel: one bit per byte of dat_w; only bytes whose bit is 1 are written.
         dat_w: word to write.
         dat_r: word that was read, valid with ack.
     """
@@ -31,12 +31,11 @@ class WishbonePort(BusPort):
 
 @block
 def wishbone_bridge(clk, reset, wb, avm_m0):
-    """Bridge Wishbone B4 classic cycles to an Avalon-MM agent: each access is one transfer, and acknowledged once.
+    """Bridge Wishbone B4 classic cycles to an Avalon-MM agent: each access becomes one transfer, acknowledged once.
 
-    A write is acknowledged in the cycle in which the agent takes it, its first where waitrequest is low; a read when
-    the agent answers it, two cycles after its first with an agent of that latency. Only an access that is there is
-    acknowledged, so a master may give up a read: its answer goes to nobody, and the next access waits for it. The agent
-    ignores byteenable for reads.
+    A write is acknowledged in the cycle in which the agent accepts it, its first cycle if waitrequest is low; a read
+    when the agent answers, two cycles after its first cycle if the agent has that latency. A master may abandon a read:
+    its answer is then not acknowledged, and the next access waits for it. The agent must ignore byteenable for reads.
 
     Args:
         clk: the clock.
@@ -58,7 +57,7 @@ def wishbone_bridge(clk, reset, wb, avm_m0):
         avm_m0.writedata.next = wb.dat_w
         avm_m0.byteenable.next = wb.sel
 
-    # reading: a read was taken and is not answered.
+    # reading: a read was accepted and is not answered yet.
     @always_seq(clk.posedge, reset=reset)
     def follow():
         if reading:
@@ -66,7 +65,7 @@ def wishbone_bridge(clk, reset, wb, avm_m0):
         else:
             reading.next = selected and not wb.we and not avm_m0.waitrequest
 
-    # The access that the read was for has not ended; don't care unless reading.
+    # still_wanted: the master has not abandoned the read; don't care unless reading.
     @always(clk.posedge)
     def follow_master():
         still_wanted.next = selected and (still_wanted or not reading)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The processor's memory: its program, and what that works on."""
+"""The processor's memory: its program and data."""
 
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from raycaster.rtl.common.widths import WORD_BITS, bit
 
 
 def first_words(program: str, count: int) -> list[int]:
-    """What the memory starts with: a file's words in hexadecimal, then zeros, or these alone where it is not there."""
+    """Return the memory's initial words: a file's hexadecimal words, then zeros; only zeros if there is no file."""
     path = Path(program)
     words = [int(word, 16) for word in path.read_text().split()] if path.exists() else []
     return words + [0] * (count - len(words))
@@ -25,11 +25,11 @@ def word_memory(clk, reset, access, strobe, address, data, words: int, program: 
         reset: synchronous, active high; does not restore the words that the memory had at power-up.
         access: `Access`; reads select, drives ready and word. ready is high in the second cycle of an access, with the
             word that was read.
-        strobe: unsigned, 4 bits; which bytes of data to write, or 0 for a read.
+        strobe: unsigned, 4 bits; the bytes of data to write, or 0 for a read.
         address: unsigned; word address, below words.
         data: unsigned, 32 bits; the word to write.
         words: the number of words.
-        program: the file whose words the memory holds from power-up on.
+        program: name of the file with the memory's words at power-up.
     """
     memory = [Signal(intbv(value)[WORD_BITS:]) for value in first_words(program, words)]
     writing, reading, done = bit(), bit(), bit()
@@ -52,7 +52,7 @@ def word_memory(clk, reset, access, strobe, address, data, words: int, program: 
         if writing and strobe[3]:
             memory[address].next[32:24] = data[32:24]
 
-    # Never in the cycle of a write, so that no memory need say what it reads then.
+    # Never in the cycle of a write, so it does not matter what the memory would read then.
     @always(clk.posedge)
     def fetch():
         if reading:

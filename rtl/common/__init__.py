@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""What all rooms share: ports, records, widths, constants."""
+"""Shared by all hardware folders: ports, records, widths, constants."""

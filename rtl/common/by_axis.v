@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A choice by the axis of a rectangle's plane: on_x, on_y or on_z for an axis of 0, 1 or 2.
+// Selects by the axis of a rectangle's plane: on_x, on_y or on_z for axis 0, 1 or 2.
 
 `timescale 1ns/10ps
 

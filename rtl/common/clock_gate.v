@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A clock that rests while nothing needs it.
+// A clock gate.
 //
-// CLOCK_GATING is for simulators, which then leave out what rests, and for chips whose tools build gates into clocks.
-// Without it, as on FPGAs, the clock goes on, and awake has no reader.
+// Define CLOCK_GATING for simulators, which then skip blocks whose clock is stopped, and for chips whose tools support
+// clock gates. Without it, as on FPGAs, gated_clk is clk and awake is unused.
 
 `timescale 1ns/10ps
 
@@ -15,7 +15,7 @@ module clock_gate (
 `ifdef CLOCK_GATING
 reg open;
 
-// It only follows while the clock is low, so no pulse is cut short.
+// The latch is transparent only while clk is low, so no clock pulse is cut short.
 always @* begin: LATCH
     if (!clk)
         open = awake;

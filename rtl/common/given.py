@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a design takes as it is given: Verilog written elsewhere, and the words that a memory starts with."""
+"""Parts of a design that come from files: existing Verilog, and the initial words of a memory."""
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
@@ -11,21 +11,21 @@ from myhdl import block
 
 @dataclass(frozen=True)
 class GivenVerilog:
-    """What `given_verilog` says of a block."""
+    """The Verilog source and the outputs of a block marked by `given_verilog`."""
 
     source: Callable[[], Path]
     outputs: frozenset[str]
 
 
 def given_verilog(source: Callable[[], Path], outputs: Collection[str]) -> Callable[[Any], Any]:
-    """Mark a block as one whose Verilog is given; it has no processes, so MyHDL cannot simulate it.
+    """Mark a block whose Verilog is an existing file; MyHDL simulates only the block's own processes, if it has any.
 
-    Its arguments without a signal are the module's parameters, of the same names. Ports of the module that are no
-    arguments stay unconnected.
+    Arguments that are not signals become the module's parameters of the same names. Module ports without an argument
+    stay unconnected.
 
     Args:
-        source: finds the file, which is copied as it is; called when it is needed.
-        outputs: which of the block's arguments the module drives.
+        source: returns the path of the file, which is copied unchanged; called only when needed.
+        outputs: names of the block's arguments that the module drives.
     """
 
     def mark(decorated: Any) -> Any:
@@ -37,12 +37,12 @@ def given_verilog(source: Callable[[], Path], outputs: Collection[str]) -> Calla
 
 @block
 def load_words(memory, file: str):
-    """Verilog's $readmemh: a memory, a list of signals, holds a file's words from the start, as its block must, too.
+    """Initialise a memory from a file with Verilog's $readmemh; in MyHDL the signals must have these initial values.
 
-    The file is looked for where the simulation or synthesis runs, and not when the block is converted.
+    The file is looked up in the working directory of the simulation or synthesis, not of the conversion.
 
     Args:
         memory: list of signals, the words.
-        file: name of the file, with a word in hexadecimal on each line.
+        file: name of the file, with one hexadecimal word per line.
     """
     return ()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Ports that belong together. As a port `vga`, the attribute `hs` becomes the Verilog port `vga_hs`.
+"""Groups of ports. The attribute `hs` of a port `vga` becomes the Verilog port `vga_hs`.
 
-What a class says of its attributes stands above those ports in Verilog.
+The text for each attribute becomes the comment above that port in Verilog.
 """
 
 from typing import ClassVar
@@ -34,15 +34,15 @@ class Interface:
 class Vga(Interface):
     """A video output, for a DAC or a digital encoder. Data changes at the falling edge of clk.
 
-    With two pixels per clock each colour is two channels; the low half belongs to the left pixel, in an even column.
+    With two pixels per clock each colour port carries two channels; the low half is the left pixel, in an even column.
 
     Attributes:
-        r: red, 0 in the blanking.
-        g: green, 0 in the blanking.
-        b: blue, 0 in the blanking.
+        r: red, 0 during blanking.
+        g: green, 0 during blanking.
+        b: blue, 0 during blanking.
         hs: horizontal sync.
         vs: vertical sync.
-        blank_n: low in the blanking.
+        blank_n: low during blanking.
         sync_n: composite sync, unused and low.
         clk: pixel clock; its rising edge is in the middle of a pixel.
     """
@@ -53,22 +53,22 @@ class Vga(Interface):
 
 
 def vga_of(config: Configuration) -> Vga:
-    """A design's."""
+    """Return a `Vga` sized for this configuration."""
     return Vga(config.colour_bits * config.pixels)
 
 
 class AvalonPort(Interface):
-    """Avalon-MM with word addresses, 32-bit data and pipelined reads, as a host or an agent has it.
+    """An Avalon-MM port with word addresses, 32-bit data and pipelined reads, for a host or an agent.
 
     Attributes:
-        address: number of the register, its byte offset over four.
+        address: register number, the byte offset divided by four.
         read: request to read, held while waitrequest is high.
         write: request to write, held while waitrequest is high.
         writedata: word to write.
-        byteenable: a bit for each byte of writedata; only bytes whose bit is 1 are written.
+        byteenable: one bit per byte of writedata; only bytes whose bit is 1 are written.
         readdata: word that was read, valid with readdatavalid.
-        readdatavalid: high for a cycle with each word that was read, in the order of the requests.
-        waitrequest: the request of this cycle is not taken yet.
+        readdatavalid: high for one cycle with each word read, in the order of the requests.
+        waitrequest: the request of this cycle is not accepted yet.
     """
 
     def __init__(self, address_bits: int):
@@ -80,7 +80,7 @@ class AvalonPort(Interface):
 
 
 class BusPort(Interface):
-    """A bus that has a bridge to Avalon-MM, as the bridge has it.
+    """A port of a bridge to Avalon-MM, on the side of the other bus.
 
     outputs: names of the signals that the bridge drives.
     """
@@ -89,11 +89,11 @@ class BusPort(Interface):
 
 
 class Picture(Interface):
-    """What is shown beside rectangles and camera. It is live, so it changes only in the cycle after start_screen.
+    """Live settings other than rectangles and camera: they change only in the cycle after start_screen.
 
     Attributes:
         run: 0 renders nothing and shows black.
-        reflections: of the scene.
+        reflections: number of reflections in the scene.
         background: colour of the background, 24 bits.
     """
 
@@ -104,14 +104,14 @@ class Picture(Interface):
 
 
 class Progress(Interface):
-    """How far a renderer is.
+    """Progress of a renderer.
 
     Attributes:
         start_screen: strobe before the first visible line.
         busy: a row is being rendered.
         underrun: strobe; a row was not complete in time.
-        row_cycles: cycles since the row's start, counting the present one; don't care unless busy.
-        group_cycles: cycles since the group's start, counting the present one; don't care unless busy.
+        row_cycles: cycles since the row's start, including the present one; don't care unless busy.
+        group_cycles: cycles since the group's start, including the present one; don't care unless busy.
     """
 
     def __init__(self):
@@ -120,7 +120,7 @@ class Progress(Interface):
 
 
 class Scan(Interface):
-    """Where the monitor is; `video_generator` has the timing.
+    """Scan position of the monitor; `video_generator` defines the timing.
 
     Attributes:
         start_screen: strobe before the first row.
@@ -160,7 +160,7 @@ class Slope(Interface):
 
 
 class Direction(Interface):
-    """A slope, or what is added to one, in two's complement.
+    """A slope, or an increment of one, in two's complement.
 
     Attributes:
         x: component along x.
@@ -173,22 +173,22 @@ class Direction(Interface):
 
 
 class Steps(Interface):
-    """The control signals that operate all ray units in step: strobes, unless they say otherwise.
+    """Control signals that operate all ray units in lockstep: strobes, unless stated otherwise.
 
     Attributes:
         screen_to_ray: load the primary ray.
         initial_ray: level; trace the primary ray, not a reflected one.
-        find_intersection: start on the rectangle at hand.
-        load_divider: load the divider, where there is one, with what was started.
-        store_quotient: store what the divider found.
-        reset_z_buf: forget the nearest hit.
-        write_z_buf: keep the hit at hand if it is nearer.
-        reset_colour: begin a new pixel.
+        find_intersection: start testing the fetched rectangle.
+        load_divider: load the divider, if there is one.
+        store_quotient: store the divider's result.
+        reset_z_buf: clear the nearest hit.
+        write_z_buf: store the offered hit if it is nearer.
+        reset_colour: start a new pixel.
         add_colour: add the colour that the ray saw.
-        store_ray: keep the reflected ray.
-        aim: one-hot, the cycle in which shadow rays are computed; 0 otherwise.
+        store_ray: store the reflected ray.
+        aim: one-hot cycle count while shadow rays are computed; 0 otherwise.
         from_light: level; shadow rays are tested instead of the units' own rays.
-        write_shadow: keep whether the rectangle under test shades the point.
+        write_shadow: set the shadow flag if the tested rectangle shades the hit point.
     """
 
     def __init__(self):
@@ -215,14 +215,14 @@ class ShadowPass(Interface):
 
 
 class RayFate(Interface):
-    """What a unit's ray may still meet.
+    """Possible further hits of a unit's ray.
 
     Attributes:
-        towards: it has hit mirrors at every bounce before, and runs towards the plane that find_intersection started on
-            in the cycle before; where a control ends rectangles early.
-        alive: what it has hit since reset_z_buf, and at every bounce before, are mirrors.
-        in_question: the light may reach the hit point: it is on the side that the ray came from, and nothing tested
-            since steps.aim is in between.
+        towards: the ray hit a mirror at every earlier bounce, and runs towards the plane of the find_intersection in
+            the previous cycle; used only if the control ends rectangles early.
+        alive: the nearest hit since reset_z_buf, and the hit at every earlier bounce, is a mirror.
+        in_question: the light may reach the hit point: it is on the side from which the ray came, and no rectangle
+            tested since steps.aim is in between.
     """
 
     def __init__(self):
@@ -230,13 +230,13 @@ class RayFate(Interface):
 
 
 class GroupFate(Interface):
-    """What any ray of a group may still meet.
+    """Possible further hits of any ray of a group.
 
     Attributes:
         any_towards: fate.towards of at least one unit.
         any_alive: fate.alive of at least one unit.
         any_in_question: fate.in_question of at least one unit.
-        may_hit: a bit for each rectangle, 1 where a primary ray may hit it.
+        may_hit: one bit per rectangle, 1 if a primary ray may hit it.
     """
 
     def __init__(self, config: Configuration):
@@ -245,7 +245,7 @@ class GroupFate(Interface):
 
 
 class Eye(Interface):
-    """The camera, mirrored in all mirrors so far, in two's complement and whole world units.
+    """The camera's position, mirrored in all mirrors so far, in two's complement and whole world units.
 
     Attributes:
         x: coordinate along x.
@@ -258,16 +258,16 @@ class Eye(Interface):
 
 
 class SceneBus(Interface):
-    """What the registers tell the scene memories: a write, or where to read, and when the shadow moves on.
+    """Signals from the registers to the scene memories: writes, read addresses, and when to copy the shadow.
 
     Attributes:
         write: strobe; write data at address.
         commit: strobe; copy the shadow to the pending scene at the end of the cycle. It comes in the cycle after the
-            write that asks for it, so never in the one after a write to a scene memory.
+            write that requests it, so never in the cycle after a write to a scene memory.
         go_live: strobe; copy the pending scene to the live one at the end of the cycle.
-        address: of a word, to write and to read back.
+        address: address of the word to write or to read back.
         data: word to write.
-        mask: which of its bits to write.
+        mask: bits of the word to write.
     """
 
     def __init__(self, address_bits: int):
@@ -277,13 +277,13 @@ class SceneBus(Interface):
 
 
 class Rects(Interface):
-    """One live rectangle at a time: sorted, the engine's rect_latency cycles after fetch, held until the next fetch.
+    """Read port for a live rectangle: sorted, the engine's rect_latency cycles after fetch, held until the next fetch.
 
     Attributes:
-        usable: a bit for each rectangle, 1 where it is enabled and has a plane; the others are don't care.
+        usable: one bit per rectangle, 1 if it is enabled and lies in a plane; other rectangles are don't care.
         index: number of the rectangle to fetch.
-        fetch: strobe; read the rectangle of this index.
-        rect: the rectangle that was fetched.
+        fetch: strobe; read the rectangle at index.
+        rect: the fetched rectangle.
     """
 
     def __init__(self, config: Configuration):
@@ -294,15 +294,15 @@ class Rects(Interface):
 
 
 class ProcessorBus(Interface):
-    """PicoRV32's native memory interface: one access at a time, each held still from valid to ready.
+    """PicoRV32's native memory interface: one access at a time, stable from valid to ready.
 
     Attributes:
-        valid: an access waits.
-        ready: it is done in this cycle.
-        address: of a byte, a multiple of four.
+        valid: an access is pending.
+        ready: the access completes in this cycle.
+        address: byte address, a multiple of four.
         data: word to write.
         word: word that was read, valid with ready.
-        strobe: which bytes to write; 0 to read.
+        strobe: bytes to write, one bit each; 0 for a read.
     """
 
     def __init__(self):
@@ -312,11 +312,11 @@ class ProcessorBus(Interface):
 
 
 class Access(Interface):
-    """A processor's access to what it selects, held still from select to ready.
+    """A processor's access to the selected device, stable from select to ready.
 
     Attributes:
-        select: high from the access's first cycle to the one in which ready is high.
-        ready: the access is done in this cycle.
+        select: high from the first cycle of the access to the one in which ready is high.
+        ready: the access completes in this cycle.
         word: word that was read, valid with ready.
     """
 

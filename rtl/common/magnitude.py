@@ -8,10 +8,10 @@ from raycaster.rtl.common.widths import signed
 
 @block
 def magnitude(value, result):
-    """Find the magnitude of a signed number. Combinational.
+    """Compute the magnitude of a signed number. Combinational.
 
     Args:
-        value: signed, above its least number; one bit wider than result, or more if its magnitude fits the result.
+        value: signed, not its most negative number; one bit wider than result, or more if its magnitude fits result.
         result: unsigned output; |value|.
     """
     bits = len(result)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Records: fields side by side in one word, so that a copy is one assignment, and a memory of them one of words."""
+"""Records: fields side by side in one word, so a copy is one assignment, and a memory of records is one of words."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Self
@@ -33,19 +33,19 @@ from raycaster.rtl.common.widths import (
 
 
 class Part(_SliceSignal):
-    """Bits of a word that may itself be a part, or several words side by side, where it is a port."""
+    """Bits of a port's word, which may itself be a part, or several words side by side."""
 
     def _setName(self, hdl):
-        """MyHDL's, but that it does not look for the word's own word, which another module has."""
+        """Name the bits as MyHDL does, but without following the word to its own source, which is in another module."""
         bits = self._left if self._right is None else f"{self._left}-1:{self._right}"
         self._name = f"{self._sig._name}[{bits}]"
 
 
 class Field(Part):
-    """A record's field: bits of its word, read only. In Verilog it is a wire of the module that reads it."""
+    """A record's field: read-only bits of its word. In Verilog it is a wire in the module that reads it."""
 
     def __init__(self, word: _Signal, name: str, low: int, width: int):
-        """Cut it out of a word; `Signed` width for two's complement."""
+        """Create the field from bits of a word; a `Signed` width means two's complement."""
         bits = word.val[low + width : low]
         value = int(bits.signed()) if isinstance(width, Signed) else int(bits)
         _ShadowSignal.__init__(self, initial(value, width))
@@ -57,7 +57,7 @@ class Field(Part):
         self._waiter = _SignalWaiter(self._genfuncIndex() if width == 1 else self._genfuncSlice())
 
     def _genfuncSlice(self):
-        """MyHDL's, but that a signed field keeps its sign."""
+        """Follow the word as MyHDL does, but keep the sign of a signed field."""
         set_next: Any = _Signal.next.fset
         while True:
             bits = self._sig[self._left : self._right]
@@ -66,14 +66,14 @@ class Field(Part):
 
 
 class Joined(ConcatSignal):
-    """A record's word as its fields are driven; see `Record.joined`. In Verilog each field has its name beside it."""
+    """A record's word, joined from its fields' values; see `Record.joined`. In Verilog a comment names each field."""
 
     def __init__(self, parts: Mapping[str, _Signal | bool]):
         super().__init__(*parts.values())
         self.parts = dict(parts)
 
     def _markRead(self):
-        """MyHDL's, but that a slice of a field reads the field's word too."""
+        """Mark the parts as read, as MyHDL does; a slice of a field also marks the field's word."""
         self._read = True
         for part in self._sigargs:
             read = part
@@ -83,7 +83,7 @@ class Joined(ConcatSignal):
             read._markRead()
 
     def toVerilog(self) -> str:
-        """Assign the fields, each in a line of its own."""
+        """Return the Verilog assignment, with one field per line."""
         values = [_text(part) for part in self.parts.values()]
         longest = max(map(len, values)) + 1
         lines = [
@@ -94,7 +94,7 @@ class Joined(ConcatSignal):
 
 
 def _text(part: Any) -> str:
-    """A field's value in Verilog."""
+    """Return a field's value in Verilog."""
     if isinstance(part, ConcatSignal):
         return f"{{{', '.join(map(_text, part._args))}}}"
     if isinstance(part, _SliceSignal) and isinstance(part._sig, Field) and not isinstance(part, Field):
@@ -103,12 +103,12 @@ def _text(part: Any) -> str:
 
 
 class Record:
-    """A word, and an attribute for each of its fields, the first in the highest bits.
+    """A word with an attribute for each of its fields, the first in the highest bits.
 
-    As a port `rect`, the word becomes the Verilog port `rect_word`, and a field that is read there the wire
-    `rect_axis`. What drives a record drives `word`, with what `joined` makes of the fields' values.
+    For a port `rect`, the word becomes the Verilog port `rect_word`, and a field that is read becomes a wire such as
+    `rect_axis`. A record is driven by assigning the result of `joined` to `word`.
 
-    A field that a design lacks has no bits: it reads as 0, and what drives it is left out.
+    A field that a design lacks has no bits: it reads as 0, and its drivers are left out.
     """
 
     is_interface = True
@@ -118,7 +118,7 @@ class Record:
 
         Args:
             fields: widths in bits by name, `Signed` for two's complement, 0 for a field that the design lacks.
-            word: of all fields together, where it is there already.
+            word: an existing signal for all fields together; a new one by default.
         """
         width = sum(fields.values())
         self.word = unsigned(width) if word is None else word
@@ -135,7 +135,7 @@ class Record:
         def __getattr__(self, name: str) -> Field: ...
 
     def twin(self) -> Self:
-        """Another of its kind."""
+        """Return a new record with the same layout."""
         other = object.__new__(type(self))
         Record.__init__(other, self._fields())
         return other
@@ -144,11 +144,11 @@ class Record:
         return self.layout | dict.fromkeys(self.lacking, 0)
 
     def has(self, name: str) -> bool:
-        """Whether a field has bits: what computes one that has none is left out."""
+        """Return True if a field has bits; otherwise the logic that computes it is left out."""
         return name in self.layout
 
     def joined(self, **parts: _Signal | bool) -> Joined:
-        """The fields side by side, to assign to a record's word.
+        """Return the fields side by side, to assign to a record's word.
 
         Args:
             parts: a signal or a bit for each field.
@@ -165,25 +165,25 @@ class Record:
         return Joined({name: parts[name] for name in self.layout})
 
     def pack(self, values: Mapping[str, int]) -> int:
-        """The word in which fields have these values, those that are not named 0; each is cut to its width."""
+        """Return the word with these field values, 0 for fields not named; each value is truncated to its width."""
         word = 0
         for name, bits in self.layout.items():
             word = word << bits | int(values.get(name, 0)) % (1 << bits)
         return word
 
     def left_open(self) -> Self:
-        """Make it one that nothing reads."""
+        """Leave the record unconnected, and return it."""
         Record.__init__(self, self._fields(), Unconnected(initial(0, self.word)))
         return self
 
     def slice(self, name: str) -> tuple[int, int]:
-        """The highest and the lowest bit of a field."""
+        """Return the highest and the lowest bit of a field."""
         names = list(self.layout)
         low = sum(self.layout[after] for after in names[names.index(name) + 1 :])
         return low + self.layout[name] - 1, low
 
     def cut(self, words: _Signal, index: int) -> Self:
-        """Make it one of several of its kind that are side by side, the first in the lowest bits."""
+        """Make the record one of several packed side by side in words, the first in the lowest bits, and return it."""
         width = len(self.word)
         part = Part(words, (index + 1) * width, index * width)
         words._slicesigs.append(part)
@@ -191,7 +191,7 @@ class Record:
         return self
 
     def tie(self, values: Mapping[str, int]) -> Self:
-        """Make it one that never changes, of these values."""
+        """Tie the record to these constant values, and return it."""
         Record.__init__(self, self._fields(), Tied(initial(self.pack(values), self.word)))
         return self
 
@@ -204,11 +204,11 @@ class Point(Record):
 
 
 class Camera(Record):
-    """The point from which all rays start, a `Point`, and what the picture is taken with.
+    """The camera: the `Point` from which all rays start and, if the design has them, its basis and the light.
 
-    A camera that turns has its basis: forward, right and up, times 256. With a light it has light_x, light_y, light_z,
-    the eye of all shadow rays; light_on, low where everything is lit; and light_shade, how many quarters of a colour
-    are left in the dark.
+    The basis of a camera that turns is forward, right and up, times 256. The light has light_x, light_y, light_z, the
+    eye of all shadow rays; light_on, low if everything is lit; and light_shade, the quarters of a colour that remain in
+    the dark.
     """
 
     def __init__(self, turn: bool = False, light: bool = False):
@@ -223,55 +223,55 @@ class Camera(Record):
 
 
 def camera_of(config: Configuration) -> Camera:
-    """One of a design's."""
+    """Return a `Camera` sized for this configuration."""
     return Camera(config.turn, config.light)
 
 
 class Origin(Record):
-    """Where a ray starts, or hits, with the configuration's fraction bits."""
+    """A point where a ray starts or hits, with the configuration's fraction bits."""
 
     def __init__(self, config: Configuration):
         super().__init__(dict.fromkeys("xyz", position_bits(config)))
 
 
 class Signs(Record):
-    """Which components of a ray's slope are negative. A reflection changes one of them, and nothing else."""
+    """Signs of a ray's slope components, 1 if negative. A reflection changes one of them and no magnitude."""
 
     def __init__(self):
         super().__init__(dict.fromkeys(("dx", "dy", "dz"), 1))
 
 
 class Ray(Record):
-    """A ray as reflections change it: where it starts, an `Origin`, and which components are negative, its `Signs`."""
+    """The parts of a ray that a reflection changes: its start, an `Origin`, and its `Signs`."""
 
     def __init__(self, config: Configuration):
         super().__init__(Origin(config).layout | Signs().layout)
 
 
 class Colour(Record):
-    """A colour's channels at the full width; the word is a colour as registers and rectangles have it."""
+    """A colour with channels of full width; the word has the layout of registers and rectangles."""
 
     def __init__(self):
         super().__init__(dict.fromkeys(("red", "green", "blue"), CHANNEL_BITS))
 
 
 class Pixel(Record):
-    """A pixel as it is stored for the monitor: the top colour_bits of each channel."""
+    """A pixel as stored for the monitor: the top colour_bits of each channel."""
 
     def __init__(self, colour_bits: int):
         super().__init__(dict.fromkeys(("red", "green", "blue"), colour_bits))
 
 
 def shown_of(config: Configuration) -> Pixel:
-    """What a design's monitor is given in a clock, as its `Vga` has it: a pixel, or the halves of each colour."""
+    """Return a record of the pixels shown in one clock: one, or two as the halves of each colour, as in `Vga`."""
     return Pixel(config.colour_bits * config.pixels)
 
 
 class Look(Record):
-    """How a rectangle looks.
+    """The look of a rectangle: its colour and, if the design has them, its material and pattern.
 
-    With materials, mirror: how much it mirrors, in quarters, 0..4. With patterns, kind: 0 plain, 1 checker, 2 rows,
-    3 columns; cell: log2 of a cell's size in world units, less three; colour_2: of every other cell.
+    With materials, mirror: the mirrored share in quarters, 0..4. With patterns, kind: 0 plain, 1 checker, 2 rows, 3
+    columns; cell: log2 of the cell size in world units, minus three; colour_2: the colour of every other cell.
     """
 
     def __init__(self, materials: bool = False, patterns: bool = False):
@@ -279,7 +279,7 @@ class Look(Record):
 
 
 def look_fields(materials: bool, patterns: bool) -> dict[str, int]:
-    """The widths of a `Look`."""
+    """Return the field widths of a `Look`."""
     pattern = {"kind": KIND_BITS, "cell": CELL_BITS, "colour_2": RGB_BITS}
     return (
         {"colour": RGB_BITS}
@@ -289,19 +289,19 @@ def look_fields(materials: bool, patterns: bool) -> dict[str, int]:
 
 
 class Surface(Record):
-    """What a ray that hits a rectangle must know of it: the plane's axis (0, 1, 2 for x, y, z), coordinate, `Look`."""
+    """The data of a hit rectangle that its ray needs: the plane's axis (0, 1, 2 for x, y, z), position and `Look`."""
 
     def __init__(self, materials: bool = False, patterns: bool = False):
         super().__init__(surface_fields(COORDINATE_BITS, materials, patterns))
 
 
 def surface_fields(coordinate_bits: int, materials: bool = False, patterns: bool = False) -> dict[str, int]:
-    """The widths of a `Surface`, with which a `Rect` begins too."""
+    """Return the field widths of a `Surface`, with which a `Rect` also begins."""
     return {"axis": AXIS_BITS, "position": coordinate_bits} | look_fields(materials, patterns)
 
 
 def surface_of(config: Configuration) -> Surface:
-    """One of a design's."""
+    """Return a `Surface` sized for this configuration."""
     return Surface(config.materials, config.patterns)
 
 
@@ -317,12 +317,12 @@ class Rect(Record):
 
 
 def rect_of(config: Configuration) -> Rect:
-    """One of a design's."""
+    """Return a `Rect` sized for this configuration."""
     return Rect(materials=config.materials, patterns=config.patterns)
 
 
 class WideRect(Record):
-    """A rectangle whose bounds may be a unit further out; it has no colour."""
+    """A rectangle without colour, whose bounds may be one unit further out."""
 
     def __init__(self):
         bounds = dict.fromkeys(("u_low", "u_high", "v_low", "v_high"), Signed(WIDE_BITS))
@@ -330,9 +330,9 @@ class WideRect(Record):
 
 
 class Mirror(Record):
-    """What a reflected ray left last, if `active`: the axis of the mirror's plane, and its distance from the eye.
+    """The mirror that a ray left last, if `active`: the axis of its plane, and its distance from the eye.
 
-    With corners, met_x, met_y, met_z: the axes of all mirrors that it met in that very point.
+    With corners, met_x, met_y, met_z: the axes of all mirrors that the ray met at that same point.
     """
 
     def __init__(self, distance_bits: int, corners: bool = False):
@@ -341,15 +341,15 @@ class Mirror(Record):
 
 
 def mirror_of(config: Configuration) -> Mirror:
-    """One of a design's: before a second reflection there is one mirror, and its axis is the only one met."""
+    """Return a `Mirror` sized for this configuration; corners need a second reflection."""
     return Mirror(eye_bits(config) - 1, corners=config.reflections > 1)
 
 
 class Facet(Record):
-    """A rectangle as one row's rays from the camera see it, of which q is an axis beside the plane's: see `Walk`.
+    """A rectangle as seen by the rays of one row from the camera; see `Walk` for the axis q.
 
     usable: it may be hit; distance: n = k - E[a] from the camera to its plane. Unless the camera turns, way_q: n D[q],
-    the same for all columns. Then, unless it is `bare`, its `Look`, in the lowest bits.
+    the same for all columns. Unless the facet is `bare`, its lowest bits are the rectangle's `Look`.
     """
 
     def __init__(
@@ -368,15 +368,15 @@ class Facet(Record):
 
 
 def facet_of(config: Configuration) -> Facet:
-    """One of a design's."""
+    """Return a `Facet` sized for this configuration."""
     return Facet(walk_bits(config), turn=config.turn, materials=config.materials, patterns=config.patterns)
 
 
 class Walk(Record):
-    """What cross-multiplication compares, and the column changes: n D[p], and (bound - E) D[a] for the four bounds.
+    """The compared products that change with the column: n D[p], and (bound - E) D[a] for the four bounds.
 
-    Of the two axes beside the plane's, p is y, which the column of a camera that is not turned changes, unless the
-    plane is on y; then it is x. q is the other; n D[q] changes where the camera turns.
+    p is y, the axis along which the slope changes per column unless the camera turns, or x for a plane across y. q is
+    the third axis; n D[q] changes only if the camera turns.
     """
 
     def __init__(self, bits: int, turn: bool = False):
@@ -385,24 +385,24 @@ class Walk(Record):
 
 
 def walk_of(config: Configuration) -> Walk:
-    """One of a design's."""
+    """Return a `Walk` sized for this configuration."""
     return Walk(walk_bits(config), config.turn)
 
 
 def growth_of(config: Configuration) -> Walk:
-    """What a column adds to it: of a camera that turns products too, and otherwise distances."""
+    """Return a record for the change of a `Walk` per column: products if the camera turns, otherwise distances."""
     return walk_of(config) if config.turn else Walk(DISTANCE_BITS)
 
 
 def stride_of(config: Configuration) -> Walk:
-    """The same of as many columns as a clock has pixels."""
+    """Return a record for the change of a `Walk` over all columns of a clock."""
     return walk_of(config) if config.turn else Walk(DISTANCE_BITS + config.pixels - 1)
 
 
 class Reflector(Record):
     """A mirror that a ray left: its axis, and the distance from the camera to its plane.
 
-    at_mirror: the ray met it in the very point in which it met the mirror before it.
+    at_mirror: the ray met it at the same point as the mirror before it.
     """
 
     def __init__(self, distance_bits: int = DISTANCE_BITS):
@@ -410,10 +410,10 @@ class Reflector(Record):
 
 
 class Turn(Record):
-    """Where the image of the room is in which a straight ray is after its mirrors so far; see `ray_fold`.
+    """The image of the room in which a straight ray is after its mirrors so far; see `ray_fold`.
 
-    met_x, met_y, met_z: a mirror on that axis was met in the point that the ray left last; back_x, back_y, back_z: the
-    ray runs the other way there; turn_x, turn_y, turn_z: T, what is added to a point there.
+    met_x, met_y, met_z: a mirror on that axis was met at the point that the ray left last; back_x, back_y, back_z: the
+    image is reversed along that axis; turn_x, turn_y, turn_z: T, the offset of the image.
     """
 
     def __init__(self, turn_bits: int):
@@ -422,16 +422,17 @@ class Turn(Record):
 
 
 def turn_of(config: Configuration) -> Turn:
-    """One of a design's widths."""
+    """Return a `Turn` sized for this configuration."""
     return Turn(turn_bits(config))
 
 
 class Fold(Record):
-    """How a straight ray through all mirrors so far folds back into the room; see `ray_fold`.
+    """The folding of a straight ray through all mirrors so far back into the room; see `ray_fold`.
 
-    Its `Turn`, which is the part `image` too; mirror_back: the folded ray runs down from the last mirror; p_x ...,
-    q_x ...: for a rectangle on the axis, what is added to its way along p, and q (see `Walk`), one more where that is
-    complemented; border_x ...: n D of the last mirror's n; axis, distance: of the last mirror.
+    It starts with the fields of a `Turn`, which together are `image`. mirror_back: the folded ray leaves the last
+    mirror in the negative direction; p_x ..., q_x ...: for a rectangle on that axis, the offset added to its way along
+    p and q (see `Walk`), plus one if the way is complemented; border_x ...: n D with the last mirror's n; axis,
+    distance: those of the last mirror.
     """
 
     def __init__(self, product_bits: int, walk_width: int, turn_bits: int, distance: int = DISTANCE_BITS):
@@ -448,15 +449,15 @@ class Fold(Record):
 
 
 def fold_of(config: Configuration) -> Fold:
-    """One of a design's widths."""
+    """Return a `Fold` sized for this configuration."""
     return Fold(fold_bits(config), walk_bits(config), turn_bits(config))
 
 
 class Candidate(Record):
     """A hit, if `valid`, at t = numerator / denominator, on the rectangle `index`.
 
-    at_mirror: in the plane of the mirror that the ray left last, which is another one. With patterns, axis, cell: the
-    rectangle's.
+    at_mirror: the hit is in the plane of the mirror that the ray left last, which is another rectangle. With patterns,
+    axis, cell: fields of the rectangle.
     """
 
     def __init__(self, numerator_bits: int, denominator_bits: int, index_width: int, patterns: bool = False):
@@ -466,7 +467,7 @@ class Candidate(Record):
 
 
 def candidate_of(config: Configuration) -> Candidate:
-    """One of a design's widths."""
+    """Return a `Candidate` sized for this configuration."""
     return Candidate(eye_bits(config) - 1, exact_slope_bits(config), index_bits(config), config.patterns)
 
 
@@ -478,38 +479,38 @@ class Winner(Record):
 
 
 def winner_of(config: Configuration) -> Winner:
-    """One of a design's widths."""
+    """Return a `Winner` sized for this configuration."""
     return Winner(index_bits(config))
 
 
 class Seen(Record):
-    """What a ray sees, if it has `found` something: its colour, and of mirrors that mix how much of it mirrors."""
+    """The rectangle that a ray sees, if `found`: its colour and, if mirrors mix, the share that it mirrors."""
 
     def __init__(self, mixes: bool = False):
         super().__init__({"found": 1, "mirror": MIRROR_BITS * mixes, "colour": RGB_BITS})
 
 
 def seen_of(config: Configuration) -> Seen:
-    """One of a design's: what nothing reflects does not mix."""
+    """Return a `Seen` sized for this configuration; without reflections, nothing mixes."""
     return Seen(config.materials and config.reflections > 0)
 
 
 class Shade(Record):
-    """What a ray adds to its pixel: a `Colour`, and of mirrors that mix how much of what is behind it shows."""
+    """A ray's contribution to its pixel: a `Colour` and, if mirrors mix, the share of the colour behind it."""
 
     def __init__(self, mixes: bool = False):
         super().__init__({"mirror": MIRROR_BITS * mixes} | Colour().layout)
 
 
 def shade_of(config: Configuration) -> Shade:
-    """One of a design's."""
+    """Return a `Shade` sized for this configuration."""
     return Shade("mirror" in seen_of(config).layout)
 
 
 class CellDivision(Record):
-    """A division after the steps down to a place: what is left of the dividend, the divisor, and of which cell it is.
+    """A division after its steps down to a bit place: the rest of the dividend, the divisor, and the cell size.
 
-    cell: as in `Look`; odd: the quotient's bit of a cell's worth, once it is known.
+    cell: as in `Look`; odd: the quotient bit whose weight is the cell size, once it is known.
     """
 
     def __init__(self, divisor_bits: int, place: int):
@@ -517,7 +518,7 @@ class CellDivision(Record):
 
 
 class Sight(Record):
-    """The rectangle that a ray sees, if `valid`, and where: odd_u, odd_v as `pattern_colour` reads them."""
+    """The rectangle that a ray sees, if `valid`, and the hit's pattern cell: odd_u, odd_v as in `pattern_colour`."""
 
     def __init__(self, index_width: int):
         super().__init__({"valid": 1, "odd_u": 1, "odd_v": 1, "index": index_width})

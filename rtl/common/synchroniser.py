@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Into this clock, from none."""
+"""A synchroniser with two registers."""
 
 from myhdl import Signal, always_seq, block, instances
 
@@ -8,9 +8,9 @@ from raycaster.rtl.common.ties import initial
 
 @block
 def synchroniser(clk, reset, value, held):
-    """Bring a value that may change at any time to this clock.
+    """Synchronise a value that may change at any time to clk.
 
-    There are two registers in a row, as the first may be metastable.
+    There are two registers in series, because the first may become metastable.
 
     Args:
         clk: the clock.

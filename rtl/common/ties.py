@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""The two ways to leave an instance's port without a signal of one's own: tied to a value, and open."""
+"""Instance ports without a signal: tied to a constant, or left open."""
 
 from myhdl import intbv
 from myhdl._Signal import _Signal
 
 
 class Signed(int):
-    """The width in bits of a two's complement value; a plain `int` is that of an unsigned one."""
+    """The width in bits of a two's complement value; a plain `int` is the width of an unsigned one."""
 
 
 def initial(value: int, like: int | _Signal) -> bool | intbv:
-    """A value in the shape of a width or of another signal; one unsigned bit is a bool, as MyHDL's bits are.
+    """Return a value for a given width or for another signal's type; one unsigned bit is a bool, as in MyHDL.
 
     Args:
-        value: what it starts with.
+        value: the initial value.
         like: a width in bits, `Signed` for two's complement, or a signal.
     """
     if isinstance(like, Signed):
@@ -24,18 +24,18 @@ def initial(value: int, like: int | _Signal) -> bool | intbv:
 
 
 class Tied(_Signal):
-    """What `tied` makes; it prints as a number where it is connected, and as a localparam where a process reads it."""
+    """A constant made by `tied`. In Verilog it is a number in connections, and a localparam if a process reads it."""
 
 
 class Unconnected(_Signal):
-    """What `unconnected` makes; it prints as an empty connection."""
+    """An open output made by `unconnected`. In Verilog it is an empty connection."""
 
 
 def tied(value: int, like: int | _Signal) -> Tied:
-    """A signal that never changes, for inputs of instances however many levels down; `like` as for `initial`."""
+    """Return a constant signal for inputs of instances, any number of levels down; `like` as for `initial`."""
     return Tied(initial(value, like))
 
 
 def unconnected(like: int | _Signal) -> Unconnected:
-    """A signal for an output of an instance that is not read; `like` as for `initial`."""
+    """Return a signal for an instance's output that nothing reads; `like` as for `initial`."""
     return Unconnected(initial(0, like))

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Which rectangles a group's primary rays may hit."""
+"""Culling of the rectangles that no primary ray of a group can hit."""

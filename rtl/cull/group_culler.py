@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Which rectangles a group's primary rays may hit, found while the group before it is traced."""
+"""Prediction of the rectangles that a group's primary rays may hit, while the previous group is traced."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -17,15 +17,14 @@ from raycaster.rtl.engine.rect_setup import rect_setup
 def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects, may_hit, config: Configuration):
     """Predict the rectangles that the next group's primary rays may hit, from start_group to reset_ray_caster.
 
-    From start_group on, all rectangles are tested against the next group of the frame. may_hit is loaded in each cycle
-    of reset_ray_caster and in no other one, so it is constant while a group is traced. The prediction is loaded if the
-    predicted group is the one at place in that cycle and all its rectangles were tested, and otherwise all ones, which
-    is correct for any group.
+    After start_group, all rectangles are tested against the next group of the frame. may_hit is loaded only while
+    reset_ray_caster is high, so it is constant while a group is traced. It takes the prediction if that is for the
+    group at place and all rectangles were tested, and otherwise all ones, which is correct for any group.
 
-    Only a prediction of the same scene is correct, so there is none before rect_copy has all its rectangles, at done of
-    a frame's first group: a frame's first two groups have none. Nor has a group before which reset_ray_caster ends at
-    most `SETUP_LATENCY` + `config.rectangles` cycles after the previous group's start_group, or which does not follow
-    that group in the frame.
+    A prediction is correct only for the same scene, whose rectangles are all in rect_copy at done of a frame's first
+    group: the first two groups of a frame have no prediction. Neither has a group that does not follow the previous one
+    in the frame, or before which reset_ray_caster ends at most `SETUP_LATENCY` + `config.rectangles` cycles after the
+    previous group's start_group.
 
     Args:
         clk: the clock.
@@ -35,8 +34,8 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
         place: `Place` of the group; changes at the end of the first cycle of reset_ray_caster.
         camera: `Camera`; only its position is read.
         rects: `Rects` of the engine; all inputs here, as in rect_copy.
-        may_hit: unsigned output, `config.rectangles` bits, one for each rectangle; 0 where no primary ray of the group
-            at place hits it.
+        may_hit: unsigned output, `config.rectangles` bits, one per rectangle; 0 if no primary ray of the group at place
+            hits it.
         config: the design.
     """
     units, rectangles = config.units, config.rectangles
@@ -72,7 +71,7 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
     def compare_with_first():
         first_group.next = (place.row == 0) and (place.column_offset == 0)
 
-    # A new scene goes live before a frame's first group only.
+    # A new scene goes live only before a frame's first group.
     @always(clk.posedge)
     def know_rects():
         if first_group:
@@ -110,7 +109,7 @@ def group_culler(clk, reset_ray_caster, start_group, done, place, camera, rects,
         elif swept:
             all_tested.next = True
 
-    # After a row or a frame that was abandoned, the next group is another one.
+    # After an abandoned row or frame, the next group is not the predicted one.
     @always_comb
     def compare_places():
         predicted.next = (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whether any ray of a group can hit a rectangle."""
+"""A test of a rectangle against all rays of a group."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -11,22 +11,22 @@ from raycaster.rtl.common.widths import bit, signed, unsigned
 def group_tester(clk, load, facet, growth, start, column_slope, row_slope, may_hit, config: Configuration):
     """Test the rays at a group's ends against one rectangle after another, as rect_setup presents them.
 
-    Along a row both sides of each condition of the hit are linear in the column. A condition that fails at both ends,
-    for a ray that runs the same way along the rectangle's axis at both, fails between them too: then no ray of the
-    group hits. Otherwise one may. The ends are the first column and the one after the last, as that many columns on are
-    a shift where `config.units` is a power of two.
+    Along a row, both sides of each condition for a hit are linear in the column. If a condition fails at both ends, and
+    the rays at both ends run the same way along the rectangle's axis, it fails in between too, and no ray of the group
+    hits. Otherwise one may. The ends are the first column and the one after the last, `config.units` columns on: that
+    is a shift for a power of two.
 
     Args:
         clk: the clock.
-        load: unsigned, `config.rectangles` bits, one for each rectangle; high where facet, growth and start are that
-            rectangle's.
+        load: unsigned, `config.rectangles` bits, one per rectangle; high when facet, growth and start belong to that
+            rectangle.
         facet: `Facet` of the rectangle; read with load.
-        growth: `Walk`; the change of start from one column to the next, read with load.
+        growth: `Walk`; the change of start per column, read with load.
         start: `Walk` of the group's first column; read with load.
         column_slope: signed; the y slope of the group's first column, read with load.
         row_slope: signed; the z slope of the group's row, read with load.
-        may_hit: unsigned output, `config.rectangles` bits, one for each rectangle; a ray of the group may hit it. Valid
-            from two cycles after the rectangle's bit of load on.
+        may_hit: unsigned output, `config.rectangles` bits, one per rectangle; 1 if a ray of the group may hit it. Valid
+            from the second cycle after the rectangle's bit of load.
         config: the design.
     """
     walk_bits, units = len(start.way_p), config.units
@@ -85,7 +85,7 @@ def group_tester(clk, load, facet, growth, start, column_slope, row_slope, may_h
         else:
             behind.next = back and end_back
 
-    # Where the ray runs back, multiplying by its slope has turned the bounds around.
+    # If the ray runs in the negative direction, multiplying by its slope has swapped the bounds.
     @always_comb
     def order_bounds():
         if back:
@@ -136,7 +136,7 @@ def group_tester(clk, load, facet, growth, start, column_slope, row_slope, may_h
             end_least_q.next = low_q_1
             end_most_q.next = high_q_1
 
-    # Rays that pass on one side at both ends all miss.
+    # If the rays at both ends pass on the same side, all rays miss.
     @always_comb
     def judge():
         one_may_hit.next = not (

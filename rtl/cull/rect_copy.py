@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The rectangles that an engine has seen, to be looked at again while it works on others."""
+"""A copy of the rectangles that an engine has fetched, for a second reader."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -10,14 +10,14 @@ from raycaster.rtl.common.widths import AXIS_BITS, WIDE_BITS, bit, index_bits, s
 
 @block
 def rect_copy(clk, rects, copy, margin: int, config: Configuration):
-    """Keep each rectangle that the engine fetches from rects, and give it to a second reader through copy.
+    """Store each rectangle that the engine fetches from rects, and present it to a second reader through copy.
 
     Args:
         clk: the clock.
         rects: `Rects` of the engine; all inputs here, and rect comes a cycle after fetch.
         copy: `Rects` of the second reader; index and fetch are read. rect is an output, a `WideRect` with bounds margin
-            further out, and comes two cycles after fetch; don't care where the engine has not fetched it.
-        margin: how much further out the bounds are, in world units.
+            further out, and comes two cycles after fetch; don't care if the engine has not fetched it.
+        margin: distance by which the bounds are further out, in world units.
         config: the design.
     """
     rect, bounds = rects.rect, ("u_low", "u_high", "v_low", "v_high")

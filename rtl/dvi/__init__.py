@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""From VGA to the symbols of a DVI link."""
+"""An encoder from VGA to the symbols of a DVI link."""

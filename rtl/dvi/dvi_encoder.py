@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From the VGA output to the symbols of a DVI link."""
+"""An encoder from the VGA output to the symbols of a DVI link."""
 
 from myhdl import always, always_comb, block, concat, instances
 
@@ -14,14 +14,14 @@ def dvi_encoder(clk, ready, pixel_end, vga, blue, green, red, pixel):
 
     Channel 0 carries blue and the syncs, 1 green, 2 red, as in DVI 1.0, section 2.2.3.
 
-    The pixel_end of a pixel takes its colours and syncs. Their symbols are on the outputs from the cycle after the next
-    pixel_end on, for a pixel.
+    A pixel's colours and syncs are read at its pixel_end. Their symbols appear in the cycle after the next pixel_end,
+    and stay for one pixel.
 
     Args:
         clk: the clock.
         ready: flag; low holds pixel low. May change at any time.
         pixel_end: flag; high in the last cycle of a pixel, which takes one or two cycles of clk.
-        vga: `Vga` as ray_caster_module has it, 8 bits per colour; r, g, b, hs, vs and blank_n are read.
+        vga: `Vga` of ray_caster_module, 8 bits per colour; r, g, b, hs, vs and blank_n are read.
         blue: unsigned output, 10 bits; the symbol of channel 0, stable for a pixel.
         green: unsigned output, 10 bits; the symbol of channel 1, stable for a pixel.
         red: unsigned output, 10 bits; the symbol of channel 2, stable for a pixel.

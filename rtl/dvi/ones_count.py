@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How many of eight bits are set."""
+"""The number of ones in eight bits."""
 
 from myhdl import always_comb, block, instances
 

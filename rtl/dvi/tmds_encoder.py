@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One channel of a DVI link: a byte or two control bits become a symbol of ten bits."""
+"""An encoder for one channel of a DVI link: a byte or two control bits become a symbol of ten bits."""
 
 from myhdl import always_comb, always_seq, block, concat, instances
 
@@ -8,10 +8,10 @@ from raycaster.rtl.dvi.ones_count import ones_count
 
 SYMBOL_BITS = 10
 DISPARITY_BITS = 5
-"""Of half the ones less the zeros sent so far, which stays within -4..4, and of its sum with a word's."""
+"""Width of half the excess of ones over zeros sent so far, which stays within -4..4, and of its sum with one symbol."""
 
 CONTROL_SYMBOLS = (0b1101010100, 0b0010101011, 0b0101010100, 0b1010101011)
-"""By the control bits, c1 above c0."""
+"""The symbols by control bits, c1 above c0."""
 
 
 @block
@@ -22,12 +22,12 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
 
     Args:
         clk: the clock.
-        enable: strobe, once per pixel, at which the inputs are taken.
-        data: unsigned, 8 bits; encoded in the picture, and read with enable.
-        control: unsigned, 2 bits, c1 above c0; encoded in blanking, and read with enable.
+        enable: strobe, once per pixel; takes the inputs.
+        data: unsigned, 8 bits; encoded in the picture. Read with enable.
+        control: unsigned, 2 bits, c1 above c0; encoded in blanking. Read with enable.
         visible: flag; high in the picture, low in blanking. Read with enable.
-        symbol: unsigned output, 10 bits, bit 0 to be sent first; changes at the strobe after the one that took its
-            inputs, so a reader takes it two strobes after them.
+        symbol: unsigned output, 10 bits, bit 0 first; changes one strobe after its inputs were taken, so a reader
+            samples it two strobes after them.
     """
     controls = CONTROL_SYMBOLS
     ones, word_ones = unsigned(4), unsigned(4)
@@ -42,12 +42,12 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
     data_count = ones_count(data, ones)
     word_count = ones_count(low_bits, word_ones)
 
-    # XNOR where XOR would leave more transitions.
+    # XNOR if XOR would leave more transitions.
     @always_comb
     def choose_chain():
         chain_xnor.next = ones > 4 or (ones == 4 and not data[0])
 
-    # Each bit becomes the XOR of all up to it, in three steps.
+    # Each bit becomes the XOR of all bits up to it, in three steps.
     @always_comb
     def chain_two():
         chained_2.next = data ^ concat(data[7:], False)
@@ -60,7 +60,7 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
     def chain_eight():
         chained.next = chained_4 ^ concat(chained_4[4:], False, False, False, False)
 
-    # A chain of XNORs differs from it in every second bit.
+    # A chain of XNORs differs from a chain of XORs in every second bit.
     @always_seq(clk.posedge, reset=None)
     def keep_word():
         if enable:
@@ -71,12 +71,12 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
             word_visible.next = visible
             word_control.next = control
 
-    # How far ones outnumber zeros in the word, halved.
+    # Half the excess of ones over zeros in the word.
     @always_comb
     def weigh_word():
         excess.next = word_ones - 4
 
-    # The complement is sent where that evens out what has been sent; where either is balanced nothing is gained.
+    # The complement is sent if it reduces the disparity; if the disparity or the word is balanced, it cannot.
     @always_comb
     def decide():
         if disparity == 0 or excess == 0:
@@ -84,7 +84,7 @@ def tmds_encoder(clk, enable, data, control, visible, symbol):
         else:
             invert.next = (excess > 0) == (disparity > 0)
 
-    # What the eight bits, and the two flags above them, add.
+    # The excess added by the eight bits, and by the two flags above them.
     @always_comb
     def weigh_symbol():
         sent_excess.next = excess

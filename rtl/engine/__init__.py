@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""What engines share: sequencing, primary rays, products, colour."""
+"""Shared by the engines: sequencing, primary rays, products, colour."""

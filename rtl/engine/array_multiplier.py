@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A product in adders, where a chip's multipliers are wanted elsewhere."""
+"""A multiplier made of adders, to leave the chip's multipliers for other uses."""
 
 from myhdl import always_comb, block, concat, instances
 
@@ -10,12 +10,12 @@ from raycaster.rtl.engine.multiplier_step import multiplier_step
 
 @block
 def array_multiplier(multiplicand, multiplier, product):
-    """Multiply two signed numbers, by an adder for each of the multiplier's bits. Combinational.
+    """Multiply two signed numbers with one adder per bit of the multiplier. Combinational.
 
     Args:
         multiplicand: signed.
         multiplier: signed.
-        product: signed output; multiplicand * multiplier, or its low bits where product is narrower than both factors
+        product: signed output; multiplicand * multiplier, or its low bits if product is narrower than both factors
             together.
     """
     width, count = len(multiplicand), len(multiplier)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The colour of a pixel: what its ray and the reflections of it saw, one after the other."""
+"""The colour of a pixel, added up from its ray and the ray's reflections one after the other."""
 
 from myhdl import always_comb, block, instances
 
@@ -12,20 +12,20 @@ from raycaster.rtl.engine.colour_sum import colour_sum
 
 @block
 def colour_combiner(clk, steps, found, found_colour, found_mirror, picture, missed, pixel, config: Configuration):
-    """Add up a pixel's colour from the hits of its ray and of the ray's reflections, one at each steps.add_colour.
+    """Add up a pixel's colour from the hits of its ray and the ray's reflections, one at each steps.add_colour.
 
-    From the first ray without a hit on, the background is added.
+    From the first ray that misses on, the background is added.
 
     Args:
         clk: the clock.
         steps: `Steps`; reset_colour, add_colour and store_ray are read.
         found: flag; the ray has a hit. Read with steps.add_colour.
         found_colour: unsigned, 24 bits; the colour of the hit, read with steps.add_colour.
-        found_mirror: unsigned, 3 bits; how much the hit mirrors, 0 to 4 quarters, read with steps.add_colour and
-            `config.materials`.
+        found_mirror: unsigned, 3 bits; the share that the hit mirrors, 0 to 4 quarters. Read with steps.add_colour,
+            only with `config.materials`.
         picture: `Picture`; only background is read, with steps.add_colour.
-        missed: output flag; a ray has found nothing, or nothing that mirrors, so that later hits do not count. Valid
-            from the cycle after that ray's steps.add_colour.
+        missed: output flag; a ray has hit nothing, or no mirror, so later hits do not count. Valid from the cycle after
+            that ray's steps.add_colour.
         pixel: output `Pixel`; valid from the cycle after the last steps.add_colour.
         config: the design.
     """
@@ -41,7 +41,7 @@ def colour_combiner(clk, steps, found, found_colour, found_mirror, picture, miss
         for one, channel in ((seen.red, red), (seen.green, green), (seen.blue, blue))
     ]
 
-    # Of a ray that hit nothing there is no reflection, whatever the units go on to find.
+    # A ray that missed has no reflection, whatever the units find afterwards.
     @always_comb
     def look():
         if found and not missed:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How much what a ray saw weighs in the colour of its pixel."""
+"""The share of each ray's colour in its pixel."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -9,23 +9,23 @@ from raycaster.rtl.common.widths import share_bits, unsigned
 
 @block
 def colour_share(clk, steps, found, found_mirror, share, missed, config: Configuration):
-    """Weigh each ray's colour in its pixel.
+    """Compute the share of each ray's colour in its pixel.
 
-    All shares of a pixel add up to one, which is the highest of their `share_bits` bits. The last ray keeps all the
-    weight that is left; it stores no reflected ray. Before it a mirror passes found_mirror quarters of its weight on,
-    and a miss nothing; or, without `config.materials`, all pass half on.
+    The shares of a pixel add up to 1, the highest of their `share_bits` bits. The last ray, which stores no reflected
+    ray, keeps all the remaining weight. Each earlier ray passes part of it on: a mirror found_mirror quarters, a miss
+    nothing; without `config.materials`, always half.
 
     Args:
         clk: the clock.
         steps: `Steps`; reset_colour, add_colour and store_ray are read. With steps.add_colour, store_ray is low for the
             last ray.
         found: flag; the ray has a hit. Read with steps.add_colour.
-        found_mirror: unsigned, 3 bits; how much the hit mirrors, 0 to 4 quarters, read with steps.add_colour and
-            `config.materials`.
-        share: unsigned output, `share_bits` bits; the share of the hit, or of the background where there is none. Valid
-            where steps.add_colour is high.
-        missed: output flag; a ray has found nothing, or nothing that mirrors, so that later hits do not count. Valid
-            from the cycle after that ray's steps.add_colour.
+        found_mirror: unsigned, 3 bits; the share that the hit mirrors, 0 to 4 quarters. Read with steps.add_colour,
+            only with `config.materials`.
+        share: unsigned output, `share_bits` bits; the share of the hit, or of the background if there is none. Valid
+            when steps.add_colour is high.
+        missed: output flag; a ray has hit nothing, or no mirror, so later hits do not count. Valid from the cycle after
+            that ray's steps.add_colour.
         config: the design.
     """
     bits = share_bits(config)
@@ -36,7 +36,7 @@ def colour_share(clk, steps, found, found_mirror, share, missed, config: Configu
     if config.materials:
         half, quarter, some, passed_on = (unsigned(bits) for _ in range(4))
 
-        # A weight that is passed on has a quarter: there is one mirror less than there are reflections.
+        # A weight that is passed on is a multiple of 4: it has met fewer mirrors than there are reflections.
         @always_comb
         def split():
             half.next = 0
@@ -50,7 +50,7 @@ def colour_share(clk, steps, found, found_mirror, share, missed, config: Configu
         def add_parts():
             some.next = half + quarter
 
-        # The last ray stores no reflected one.
+        # The last ray passes nothing on: it stores no reflected ray.
         @always_comb
         def pass_on():
             passed_on.next = 0
@@ -70,7 +70,7 @@ def colour_share(clk, steps, found, found_mirror, share, missed, config: Configu
             missed.next = weight == 0
 
     else:
-        # What it keeps is as much as what it passes on.
+        # A ray keeps as much as it passes on.
         @always_comb
         def keep():
             share.next = weight

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One channel of a pixel whose rays see one after the other, each with a share of its own."""
+"""A channel of a pixel: the sum over its rays, one after the other, each with its own share."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -11,9 +11,9 @@ from raycaster.rtl.common.widths import share_bits, unsigned
 def colour_sum(clk, steps, seen, share, blended, config: Configuration):
     """Sum up one channel of a pixel: share times seen, added at each steps.add_colour.
 
-    Without `config.materials` a share has one bit set. With them and at most two reflections a share is a product of at
-    most two numbers 0 to 4, a mirror's quarters or what they leave, so at most one of its bits at even places is set,
-    and at most one at odd places: two summands make the product.
+    Without `config.materials` a share has one bit set. With it and at most two reflections, a share is a product of at
+    most two numbers from 0 to 4, the quarters that a mirror reflects or keeps. So at most one of its bits in even
+    places is set, and at most one in odd places: share times seen is a sum of two terms.
 
     Args:
         clk: the clock.
@@ -25,7 +25,7 @@ def colour_sum(clk, steps, seen, share, blended, config: Configuration):
         config: the design.
     """
     places = share_bits(config)
-    sum_bits = CHANNEL_BITS + places - 1  # all shares make one, which is 1 << (places - 1)
+    sum_bits = CHANNEL_BITS + places - 1  # all shares add up to 1 << (places - 1)
     low = sum_bits - config.colour_bits
 
     weighted, total, next_total = (unsigned(sum_bits) for _ in range(3))

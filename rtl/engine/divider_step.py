@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One bit of a restoring division."""
+"""A step of a restoring division, for one quotient bit."""
 
 from myhdl import Signal, always_comb, block, concat, instances, intbv
 
@@ -8,13 +8,13 @@ from raycaster.rtl.common.widths import unsigned
 
 @block
 def divider_step(remainder, digits, divisor, next_remainder, next_digits):
-    """Shift remainder and digits left as one, and subtract the divisor where it fits. Combinational.
+    """Shift remainder and digits left as one, and subtract the divisor if it fits. Combinational.
 
-    The dividend's digits leave on the left, and the quotient's bit, 1 where the divisor fitted, enters on the right.
+    The dividend's digits leave on the left, and the quotient's bit, 1 if the divisor fits, enters on the right.
 
     Args:
         remainder: unsigned, as wide as divisor and less than it.
-        digits: unsigned; the remaining digits of the dividend, above the quotient's so far.
+        digits: unsigned; the remaining digits of the dividend, above the quotient's digits so far.
         divisor: unsigned.
         next_remainder: unsigned output, as wide as divisor; remainder after the step.
         next_digits: unsigned output, as wide as digits; digits after the step.
@@ -27,7 +27,7 @@ def divider_step(remainder, digits, divisor, next_remainder, next_digits):
     def bring_down():
         dividend.next = concat(remainder, digits[count - 1])
 
-    # A negative difference says that the divisor did not fit.
+    # A negative difference means that the divisor does not fit.
     @always_comb
     def subtract():
         difference.next = dividend - divisor

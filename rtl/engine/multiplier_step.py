@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One digit of an array multiplication."""
+"""A step of an array multiplication, for one digit."""
 
 from myhdl import always_comb, block, concat, instances
 
@@ -8,17 +8,17 @@ from raycaster.rtl.common.widths import signed
 
 @block
 def multiplier_step(multiplicand, total, digits, next_total, next_digits, subtract: bool):
-    """Add multiplicand to total where digits end in 1, and shift total and digits right as one. Combinational.
+    """Add multiplicand to total if digits ends in 1, and shift total and digits right as one. Combinational.
 
-    The multiplier's digits leave on the right, and the product's enter on the left.
+    The multiplier's digits leave on the right, and the product's digits enter on the left.
 
     Args:
         multiplicand: signed, as wide as total.
         total: signed; the sum so far.
-        digits: unsigned; the product's digits so far, above the remaining ones of the multiplier.
+        digits: unsigned; the product's digits so far, above the multiplier's remaining digits.
         next_total: signed output, as wide as total; total after the step.
         next_digits: unsigned output, as wide as digits; digits after the step.
-        subtract: the digit is the multiplier's sign, which counts below 0, so that the multiplicand is subtracted.
+        subtract: the digit is the multiplier's sign, whose weight is negative, so the multiplicand is subtracted.
     """
     width, count = len(total), len(digits)
     addend = signed(width)

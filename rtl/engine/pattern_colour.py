@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The colour of a rectangle with a pattern at one of its points."""
+"""The colour of a patterned rectangle at a point."""
 
 from myhdl import always_comb, block, instances
 
@@ -8,10 +8,9 @@ from raycaster.rtl.common.widths import bit
 
 @block
 def pattern_colour(look, odd_u, odd_v, colour):
-    """Choose between a look's colour and its second colour. Combinational.
+    """Choose between the two colours of a pattern. Combinational.
 
-    A checker takes the second colour where just one of odd_u and odd_v is high, rows where odd_v is, columns where
-    odd_u is.
+    A checker takes the second colour if exactly one of odd_u and odd_v is high, rows if odd_v is, columns if odd_u is.
 
     Args:
         look: record with the fields of a `Look` with patterns.

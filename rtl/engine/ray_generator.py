@@ -12,9 +12,9 @@ from raycaster.rtl.common.widths import bit, row_bits, signed, unsigned
 def ray_generator(clk, steps, place, column_base, initial_signs, slope, config: Configuration):
     """Generate the slope of the primary ray through a pixel: (view distance, column - centre, horizon - row).
 
-    The slope is in sign and magnitude, and is loaded at steps.screen_to_ray. The column is place.column_offset *
-    `config.units` + column_base: neighbouring columns are in one group, and share their fate. Every primary ray starts
-    at the camera, which needs no register here.
+    The slope, in sign and magnitude, is loaded at steps.screen_to_ray. The column is place.column_offset *
+    `config.units` + column_base: neighbouring columns are in one group, because their rays mostly hit the same
+    rectangles. Every primary ray starts at the camera, which needs no register here.
 
     Args:
         clk: the clock.
@@ -31,7 +31,7 @@ def ray_generator(clk, steps, place, column_base, initial_signs, slope, config: 
     view_distance = config.screen_geometry.view_distance
     centre_column = config.screen_geometry.centre_column
     horizon_row = config.screen_geometry.horizon_row
-    # One group past the last is legal: the counter rests there.
+    # One group past the last is legal: the counter stops there.
     column_width = (config.groups * units + units).bit_length()
 
     group_start = unsigned(column_width)

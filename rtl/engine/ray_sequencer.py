@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The life of a group of rays, whatever computes where they hit."""
+"""The sequence of steps that traces a group of rays, whichever engine computes the hits."""
 
 from myhdl import Signal, always, always_comb, block, enum, instances
 
@@ -14,7 +14,7 @@ RayState = enum("IDLE", "GENERATE", "TRACE", "BLEND", "DONE")
 
 
 def ends_early(config: Configuration) -> bool:
-    """Whether a design ends rectangles within their slot, which must be longer than early_out takes."""
+    """Return True if a design ends rectangles within their slot, which must be longer than early_out takes."""
     return config.culling and config.slot_cycles > EARLY_OUT_AT + 1
 
 
@@ -25,42 +25,41 @@ def ray_sequencer(
 ):  # fmt: skip
     """Cycle through the usable rectangles once per ray, for the primary ray and each reflection, then raise done.
 
-    A new rectangle starts every `slot_cycles` cycles: steps.find_intersection. When nothing is in flight after the last
-    rectangle, BLEND follows, and then the next ray. In a fixed scene each ray has the rectangles that it may hit there,
-    the primary ray and each reflection its own, instead of the usable ones.
+    A new rectangle starts every `slot_cycles` cycles, with steps.find_intersection. When nothing is in flight after the
+    last rectangle, BLEND follows, and then the next ray. In a fixed scene, the primary ray and each reflection cycle
+    through their own sets of rectangles that they may hit, instead of the usable ones.
 
     With `config.light` a shadow pass may follow each pass, before BLEND: shadow_pass starts it.
 
-    Culling leaves out rectangles and rays that cannot change a pixel, and is correct where its signals are valid in
-    time:
+    Culling skips rectangles and rays that cannot change a pixel, and is correct if its signals are valid in time:
 
-    - fate.may_hit is read in the cycle that reads enable, and the primary ray passes by the rectangles that are 0 in
-      it. Ones are always safe, so a mask that is not known in time is all ones.
-    - fate.any_alive is read in BLEND alone, which is the cycle after the last steps.write_z_buf, the first in which the
-      units know of a hit (later where exact_control waits for a pattern's cells). So no register fits between: a cycle
-      later, the last rectangle would not count. Where it is low, BLEND follows BLEND until done, so none may be alive
+    - fate.may_hit is read in the same cycle as enable, and the primary ray skips the rectangles whose bit is 0. Ones
+      are always safe, so a mask that is not known in time is all ones.
+    - fate.any_alive is read only in BLEND, the cycle after the last steps.write_z_buf and the first in which the units
+      know its hit (later if exact_control waits for a pattern's cells). So there is no time for a register: a cycle
+      later, the last rectangle would not count. If it is low, BLEND repeats until done, so no unit may become alive
       again before the next group.
     - fate.any_towards is valid in the cycle after steps.find_intersection, from the units' registers, and belongs to
-      that rectangle until its early_out, `EARLY_OUT_AT` cycles after steps.find_intersection. One register fits
-      between, in the control. early_out ends the slot of a rectangle that no ray runs towards, and clears it from
-      in_flight; a cycle later the rectangle would be past the bit that is cleared, and its division would be stored.
+      that rectangle until its early_out, `EARLY_OUT_AT` cycles after steps.find_intersection. There is time for one
+      register, in the control. early_out ends the slot of a rectangle that no ray runs towards, and clears its bit of
+      in_flight; a cycle later the rectangle would be past that bit, and its division would be stored.
 
     Args:
         clk: the clock.
         reset_ray_caster: flag; synchronous reset to idle.
         enable: flag, read while idle; starts a group of rays.
-        picture: `Picture`; only reflections is read: 0 to `config.reflections`, still while rendering.
-        rects: `Rects`; index and fetch are outputs. usable holds still from the cycle that reads enable; rect is not
-            read.
-        steps: output `Steps`, except load_divider, store_quotient, write_z_buf and those of shadows, which the control
-            derives from in_flight.
+        picture: `Picture`; only reflections is read: 0 to `config.reflections`, stable while rendering.
+        rects: `Rects`; index and fetch are outputs. usable must be stable from the cycle that reads enable on; rect is
+            not read.
+        steps: output `Steps`, except load_divider, store_quotient, write_z_buf and the signals of shadows, which the
+            control derives from in_flight.
         in_flight: unsigned output; bit i is set i + 1 cycles after a rectangle's steps.find_intersection, and the last
-            bit is that of the last cycle that a rectangle needs.
+            bit marks the last cycle that a rectangle needs.
         fate: `GroupFate`; may_hit and any_alive are read. any_towards is left to the control, which derives early_out
             from it.
-        shadow_pass: `ShadowPass`; traced is an output, and the rest is read, with `config.light`.
+        shadow_pass: `ShadowPass`, used with `config.light`; drives traced, reads the rest.
         early_out: flag, `EARLY_OUT_AT` cycles after steps.find_intersection; no ray runs towards that rectangle. Tied
-            to 0 where rectangles are not ended early.
+            to 0 if rectangles are not ended early.
         done: output flag; all rays have been traced. High until reset_ray_caster.
         slot_cycles: cycles from one rectangle to the next.
         config: the design.
@@ -129,7 +128,7 @@ def ray_sequencer(
         steps.reset_colour.next = state == RayState.GENERATE
         steps.reset_z_buf.next = start_ray
         steps.add_colour.next = state == RayState.BLEND
-        # A ray that nothing follows would be one mirror too many for an engine that mirrors the eye.
+        # The last ray stores no reflection: that would be one mirror too many for an engine that mirrors the eye.
         steps.store_ray.next = (state == RayState.BLEND) and (bounce != picture.reflections)
         steps.initial_ray.next = bounce == 0
         steps.find_intersection.next = (state == RayState.TRACE) and starting

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Which rectangle an engine works on, and for how long."""
+"""The sequence of rectangles that an engine tests, and the time for each."""
 
 from myhdl import always, always_comb, block, downrange, instances
 
@@ -18,11 +18,11 @@ def rect_sequencer(
         clk: the clock.
         reset_ray_caster: flag; synchronous reset, after which nothing is fetched.
         start_ray: strobe; the next cycle begins the first slot.
-        wanted: unsigned, `config.rectangles` bits, one for each rectangle; read in the cycle before start_ray.
+        wanted: unsigned, `config.rectangles` bits, one per rectangle; read in the cycle before start_ray.
         early_out: flag; this cycle is the last of the slot.
-        index: unsigned output, `index_bits` bits; the rectangle that the memory is to fetch, valid with fetch.
-        fetch: output strobe, in the cycle before a slot; the memory is to fetch. It comes after the last slot too, and
-            index is then don't care.
+        index: unsigned output, `index_bits` bits; the rectangle that the memory must fetch, valid with fetch.
+        fetch: output strobe, in the cycle before a slot; the memory must fetch the rectangle. It also comes after the
+            last slot, when index is don't care.
         fetched: output flag; a slot is under way, and the memory holds its rectangle.
         starting: output flag; first cycle of a slot.
         slot_cycles: cycles of a slot that does not end early.
@@ -40,7 +40,7 @@ def rect_sequencer(
     def see_take():
         take.next = start_ray or (fetched and (early_out or slot == last_slot))
 
-    # While nothing is at hand, the next ray's first rectangle is looked for: it wants all of them again.
+    # While no slot is under way, the next ray's first rectangle is chosen: that ray wants all of them again.
     @always_comb
     def choose_candidates():
         if take:
@@ -48,7 +48,7 @@ def rect_sequencer(
         else:
             candidates.next = wanted
 
-    # The lowest rectangle comes first, so that of equals the lower one wins; the others go on waiting.
+    # The lowest rectangle comes first, so that it wins at equal distances; the others keep waiting.
     @always_comb
     def choose_rectangle():
         lowest.next = 0
@@ -59,7 +59,7 @@ def rect_sequencer(
                 others.next = candidates
                 others.next[i] = 0
 
-    # The choice is registered before it is fetched, so that it and the memory have a cycle each.
+    # The choice is registered before the fetch, so that choosing and reading have a cycle each.
     @always(clk.posedge)
     def offer():
         if take or not fetched:

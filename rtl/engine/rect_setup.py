@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What neighbouring columns of a row start from, for one rectangle after another."""
+"""The start values for the columns of a row, for one rectangle after another."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -22,17 +22,17 @@ from raycaster.rtl.engine.array_multiplier import array_multiplier
 def rect_setup(
     clk, reset, start_line, rects, camera, slope, load, facet, growth, start, config: Configuration, in_adders=False
 ):  # fmt: skip
-    """Fetch a rectangle per cycle, from start_line on, and compute the products from which a row starts.
+    """Fetch one rectangle per cycle after start_line, and compute the products from which a row starts.
 
     The outputs follow `SETUP_LATENCY` cycles after start_line for the first rectangle, and then in each cycle for the
     next one.
 
     A rectangle has six products of a distance and a component of the ray through the first column (Kensler and Shirley
-    2006); along the row they grow linearly, so no later column needs one (forward differences). Distances to bounds
-    have the width of growth's fields, their products that of start's.
+    2006); along the row they grow linearly, so later columns need no multiplication (forward differences). Distances to
+    bounds are as wide as the fields of growth, their products as wide as the fields of start.
 
-    Where the camera turns there is no growth: it is the start of a sweep whose slope is the change of the slope from
-    one column to the next.
+    If the camera turns, growth is not computed here: it is the start of another sweep, whose slope is the change of the
+    slope per column.
 
     Args:
         clk: the clock.
@@ -41,14 +41,13 @@ def rect_setup(
         rects: `Rects`; index and fetch are outputs, and rect, with or without a look, comes two cycles after fetch.
         camera: `Camera`; only its position is read.
         slope: `Direction` of the ray through the first column; constant from the third cycle after start_line on.
-        load: unsigned output, `config.rectangles` bits, one for each rectangle; high for a cycle, in which the other
-            outputs are that rectangle's.
+        load: unsigned output, `config.rectangles` bits, one per rectangle; high for the cycle in which the other
+            outputs belong to that rectangle.
         facet: output `Facet` of the rectangle; valid with its bit of load.
-        growth: output `Walk`; the change of start from one column to the next, valid with load. Not driven with
-            `config.turn`.
+        growth: output `Walk`; the change of start per column, valid with load. Not driven with `config.turn`.
         start: output `Walk` of the first column; valid with load.
         config: the design.
-        in_adders: the products are made of adders, and take none of the chip's multipliers.
+        in_adders: make the products of adders, and use none of the chip's multipliers.
     """
     slope_bits = exact_slope_bits(config) + 1
     bound_bits = DISTANCE_BITS if config.turn else len(growth.low_p)
@@ -205,7 +204,7 @@ def rect_setup(
     if not config.turn:
         more_way_p, more_low_p, more_high_p, more_low_q, more_high_q = (signed(bound_bits) for _ in range(5))
 
-        # A product grows where its component of the slope is the one that the column changes, D[y].
+        # A product grows if its slope component is D[y], the one that changes with the column.
         @always_comb
         def choose_growth():
             more_way_p.next = distance_2

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""The exact engine: cross-multiplies, never divides, never rounds."""
+"""The exact engine: it cross-multiplies, and never divides or rounds."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""In which cells of a pattern a hit lies, by the few bits of a quotient that decide it."""
+"""The pattern cells of a hit point, from the few quotient bits that decide them."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -14,13 +14,13 @@ from raycaster.rtl.exact.hit_component import hit_component
 def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, found_slope, odd_u, odd_v):
     """Find the lowest bits of floor(P[u] / cell) and floor(P[v] / cell), P the hit point, by a short division.
 
-    P = (E e + D n) / e is within the world, and for a mirrored eye it is the point itself. So only the highest few of
-    the quotient's bits decide, which a restoring division finds two per cycle; and a remainder less than e is left
-    above them.
+    P = (E e + D n) / e is within the world, and is the real hit point even for a mirrored eye. So only the highest few
+    bits of the quotient decide, and a restoring division finds two of them per cycle. The dividend's bits above them
+    are less than e.
 
-    At steps.load_divider the division for P[u] begins; at steps.store_quotient, three cycles later, its bit is kept and
-    that for P[v] begins, which takes three more cycles. Until then all other inputs hold still. Without a hit the
-    outputs are don't care. A cell as large as the world, or larger, is even.
+    The division for P[u] begins at steps.load_divider. Three cycles later, at steps.store_quotient, its bit is stored
+    and the division for P[v] begins, which takes three more cycles. All other inputs must be stable until then. Without
+    a hit the outputs are don't care. A cell as large as the world, or larger, is even.
 
     Args:
         clk: the clock.
@@ -49,7 +49,7 @@ def cell_finder(clk, steps, eye, signs, slope, found_surface, found_distance, fo
     first_step = divider_step(remainder, digits, found_slope, remainder_1, digits_1)
     second_step = divider_step(remainder_1, digits_1, found_slope, remainder_2, digits_2)
 
-    # u is x but on a rectangle across x, and v is z but on one across z.
+    # u is x except on a rectangle across x, and v is z except on one across z.
     @always_comb
     def see_axis():
         on_x.next = (not steps.store_quotient) and (found_surface.axis != 0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The one control that operates all units of the exact engine in step."""
+"""The control that operates all units of the exact engine in lockstep."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -15,26 +15,26 @@ from raycaster.rtl.exact.shadow_sequencer import shadow_sequencer
 
 @block
 def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offered, done, config: Configuration):
-    """Operate all units of the exact engine in step: a ray_sequencer that takes a rectangle per clock.
+    """Operate all units of the exact engine in lockstep, with a ray_sequencer that starts a rectangle per clock.
 
-    steps.write_z_buf follows steps.find_intersection by three cycles, the latency of rect_tester; in a shadow
-    pass steps.write_shadow does, with `config.light`. With
-    `config.patterns` a pass goes on until the cells of the nearest hit are known: steps.load_divider is in the cycle
-    after a steps.write_z_buf, and steps.store_quotient three cycles after the last steps.load_divider.
+    steps.write_z_buf follows steps.find_intersection by three cycles, the latency of rect_tester; in a shadow pass,
+    with `config.light`, steps.write_shadow does so instead. With `config.patterns` a pass continues until the cells of
+    the nearest hit are known: steps.load_divider comes in the cycle after each steps.write_z_buf, and
+    steps.store_quotient three cycles after the last steps.load_divider.
 
-    Ports that ray_sequencer has too work as they do there.
+    Ports that ray_sequencer also has work as described there.
 
     Args:
         clk: the clock.
         reset_ray_caster: flag; synchronous reset to idle.
         enable: flag, read while idle; starts a group of rays.
-        picture: `Picture`; only reflections is read: 0 to `config.reflections`, still while rendering.
-        rects: `Rects`; index and fetch are outputs. usable holds still from the cycle that reads enable; the surface of
-            rect is read.
+        picture: `Picture`; only reflections is read: 0 to `config.reflections`, stable while rendering.
+        rects: `Rects`; index and fetch are outputs. usable must be stable from the cycle that reads enable on; the
+            surface of rect is read.
         steps: output `Steps`, for all units; load_divider and store_quotient are driven with `config.patterns`.
         fate: `GroupFate`; may_hit and any_alive as in ray_sequencer, any_in_question as in shadow_sequencer, and
             any_towards is not read.
-        offered: output `Surface`; in the cycle of steps.write_z_buf, that of the rectangle whose
+        offered: output `Surface`; in the cycle of steps.write_z_buf, the surface of the rectangle whose
             steps.find_intersection came three cycles before.
         done: output flag; all rays have been traced. High until reset_ray_caster.
         config: the design.
@@ -74,7 +74,7 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
             steps.load_divider.next = in_flight[load_at] and not from_light
             steps.store_quotient.next = in_flight[store_at] and (in_flight[store_at:] == 0) and not from_light
 
-    # The surface moves with its tests: it is the same for all units, so they need no copies.
+    # The surface is delayed along with its tests here, once for all units.
     @always(clk.posedge)
     def carry_surface():
         first.word.next = rects.rect.surface

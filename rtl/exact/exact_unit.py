@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One of the exact engine's units: a ray, its nearest hit, its reflections, and the colour of its pixel."""
+"""A unit of the exact engine: a ray, its nearest hit, its reflections, and the colour of its pixel."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -24,21 +24,21 @@ from raycaster.rtl.exact.turned_generator import turned_generator
 
 @block
 def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, pixel, fate, config: Configuration):
-    """Trace the pixel at (place.row, place.column_offset * `config.units` + column_base) as the steps say.
+    """Trace the pixel at (place.row, place.column_offset * `config.units` + column_base), controlled by steps.
 
-    The unit has no control: one exact_control operates all units in step. A hit after the ray has ended does not count.
-    With `config.light` the tester serves the shadow ray too, while steps.from_light is high.
+    The unit has no control: one exact_control operates all units in lockstep. A hit after the ray has ended does not
+    count. With `config.light` the tester also serves the shadow ray, while steps.from_light is high.
 
     Args:
         clk: the clock.
         steps: `Steps`, common to all units; initial_ray is not read.
-        place: `Place`; the group of columns, read with steps.screen_to_ray. With `config.turn` it holds still from the
-            cycle before that on.
+        place: `Place`; the group of columns, read with steps.screen_to_ray. With `config.turn` it must be stable from
+            the cycle before that on.
         column_base: unsigned, `unit_bits` bits; the unit's column within its group, constant.
-        camera: `Camera`; its position is read with steps.screen_to_ray. With `config.turn` its basis holds still from
-            the cycle before that on. With `config.light` the light holds still from there to the last step.
+        camera: `Camera`; its position is read with steps.screen_to_ray. With `config.turn` its basis, and with
+            `config.light` the light, must be stable from the cycle before that until the last step.
         rect: `Rect` to test, a new one each clock; read with steps.find_intersection.
-        offered: `Surface` of the rectangle whose verdict is due; read with steps.write_z_buf.
+        offered: `Surface` of the rectangle whose test ends; read with steps.write_z_buf.
         picture: `Picture`; only background is read, with steps.add_colour.
         pixel: output `Pixel`; valid after the last step.
         fate: output `RayFate`; alive is driven with `config.culling` or `config.materials`, in_question with
@@ -103,7 +103,7 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
         painter = pattern_colour(look=found_surface, odd_u=odd_u, odd_v=kept_odd_v, colour=colour)
 
         if config.light:
-            # The division goes on while the light is looked for.
+            # The divider keeps running during the shadow pass.
             @always(clk.posedge)
             def keep_cell():
                 if steps.aim[0]:
@@ -141,7 +141,7 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
         def look():
             lit_colour.word.next = colour
 
-    # What a ray that has ended goes on to hit does not count.
+    # Hits after a ray has ended do not count.
     if config.materials:
 
         @always_comb

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whether a ray meets a plane between a rectangle's two bounds on one axis."""
+"""A test of a ray against a rectangle's two bounds on one axis."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -10,10 +10,10 @@ from raycaster.rtl.common.widths import bit, signed, unsigned
 def extent_tester(
     clk, step, low, high, eye, back, slope, on_mirror, mirror_distance, n, e, ahead, between, in_mirror
 ):  # fmt: skip
-    """Test whether a ray meets a plane between a rectangle's two bounds on one of the axes beside the plane's.
+    """Test whether a ray meets a plane between a rectangle's two bounds on an axis other than the plane's axis.
 
     The ray meets the plane at t = n / e. `rect_tester` explains the test: (near - E) e <= D n <= (far - E) e, where the
-    axis is turned around for a negative D, and the last mirror's distance replaces that of a bound that is nearer.
+    axis is reversed for a negative D, and the last mirror's distance replaces the distance of a nearer bound.
 
     Args:
         clk: the clock.
@@ -24,8 +24,9 @@ def extent_tester(
         back: flag; D is negative.
         slope: unsigned; |D|.
         on_mirror: flag; the mirror that the ray left last lies across this axis.
-        mirror_distance: unsigned, a bit narrower than eye; from the eye to that mirror. Read a cycle after step.
-        n: unsigned, as wide as mirror_distance; from the eye to the plane. Read a cycle after step.
+        mirror_distance: unsigned, one bit narrower than eye; the distance from the eye to that mirror. Read a cycle
+            after step.
+        n: unsigned, as wide as mirror_distance; the distance from the eye to the plane. Read a cycle after step.
         e: unsigned, as wide as slope; the slope towards the plane. Read a cycle after step.
         ahead: output flag, combinational, in the cycle of step; the far bound is not behind the eye.
         between: output flag; the ray meets the plane between the bounds, if ahead was high. Valid two cycles after
@@ -37,10 +38,10 @@ def extent_tester(
 
     lower, upper, near, far = (signed(coordinate_bits) for _ in range(4))
     turned_eye = signed(len(eye))
-    # One bit more than a distance and its sign take is for operands of two rays, while signals settle.
+    # One bit more than a signed distance needs: while signals settle, the operands may come from two rays.
     to_near, to_far = signed(len(eye) + 1), signed(len(eye) + 1)
 
-    # The number at a name's end is that of the stage whose registers have it.
+    # A number at the end of a name is the stage whose registers hold it.
     slope_1, to_near_1, to_far_1 = unsigned(slope_bits), unsigned(distance_bits), unsigned(distance_bits)
     passed_1, on_mirror_1, clips, behind = bit(), bit(), bit(), bit()
     first = unsigned(distance_bits)
@@ -71,7 +72,7 @@ def extent_tester(
     def look_ahead():
         ahead.next = not to_far[distance_bits]
 
-    # A near bound behind the eye is passed.
+    # passed_1: the near bound is behind the eye.
     @always(clk.posedge)
     def stage_1():
         if step:

@@ -12,11 +12,11 @@ from raycaster.rtl.common.widths import bit, signed, unsigned
 def eye_register(
     clk, steps, camera, initial_signs, found_surface, found_distance, found_at_mirror, eye, signs, mirror
 ):  # fmt: skip
-    """Keep the eye that a ray seems to come from: the camera at steps.screen_to_ray, its image at steps.store_ray.
+    """Store the eye that a ray seems to come from: the camera at steps.screen_to_ray, its image at steps.store_ray.
 
     The image is the eye's reflection in the mirror. A ray reflected at plane k on axis a is the ray from E'[a] = 2k -
-    E[a] with D'[a] = -D[a] and the same parameter (Heckbert and Hanrahan 1984), so no hit point is computed. After the
-    last mirror the image may not fit, and is don't care.
+    E[a] with D'[a] = -D[a] and the same parameter t (Heckbert and Hanrahan 1984), so no hit point is computed. After
+    the last mirror the image may not fit, and is don't care.
 
     Args:
         clk: the clock.
@@ -26,10 +26,10 @@ def eye_register(
         found_surface: `Surface` of the mirror; read with steps.store_ray.
         found_distance: unsigned, as wide as mirror's distance; the distance from the eye to the plane of found_surface,
             and so from its image. Read with steps.store_ray.
-        found_at_mirror: flag, read where the `Mirror` has corners; the hit is in the point where the ray left its last
+        found_at_mirror: flag, read if the `Mirror` has corners; the hit is at the point where the ray left its last
             mirror. Read with steps.store_ray.
         eye: output `Eye`; valid from the cycle after steps.screen_to_ray or steps.store_ray.
-        signs: output `Signs` of the current ray, whose slope's magnitudes do not change.
+        signs: output `Signs` of the current ray; the magnitudes of its slope do not change.
         mirror: output `Mirror` that the ray left last, not active for the primary ray; valid from the cycle after
             steps.screen_to_ray or steps.store_ray.
     """
@@ -55,12 +55,12 @@ def eye_register(
     def reflect():
         difference.next = twice_signed - mirrored
 
-    # Of all mirrors but the last the image fits; after the last one it is don't care.
+    # The image fits after every mirror except the last, after which it is don't care.
     @always_comb
     def fit():
         image.next = difference[eye_bits:].signed()
 
-    # The eye, and which slopes all mirrors together have turned around.
+    # The eye, and the slope components that all mirrors together have reversed.
     @always(clk.posedge)
     def keep():
         if steps.screen_to_ray:

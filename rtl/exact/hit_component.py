@@ -11,12 +11,12 @@ def hit_component(eye, back, slope, distance, e, component):
     """Compute a component of N = E e + D n, which is e times the hit point P = E + D n / e. Combinational.
 
     Args:
-        eye: signed; the component of E, from the origin or from any other point that N is wanted from.
+        eye: signed; the component of E, relative to the origin or to any other reference point of N.
         back: flag; the component of D is negative.
         slope: unsigned; the magnitude of the component of D.
-        distance: unsigned; n, from the eye to the plane that is hit.
+        distance: unsigned; n, the distance from the eye to the plane that is hit.
         e: unsigned, as wide as slope; the magnitude of the slope on that plane's axis.
-        component: unsigned output; the lowest bits of N in two's complement, no more than E e has.
+        component: unsigned output; the lowest bits of N in two's complement, no more bits than E e has.
     """
     slope_bits, bits = len(e), len(component)
 
@@ -41,7 +41,7 @@ def hit_component(eye, back, slope, distance, e, component):
         if back:
             turned_way.next = ~way
 
-    # A bit below the units carries the one that a complement lacks.
+    # An extra lowest bit carries in the 1 that completes the two's complement.
     @always_comb
     def add_carry():
         from_eye.next = concat(position[bits:], True)

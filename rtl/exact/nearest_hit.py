@@ -21,21 +21,21 @@ def nearest_hit(
     found_slope,
     found_at_mirror,
 ):
-    """Keep the nearest hit: at steps.write_z_buf, take what is offered if it is a hit, and nearer than the one kept.
+    """Keep the nearest hit: at steps.write_z_buf, take the offered hit if it is nearer than the stored one.
 
-    t = numerator / denominator is nearer than another where numerator * other denominator < other numerator *
-    denominator. Of two hits at one t the first stays, which is the lower rectangle: rectangles come in order. The
-    found_ outputs describe the nearest hit, from the cycle after its write.
+    t = numerator / denominator is nearer than another if numerator * other denominator < other numerator * denominator.
+    At equal t the first hit stays, which is the lower rectangle, as rectangles come in order. The found_ outputs
+    describe the nearest hit, from the cycle after its write.
 
     Args:
         clk: the clock.
         steps: `Steps`; only reset_z_buf and write_z_buf are read.
-        offered: `Surface` that is offered; read with steps.write_z_buf.
-        hit: flag; the ray hits the rectangle of offered. Read with steps.write_z_buf.
+        offered: `Surface` of the offered rectangle; read with steps.write_z_buf.
+        hit: flag; the ray hits the offered rectangle. Read with steps.write_z_buf.
         at_mirror: flag; the hit is in the plane of the mirror that the ray left last. Read with steps.write_z_buf.
         numerator: unsigned; the numerator of t, read with steps.write_z_buf.
         denominator: unsigned; the denominator of t, read with steps.write_z_buf.
-        found: output flag; anything was hit since steps.reset_z_buf.
+        found: output flag; something was hit since steps.reset_z_buf.
         found_surface: output `Surface` of the nearest hit.
         found_distance: unsigned output, as wide as numerator; the nearest hit's numerator.
         found_slope: unsigned output, as wide as denominator; the nearest hit's denominator.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The ray that is tested: the unit's own, or the one from the light."""
+"""The ray to test: the unit's own, or the one from the light."""
 
 from myhdl import always_comb, block, instances
 
@@ -17,15 +17,15 @@ def ray_switch(
         from_light: flag; chooses the shadow ray.
         camera: `Camera` with a light; only the light's position is read.
         eye: `Eye` of the unit's ray.
-        signs: `Signs` of its slope.
-        slope: `Slope`, the magnitudes.
-        mirror: `Mirror` that it left last.
+        signs: `Signs` of that ray's slope.
+        slope: `Slope` of that ray, the magnitudes.
+        mirror: `Mirror` that the unit's ray left last.
         shadow_signs: `Signs` of the shadow ray's slope.
         shadow_slope: `Slope` of the shadow ray, the magnitudes; at least as wide as slope.
         tested_eye: output `Eye`, as wide as eye.
         tested_signs: output `Signs`.
         tested_slope: output `Slope`, as wide as shadow_slope.
-        tested_mirror: output `Mirror`, as mirror; not active for the shadow ray.
+        tested_mirror: output `Mirror`, laid out like mirror; not active for the shadow ray.
     """
     active = bit()
 

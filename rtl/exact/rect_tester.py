@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whether a ray hits a rectangle, by cross-multiplication: no quotient, no rounding."""
+"""A test of a ray against a rectangle, by cross-multiplication: no quotient, no rounding."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -11,23 +11,25 @@ from raycaster.rtl.exact.extent_tester import extent_tester
 
 @block
 def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, numerator, denominator):
-    """Test a ray against a rectangle per clock, by cross-multiplication: no quotient, no rounding.
+    """Test a ray against one rectangle per clock, by cross-multiplication: no quotient, no rounding.
 
     steps.find_intersection takes a rectangle and a ray; hit, at_mirror, numerator and denominator follow three cycles
     later.
 
-    The ray runs from the eye E with the slope D. Where D is negative the axis is turned around: coordinates are
-    complemented, which negates each difference of two, and the bounds change places. So with D its magnitude the plane
-    k on axis a is at t = n / e, where n = k - E[a] and e = D[a], and where both are positive, near <= E[u] + D[u] n / e
-    <= far becomes (near - E[u]) e <= D[u] n <= (far - E[u]) e (Kensler and Shirley 2006 test triangles so).
+    The ray runs from the eye E with the slope D. If a component of D is negative, its axis is reversed: coordinates are
+    complemented, which negates each difference of two, and the bounds change places. So D is taken as magnitudes, and
+    the ray meets the plane k on axis a at t = n / e, with n = k - E[a] and e = D[a]. If both are positive, near <= E[u]
+    + D[u] n / e <= far becomes (near - E[u]) e <= D[u] n <= (far - E[u]) e (Kensler and Shirley 2006 test triangles
+    this way).
 
-    A reflected ray must hit beyond its last mirror: on another axis the mirror's distance from the eye replaces the
-    distance of a bound that is nearer; on the mirror's axis distances are compared. In the mirror's plane itself the
-    ray hits a rectangle on another axis, for it reflects off all planes of a corner: at_mirror marks such a hit. With
-    corners in the `Mirror`, there is none where a mirror on the rectangle's axis was met in that very point.
+    A reflected ray must hit beyond its last mirror. For a rectangle on another axis, the mirror's distance from the eye
+    replaces the distance of a nearer bound; for one on the mirror's axis, the distances are compared. A hit in the
+    mirror's plane itself, on a rectangle on another axis, counts, because a ray reflects off all planes of a corner:
+    at_mirror marks it. With corners in the `Mirror`, it does not count if a mirror on the rectangle's axis was met at
+    that same point.
 
-    Widths are taken from the ports: those of coordinates from rect, of slopes from slope, and of the eye from eye,
-    whose width fits any distance in the world.
+    Widths are taken from the ports: of coordinates from rect, of slopes from slope, and of the eye from eye, which must
+    be wide enough for any distance in the world.
 
     Args:
         clk: the clock.
@@ -52,12 +54,12 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, num
     back, back_u, back_v, met = (bit() for _ in range(4))
     mirror_on_x, mirror_on_y, mirror_on_z, mirror_on_a, mirror_on_u, mirror_on_v = (bit() for _ in range(6))
     position, plane = signed(coordinate_bits), signed(coordinate_bits)
-    # One bit more than a distance and its sign take is for operands of two rays, while signals settle.
+    # One bit more than a signed distance needs: while signals settle, the operands may come from two rays.
     n = signed(eye_bits + 1)
     ahead_u, ahead_v, inside_u, inside_v, in_mirror_u, in_mirror_v = (bit() for _ in range(6))
     crosses, beyond, in_mirror = bit(), bit(), bit()
 
-    # The number at a name's end is that of the stage whose registers have it.
+    # A number at the end of a name is the stage whose registers hold it.
     seen_1 = Record({"crosses": 1, "mirror_on_a": 1, "met": 1, "n": distance_bits, "e": slope_bits})
     seen_2 = Record({"crosses": 1, "met": 1, "n": distance_bits, "e": slope_bits})
 
@@ -107,7 +109,7 @@ def rect_tester(clk, steps, rect, eye, signs, slope, mirror, hit, at_mirror, num
     def measure():
         n.next = plane - turned_eye
 
-    # Otherwise the plane is nowhere or behind the eye, or a far bound is.
+    # The plane is ahead of the eye and not parallel to the ray, and no far bound is behind the eye.
     @always_comb
     def judge_plane():
         crosses.next = (not n[distance_bits]) and (n[distance_bits:] != 0) and (e != 0) and ahead_u and ahead_v

@@ -10,12 +10,12 @@ from raycaster.rtl.common.widths import unsigned
 
 @block
 def shade_colour(colour, dark, shade, shaded):
-    """Leave so many quarters of each channel in the dark, rounded down. Combinational.
+    """Reduce each channel in the dark to shade quarters, rounded down. Combinational.
 
     Args:
         colour: `Colour` in the light.
         dark: flag; the light does not reach the point.
-        shade: unsigned, 2 bits; what is left in the dark, in quarters.
+        shade: unsigned, 2 bits; the quarters that remain in the dark.
         shaded: unsigned output, 24 bits; red, green and blue of the point.
     """
     channels = (colour.red, colour.green, colour.blue)

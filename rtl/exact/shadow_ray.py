@@ -15,16 +15,17 @@ def shadow_ray(
 ):  # fmt: skip
     """Compute the slope S of the ray from the light L to the hit point P, and on which side of the rectangle L lies.
 
-    With P = (E e + D n) / e the slope S = e (P - L) = (E - L) e + D n has whole components, and the ray meets P at
-    t = 1 / e. The eye E may be a mirrored one: D is turned around as often, so P is the point in the room.
+    With P = (E e + D n) / e the slope S = e (P - L) = (E - L) e + D n has integer components, and the ray meets P at t
+    = 1 / e. The eye E may be a mirrored one: D is reversed with it, so P is the real point in the room.
 
-    A component takes three cycles, and one begins in each cycle of steps.aim: x in the first, y, z. The outputs are
-    valid from the cycle after the last cycle of steps.aim, until the next steps.aim.
+    A component takes three cycles, and they follow each other: dx is stored in the second cycle of steps.aim, dy in the
+    third, dz in the fourth. The outputs are valid from the cycle after the last cycle of steps.aim until the next
+    steps.aim.
 
     Args:
         clk: the clock.
-        steps: `Steps`; only aim is read. All other inputs hold still while it is not 0, and eye and camera in the cycle
-            before it too.
+        steps: `Steps`; only aim is read. All other inputs must be stable while it is not 0, and eye, signs, slope and
+            camera also in the cycle before.
         camera: `Camera` with a light; only the light's position is read.
         eye: `Eye`, E.
         signs: `Signs` of the slope D.
@@ -50,7 +51,7 @@ def shadow_ray(
     magnitude = unsigned(light_bits)
     dx, dy, dz = bit(), bit(), bit()
 
-    # The number at a name's end is that of the stage whose registers have it.
+    # A number at the end of a name is the stage whose registers hold it.
     @always_comb
     def see_axis():
         axis.next = 0

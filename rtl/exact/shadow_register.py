@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The shadow of a hit point: a flag that a rectangle is between it and the light."""
+"""The shadow of a hit point: a flag that is set if a rectangle is between it and the light."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -11,14 +11,14 @@ from raycaster.rtl.common.widths import bit, unsigned
 def shadow_register(clk, steps, hit, numerator, denominator, found_slope, shaded):
     """Set a flag when the shadow ray hits anything strictly between the light and the hit point P.
 
-    The ray meets P at t = 1 / e, and a rectangle at t = numerator / denominator: before P where numerator * e <
+    The ray meets P at t = 1 / e, and a rectangle at t = numerator / denominator: before P if numerator * e <
     denominator.
 
     Args:
         clk: the clock.
         steps: `Steps`; only aim and write_shadow are read.
         hit: flag; the shadow ray hits the rectangle. Read with steps.write_shadow.
-        numerator: unsigned; at most the size of the world where hit is high. Read with steps.write_shadow.
+        numerator: unsigned; at most the size of the world if hit is high. Read with steps.write_shadow.
         denominator: unsigned; read with steps.write_shadow.
         found_slope: unsigned; e. Read with steps.write_shadow.
         shaded: output flag; there was a hit before P since steps.aim. Valid from the cycle after steps.write_shadow.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The order of shadow passes."""
+"""The sequence of shadow passes."""
 
 from myhdl import Signal, always, always_comb, block, enum, instances
 
@@ -13,16 +13,16 @@ ShadowState = enum("WAIT", "AIM", "TEST")
 def shadow_sequencer(clk, reset_ray_caster, shadow_pass, any_in_question, aim, from_light):
     """Add a shadow pass after each pass of the rays, if the light may reach the hit point of any unit.
 
-    When shadow_pass.traced says that a pass is over, the units compute their shadow rays, in the cycles of aim. The
-    shadow pass begins in the cycle after the last of these. It ends with its last rectangle, or as soon as no point is
-    in question any more; shadow_pass.stop then drops the tests under way.
+    When shadow_pass.traced reports the end of a pass, the units compute their shadow rays in the cycles of aim. The
+    shadow pass begins in the cycle after the last of these. It ends with its last rectangle, or as soon as no hit point
+    is in question; shadow_pass.stop then drops the tests in flight.
 
     Args:
         clk: the clock.
         reset_ray_caster: flag; synchronous reset to idle.
         shadow_pass: `ShadowPass`; traced is read, and the rest is driven.
-        any_in_question: flag; `GroupFate`'s, read in the last cycle of aim and in each cycle of the pass from the
-            light. So it must be known in the cycle after a steps.write_shadow.
+        any_in_question: flag of `GroupFate`; read in the last cycle of aim and in each cycle of the shadow pass, so it
+            must be valid in the cycle after a steps.write_shadow.
         aim: output, as in `Steps`.
         from_light: output, as in `Steps`; high from the cycle after aim until the pass is over.
     """
@@ -62,7 +62,7 @@ def shadow_sequencer(clk, reset_ray_caster, shadow_pass, any_in_question, aim, f
             aim.next = cycle
         from_light.next = state == ShadowState.TEST
 
-    # The rays go on in the last cycle of either.
+    # The rays continue after the last cycle of AIM or TEST.
     @always_comb
     def ask():
         shadow_pass.awaited.next = state != ShadowState.TEST

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A component of the primary ray of a turned camera."""
+"""A slope component of a primary ray, for a camera that turns."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -14,7 +14,7 @@ def slope_component(
 ):  # fmt: skip
     """Compute view distance * forward + (column + column_base) * right + row * up, in sign and magnitude.
 
-    It is loaded at steps.screen_to_ray. All inputs except column_base, which never changes, hold still from the cycle
+    It is loaded at steps.screen_to_ray. column_base never changes; all other inputs must be stable from the cycle
     before that on.
 
     Args:
@@ -24,7 +24,7 @@ def slope_component(
         right: signed, 10 bits; that component of the camera's right vector, times 256.
         up: signed, 10 bits; that component of the camera's up vector, times 256.
         column: signed; columns from the screen's centre to the first unit's column, to the right.
-        row: signed; rows from the horizon up.
+        row: signed; rows above the horizon.
         column_base: unsigned, `unit_bits` bits; the unit's column within its group, constant.
         size: unsigned output, wide enough for the steepest slope on the screen; the magnitude. Valid from the cycle
             after steps.screen_to_ray.
@@ -32,7 +32,7 @@ def slope_component(
         config: the design.
     """
     view_distance = config.screen_geometry.view_distance
-    # A group past the last one is legal, where none is loaded: twice the steepest slope is more than enough.
+    # A group past the last one is legal, though nothing is loaded there: twice the steepest slope is more than enough.
     bits = len(size) + 2
 
     ahead, across, upward, aside = (signed(bits) for _ in range(4))
@@ -56,7 +56,7 @@ def slope_component(
     def add_rows():
         total.next = level + upward
 
-    # It is the same in all units, so synthesis keeps one of them.
+    # start is the same in all units, so synthesis keeps one of them.
     @always(clk.posedge)
     def keep_start():
         start.next = total

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The primary ray of a unit's column, of a camera that turns."""
+"""The primary ray of a unit's column, for a camera that turns."""
 
 from myhdl import always_comb, block, instances
 
@@ -14,16 +14,16 @@ def turned_generator(
 ):  # fmt: skip
     """Generate the primary ray of a unit's column, for a camera that turns.
 
-    The block replaces ray_generator, and has its ports and a camera. The slope, in sign and magnitude, is view distance
-    * forward + (column - centre) * right + (horizon - row) * up, and 256 times as long as with a camera that does not
-    turn. The column is place.column_offset * `config.units` + column_base.
+    The block replaces ray_generator, and has the same ports and a camera. The slope, in sign and magnitude, is view
+    distance * forward + (column - centre) * right + (horizon - row) * up, and 256 times as long as with a camera that
+    does not turn. The column is place.column_offset * `config.units` + column_base.
 
     Args:
         clk: the clock.
         steps: `Steps`; only screen_to_ray is read, at which the ray is loaded.
-        place: `Place` of the group; holds still from the cycle before steps.screen_to_ray on.
+        place: `Place` of the group; stable from the cycle before steps.screen_to_ray on.
         column_base: unsigned, `unit_bits` bits; the unit's column within its group, constant.
-        camera: `Camera`; only its basis is read, which holds still from the cycle before steps.screen_to_ray on.
+        camera: `Camera`; only its basis is read, stable from the cycle before steps.screen_to_ray on.
         initial_signs: output `Signs`; valid from the cycle after steps.screen_to_ray.
         slope: output `Slope`, the magnitudes, wide enough for the steepest slope on the screen; valid from the cycle
             after steps.screen_to_ray.

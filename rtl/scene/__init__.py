@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Where the live scene is kept: shadow, pending and live words, and the rectangles as engines want them."""
+"""Memories of the scene: shadow, pending and live words, and the rectangles in the form that engines read."""

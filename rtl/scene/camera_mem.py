@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The camera's position, where it looks, and the light."""
+"""The memory of the camera's position and basis, and of the light."""
 
 from myhdl import Signal, always_comb, block, instances, intbv
 
@@ -22,7 +22,7 @@ def camera_mem(clk, reset, bus, readback, camera, config: Configuration):
         bus: `SceneBus`; input.
         readback: unsigned, 32 bits; output, combinational: the shadow's word at bus.address, don't care at other
             addresses.
-        camera: `Camera`; output, the live one.
+        camera: `Camera` of the live scene; output.
         config: the design.
     """
     names = ("camera", *("forward", "right", "up") * config.turn, *("light",) * config.light)

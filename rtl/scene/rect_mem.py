@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The world's rectangles."""
+"""The memory of the scene's rectangles."""
 
 from myhdl import always, always_comb, always_seq, block, concat, instances
 
@@ -14,21 +14,21 @@ from raycaster.rtl.scene.written_rect import CORNER, PLACE_BITS, PLACES, Copies,
 
 @block
 def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configuration):
-    """Hold `config.rectangles` slots of rectangles, and present the live rectangle that the engine asks for.
+    """Hold `config.rectangles` slots of rectangles, and present the live rectangle that the engine fetches.
 
-    One memory holds the shadow as it was written. Another has three places for each slot, for rectangles as the engine
-    wants them, which is as many as shadow, pending and live copy may need: a cycle after a write the rectangle is
-    sorted into a place that neither the pending nor the live copy keeps, and a commit and StartScreen change which
-    place is whose. Reset clears neither memory: a slot that has not been written since reads 0, and is not usable.
+    One memory holds the shadow as written. Another holds the rectangles in the engine's form, in three places per slot:
+    enough for the shadow, pending and live copy. A cycle after a write, the rectangle is sorted into a place that holds
+    neither the pending nor the live copy; a commit and StartScreen only reassign places to copies. Reset clears neither
+    memory: a slot that has not been written since reads 0, and is not usable.
 
     Args:
         clk: the clock.
         reset: synchronous, active high.
         bus: `SceneBus`; input.
-        readback: unsigned, 32 bits; output, combinational: the shadow's word at bus.address, 0 where there is none.
+        readback: unsigned, 32 bits; output, combinational: the shadow's word at bus.address, 0 if there is none.
         bad_rectangle: flag; output, the shadow holds an enabled rectangle without a plane. Valid from the second cycle
             after a write on.
-        rects: `Rects`; reads index and fetch, drives usable and rect. rect: don't care where the rectangle is not
+        rects: `Rects`; reads index and fetch, drives usable and rect. rect is don't care if the rectangle is not
             usable.
         config: the design.
     """
@@ -77,7 +77,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     def locate():
         slot.next = bus.address[address_width:2] - table_slot
 
-    # An index that is out of the table reads nothing, and must not reach beyond the lists.
+    # Outside the table index is 0, so that it stays within the memories.
     @always_comb
     def clip():
         in_table.next = (slot >= 0) and (slot < count)
@@ -155,7 +155,8 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
         if write:
             written.next[index] = True
 
-    # Merging and sorting have a cycle each, which no commit needs: the write that asks for it is one of its own.
+    # Merging and sorting take a cycle each. No commit comes too early, because the write that requests it takes a
+    # cycle.
     @always(clk.posedge)
     def hand_over():
         latest.word.next = merged.word
@@ -165,7 +166,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     def follow_write():
         storing.next = write
 
-    # A rectangle lies in a plane where its corners share a coordinate.
+    # A rectangle lies in a plane if its corners share a coordinate.
     @always_comb
     def find_plane():
         flat.next = (latest.x_0 == latest.x_1) or (latest.y_0 == latest.y_1) or (latest.z_0 == latest.z_1)
@@ -174,7 +175,7 @@ def rect_mem(clk, reset, bus, readback, bad_rectangle, rects, config: Configurat
     def find_copies():
         latest_copies.word.next = copies_words[latest_index]
 
-    # Whose place is kept at the end of this cycle. No commit comes while a rectangle is stored.
+    # The live place after this cycle. No commit comes while a rectangle is stored.
     @always_comb
     def look_ahead():
         next_live.next = latest_copies.live

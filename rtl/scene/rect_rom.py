@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The rectangles of a fixed scene, in place of rect_mem."""
+"""The rectangles of a fixed scene, instead of rect_mem."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -19,7 +19,7 @@ def rect_rom(clk, rects, config: Configuration):
         clk: the clock.
         rects: `Rects`; reads index and fetch, drives rect. usable is a constant, and not driven here, as not every
             engine reads it.
-        config: the design. config.fixed has the rectangles.
+        config: the design. config.fixed holds the rectangles.
     """
     table = tuple(rects.rect.pack(vars(rectangle)) for rectangle in config.fixed.rectangles)
     width = len(rects.rect.word)

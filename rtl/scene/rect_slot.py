@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where a rectangle's shadow, pending and live copy are, and which of them may be shown."""
+"""The places of a rectangle's shadow, pending and live copy, and which of them are usable."""
 
 from myhdl import always_comb, always_seq, block, instances
 
@@ -9,7 +9,7 @@ from raycaster.rtl.scene.written_rect import PLACE_BITS
 
 @block
 def rect_slot(clk, reset, bus, storing, index, number, place, enable, flat, copies, usable, bad):
-    """Keep the places of a rectangle's shadow, pending and live copy, and which of them may be shown.
+    """Keep track of the places of a rectangle's shadow, pending and live copy, and of whether each is usable.
 
     bus.commit and bus.go_live move no rectangle: they change which copy each place holds.
 
@@ -17,13 +17,13 @@ def rect_slot(clk, reset, bus, storing, index, number, place, enable, flat, copi
         clk: the clock.
         reset: synchronous, active high.
         bus: `SceneBus`; reads commit and go_live.
-        storing: strobe; the rectangle of the slot index goes to the place of this number, and its shadow's copy is
-            there from then on.
+        storing: strobe; the rectangle of slot index is stored at place, which becomes the place of the slot's shadow
+            copy.
         index: unsigned, as wide as number; the slot that is stored, read with storing.
         number: unsigned; the slot's own index, constant.
-        place: unsigned, `PLACE_BITS` bits; the place's number, read with storing.
-        enable: flag; the rectangle that is stored is enabled. Read with storing.
-        flat: flag; the rectangle that is stored has a plane. Read with storing.
+        place: unsigned, `PLACE_BITS` bits; number of the place, read with storing.
+        enable: flag; the stored rectangle is enabled. Read with storing.
+        flat: flag; the stored rectangle lies in a plane. Read with storing.
         copies: `Copies`; output, the places of the slot's copies.
         usable: flag; output, the live rectangle is enabled and has a plane.
         bad: flag; output, the shadow's rectangle is enabled and has no plane.

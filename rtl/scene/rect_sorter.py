@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A rectangle as it was written becomes a rectangle as the engine wants it."""
+"""The conversion of a rectangle from its written form to the engine's form."""
 
 from myhdl import always_comb, block, instances
 
@@ -15,7 +15,7 @@ def rect_sorter(written, rect, config: Configuration):
     Args:
         written: `WrittenRect`; the corners may come in any order, a mirror of more than 4 quarters counts as 4, and a
             pattern whose cell is at least as large as the world counts as plain.
-        rect: `Rect`; output, don't care where the rectangle has no plane.
+        rect: `Rect`; output, don't care if the rectangle has no plane.
         config: the design.
     """
     cells = len(CELLS)
@@ -34,7 +34,7 @@ def rect_sorter(written, rect, config: Configuration):
             axis.next = 1
             position.next = written.y_0
 
-    # Meanwhile all three pairs are put in order: sorting what the axis leaves would take longer.
+    # All three pairs are sorted at the same time: sorting only those of the other two axes would take longer.
     @always_comb
     def sort():
         x_low.next = written.x_0
@@ -53,7 +53,7 @@ def rect_sorter(written, rect, config: Configuration):
             z_low.next = written.z_1
             z_high.next = written.z_0
 
-    # The two other axes come in the order x, y, z.
+    # u and v are the other two axes, in the order x, y, z.
     @always_comb
     def choose_bounds():
         u_low.next = x_low
@@ -76,7 +76,7 @@ def rect_sorter(written, rect, config: Configuration):
                 mirror.next = 4
 
     if config.patterns:
-        # A cell as large as the world leaves nothing odd.
+        # With a cell as large as the world, no cell is odd.
         @always_comb
         def drop_large_cells():
             kind.next = written.kind

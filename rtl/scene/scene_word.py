@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One word of the scene: a shadow that software writes, a copy that waits, and the one that is shown."""
+"""A word of the scene: the shadow that software writes, a pending copy, and the live one."""
 
 from myhdl import Signal, always_comb, always_seq, block, instances, intbv
 
@@ -12,7 +12,7 @@ def scene_word(clk, reset, bus, selected, implemented, shadow, live, first: int 
 
     shadow takes bus.data under bus.mask when the word is selected and bus.write is high, bus.commit copies shadow to
     the pending word, and bus.go_live copies the pending word to live. go_live without a commit changes nothing, as live
-    is already what was committed last.
+    already holds the last committed word.
 
     Args:
         clk: the clock.
@@ -22,7 +22,7 @@ def scene_word(clk, reset, bus, selected, implemented, shadow, live, first: int 
         implemented: unsigned, 32 bits, constant; the bits that exist. The others read 0.
         shadow: unsigned, 32 bits; output, with first as its initial value.
         live: unsigned, 32 bits; output, with first as its initial value.
-        first: the value that reset gives.
+        first: the reset value.
     """
     merged, pending = unsigned(WORD_BITS), Signal(intbv(first)[WORD_BITS:])
 
@@ -30,7 +30,7 @@ def scene_word(clk, reset, bus, selected, implemented, shadow, live, first: int 
     def merge():
         merged.next = ((shadow & ~bus.mask) | (bus.data & bus.mask)) & implemented
 
-    # Two conditions, of which a simulator tests the first once for all words.
+    # Two conditions, so that a simulator tests bus.write once for all words.
     @always_seq(clk.posedge, reset=reset)
     def write():
         if bus.write:  # noqa: SIM102

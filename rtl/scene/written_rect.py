@@ -14,15 +14,15 @@ PATTERN = REGISTERS["rectangle[0].pattern"]
 
 
 def surface_mask(config: Configuration) -> int:
-    """The bits of the surface register that a design has."""
+    """Return the mask of the surface register's bits that a design has."""
     return SURFACE.implemented & ~(0 if config.materials else SURFACE.fields["mirror"].mask)
 
 
 class WrittenRect(Record):
-    """The registers of a rectangle, 32 bits each: two corners in any order, surface, and pattern where there are some.
+    """The registers of a rectangle, 32 bits each: two corners in any order, surface and, with patterns, pattern.
 
     x_0 ... z_1 are the corners' coordinates, 9 bits each; colour, enable; with materials mirror, 0..7; with patterns
-    kind, cell and colour_2. Bits that no register field has are 0.
+    kind, cell and colour_2. Bits outside register fields are 0.
     """
 
     def __init__(self, materials: bool = False, patterns: bool = False):
@@ -45,25 +45,25 @@ class WrittenRect(Record):
 
 
 def written_of(config: Configuration) -> WrittenRect:
-    """One of a design's."""
+    """Return a `WrittenRect` sized for this configuration."""
     return WrittenRect(config.materials, config.patterns)
 
 
 def implemented_bits(config: Configuration) -> int:
-    """The bits of one that a design has."""
+    """Return the mask of a written rectangle's bits that a design has."""
     corner = CORNER.implemented
     words = {"corner_0": corner, "corner_1": corner, "surface": surface_mask(config), "pattern": PATTERN.implemented}
     return written_of(config).pack(words)
 
 
 PLACES = 3
-"""Of a slot, for its shadow, pending and live copy."""
+"""Places of a slot, for its shadow, pending and live copy."""
 
 PLACE_BITS = bits_for(PLACES)
 
 
 class Copies(Record):
-    """At which of its places a slot's copies are."""
+    """The places of a slot's copies."""
 
     def __init__(self):
         super().__init__(dict.fromkeys(("shadow", "pending", "live"), PLACE_BITS))

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""The seed engine: divides once a rectangle and rounds."""
+"""The seed engine: it divides once per rectangle, and rounds."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""In which cell of a pattern a coordinate is."""
+"""The parity of the pattern cell that holds a coordinate."""
 
 from myhdl import always_comb, block, instances
 
@@ -15,7 +15,7 @@ def cell_parity(value, size, odd, config: Configuration):
 
     Args:
         value: signed; a coordinate within the world, with `config.fraction_bits` fraction bits.
-        size: unsigned, 3 bits; log2 of a cell's size in world units, less three.
+        size: unsigned, 3 bits; log2 of a cell's size in world units, minus three.
         odd: output flag; the lowest bit of floor(value / cell).
         config: the design.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The iterative divider: one, two or three quotient bits a cycle."""
+"""The iterative divider: one, two or three quotient bits per cycle."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -23,8 +23,8 @@ def divider(clk, load_divider, store_quotient, dividend, divisor, quotient, over
         divisor: unsigned, 9 bits; read with load_divider.
         quotient: unsigned output, `position_bits` bits; valid from the cycle after store_quotient to the next
             store_quotient.
-        overflow: output flag; the quotient needs more than `position_bits` bits, or the divisor is 0, and the quotient
-            is then don't care. Valid as long as quotient.
+        overflow: output flag; the quotient needs more than `position_bits` bits, or the divisor is 0; the quotient is
+            then don't care. Valid at the same times as quotient.
         config: the design.
     """
     width = config.divider_bits * config.divider_steps
@@ -86,7 +86,7 @@ def divider(clk, load_divider, store_quotient, dividend, divisor, quotient, over
             truncated_overflow.next = too_large
             round_up.next = twice_remainder >= divisor_held
 
-    # Rounding comes after the register, and may carry into one bit more.
+    # Rounding follows the register, and may carry into one more bit.
     @always_comb
     def round_quotient():
         rounded.next = truncated + round_up

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where a ray meets a rectangle's plane, and whether inside the rectangle."""
+"""The point where a ray meets a rectangle's plane, and its test against the rectangle's bounds."""
 
 from myhdl import always_comb, block, instances
 
@@ -17,8 +17,8 @@ def intersection_finder(
 ):
     """Find where a ray meets a rectangle's plane, and test that point against the rectangle's bounds.
 
-    There are two a + b * (c - d) / e units (intersection_helper), one for each axis other than the plane's: u and v, in
-    the order x, y, z.
+    There are two a + b * (c - d) / e units (intersection_helper), one for each axis other than the plane's axis: u and
+    v, in the order x, y, z.
 
     steps.find_intersection takes the plane of rect. hit, depth, point, odd_u and odd_v are valid in the second cycle
     after its steps.store_quotient, which is the cycle of steps.write_z_buf.
@@ -26,10 +26,10 @@ def intersection_finder(
     Args:
         clk: the clock.
         steps: `Steps`; find_intersection, load_divider and store_quotient are read.
-        rect: `Rect` to start on; its axis and position are read with steps.find_intersection.
+        rect: `Rect` whose test starts; its axis and position are read with steps.find_intersection.
         offered: the same `Rect`, from the cycle after its steps.store_quotient on.
-        ray: `Ray`; holds still while the ray is traced.
-        slope: `Slope`, the magnitudes; holds still while the ray is traced.
+        ray: `Ray`; stable while the ray is traced.
+        slope: `Slope`, the magnitudes; stable while the ray is traced.
         hit: output flag; the ray runs towards the plane, and meets it within offered's bounds. Valid with
             steps.write_z_buf.
         depth: unsigned output, `position_bits` bits, `config.fraction_bits` of them fraction bits; |distance| along x
@@ -67,7 +67,7 @@ def intersection_finder(
         u_parity = cell_parity(value=u_value, size=offered.cell, odd=odd_u, config=config)
         v_parity = cell_parity(value=v_value, size=offered.cell, odd=odd_v, config=config)
 
-    # Scene coordinates are whole units; here they get the fraction that origins have.
+    # Scene coordinates are whole units; here they get the fraction bits of origins.
     @always_comb
     def align():
         plane_start.next = rect.position << fraction_bits
@@ -77,8 +77,8 @@ def intersection_finder(
         v_low.next = offered.v_low << fraction_bits
         v_high.next = offered.v_high << fraction_bits
 
-    # The plane's axis chooses what divides (e, and d beside it), what is multiplied (b) and, for the rectangle that
-    # comes out of the dividers, what the quotients are added to (a).
+    # The plane's axis selects the divisor (e, with d), the factor (b) and, for the rectangle whose quotients leave the
+    # dividers, the addend (a).
     origin, slopes, negative = (ray.x, ray.y, ray.z), (slope.dx, slope.dy, slope.dz), (ray.dx, ray.dy, ray.dz)
     choices = [
         by_axis(axis, *along(*values), chosen, width=len(chosen))
@@ -100,7 +100,7 @@ def intersection_finder(
     def judge():
         hit.next = u_valid and v_valid and inside_u and inside_v
 
-    # Depth is measured along x: the plane's distance on that axis, the quotient of u (which is x) on the others.
+    # Depth is measured along x: for a plane across x it is the distance, and otherwise the quotient of u, which is x.
     at_u, at_v = u_value(position_width, 0), v_value(position_width, 0)
     point_x = point.joined(x=plane_finish, y=at_u, z=at_v)
     point_y = point.joined(x=at_u, y=plane_finish, z=at_v)

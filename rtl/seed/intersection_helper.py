@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One a + b * (c - d) / e unit: where a ray meets a plane, on one axis."""
+"""A unit for a + b * (c - d) / e: one coordinate of the point where a ray meets a plane."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -14,7 +14,7 @@ from raycaster.rtl.seed.divider import divider
 def intersection_helper(
     clk, steps, a, b, b_negative, c, d, e, e_negative, value, quotient, distance, valid, towards, config: Configuration
 ):
-    """Compute value = a + b * (c - d) / e where (c - d) / e is positive: where a ray meets a plane, on one axis.
+    """Compute value = a + b * (c - d) / e, for positive (c - d) / e: one coordinate of a ray's point on a plane.
 
     It takes one multiplication and one division of magnitudes.
 
@@ -38,8 +38,8 @@ def intersection_helper(
         quotient: unsigned output, `position_bits` bits; |b * (c - d) / e|. Valid from the cycle after
             steps.store_quotient.
         distance: unsigned output, `position_bits` bits; |c - d|. Valid from the cycle after steps.store_quotient.
-        valid: output flag; the operands had towards, and the quotient did not overflow. Valid from the cycle after
-            steps.store_quotient.
+        valid: output flag; towards was high for the operands, and the quotient did not overflow. Valid from the cycle
+            after steps.store_quotient.
         towards: output flag; e is not 0 and the ray runs towards the plane (c - d is not 0 and has e's sign). Valid
             from the cycle after steps.find_intersection.
         config: the design.
@@ -53,7 +53,7 @@ def intersection_helper(
     started_b, started_e = unsigned(SLOPE_BITS), unsigned(SLOPE_BITS)
     product = unsigned(product_width)
     forward, backward = signed(position_width + 2), signed(position_width + 2)
-    # What belongs to the operands, to the division at work and to the finished quotient.
+    # Flags and distance of the operands, of the division in progress and of the finished quotient.
     started, loaded, stored = (Record({"distance": position_width, "negative": 1, "towards": 1}) for _ in range(3))
 
     absolute = magnitude(difference, away)
@@ -87,7 +87,7 @@ def intersection_helper(
     def multiply():
         product.next = started_b * started.distance
 
-    # A quotient that overflowed lies outside the world.
+    # If the quotient overflows, the point is outside the world.
     @always_comb
     def judge():
         towards.next = started.towards

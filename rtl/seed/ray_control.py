@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The one control that operates all units of the seed engine in step."""
+"""The control that operates all units of the seed engine in lockstep."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -14,22 +14,22 @@ from raycaster.rtl.engine.ray_sequencer import ends_early, ray_sequencer
 
 @block
 def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offered, done, config: Configuration):
-    """Operate all units of the seed engine in step: a ray_sequencer around the dividers.
+    """Operate all units of the seed engine in lockstep, with a ray_sequencer that keeps pace with the dividers.
 
     A new rectangle starts every `config.divider_steps` cycles: with steps.find_intersection in cycle t,
-    steps.load_divider is in t + 2, steps.store_quotient in t + 2 + `config.divider_steps` (together with the next
-    rectangle's steps.load_divider) and steps.write_z_buf two cycles later. The early_out of ray_sequencer is in t + 2,
-    from the fate.any_towards of t + 1.
+    steps.load_divider comes in t + 2, steps.store_quotient in t + 2 + `config.divider_steps` (together with the next
+    rectangle's steps.load_divider) and steps.write_z_buf two cycles later. The early_out of ray_sequencer comes in t +
+    2, from the fate.any_towards of t + 1.
 
-    Ports that ray_sequencer has too work as they do there.
+    Ports that ray_sequencer also has work as described there.
 
     Args:
         clk: the clock.
         reset_ray_caster: flag; synchronous reset to idle.
         enable: flag, read while idle; starts a group of rays.
-        picture: `Picture`; only reflections is read: 0 to `config.reflections`, still while rendering.
-        rects: `Rects`; index and fetch are outputs. usable holds still from the cycle that reads enable; rect is copied
-            with steps.load_divider.
+        picture: `Picture`; only reflections is read: 0 to `config.reflections`, stable while rendering.
+        rects: `Rects`; index and fetch are outputs. usable must be stable from the cycle that reads enable on; rect is
+            copied with steps.load_divider.
         steps: output `Steps`, for all units.
         fate: `GroupFate`; may_hit and any_alive as in ray_sequencer. any_towards is valid in the cycle after
             steps.find_intersection.
@@ -58,7 +58,7 @@ def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offe
         steps.store_quotient.next = in_flight[store_at]
         steps.write_z_buf.next = in_flight[write_at]
 
-    # The rectangle moves with its division: it is the same for all units, so they need no copies.
+    # The rectangle is delayed along with its division here, once for all units.
     @always(clk.posedge)
     def carry_rectangle():
         if steps.load_divider:
@@ -67,7 +67,7 @@ def ray_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, offe
             offered.word.next = dividing.word
 
     if ends_early(config):
-        # What all units say together is registered here; see ray_sequencer.
+        # The combined flag of all units is registered here; see ray_sequencer.
         @always(clk.posedge)
         def register_towards():
             none_towards.next = not fate.any_towards

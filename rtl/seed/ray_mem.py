@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The reflected ray."""
+"""The register of the reflected ray."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -8,7 +8,7 @@ from raycaster.rtl.common.widths import bit
 
 @block
 def ray_mem(clk, steps, found_axis, found_point, ray, reflected):
-    """Keep the reflected ray, which leaves the hit point, at steps.store_ray.
+    """Store the reflected ray, which starts at the hit point, at steps.store_ray.
 
     The slope on the mirror's axis changes its sign; the slope's magnitudes do not change.
 
@@ -18,7 +18,7 @@ def ray_mem(clk, steps, found_axis, found_point, ray, reflected):
         found_axis: unsigned, 2 bits; the axis of the mirror's plane, 0, 1, 2 for x, y, z, read with steps.store_ray.
         found_point: `Origin`; the hit point, read with steps.store_ray.
         ray: `Ray` that hit; read with steps.store_ray.
-        reflected: output `Ray`, which is kept; valid from the cycle after steps.store_ray to the next one.
+        reflected: output `Ray`; valid from the cycle after steps.store_ray until the next steps.store_ray.
     """
     dx, dy, dz = bit(), bit(), bit()
 

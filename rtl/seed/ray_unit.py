@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One of the seed engine's units: a ray, its nearest hit, its reflections, and the colour of its pixel."""
+"""A unit of the seed engine: a ray, its nearest hit, its reflections, and the colour of its pixel."""
 
 from myhdl import always_comb, block, instances
 
@@ -19,9 +19,10 @@ from raycaster.rtl.seed.z_buffer import z_buffer
 
 @block
 def ray_unit(clk, steps, place, column_base, camera, rect, offered, picture, pixel, fate, config: Configuration):
-    """Trace the pixel at (place.row, place.column_offset * `config.units` + column_base) as the steps say.
+    """Trace the pixel at (place.row, place.column_offset * `config.units` + column_base), controlled by steps.
 
-    The unit has no control: one ray_control operates all units in step. A hit after the ray has ended does not count.
+    The unit has no control: one ray_control operates all units in lockstep. A hit after the ray has ended does not
+    count.
 
     Args:
         clk: the clock.
@@ -29,12 +30,12 @@ def ray_unit(clk, steps, place, column_base, camera, rect, offered, picture, pix
         place: `Place`; the group of columns, read with steps.screen_to_ray.
         column_base: unsigned, `unit_bits` bits; the unit's column within its group, constant.
         camera: `Point`; the start of all primary rays.
-        rect: `Rect` on which steps.find_intersection starts.
+        rect: `Rect` whose test steps.find_intersection starts.
         offered: `Rect` whose quotients were stored last.
         picture: `Picture`; only background is read, with steps.add_colour.
         pixel: output `Pixel`; valid after the last step.
-        fate: output `RayFate`; alive is driven with `config.culling` or `config.materials`, and towards where the
-            control ends rectangles early.
+        fate: output `RayFate`; alive is driven with `config.culling` or `config.materials`, and towards if the control
+            ends rectangles early.
         config: the design.
     """
     fraction_bits = config.fraction_bits
@@ -89,7 +90,7 @@ def ray_unit(clk, steps, place, column_base, camera, rect, offered, picture, pix
         else:
             ray.word.next = reflected.word
 
-    # What a ray that has ended goes on to hit does not count.
+    # Hits after a ray has ended do not count.
     if config.materials:
 
         @always_comb

@@ -12,23 +12,23 @@ def z_buffer(
     clk, steps, offered, colour, hit, depth, point, found, found_axis, found_colour, found_mirror, found_point,
     config: Configuration,
 ):  # fmt: skip
-    """Keep the nearest hit: at steps.write_z_buf, take what is offered if it is a hit, and nearer than the one kept.
+    """Keep the nearest hit: at steps.write_z_buf, take the offered hit if it is nearer than the stored one.
 
-    Of two hits at one depth the first stays, which is the lower rectangle: rectangles come in order. The found_ outputs
+    At equal depth the first hit stays, which is the lower rectangle, as rectangles come in order. The found_ outputs
     describe the nearest hit, from the cycle after its write.
 
     Args:
         clk: the clock.
         steps: `Steps`; only reset_z_buf and write_z_buf are read. reset_z_buf has priority.
-        offered: `Rect` that is offered; read with steps.write_z_buf.
+        offered: `Rect` of the offered hit; read with steps.write_z_buf.
         colour: unsigned, 24 bits; the colour of offered at point, read with steps.write_z_buf.
         hit: flag; the ray hits offered. Read with steps.write_z_buf.
         depth: unsigned, `position_bits` bits; the depth of the hit, read with steps.write_z_buf.
         point: `Origin`; the hit point, read with steps.write_z_buf.
-        found: output flag; anything was hit since steps.reset_z_buf.
+        found: output flag; something was hit since steps.reset_z_buf.
         found_axis: unsigned output, 2 bits; the axis of the nearest hit's plane, 0, 1, 2 for x, y, z.
         found_colour: unsigned output, 24 bits; the colour of the nearest hit.
-        found_mirror: unsigned output, 3 bits; how much the rectangle of the nearest hit mirrors, 0 to 4 quarters.
+        found_mirror: unsigned output, 3 bits; the share that the rectangle of the nearest hit mirrors, 0 to 4 quarters.
             Driven with `config.materials`.
         found_point: output `Origin`; the nearest hit point.
         config: the design.

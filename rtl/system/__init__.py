@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""The tops: the ray tracer alone, with a scene player, with a processor."""
+"""The top modules: the ray tracer alone, with a scene player, with a processor."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the processor reads of the buttons, and of the ray tracer's interrupt."""
+"""The word in which the processor reads the buttons and the ray tracer's interrupt."""
 
 from myhdl import always_comb, block, instances
 
@@ -10,13 +10,13 @@ from raycaster.rtl.common.widths import unsigned
 
 @block
 def button_port(clk, reset, buttons, irq, word):
-    """Join the buttons and the ray tracer's interrupt to the word that the processor reads.
+    """Join the buttons and the ray tracer's interrupt into the word that the processor reads.
 
     Args:
         clk: the clock.
         reset: synchronous, active high.
-        buttons: unsigned, 5 bits, active high; from bit 0 on left, right, up, down, fire, as memory_map.BUTTON_NAMES
-            has them. They may change at any time, and are seen two cycles later.
+        buttons: unsigned, 5 bits, active high; from bit 0 on: left, right, up, down, fire, as in
+            memory_map.BUTTON_NAMES. They may change at any time, and are seen two cycles later.
         irq: level; the ray tracer's interrupt.
         word: unsigned, 32 bits; output, the buttons in its lowest bits, and irq at bit `INTERRUPT_BIT`.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One coordinate of a camera that buttons move."""
+"""A coordinate of a camera that buttons move."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -7,12 +7,12 @@ from raycaster.configuration import WORLD_SIZE
 from raycaster.rtl.common.widths import bit
 
 STEP = 3
-"""World units that a held button moves the camera in a frame: across the world in about three seconds."""
+"""World units that a held button moves the camera per frame: across the world in about three seconds."""
 
 
 @block
 def camera_axis(clk, reset, move, more, less, start, position):
-    """Move a camera's coordinate by `STEP` towards where a button points, and never out of the world.
+    """Move a camera's coordinate by `STEP` in the direction of a button, and never out of the world.
 
     Args:
         clk: the clock.
@@ -21,7 +21,7 @@ def camera_axis(clk, reset, move, more, less, start, position):
         more: flag; the button that raises the coordinate, read with move. Both buttons at once count as none.
         less: flag; the button that lowers the coordinate, read with move.
         start: unsigned, 9 bits; the coordinate after reset.
-        position: unsigned, 9 bits; output, the coordinate. It has moved in the cycle after move.
+        position: unsigned, 9 bits; output, the coordinate. It changes in the cycle after move.
     """
     most = WORLD_SIZE - 1 - STEP
     can_rise, can_fall = bit(), bit()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""PicoRV32, a RISC-V processor by Claire Xenia Wolf, whose Verilog is given (ISC licence, in its file)."""
+"""PicoRV32, a RISC-V processor by Claire Xenia Wolf, from its own Verilog file (ISC licence, in that file)."""
 
 import importlib.util
 from pathlib import Path
@@ -13,7 +13,7 @@ PACKAGE = "pythondata_cpu_picorv32"
 
 
 def picorv32_source() -> Path:
-    """The file, in the package that carries it.
+    """Return the path of the Verilog file in the package that contains it.
 
     Raises:
         UserError: the package is not installed.
@@ -45,10 +45,10 @@ def picorv32(
     ENABLE_FAST_MUL: int,
     ENABLE_DIV: int,
 ):
-    """Run RV32I with what the parameters add; all other parameters keep their defaults.
+    """Run RV32I with the extensions that the parameters enable; all other parameters keep their defaults.
 
-    Reset starts the program at address 0, and leaves the stack pointer to it. An illegal instruction, or an access that
-    is not aligned, halts the processor until reset.
+    After reset the program starts at address 0, and must set the stack pointer itself. An illegal instruction or a
+    misaligned access halts the processor until reset.
 
     Args:
         clk: the clock.

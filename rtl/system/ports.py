@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Signals for every port of a top, by the names of its arguments: `top(**its_ports(config), config=config)`."""
+"""Signals for every port of a top module, by argument name: `top(**its_ports(config), config=config)`."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ from raycaster.rtl.system.scene_player import BUTTONS
 
 
 def module_ports(config: Configuration) -> dict[str, Any]:
-    """Those of ray_caster_module; Verilog has vga_* and, of its bus, such as avs_s0_*."""
+    """Return the ports of ray_caster_module; in Verilog they become vga_* and, for the bus, avs_s0_* or similar."""
     interface = BRIDGES[config.bus].interface if config.bus in BRIDGES else AvalonPort
     ports = {"clk": bit(), "reset": ResetSignal(0, active=1, isasync=False), "avs_s0": None}
     ports |= {BUSES[config.bus].port: interface(address_bits(config.table))}
@@ -25,16 +25,16 @@ def module_ports(config: Configuration) -> dict[str, Any]:
 
 
 def scene_system_ports(config: Configuration) -> dict[str, Any]:
-    """Those of scene_system."""
+    """Return the ports of scene_system."""
     return {"clk": bit(), "ready": bit(), "buttons": unsigned(len(BUTTONS)), "vga": vga_of(config)}
 
 
 def system_ports(config: Configuration) -> dict[str, Any]:
-    """Those of ray_caster_system."""
+    """Return the ports of ray_caster_system."""
     return scene_system_ports(config) | {"buttons": unsigned(len(BUTTON_NAMES)), "uart_tx": bit()}
 
 
 def dvi_ports() -> dict[str, Any]:
-    """Those of dvi_encoder."""
+    """Return the ports of dvi_encoder."""
     symbols = {channel: unsigned(SYMBOL_BITS) for channel in ("blue", "green", "red")}
     return {"clk": bit(), "ready": bit(), "pixel_end": bit(), "vga": Vga(CHANNEL_BITS), **symbols, "pixel": bit()}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A processor with its memory and what else it needs: the Avalon-MM host of a system that runs a program."""
+"""A processor with its memory and peripherals: the Avalon-MM host of a system that runs a program."""
 
 from myhdl import always_comb, block, instances
 
@@ -18,7 +18,7 @@ from raycaster.rtl.system.uart_transmitter import DATA_BITS, uart_transmitter
 
 @block
 def processor_host(clk, reset, buttons, irq, uart_tx, avm_m0, config: Configuration, program: str):
-    """Run a program that finds by memory_map what it drives.
+    """Run a program that accesses its devices at the addresses of memory_map.
 
     Args:
         clk: the clock.
@@ -42,7 +42,7 @@ def processor_host(clk, reset, buttons, irq, uart_tx, avm_m0, config: Configurat
     bit_time = clocks_per_bit(config.screen_geometry.clock_hz)
     low, no_word = tied(0, 1), tied(0, WORD_BITS)
 
-    # A shifter and a multiplier that take a cycle are worth their size; counters of 64 bits are not.
+    # A single-cycle shifter and multiplier are worth their size; 64-bit counters are not.
     processor = picorv32(
         clk=clk, resetn=resetn, irq=no_word, mem_valid=bus.valid, mem_ready=bus.ready, mem_addr=bus.address,
         mem_wdata=bus.data, mem_wstrb=bus.strobe, mem_rdata=bus.word, pcpi_wr=low, pcpi_rd=no_word, pcpi_wait=low,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What fills a line buffer, whichever engine it is of: one control, and units that it operates in step."""
+"""The ray caster of an engine with a line buffer: one control, and units that it operates in lockstep."""
 
 from typing import Any
 
@@ -19,25 +19,25 @@ from raycaster.rtl.seed.ray_control import ray_control
 from raycaster.rtl.seed.ray_unit import ray_unit
 
 CONTROLS = {SEED.name: ray_control, EXACT.name: exact_control}
-"""By engine, the block that operates all units."""
+"""The block that operates all units, by engine."""
 
 UNITS: dict[str, Any] = {SEED.name: ray_unit, EXACT.name: exact_unit}
-"""By engine, the block of one unit."""
+"""The block of one unit, by engine."""
 
 
 @block
 def ray_caster(clk, reset_ray_caster, enable, place, camera, picture, rects, done, pixels, config: Configuration):
     """Compute the pixels of `config.units` neighbouring columns at once.
 
-    It starts where enable is high and reset_ray_caster low. place and the scene then hold still until done.
+    It starts when enable is high and reset_ray_caster low. place and the scene must then be stable until done.
 
     Args:
         clk: the clock.
         reset_ray_caster: synchronous, active high.
         enable: flag; starts a group.
         place: `Place` of the group.
-        camera: `Camera`; the live one.
-        picture: `Picture`; the live one. run is not read.
+        camera: `Camera` of the live scene.
+        picture: `Picture` of the live scene; run is not read.
         rects: `Rects`; drives index and fetch, reads usable and rect.
         done: flag; output, the group is complete. It stays high until reset_ray_caster.
         pixels: unsigned, a `Pixel` word of `pixel_bits` bits for each of the `config.units` units, unit 0 in the lowest
@@ -54,9 +54,9 @@ def ray_caster(clk, reset_ray_caster, enable, place, camera, picture, rects, don
     towards = side_by_side([fate.towards for fate in fates])
     in_question = side_by_side([fate.in_question for fate in fates])
     if not config.facts.divides:
-        steps.initial_ray = unconnected(1)  # a mirrored eye is where it is, whichever ray is traced
+        steps.initial_ray = unconnected(1)  # with a mirrored eye, all rays are traced alike
     fate = GroupFate(config)
-    # The prediction is for slopes of which the column changes y alone.
+    # The prediction requires that only the slope's y component changes with the column.
     predicts = config.culling and not config.turn
     if not predicts:
         fate.may_hit = tied((1 << config.rectangles) - 1, fate.may_hit)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The ray tracer behind a bus, with a VGA output: the top of what is generated."""
+"""The ray tracer behind a bus, with a VGA output: the top module of the generated Verilog."""
 
 from myhdl import always_comb, block, instances
 
@@ -21,15 +21,15 @@ from raycaster.rtl.scene.rect_rom import rect_rom
 from raycaster.rtl.system.ray_caster_renderer import ray_caster_renderer
 
 RENDERERS = {BEAM.name: beam_renderer}
-"""By engine, the block that fills the screen; of the others `ray_caster_renderer`."""
+"""The block that fills the screen, by engine; `ray_caster_renderer` for the others."""
 
 
 @block
 def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi=None, wb=None, s_apb=None):
-    """Join registers, scene memories and renderer, in one clock domain.
+    """Connect registers, scene memories and renderer, in one clock domain.
 
-    Parts of the scene that config.fixed names are built in: they have no memory, and writes to their registers do
-    nothing. The bus is avs_s0, s_axi, wb or s_apb, as config.bus says.
+    The parts of the scene that config.fixed names are built in: they have no memory, and writes to their registers have
+    no effect. The bus is avs_s0, s_axi, wb or s_apb, as chosen by config.bus.
 
     Args:
         clk: the clock, `config.screen_geometry.clock_hz` Hz.
@@ -63,7 +63,7 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
             setattr(bus, name, unconnected(signal))
     else:
         if not config.facts.line_buffered and config.reflections == 0:
-            picture.reflections = unconnected(picture.reflections)  # where there are none, it does not ask how many
+            picture.reflections = unconnected(picture.reflections)  # without reflections it does not read their number
         position = camera_mem(clk, reset, bus, camera_readback, camera, config)
     if config.bus in BRIDGES:
         avs_s0, name = AvalonPort(len(bus.address)), BUSES[config.bus].port
@@ -73,7 +73,7 @@ def ray_caster_module(clk, reset, avs_s0, irq, vga, config: Configuration, s_axi
         clk, reset, avs_s0=avs_s0, irq=irq, bus=bus, camera_readback=camera_readback, rect_readback=rect_readback,
         bad_rectangle=bad_rectangle, picture=picture, progress=progress, config=config,
     )  # fmt: skip
-    # A write, a commit and StartScreen each take one step of the scene's memories, however late the next one comes.
+    # A write, a commit and StartScreen each take one clock of the scene's memories, however late the next clock comes.
     if config.facts.line_buffered and not fixed:
         scene_awake, scene_clk = bit(), bit()
 

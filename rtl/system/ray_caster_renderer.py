@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Row after row of rays, just ahead of the monitor."""
+"""The renderer with a line buffer, which renders each row just ahead of the monitor."""
 
 from myhdl import always, always_comb, always_seq, block, instances
 
@@ -19,15 +19,15 @@ def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, confi
 
     While a row is shown the next one is rendered, in `config.groups` groups of `config.units` columns. The live scene
     may change only in the cycle after progress.start_screen. A row that is not complete at the end of its time is
-    abandoned, and columns that were not written keep what that half of the buffer held.
+    abandoned, and columns that were not written keep the old pixels of that half of the buffer.
 
     Args:
         clk: the clock.
         reset: synchronous, active high.
-        picture: `Picture`; the live one.
-        camera: `Camera`; the live one.
+        picture: `Picture` of the live scene.
+        camera: `Camera` of the live scene.
         rects: `Rects`; drives index and fetch, reads usable and rect.
-        progress: `Progress`; output. underrun comes at the end of a row's time when the row is not complete; row_cycles
+        progress: `Progress`; output. underrun comes at the end of a row's time if the row is not complete; row_cycles
             and group_cycles saturate.
         vga: `Vga`; output.
         config: the design.
@@ -47,7 +47,7 @@ def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, confi
     sections = [unsigned(width) for _ in range(units)]
     shown_unit = unsigned(unit_bits(config)) if one_clock else read_unit
 
-    # The line buffer takes a clock, which a pixel of one clock does not leave: columns are announced that much earlier.
+    # The line buffer takes one clock. If a pixel also takes only one, columns are announced one clock earlier.
     video = video_generator(
         clk=clk, reset=reset, scan=scan, pixel=pixel, vga=vga, screen=config.screen_geometry, lead=int(one_clock)
     )  # fmt: skip
@@ -82,12 +82,12 @@ def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, confi
         progress.busy.next = enable
         progress.underrun.next = scan.start_row and enable
 
-    # When done, the group is written, the next one takes its place, and the ray caster starts anew.
+    # When done, the group is written, the next one takes its place, and the ray caster restarts.
     @always_comb
     def finish_group():
         restart.next = reset or scan.start_screen or scan.start_row or done
 
-    # The seed's reset delay: in the second cycle of a reset the comparison with Max has the new column offset.
+    # The seed's reset delay: in the second cycle of a reset, the comparison with Max sees the new column offset.
     @always(clk.posedge)
     def delay_reset():
         reset_delay.next = restart
@@ -96,7 +96,7 @@ def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, confi
     def join_resets():
         reset_ray_caster.next = restart or reset_delay
 
-    # Between rows the ray caster has nothing to do, and the next one begins with a reset of it.
+    # The ray caster is idle between rows, and each row begins with its reset.
     @always_comb
     def wake():
         caster_awake.next = enable or reset_ray_caster
@@ -134,7 +134,7 @@ def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, confi
             elif progress.group_cycles != cycles_limit:
                 progress.group_cycles.next = progress.group_cycles + 1
 
-    # The monitor's column as the unit's section and the place in it.
+    # The monitor's column, as a unit's section and the offset in it.
     @always_seq(clk.posedge, reset=reset)
     def follow_columns():
         if not scan.visible_line:
@@ -149,7 +149,7 @@ def ray_caster_renderer(clk, reset, picture, camera, rects, progress, vga, confi
                     read_offset.next = read_offset + 1
 
     if one_clock:
-        # As late as what the line buffer reads for it.
+        # Delayed as much as the pixels that the line buffer reads.
         @always(clk.posedge)
         def follow_unit():
             shown_unit.next = read_unit

@@ -14,14 +14,14 @@ from raycaster.rtl.system.reset_release import reset_release
 
 @block
 def ray_caster_system(clk, ready, buttons, uart_tx, vga, config: Configuration, program: str):
-    """Run a program that finds the ray tracer, five buttons and a serial port by memory_map.
+    """Run a program that accesses the ray tracer, five buttons and a serial port at the addresses of memory_map.
 
     Args:
         clk: the clock, `config.screen_geometry.clock_hz` Hz.
         ready: flag, such as a PLL's lock or a button; low for at least three cycles resets everything. It may change at
             any time.
-        buttons: unsigned, 5 bits, active high; from bit 0 on left, right, up, down, fire, as memory_map.BUTTON_NAMES
-            has them. They may change at any time.
+        buttons: unsigned, 5 bits, active high; from bit 0 on: left, right, up, down, fire, as in
+            memory_map.BUTTON_NAMES. They may change at any time.
         uart_tx: output of the serial port: 8 data bits, no parity, a stop bit, at `memory_map.BAUD_RATE`.
         vga: `Vga`; output, as in ray_caster_module.
         config: the design.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The reset of a board: from power-up until the clock has been good for a while."""
+"""The reset of a board: from power-up until the clock has been stable for a while."""
 
 from myhdl import always_comb, always_seq, block, instances
 
@@ -7,20 +7,19 @@ from raycaster.rtl.common.synchroniser import synchroniser
 from raycaster.rtl.common.widths import bit, unsigned
 
 HOLD_CYCLES = 16
-"""Clock cycles that reset lasts after `ready` was seen."""
+"""Clock cycles for which reset lasts after `ready` is seen high."""
 
 
 @block
 def reset_release(clk, ready, reset):
     """Hold reset until ready has been high for `HOLD_CYCLES` cycles.
 
-    The registers here have no reset: chips power up with them at 0, and simulators set them by a low ready of three
-    cycles.
+    The registers here have no reset: chips power up with them at 0, and simulators need a low ready for three cycles.
 
     Args:
         clk: the clock.
-        ready: flag; the clock is good. It may change at any time.
-        reset: output, active high; high again three cycles after ready fell.
+        ready: flag; the clock is stable. It may change at any time.
+        reset: output, active high; high again three cycles after ready has fallen.
     """
     last = HOLD_CYCLES - 1
     steady = bit()
@@ -28,7 +27,7 @@ def reset_release(clk, ready, reset):
 
     synchronised = synchroniser(clk, None, value=ready, held=steady)
 
-    # A one moves up each cycle while ready is high, and reset ends when it has arrived.
+    # Ones shift in while ready is high, and reset ends when the first one reaches the top bit.
     @always_seq(clk.posedge, reset=None)
     def shift():
         held.next = 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The Avalon-MM host of a system without a processor: loads one scene, and moves its camera with buttons."""
+"""The Avalon-MM host of a system without a processor: it loads one scene, and moves the camera with buttons."""
 
 from myhdl import always_comb, always_seq, block, instances
 
@@ -13,13 +13,13 @@ from raycaster.rtl.system.camera_axis import camera_axis
 from raycaster.scene import Scene
 
 BUTTONS = ("forward", "back", "left", "right", "up", "down")
-"""What each bit of `buttons` does, from bit 0 on: x rises and falls, y falls and rises, z rises and falls."""
+"""Effects of the bits of `buttons`, from bit 0 on: x rises and falls, y falls and rises, z rises and falls."""
 
 
 def player_program(scene: Scene, config: Configuration) -> tuple[list[tuple[int, int]], int]:
-    """Word addresses and words in the order in which they are written, and where the part for each frame starts.
+    """Return word addresses and words in the order of writing, and the index at which the part for each frame starts.
 
-    That part clears the interrupt, moves the camera (its word here is only a place for it) and commits.
+    That part clears the interrupt, moves the camera (its word here is only a placeholder) and commits.
     """
     registers = register_map(config.table)
     enable, pending = registers["irq_enable"], registers["irq_pending"]
@@ -37,8 +37,8 @@ def scene_player(clk, reset, buttons, irq, avm_m0, config: Configuration, scene:
     Args:
         clk: the clock.
         reset: synchronous, active high.
-        buttons: unsigned, 6 bits, active high; from bit 0 on forward, back, left, right, up, down, as BUTTONS has them.
-            They may change at any time, and count where they are held at StartScreen.
+        buttons: unsigned, 6 bits, active high; from bit 0 on: forward, back, left, right, up, down, as in BUTTONS. They
+            may change at any time, and count if they are held at StartScreen.
         irq: level; the StartScreen interrupt.
         avm_m0: `AvalonPort`, this block as the host: drives address, write, writedata and byteenable, reads
             waitrequest.
@@ -67,12 +67,12 @@ def scene_player(clk, reset, buttons, irq, avm_m0, config: Configuration, scene:
     axis_y = camera_axis(clk, reset, move, more=right, less=left, start=start_y, position=y)
     axis_z = camera_axis(clk, reset, move, more=up, less=down, start=start_z, position=z)
 
-    # The camera moves as its turn in the program comes.
+    # The camera moves when the part of the program for each frame starts.
     @always_comb
     def start_frame():
         move.next = waiting and irq
 
-    # Write after write, each until it is taken; then wait for the next StartScreen.
+    # Write after write, each until it is accepted; then wait for the next StartScreen.
     @always_seq(clk.posedge, reset=reset)
     def sequence():
         if waiting:
@@ -93,7 +93,7 @@ def scene_player(clk, reset, buttons, irq, avm_m0, config: Configuration, scene:
     def look_up_word():
         word.next = words[int(entry)]
 
-    # The camera's word is the one that is not known beforehand.
+    # The camera's word is the only one that is not constant.
     @always_comb
     def present():
         avm_m0.write.next = not waiting

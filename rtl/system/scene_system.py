@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The ray tracer and what drives its bus, for boards without a processor: the top of what a board's pins connect to."""
+"""The ray tracer and a scene player that drives its bus, for boards without a processor: the top module of a board."""
 
 from myhdl import ResetSignal, block, instances
 
@@ -16,14 +16,14 @@ from raycaster.scene import Scene
 
 @block
 def scene_system(clk, ready, buttons, vga, config: Configuration, scene: Scene):
-    """Show one scene on a monitor, its camera moved by buttons.
+    """Show one scene on a monitor, with a camera moved by buttons.
 
     Args:
         clk: the clock, `config.screen_geometry.clock_hz` Hz.
         ready: flag, such as a PLL's lock or a button; low for at least three cycles resets everything. It may change at
             any time.
-        buttons: unsigned, 6 bits, active high; from bit 0 on forward, back, left, right, up, down, as
-            scene_player.BUTTONS has them. They may change at any time.
+        buttons: unsigned, 6 bits, active high; from bit 0 on: forward, back, left, right, up, down, as in
+            scene_player.BUTTONS. They may change at any time.
         vga: `Vga`; output, as in ray_caster_module.
         config: the design.
         scene: the scene.

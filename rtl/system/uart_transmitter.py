@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The serial port's sending half."""
+"""The transmitter of the serial port."""
 
 from myhdl import Signal, always_comb, always_seq, block, instances
 
@@ -12,16 +12,16 @@ FRAME_BITS = 1 + DATA_BITS + 1
 
 @block
 def uart_transmitter(clk, reset, access, strobe, data, uart_tx, clocks_per_bit: int):
-    """Send each byte that is written; the next one waits until the stop bit of the last one is over.
+    """Send each byte that is written; the next one waits until the stop bit of the previous one is over.
 
-    A write that enables its first byte sends data. Other writes do nothing.
+    A write with bit 0 of strobe set sends data. Other writes do nothing.
 
     Args:
         clk: the clock.
         reset: synchronous, active high.
         access: `Access`; reads select, drives ready and word. ready is high with select, except while a byte has to
             wait. Bit 0 of word is 1 while a byte is being sent.
-        strobe: unsigned, 4 bits; which bytes are written, or 0 for a read.
+        strobe: unsigned, 4 bits; the bytes that are written, or 0 for a read.
         data: unsigned, 8 bits; the byte to send.
         uart_tx: output; high while nothing is sent.
         clocks_per_bit: the number of clocks that a bit lasts.
@@ -40,7 +40,7 @@ def uart_transmitter(clk, reset, access, strobe, data, uart_tx, clocks_per_bit: 
         start.next = access.select and strobe[0] and (bits_left == 0)
         bit_end.next = clocks == last_clock
 
-    # Only a byte to send has to wait.
+    # Only a write that sends a byte has to wait.
     @always_comb
     def answer():
         access.ready.next = access.select and not (writing and busy)
@@ -54,7 +54,7 @@ def uart_transmitter(clk, reset, access, strobe, data, uart_tx, clocks_per_bit: 
         else:
             clocks.next = clocks + 1
 
-    # Bit after bit; ones follow the byte, which are the stop bit and the idle line.
+    # Ones follow the byte: the stop bit and the idle line.
     @always_seq(clk.posedge, reset=reset)
     def shift():
         if start:

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""The monitor's timing, and the double line buffer with what fills it."""
+"""The monitor's timing, and the double line buffer."""

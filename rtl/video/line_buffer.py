@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One section of the double line buffer: the pixels of one ray unit."""
+"""A section of the double line buffer: the pixels of one ray unit."""
 
 from myhdl import always, always_comb, block, instances
 
@@ -17,9 +17,9 @@ def line_buffer(clk, write, line_buf_sel, write_offset, pixel_in, read_offset, p
         clk: the clock.
         write: strobe; stores pixel_in.
         line_buf_sel: flag; the half to write. The other half is read.
-        write_offset: unsigned, below `config.groups`; which of the unit's pixels to write, read with write.
+        write_offset: unsigned, below `config.groups`; number of the unit's pixel to write, read with write.
         pixel_in: unsigned, `pixel_bits` bits; read with write.
-        read_offset: unsigned, below `config.groups`; which of the unit's pixels to read.
+        read_offset: unsigned, below `config.groups`; number of the unit's pixel to read.
         pixel_out: unsigned, `pixel_bits` bits; output, a cycle after read_offset.
         config: the design.
     """

@@ -11,27 +11,27 @@ from raycaster.screens import Screen
 
 @block
 def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0, at_start: bool = False):
-    """Generate the monitor's timing, which runs freely whatever the inputs, and send it the pixels.
+    """Generate the free-running timing of the monitor, and send it the pixels.
 
-    A pixel takes `screen.clocks_per_pixel` of clk, and reaches the outputs a pixel after its turn. With two
-    pixels per clock, a pixel means both of them here, and so does a column.
+    A pixel takes `screen.clocks_per_pixel` clk cycle(s), and reaches the outputs one pixel after its coordinates. With
+    two pixels per clock, pixel and column mean both of them here.
 
-    Screen coordinates are signed: negative in the blanking, which comes first, so that visible means >= 0. Lines and
-    frames are front porch, sync, back porch, picture. VS changes together with HS.
+    Screen coordinates are signed: negative in blanking, which comes first, so that visible means >= 0. Lines and frames
+    consist of front porch, sync, back porch and picture. VS changes together with HS.
 
     Args:
         clk: the clock.
         reset: synchronous, active high; restarts at the first pixel of the first line of the vertical front porch.
-        scan: `Scan`; output. start_screen: strobe, a row of rays (of `screen.doubling` lines) before the first visible
-            line, time to render row 0. start_row: strobe at the beginning of the first line of each row, which is then
-            handed over. visible_line: high in the visible part of a line, blanked lines included. next_column: strobe
-            in the last clock of the last pixel of each column there, or of its first pixel with at_start.
+        scan: `Scan`; output. start_screen: strobe one row of rays (`screen.doubling` lines) before the first visible
+            line, in time to render row 0. start_row: strobe at the beginning of the first line of each row, when that
+            row is handed over. visible_line: high in the visible part of a line, blanked lines included. next_column:
+            strobe in the last clock of each column's last pixel there or, with at_start, of its first pixel.
         pixel: `Pixel`; the column's colour, sampled at the end of each of its pixels.
         vga: `Vga`; output. Changes at the falling edge of vga.clk.
         screen: the screen and its timing.
-        lead: the number of pixels by which visible_line and next_column are early where a pixel takes a clock; at most
-            the horizontal blanking.
-        at_start: next_column comes in the first pixel of a column, and not in the last.
+        lead: number of pixels by which visible_line and next_column are early, if a pixel takes one clock; at most the
+            horizontal blanking.
+        at_start: next_column comes in the first pixel of a column, not in the last.
     """
     horizontal, vertical, doubling = screen.beats, screen.vertical, screen.doubling
     first_pixel, first_line = -horizontal.blank, -vertical.blank
@@ -86,7 +86,7 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0,
             else:
                 x.next = x + 1
 
-    # Which of a row's lines, and of the announced column's pixels, this is.
+    # The number of the line within its row, and of the pixel within the announced column.
     @always_seq(clk.posedge, reset=reset)
     def count_repeats():
         if line_end:
@@ -121,14 +121,14 @@ def video_generator(clk, reset, scan, pixel, vga, screen: Screen, lead: int = 0,
                     vs.next = not vsync_active
             vga.blank_n.next = (x >= 0) and (y >= 0)
 
-    # Sync idles at its inactive level in reset, whatever level the ports start from.
+    # In reset sync is at its inactive level, whatever level the ports start from.
     @always_comb
     def drive_sync():
         vga.hs.next = hs
         vga.vs.next = vs
         vga.sync_n.next = False
 
-    # Black where the monitor measures its black level.
+    # Black in blanking, when the monitor measures its black level.
     @always_seq(clk.posedge, reset=reset)
     def colour():
         if pixel_end:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The game on a PicoRV32: a frame, the buttons, a step, a picture; what happens is told over the UART.
+// The game on a PicoRV32: each frame it reads the buttons, takes a step and draws a picture. It reports over the UART.
 
 #include <stddef.h>
 
@@ -9,7 +9,7 @@
 
 #define REGISTERS(base) ((volatile uint32_t *)(uintptr_t)(base))
 
-// Many frames' worth.
+// Longer than many frames
 enum { POLLS_A_FRAME = 10000000 };
 
 static void put_character(char character) {
@@ -86,7 +86,7 @@ static void put_events(const struct game *game, unsigned events) {
     }
 }
 
-// The same error frame after frame is told once.
+// Report an error once, however many frames it lasts.
 static void put_new_error(enum raycaster_error *last, enum raycaster_error error) {
     if (error != *last && error != RAYCASTER_OK) {
         put_error("ray tracer", error);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# What a PicoRV32 runs after reset: a stack, cleared variables, main.
+# Start-up code of a PicoRV32: sets the stack, clears the variables, calls main.
 
     .section .start, "ax"
     .globl _start

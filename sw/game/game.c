@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "game.h"
 
-// The court, in units of the world. The view is along x; the court begins where the walls come into view, and its front
-// is open, so that what faces the player mirrors the background. A ray that meets an edge leaves the court from there,
-// and would be a speck. So the distances of ceiling, floor and back from the eye are primes, which keeps the slopes of
+// The court, in units of the world. The view is along x. The court begins where the walls come into view, and its front
+// is open, so surfaces that face the player mirror the background. A ray that meets an edge would leave the court there
+// and show as a speck. So the distances of ceiling, floor and back from the eye are primes, which keeps the slopes of
 // every pixel of 320x240 off the edges, wherever the eye is from side to side.
 enum {
     FRONT = 80,
@@ -18,19 +18,19 @@ enum {
     GONE_X = 50,
 };
 
-// Sizes are half of what is seen, as everything has a centre.
+// Half sizes, from the centre to the edge
 enum {
     BALL_SIZE = 13,
-    BALL_EDGE = 8, // of it, that a racket or the tile may still meet
+    BALL_EDGE = 8, // how far outside a racket or the tile the ball's centre may still hit it
     TARGET_SIZE = 26,
     RACKET_STEP = 5,
     LINE_SIZE = 2,
 };
 
-// The player looks after the ball where the camera turns: a degree a frame, and no further than the court is wide.
+// If the camera turns, the player looks after the ball: one degree per frame, and no further than the court is wide.
 enum {
     MOST_TURN = 3,
-    UNITS_A_DEGREE = 40, // of the ball, from the middle
+    UNITS_A_DEGREE = 40, // the ball's distance from the middle, per degree
 };
 
 enum {
@@ -40,7 +40,7 @@ enum {
     LAST_ATTRACT_LEVEL = 4,
     SERVE_FRAMES = 45,
     OVER_FRAMES = 300,
-    OVER_LEAST_FRAMES = 60, // before fire starts anew, as it may still be held in haste
+    OVER_LEAST_FRAMES = 60, // before fire starts a new game, as the player may still be pressing it
     BAR_LOW = CEILING - 36,
     BAR_HIGH = CEILING - 22,
     BAR_START = FRONT + 8,
@@ -58,7 +58,7 @@ static const struct raycaster_colour LINE_COLOUR = {96, 240, 255};
 static const struct raycaster_colour LIVES_COLOUR = {255, 32, 80};
 static const struct raycaster_colour SCORE_COLOUR = {255, 216, 64};
 
-// Floor, ceiling, left, right and back wall: one court after the other as levels rise, and the one of alarm.
+// Floor, ceiling, left, right and back wall: a court per level, repeating, and the last one for alarm.
 enum { COURTS = 4, WALLS = 5 };
 static const struct raycaster_colour COURT_COLOURS[COURTS + 1][WALLS] = {
     {{44, 88, 120}, {4, 8, 24}, {16, 72, 120}, {72, 24, 112}, {56, 88, 120}},
@@ -76,7 +76,7 @@ static uint32_t next_random(struct game *game) {
     return game->random;
 }
 
-// At least `low` and less than `high`.
+// Return at least `low` and less than `high`.
 static int32_t random_between(struct game *game, int32_t low, int32_t high) {
     return low + (int32_t)(((next_random(game) & 0xffff) * (uint32_t)(high - low)) >> 16);
 }
@@ -89,7 +89,7 @@ static int32_t magnitude(int32_t value) {
     return value < 0 ? -value : value;
 }
 
-// Up and down between -reach and reach, a unit a frame.
+// Swing between -reach and reach, one unit per frame.
 static int32_t swing(uint32_t frames, int32_t reach) {
     const int32_t place = (int32_t)(frames % (uint32_t)(4 * reach));
     return place < 2 * reach ? place - reach : 3 * reach - place;
@@ -177,7 +177,7 @@ static void move_racket(struct game *game, unsigned buttons) {
     game->racket.z = clamp(game->racket.z + up * RACKET_STEP, height, CEILING - height);
 }
 
-// Keep a place between two walls; both sides of a mirror are alike, and so is the way back.
+// Keep a place between two walls: beyond a wall, place and velocity are mirrored.
 static void bounce(int32_t *place, int32_t *velocity, int32_t low, int32_t high) {
     if (*place < low) {
         *place = 2 * low - *place;
@@ -234,7 +234,7 @@ static unsigned reach_racket(struct game *game) {
         enter(game, GAME_PAST);
         return GAME_MISSED;
     }
-    // The further from the middle, the further it goes aside.
+    // The further from the racket's middle, the faster the ball goes sideways.
     game->ball.x = 2 * RACKET_X * UNIT - game->ball.x;
     game->velocity.x = speed(game);
     game->velocity.y = (game->ball.y - game->racket.y * UNIT) / 16 * speed(game) / (2 * UNIT);
@@ -300,7 +300,7 @@ unsigned game_step(struct game *game, unsigned buttons) {
     }
 }
 
-// Where a place that moves on between two walls will be.
+// Bounce a place that is beyond two walls back between them.
 static int32_t fold(int32_t place, int32_t low, int32_t high) {
     while (place < low || place > high) {
         place = place < low ? 2 * low - place : 2 * high - place;
@@ -308,9 +308,9 @@ static int32_t fold(int32_t place, int32_t low, int32_t high) {
     return place;
 }
 
-// Where to hold the racket's middle on one axis: so that the ball, coming in at `place`, goes on to `target`.
+// Return the racket's middle on one axis that sends the ball, coming in at `place`, to `target`.
 static int32_t aim(int32_t place, int32_t target, int32_t size) {
-    // The ball goes aside by offset * speed / 32 a frame, for (BACK - RACKET_X) / speed frames, of which speed cancels.
+    // The ball moves sideways by offset * speed / 32 per frame, for (BACK - RACKET_X) / speed frames; speed cancels.
     const int32_t offset = (target - place) * 32 / (BACK - RACKET_X);
     return place - clamp(offset, 4 - size, size - 4);
 }
@@ -367,7 +367,7 @@ static struct game_rectangle bar(int32_t wall, int32_t start_x, int32_t length, 
 
 static void compose_bars(const struct game *game, struct game_rectangle *scene) {
     if (game->attract) {
-        // Lights that chase each other say that nobody plays.
+        // Running lights show that nobody plays.
         const int32_t place = (int32_t)(game->sway % (BAR_LENGTH / 2)) * 3 / 2;
         scene[GAME_LIVES_BAR] = bar(LEFT, BAR_START + place, BAR_LENGTH / 4, SCORE_COLOUR);
         scene[GAME_SCORE_BAR] = bar(RIGHT, BAR_START + place, BAR_LENGTH / 4, SCORE_COLOUR);
@@ -381,13 +381,13 @@ static void compose(const struct game *game, struct game_rectangle *scene) {
     const struct game_vector ball = {game->ball.x / UNIT, game->ball.y / UNIT, game->ball.z / UNIT};
     const bool alarmed = game->alarm != 0 || game->phase == GAME_OVER;
     const struct raycaster_colour *court = COURT_COLOURS[alarmed ? COURTS : (game->level - 1) % COURTS];
-    // A ball that waits beats like a heart.
+    // A waiting ball pulses.
     const int32_t size = game->phase == GAME_SERVE && (game->age & 8) != 0 ? BALL_SIZE - 4 : BALL_SIZE;
     scene[GAME_BALL] = facing(&ball, size, size, WHITE);
     scene[GAME_BALL].enabled = game->phase != GAME_OVER;
     scene[GAME_RACKET] =
         facing(&game->racket, racket_width(game), racket_height(game), game->racket_flash ? WHITE : RACKET_COLOUR);
-    // A line on the ceiling, straight above the ball: how deep it is.
+    // A line on the ceiling, straight above the ball, shows its depth.
     scene[GAME_LINE] =
         rectangle(ball.x - LINE_SIZE, LEFT, CEILING, ball.x + LINE_SIZE, RIGHT, CEILING, LINE_COLOUR);
     scene[GAME_LINE].enabled = scene[GAME_BALL].enabled && ball.x >= FRONT;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Squash in a court of mirrors. The ball must hit the golden tile on the back wall; a dark veil hangs before it that
-// the ball passes through, and behind which only the mirrors show where ball and tile are.
+// Squash in a court of mirrors. The ball must hit the golden tile on the back wall. It passes through a dark veil in
+// front of the wall, behind which only the mirrors show where ball and tile are.
 //
-// The same seed and the same buttons give the same frames. Nothing here knows of hardware but through the driver.
+// The same seed and the same buttons give the same frames. The game reaches the hardware only through the driver.
 
 #ifndef GAME_H
 #define GAME_H
@@ -44,10 +44,10 @@ enum game_entry {
 
 enum {
     GAME_REFLECTIONS = 1,
-    GAME_SEED = 2013, // of the firmware, and of what demo.txt plays
+    GAME_SEED = 2013, // of the firmware and of demo.txt
 };
 
-// A place or a speed; of the ball in 256ths of a unit.
+// A position or a velocity; for the ball in 256ths of a unit.
 struct game_vector {
     int32_t x;
     int32_t y;
@@ -71,18 +71,18 @@ struct game {
     uint32_t score;
     uint32_t random;
     uint32_t age; // frames in this phase
-    uint32_t held; // buttons of the frame before
+    uint32_t held; // buttons of the previous frame
     uint32_t sway; // frames that the veil has moved
     uint32_t racket_flash; // frames left of each effect
     uint32_t tile_flash;
     uint32_t alarm;
     struct game_vector ball;
     struct game_vector velocity;
-    struct game_vector racket; // its centre, in whole units, as the two that follow
+    struct game_vector racket; // its centre in whole units, as for target and veil
     struct game_vector target;
     struct game_vector veil;
-    int32_t turn; // degrees by which the player looks to the right
-    bool drawn; // the rest is what the registers hold
+    int32_t turn; // degrees that the player looks to the right
+    bool drawn; // the registers hold the fields below
     int32_t shown_turn;
     struct raycaster_point camera;
     struct game_rectangle shown[GAME_RECTANGLES];
@@ -93,10 +93,10 @@ void game_init(struct game *game, uint32_t seed);
 // One frame, with the buttons that are held: bits of enum game_button. Returns bits of enum game_event.
 unsigned game_step(struct game *game, unsigned buttons);
 
-// The buttons that a good player would hold now.
+// Return the buttons that a good player would hold now.
 unsigned game_autoplay(const struct game *game);
 
-// Write what has changed; the caller commits. After an error the next call writes everything anew.
+// Write what has changed; the caller commits. After an error the next call writes everything again.
 enum raycaster_error game_draw(struct game *game, const struct raycaster *device);
 
 #endif

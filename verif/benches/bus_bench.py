@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: the registers over any bus, with back-pressure at random: every word that was written, and a frame.
+"""cocotb: register access over any bus, with random back-pressure: every word that was written, and a frame.
 
-Words and how fast they come are held against what the register map and the buses' contracts say, and not against the
-registers themselves.
+Expected words and latencies come from the register map and the buses' contracts, not from the registers themselves.
 """
 
 from __future__ import annotations
@@ -23,23 +22,23 @@ from raycaster.sim.harness import Harness
 from raycaster.sim.register_model import EVERY_LANE
 
 ACCESSES = 400
-"""By each seed."""
+"""Number of accesses per seed."""
 
 
 def kept_registers(config: Configuration) -> list[Register]:
-    """Some that hold what is written, with the fields that every design has."""
+    """Return registers that keep what is written and whose fields exist in every design."""
     registers = register_map(config.table)
     corners = [f"rectangle[{index}].corner_{end}" for index in range(config.table) for end in (0, 1)]
     return [registers[name] for name in ("irq_enable", "background", "camera", *corners)]
 
 
 async def measure(bench: Any, bus: BridgedBus, found: dict[str, set[int]]) -> None:
-    """Count the cycles of each access that the bus has."""
+    """Count the cycles of each access on the bus."""
     ages = dict.fromkeys(found, 0)
 
     def is_as_marked(name: str) -> bool:
         signal = name.lstrip("!")
-        # As the design has it in this cycle, where it is an input.
+        # An input has a copy with the value that the design sees in this cycle.
         present = f"seen_{signal}" if hasattr(bench, f"seen_{signal}") else signal
         return str(getattr(bench, present).value) == ("0" if "!" in name else "1")
 
@@ -55,8 +54,8 @@ async def measure(bench: Any, bus: BridgedBus, found: dict[str, set[int]]) -> No
 
 @cocotb.test()
 async def words_and_a_frame(bench: HierarchyObject) -> None:
-    """For each of the job's seeds: bytes written at random, reads of them between, and all of them at the end; then a
-    scene that is drawn without a wrong pixel."""
+    """For each of the job's seeds, randomly written bytes read back, in between and all at the end; then a scene is
+    drawn without a wrong pixel."""
     harness = Harness(bench)
     bus, config = harness.bus, harness.configuration
     assert isinstance(bus, BridgedBus)
@@ -101,7 +100,7 @@ async def words_and_a_frame(bench: HierarchyObject) -> None:
 
 
 async def both_ways(bus: Axi4LiteBus, random: Random, words: dict[int, int], masks: dict[int, int]) -> None:
-    """Reads and writes at the same time, of registers that are not the same."""
+    """Read some registers while others are written."""
     addresses = random.sample(list(words), len(words))
     written, still = addresses[::2], addresses[1::2]
     expected = dict(words)
@@ -123,7 +122,7 @@ async def both_ways(bus: Axi4LiteBus, random: Random, words: dict[int, int], mas
 
 @cocotb.test()
 async def cycles(bench: HierarchyObject) -> None:
-    """An access that nothing hinders takes as many as it should, and never fewer."""
+    """An unhindered access takes exactly the number of cycles in the contract of its bus."""
     harness = Harness(bench)
     bus = harness.bus
     assert isinstance(bus, BridgedBus)

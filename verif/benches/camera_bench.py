@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: one scene from one camera after another, a frame each, held against golden in every pixel."""
+"""cocotb: one scene from several cameras, a frame each; every pixel is compared with the golden model."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ CORNERS = list(itertools.product((0, WORLD_SIZE - 1), repeat=3))
 
 @cocotb.test()
 async def cameras(bench: HierarchyObject) -> None:
-    """From the scene's own camera, every corner of the world, and a random place for each of the job's seeds."""
+    """Pictures are right from the scene's own camera, every corner of the world, and a random place per seed."""
     harness = Harness(bench)
     bus, job = harness.bus, harness.job
     scene = load_scene(job.scene, harness.configuration.capacity)

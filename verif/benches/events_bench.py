@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: a frame, and the nanosecond of each thing that a bench can wait for, to compare main programs with."""
+"""cocotb: record a frame and the time in ns of every event that a bench can await, to compare main programs."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from raycaster.scene import load_scene
 from raycaster.sim.harness import Harness
 
 DELAYS_NS = 1, 4, 5, 7, 13, 20, 30, 40, 123
-"""Some end between the clock's edges, and some at one."""
+"""Delays that end at edges of the clock, or between them."""
 
 
 @cocotb.test()

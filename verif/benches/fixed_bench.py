@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: the registers of a design with a scene built in."""
+"""cocotb: the registers of a design with a built-in scene."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ EVERY_BIT = (1 << 32) - 1
 
 @cocotb.test()
 async def what_is_fixed_ignores_writes(bench: HierarchyObject) -> None:
-    """It is said to be fixed, reads 0, and the picture stays what it is, whatever is written and committed."""
+    """Fixed state is reported as fixed and reads 0, and the picture never changes, whatever is written."""
     harness = Harness(bench)
     bus, config, job = harness.bus, harness.configuration, harness.job
     scene = load_scene(job.scene, config.capacity)
@@ -37,10 +37,10 @@ async def what_is_fixed_ignores_writes(bench: HierarchyObject) -> None:
     assert (await bus.read("control"))["reflections"] == kept
     for address in set(range(1 << bus.address_bits)) - {one.address for one in bus.registers.values()}:
         await bus.write_word(address, EVERY_BIT)
-        assert await bus.read_word(address) == 0, f"there is nothing at {address}"
+        assert await bus.read_word(address) == 0, f"{address} is unmapped, and reads 0"
     await harness.monitor.frame()
     expected = harness.golden(scene, asked)
-    harness.expect_picture(await harness.monitor.frame(), expected, "after writes to what is fixed")
+    harness.expect_picture(await harness.monitor.frame(), expected, "after writes to fixed registers")
     assert await bus.read("status") | {"busy": 0, "frame": 0} == {
         "busy": 0, "underrun": 0, "bad_rectangle": 0, "frame": 0,
     }  # fmt: skip

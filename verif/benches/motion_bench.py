@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: the scene changes in mid-frame, and only whole frames show it."""
+"""cocotb: the scene changes in mid-frame, and only whole frames show the change."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from raycaster.sim.harness import Harness
 from raycaster.sim.monitor import CLOCK_NS
 
 START_SCREEN_TOLERANCE = 8
-"""Clocks by which registers on the way to the interrupt and to the video output may part them."""
+"""Clocks by which pipeline registers may separate the interrupt from the video output."""
 
 
 @cocotb.test()
 async def camera_moves_between_frames(bench: HierarchyObject) -> None:
-    """What is committed in mid-frame shows in the next frame only, and what is written after that not even there."""
+    """A commit in mid-frame shows from the next frame on; writes after the commit do not show even there."""
     harness = Harness(bench)
     bus, monitor = harness.bus, harness.monitor
     scene, reflections = _scene(harness)
@@ -57,7 +57,7 @@ async def camera_moves_between_frames(bench: HierarchyObject) -> None:
 
 @cocotb.test()
 async def one_write_and_a_commit(bench: HierarchyObject) -> None:
-    """The shadow keeps its contents: to change one register, write that and commit."""
+    """The shadow keeps its contents: to change one register, write it and commit."""
     harness = Harness(bench)
     bus = harness.bus
     scene, reflections = _scene(harness)

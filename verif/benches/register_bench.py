@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: the registers as software sees them, and what they do to the picture."""
+"""cocotb: the registers as software sees them, and their effect on the picture."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ BASIS = ("forward", "right", "up")
 
 
 def _writable(harness: Harness) -> list[Register]:
-    """Registers that hold what is written, with those of their fields that the design has."""
+    """Return the registers that keep what is written, each with the fields that the design implements."""
     names = ("irq_enable", "background", "camera", *BASIS, "light", "rectangle[")
     config = harness.configuration
     found = []
@@ -46,7 +46,7 @@ def _mask(register: Register) -> int:
 
 @cocotb.test()
 async def says_what_it_is(bench: HierarchyObject) -> None:
-    """Identification, version and the configuration that the design was generated from."""
+    """Registers report the identification, the version and the configuration, and ignore writes."""
     harness = Harness(bench)
     configuration, bus = harness.configuration, harness.bus
     await harness.reset()
@@ -82,7 +82,7 @@ async def says_what_it_is(bench: HierarchyObject) -> None:
 
 @cocotb.test()
 async def reset_values(bench: HierarchyObject) -> None:
-    """Everything that can be written is 0 after reset, whatever it was before; but a camera looks along x."""
+    """Every writable field is 0 after reset, whatever it was before, except that a camera that turns looks along x."""
     harness = Harness(bench)
     await harness.reset()
     await harness.bus.write("control", run=1, reflections=3)
@@ -99,7 +99,7 @@ async def reset_values(bench: HierarchyObject) -> None:
 
 @cocotb.test()
 async def reads_back_what_was_written(bench: HierarchyObject) -> None:
-    """Every writable field, byte by byte; bits that are in no field read 0."""
+    """Every writable field reads back, byte by byte; bits outside all fields read 0."""
     harness = Harness(bench)
     bus = harness.bus
     random = Random(seed())
@@ -127,7 +127,7 @@ async def reads_back_what_was_written(bench: HierarchyObject) -> None:
 
 @cocotb.test()
 async def unmapped_addresses(bench: HierarchyObject) -> None:
-    """They read 0, and writing to them changes nothing anywhere."""
+    """Unmapped addresses read 0, and writes to them change nothing."""
     harness = Harness(bench)
     bus = harness.bus
     random = Random(seed())
@@ -146,7 +146,7 @@ async def unmapped_addresses(bench: HierarchyObject) -> None:
 
 @cocotb.test()
 async def pipelined_reads(bench: HierarchyObject) -> None:
-    """Reads in quick succession are each answered once, in order."""
+    """Back-to-back reads are each answered once, in order."""
     harness = Harness(bench)
     bus = harness.bus
     random = Random(seed())
@@ -161,8 +161,8 @@ async def pipelined_reads(bench: HierarchyObject) -> None:
 
 @cocotb.test()
 async def disabled_rectangles_cost_nothing(bench: HierarchyObject) -> None:
-    """Cycles of a group fall by one rectangle's cost for each that is disabled, wherever in the table it is; with
-    culling, by as much of it as was not saved before."""
+    """Each disabled rectangle, wherever it is in the table, saves a group the cycles of one rectangle; with culling,
+    those that were not already saved."""
     harness = Harness(bench)
     bus, configuration = harness.bus, harness.configuration
     scene = _scene(harness)
@@ -194,7 +194,7 @@ async def disabled_rectangles_cost_nothing(bench: HierarchyObject) -> None:
 
 @cocotb.test()
 async def bad_rectangle(bench: HierarchyObject) -> None:
-    """An enabled rectangle without a plane is reported when it is committed, and the picture has no trace of it."""
+    """An enabled rectangle without a plane is reported when it is committed, and is not drawn."""
     harness = Harness(bench)
     bus = harness.bus
     scene = _scene(harness)
@@ -222,7 +222,7 @@ async def bad_rectangle(bench: HierarchyObject) -> None:
 
 @cocotb.test()
 async def black_until_told_to_run(bench: HierarchyObject) -> None:
-    """Before anything is committed, and while run is 0, all is black."""
+    """The picture is black before the first commit and while run is 0."""
     harness = Harness(bench)
     bus = harness.bus
     scene = _scene(harness).model_copy(update={"background": (255, 255, 255)})
@@ -240,7 +240,7 @@ async def black_until_told_to_run(bench: HierarchyObject) -> None:
 
 @cocotb.test()
 async def reflections_at_run_time(bench: HierarchyObject) -> None:
-    """As many as asked for, and no more than the hardware has."""
+    """A picture has as many reflections as asked for, up to the limit of the hardware."""
     harness = Harness(bench)
     maximum = harness.configuration.reflections
     scene = _scene(harness)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: a Tiny Tapeout project shows its scene on its pins; a frame is held against golden in every pixel."""
+"""cocotb: a Tiny Tapeout project shows its scene on its pins; every pixel is compared with the golden model."""
 
 from __future__ import annotations
 
@@ -24,27 +24,27 @@ RESET_CLOCKS = 10
 
 @dataclass(frozen=True)
 class PinsBench(simulator.Bench):
-    """With the project's ports, instead of those of the ray tracer."""
+    """A bench with the ports of the project instead of those of the ray tracer."""
 
     top: str = "tiny_tapeout_bench"
 
     @property
     def sources(self) -> list[Path]:
-        """Its Verilog."""
+        """Verilog files of the bench."""
         return [
             *(simulator.HERE / f"{name}.v" for name in ("bench_clock", "line_sink")),
             Path(__file__).with_suffix(".v"),
         ]
 
     def parameters(self, configuration: Configuration) -> dict[str, int]:
-        """Of its Verilog, for a design."""
+        """Return the parameters of the bench for a design."""
         horizontal = configuration.screen_geometry.horizontal
         return {"H_TOTAL": horizontal.total, "HS_ACTIVE": int(horizontal.active_high)}
 
 
 @cocotb.test()
 async def one_frame(bench: HierarchyObject) -> None:
-    """The first whole frame after reset shows the job's scene; the pins that are not used are inputs."""
+    """The first whole frame after reset shows the job's scene; unused pins are inputs."""
     job = Job.from_environment()
     config = job.configuration
     scene = load_scene(job.scene)
@@ -62,5 +62,5 @@ async def one_frame(bench: HierarchyObject) -> None:
     wrong = count_wrong(frame, expected)
     assert wrong == 0, f"{wrong} of {expected[..., 0].size} pixels are wrong"
     assert expected.any(), "the expected picture is black"
-    assert int(pins.uio_oe.value) == 0, "pins that are not used are driven"
+    assert int(pins.uio_oe.value) == 0, "unused pins are driven"
     monitor.check_pins()

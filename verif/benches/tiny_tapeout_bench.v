@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// A Tiny Tapeout project on its ports, with the VGA Pmod: a line sink hands Python a whole video line at once.
+// A Tiny Tapeout project with the VGA Pmod. A line sink passes whole video lines to Python.
 
 `timescale 1ns / 1ns
 
 module tiny_tapeout_bench #(
-    parameter H_TOTAL = 800,            // pixels a line, blanking included
-    parameter HS_ACTIVE = 0             // level of hsync in its pulse
+    parameter H_TOTAL = 800,            // pixels per line, blanking included
+    parameter HS_ACTIVE = 0             // level of hsync during its pulse
 ) (`CLOCK_PORT);
     `OWN_CLOCK
 
-    // What Python drives, and reads
+    // Driven and read by Python
     reg rst_n /*verilator public_flat_rw*/;
     reg [7:0] ui_in /*verilator public_flat_rw*/;
     reg [7:0] uio_in /*verilator public_flat_rw*/;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: random bus traffic and resets at every moment, every clock held against a model of the registers."""
+"""cocotb: random bus traffic, with resets at any time, compared with a model of the registers in every clock."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from raycaster.sim.register_model import EVERY_LANE, LiveScene, RegisterFile, Re
 from raycaster.verif.random_scenes import random_scene
 
 FRAMES = 2
-"""Whole frames that each seed shows after its reset in mid-frame."""
+"""Number of whole frames that are checked per seed after its reset in mid-frame."""
 
 
 class Traffic:
-    """The bus's master, which drives reset and any request at any clock, and the model that foresees every answer."""
+    """The bus master, which may drive reset and any request at any clock, and the model that predicts every answer."""
 
     def __init__(self, harness: Harness, seed: int):
         self.model = RegisterFile(harness.configuration)
@@ -34,7 +34,7 @@ class Traffic:
         self._known = False  # until the first clock edge under reset
 
     async def clock(self, reset: bool = False) -> None:
-        """Check the outputs before the next clock edge, and drive the inputs that it takes."""
+        """Check the outputs before the next clock edge, and drive the inputs for that edge."""
         bench, model = self._bench, self.model
         await FallingEdge(bench.clk)
         if self._known:
@@ -55,7 +55,7 @@ class Traffic:
             self._request = None
 
     async def reset(self) -> None:
-        """Reset, whatever is on the bus: the request stays there, and is not taken before reset is over."""
+        """Reset, whatever is on the bus: a request stays there, and is accepted only after reset."""
         for _ in range(RESET_CLOCKS):
             await self.clock(reset=True)
         self._harness.monitor.forget()
@@ -76,7 +76,7 @@ class Traffic:
             self.model.check_answer(int(bench.avs_s0_readdata.value))
 
     def _endless(self) -> Iterator[Request | None]:
-        """Bursts of one kind each: silence, reads and writes back to back or with gaps, whole scenes with a commit."""
+        """Yield bursts of one kind each: silence, reads and writes with or without gaps, or a scene and a commit."""
         rng, configuration = self._rng, self._harness.configuration
         registers = self.model.agent.registers
         addresses = range(1 << len(self._bench.avs_s0_address))
@@ -96,7 +96,7 @@ class Traffic:
                 continue
             for _ in range(rng.randrange(1, 80)):
                 read = Request(rng.choice(addresses))
-                # Writes that leave the picture as it was committed: nowhere, with no byte, or beside the scene.
+                # Writes that do not change the committed picture: outside the scene, or with no byte enabled.
                 lanes = rng.randrange(EVERY_LANE + 1)
                 write = rng.choice(
                     (
@@ -113,13 +113,13 @@ class Traffic:
                         yield rng.choice((read, write))
                     case "gaps":
                         yield rng.choice((read, write, None, None))
-                    case "shadow":  # anything anywhere, now and then a commit of it
+                    case "shadow":  # anything anywhere, sometimes a commit
                         yield Request(rng.choice(addresses), rng.getrandbits(32), lanes)
 
 
 @cocotb.test()
 async def traffic(bench: HierarchyObject) -> None:
-    """For each of the job's seeds: traffic, a reset somewhere in it, and frames that show what was committed."""
+    """For each of the job's seeds, frames after a reset during random traffic show what was committed."""
     harness = Harness(bench)
     transfers = answers = 0
     for seed in harness.job.seeds:
@@ -142,7 +142,7 @@ async def _play(harness: Harness, seed: int) -> Traffic:
     while not player.model.in_flight and rng.random() < 0.9:
         await player.clock()
 
-    # Reads are in flight now, most of the time: after reset none of them is answered.
+    # Usually reads are in flight here; none of them may be answered after reset.
     await player.reset()
     watching = cocotb.start_soon(_watch(harness, player.model, get_sim_time("ns")))
     while not watching.done():
@@ -152,7 +152,7 @@ async def _play(harness: Harness, seed: int) -> Traffic:
 
 
 async def _watch(harness: Harness, model: RegisterFile, released_ns: float) -> None:
-    """The frames after a reset: at the right time, and what the model says is live."""
+    """Check that the frames after a reset come at the right time and show what is live in the model."""
     live: list[LiveScene | None] = []
 
     def remember(visible: int) -> None:

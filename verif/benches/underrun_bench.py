@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: a design too small for its scene loses columns, says so, and never disturbs the monitor; one that cannot be
-too small loses none."""
+"""cocotb: a design too slow for its scene loses columns, reports this, and never disturbs the monitor; a design that
+is always fast enough loses none."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _light() -> Scene:
 
 
 def _heavy(rectangles: int) -> Scene:
-    """Two mirrors that a ray goes to and fro between, under ceilings that it rises to: culling spares few of these."""
+    """Return two mirrors that a ray bounces between, under ceilings that it rises towards, so culling skips few."""
     mirrors = [{"corners": [[x, 0, 0], [x, 511, 511]], "colour": "#50a0ff"} for x in (10, 30)]
     ceilings = [
         {"corners": [[0, 0, 120 + n], [511, 511, 120 + n]], "colour": _COLOURS[n % len(_COLOURS)]}
@@ -32,10 +32,10 @@ def _heavy(rectangles: int) -> Scene:
 
 @cocotb.test()
 async def underrun(bench: HierarchyObject) -> None:
-    """A light scene, one that is too heavy, and the light one again. The monitor checks the sync of each frame."""
+    """Show a light scene, one that is too heavy, and the light one again. The monitor checks the sync of each frame."""
     harness = Harness(bench)
     bus, monitor, configuration = harness.bus, harness.monitor, harness.configuration
-    assert configuration.allow_underrun == configuration.facts.line_buffered, "the beam engine is late for no scene"
+    assert configuration.allow_underrun == configuration.facts.line_buffered, "the beam engine must never underrun"
     light, heavy = _light(), _heavy(configuration.rectangles)
     reflections = configuration.reflections
     light_picture, heavy_picture = harness.golden(light, reflections), harness.golden(heavy, reflections)
@@ -54,13 +54,13 @@ async def underrun(bench: HierarchyObject) -> None:
         assert (await bus.read("status"))["underrun"] == 0
         assert (await bus.read("cycles"))["row"] <= harness.screen.row_cycles
         await bus.write("status", underrun=1)
-        assert (await bus.read("status"))["underrun"] == 0, "clearing what is not set"
+        assert (await bus.read("status"))["underrun"] == 0, "clearing an underrun that was not set"
         monitor.check_pins()
         return
     assert configuration.group_cycles > configuration.group_budget, "this design cannot underrun"
     _expect_abandoned_rows(harness, await monitor.frame(), heavy_picture, light_picture)
     assert (await bus.read("status"))["underrun"] == 1
-    assert (await bus.read("cycles"))["row"] == harness.screen.row_cycles, "a row is abandoned when its time is over"
+    assert (await bus.read("cycles"))["row"] == harness.screen.row_cycles, "a row ends when its time is over"
     await bus.write("cycles")
     assert (await bus.read("cycles"))["row"] < harness.screen.row_cycles
 
@@ -78,10 +78,10 @@ async def underrun(bench: HierarchyObject) -> None:
 
 
 def _expect_abandoned_rows(harness: Harness, seen: np.ndarray, complete: np.ndarray, before: np.ndarray) -> None:
-    """Every row must be new up to some group of columns, and from there on hold what its half of the buffer held."""
+    """Check that each row is new up to some group of columns, and from there on shows its old half of the buffer."""
     screen, configuration = harness.screen, harness.configuration
     lengths = set()
-    # The halves were last written whole by the last two rows of the frame before.
+    # The last rows that filled the halves completely are the last two of the previous frame.
     halves = [before[(screen.rows - 2 + half) * screen.doubling] for half in range(2)]
     for row in range(screen.rows):
         line = row * screen.doubling
@@ -91,7 +91,7 @@ def _expect_abandoned_rows(harness: Harness, seen: np.ndarray, complete: np.ndar
                 lengths.add(groups)
                 break
         else:
-            raise AssertionError(f"row {row}: not a new beginning and the old rest of its half of the buffer")
+            raise AssertionError(f"row {row}: expected new columns, then the old rest of its half of the buffer")
         assert (seen[line : line + screen.doubling] == seen[line]).all(), f"row {row}: its lines differ"
         halves[row % 2] = seen[line]
     assert max(lengths) > 0, "no group of columns was ever complete"

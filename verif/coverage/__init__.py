@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""How much of the hardware the checks reach."""
+"""Code and functional coverage of the hardware."""

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Counts which kinds of intersection the beam engine's passes find, of rays that its camera, which does not turn, sends
-// out. Of a pass's rectangles the ones with lower indices count as found before. All counts are written at the end, as
-// intersection_counter.v writes those of a frame.
+// Counts the kinds of intersection that the beam engine's passes find, for rays of a camera that does not turn. Within
+// a pass, rectangles with lower indices count as found earlier. All counts are written at the end, in the format that
+// intersection_counter.v uses for a frame.
 
 `timescale 1ns / 1ns
 
-// In a tester, as its stages go: what it finds of a ray and its rectangle, in the cycle in which it reports.
+// In a tester, following its stages: the kind of intersection of a ray with its rectangle, in the cycle of its report.
 module tester_probe #(
     parameter NUMERATOR_BITS = 11,
     parameter SLOPE_BITS = 8
@@ -14,8 +14,8 @@ module tester_probe #(
     input wire step_way, step_bounds, step_slope,
     input wire usable,
     input wire [1:0] axis,
-    input wire back,                // at step_way: the ray, as it is turned, runs to lower coordinates
-    input wire at_plane, under_plane,       // at step_bounds: where it starts
+    input wire back,                // at step_way: the folded ray runs towards lower coordinates
+    input wire at_plane, under_plane,       // at step_bounds: where the ray starts
     input wire on_bound,
     input wire in_bounds, hit,      // at step_slope
     input wire [NUMERATOR_BITS-1:0] numerator,
@@ -80,15 +80,15 @@ bind fold_tester tester_probe #(
     .e(e)
 );
 
-// In a lane, of three passes and twelve rectangles: which of these rays there are, and what becomes of their hits.
+// In a lane, with three passes and twelve rectangles: which of these rays exist, and how their hits rank.
 module pass_probe #(
     parameter NUMERATOR_BITS = 11,
     parameter SLOPE_BITS = 8,
     parameter WORD_BITS = NUMERATOR_BITS + SLOPE_BITS + 9
 ) (
     input wire clk,
-    input wire in_picture,          // what a line of columns shows, beside others that nobody sees
-    input wire [2:0] reports,       // of a pass, at step_slope
+    input wire in_picture,          // the column is shown; the other columns of a line are don't care
+    input wire [2:0] reports,       // one per pass, at step_slope
     input wire [2:0] reflections,
     input wire [12*WORD_BITS-1:0] found_0, found_1, found_2
 );
@@ -97,7 +97,7 @@ module pass_probe #(
     integer counts [0:BINS-1];
     integer file, place, index;
     reg [2:0] reported = 0;
-    // Of columns that one pass has reported on and the next one has not: whether there is a ray.
+    // For columns that one pass has reported and the next one has not: whether there is a ray.
     bit reflected [$], reflected_twice [$];
     bit there, met;
 
@@ -132,7 +132,7 @@ module pass_probe #(
 
     initial for (place = 0; place < BINS; place = place + 1) counts[place] = 0;
 
-    // What is left of columns before a reset is not followed by a report.
+    // Columns that are in flight at a reset are never reported.
     always @(posedge clk) begin
         reported <= reports;
         if (reported[2]) begin
@@ -161,7 +161,7 @@ module pass_probe #(
 endmodule
 
 bind beam_lane pass_probe #(
-    // As wide as what a mirror turns on an axis, of which there are three, and six flags.
+    // folds_1_image holds six flags and one numerator-wide turn for each of the three axes.
     .NUMERATOR_BITS(($bits(folds_1_image) - 6) / 3),
     .SLOPE_BITS($bits(late_slopes_0_y) - 1)
 ) pass_probe_i (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: scenes that no one would look at, for what the others leave uncovered."""
+"""cocotb: artificial scenes, for points that other benches leave uncovered."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from raycaster.sim.harness import Harness
 
 @cocotb.test()
 async def every_bit_of_the_live_scene(bench: HierarchyObject) -> None:
-    """All coordinates and colours at their greatest, then all 0, each for a frame."""
+    """All coordinates and colours are at their maximum for one frame, then 0 for one frame."""
     harness = Harness(bench)
     await harness.reset()
     for high in (True, False):
@@ -26,7 +26,7 @@ async def every_bit_of_the_live_scene(bench: HierarchyObject) -> None:
             camera=Camera(position=point),
             rect=(Rectangle(corners=(point, point), colour=colour),) * harness.configuration.rectangles,
         )
-        # No reflections: so many rectangles need not meet the row budget with all that there are.
+        # No reflections: with this many rectangles, they need not meet the row budget.
         await harness.bus.load_scene(scene)
         await harness.bus.commit(reflections=0)
         golden = harness.golden(scene, 0)
@@ -35,7 +35,7 @@ async def every_bit_of_the_live_scene(bench: HierarchyObject) -> None:
 
 @cocotb.test()
 async def every_axis_in_every_entry(bench: HierarchyObject) -> None:
-    """The whole table along each axis, one frame after the other."""
+    """The planes of all rectangles are on one axis, a different one in each frame."""
     harness = Harness(bench)
     await harness.reset()
     for axis in (1, 2, 0):
@@ -43,7 +43,7 @@ async def every_axis_in_every_entry(bench: HierarchyObject) -> None:
         corners[1][axis] = corners[0][axis]
         rectangle = Rectangle.model_validate({"corners": corners, "colour": (200, 100, 50)})
         scene = Scene(
-            # At distances whose lowest bits are those of 0, -101 and 80.
+            # At distances with the lowest bits of 0, -101 and 80.
             camera=Camera(position=(20, 256, 201)),
             rect=(rectangle,) * harness.configuration.rectangles,
         )
@@ -54,10 +54,10 @@ async def every_axis_in_every_entry(bench: HierarchyObject) -> None:
 
 @cocotb.test()
 async def every_bit_of_every_distance(bench: HierarchyObject) -> None:
-    """From frame to frame each bit of the camera's distances from a plane, and from its bounds, goes up, and down."""
+    """Each bit of the camera's distances from a plane and from its bounds rises and falls between frames."""
     harness = Harness(bench)
     await harness.reset()
-    # Of alternating bits, 0010101010 and its complement, or with but its sign kept, 1010101010.
+    # Alternating bits: 0010101010, its complement, and 1010101010, which differs from the first in its sign only.
     up, down, far_down = 0b0010101010, ~0b0010101010, ~0b0101010101
     near, below, above = (200, down, up, up), (400, far_down, down, far_down), (20, up, ~far_down, ~far_down)
     for eye, low, high, plane in (near, below, near, above, near):
@@ -74,7 +74,7 @@ async def every_bit_of_every_distance(bench: HierarchyObject) -> None:
 
 @cocotb.test()
 async def three_copies_of_every_entry(bench: HierarchyObject) -> None:
-    """Each frame another table is live, the next one is pending, and the one after it is being written."""
+    """In each frame, one table is live, the next is pending, and the one after that is being written."""
     harness = Harness(bench)
     await harness.reset()
     rectangles = harness.configuration.rectangles

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Code coverage: what Verilator counted in the converted Verilog, and the explanations of what was never seen."""
+"""Code coverage: Verilator's counts in the converted Verilog, and explanations of points that were never hit."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from raycaster.errors import UserError
 
 HOLES = Path(__file__).with_name("holes.toml")
 KINDS = {"lines": ("line", "branch"), "conditions": ("expr",), "toggles": ("toggle",)}
-"""Verilator's types of points, as they are reported."""
+"""Kinds of points in reports, with Verilator's types."""
 
 _RECORD = re.compile(r"C '(?P<fields>.*)' (?P<count>\d+)")
 _TOGGLE = re.compile(r"(?P<signal>.*?)(?:\[(?P<bit>\d+)\])?:(?P<edge>0->1|1->0)")
@@ -26,14 +26,14 @@ _TOGGLE = re.compile(r"(?P<signal>.*?)(?:\[(?P<bit>\d+)\])?:(?P<edge>0->1|1->0)"
 
 @dataclass(frozen=True)
 class Point:
-    """One thing that may happen in a module; its instances count together."""
+    """A coverage point of a module, whose instances count together."""
 
     module: str
     kind: str
-    """One of Verilator's: line, branch, expr, toggle."""
+    """Verilator's type: line, branch, expr or toggle."""
 
     what: str
-    """`signal[bit]:0->1`; or the values of a condition; or how a line is entered, and its text."""
+    """`signal[bit]:0->1`, the values of a condition, or how a line is entered, with its text."""
 
     file: Path
     line: int
@@ -41,31 +41,31 @@ class Point:
 
     @cached_property
     def toggle(self) -> tuple[str, int | None, str] | None:
-        """Signal, bit and edge of a toggle; a signal of one bit has None for it."""
+        """Signal, bit and edge of a toggle; the bit is None for a one-bit signal."""
         match = _TOGGLE.fullmatch(self.what) if self.kind == "toggle" else None
         return match and (match["signal"], None if match["bit"] is None else int(match["bit"]), match["edge"])
 
 
 class Explanation(BaseModel):
-    """Why some points cannot be seen: toggles by `signal`, or lines and conditions by `code`."""
+    """Reason why some points cannot be hit: toggles by `signal`, or lines and conditions by `code`."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     module: str
-    """A regular expression for the whole name, as `signal` is."""
+    """Regular expression that matches a whole module name; likewise `signal`."""
 
     signal: str | None = None
     bits: str | None = None
-    """Such as "9, 19, 29-31"; all of the signal's where it is not given."""
+    """Bits such as "9, 19, 29-31"; all bits of the signal by default."""
 
     edge: str | None = None
-    """0->1 or 1->0, or both where it is not given."""
+    """0->1 or 1->0; both by default."""
 
     code: str | None = None
-    """A regular expression, searched for in `Point.what`."""
+    """Regular expression that is searched for in `Point.what`."""
 
     engine: str | None = None
-    """A regular expression for the engine, where not every one that has the module has the hole."""
+    """Regular expression for the engine, if not every engine with the module has the hole."""
 
     reason: str
 
@@ -87,7 +87,7 @@ class Explanation(BaseModel):
         return frozenset(found)
 
     def covers(self, point: Point) -> bool:
-        """Whether it explains that a point was not seen."""
+        """True if it explains why a point was not hit."""
         if not re.fullmatch(self.module, point.module):
             return False
         if self.signal is None:
@@ -108,20 +108,20 @@ class Explanation(BaseModel):
 
 @dataclass(frozen=True)
 class Judgement:
-    """What became of the points that were not seen."""
+    """Points that were not hit, with and without an explanation."""
 
     explained: dict[Point, Explanation]
     unexplained: list[Point]
     stale: list[str]
-    """Explanations, or bits of them, of what was seen or does not exist in the modules that they name."""
+    """Explanations, or bits of them, for points that were hit or do not exist in the named modules."""
 
 
 def read_counts(path: Path, leave_out: Iterable[str] = ()) -> Counter[Point]:
-    """How often each point of a simulation was seen, 0 included.
+    """Count how often each point was hit in a simulation, including never.
 
     Args:
-        path: Verilator's coverage.dat; the Verilog that it names exists.
-        leave_out: modules, whatever their parameters.
+        path: Verilator's coverage.dat; the Verilog files that it names must exist.
+        leave_out: modules to leave out, whatever their parameters.
     """
     counts: Counter[Point] = Counter()
     left_out = set(leave_out)
@@ -131,7 +131,7 @@ def read_counts(path: Path, leave_out: Iterable[str] = ()) -> Counter[Point]:
         # Each field is \1 name \2 value.
         values = dict(part.split("\2", 1) for part in match["fields"].split("\1") if part)
         module = values["page"].partition("/")[2]
-        # Verilator marks those with parameters of their own.
+        # Verilator adds a suffix to the names of modules with parameters.
         if module.partition("__")[0] in left_out:
             continue
         kind, line, what = values["t"], int(values["l"]), values["o"]
@@ -150,7 +150,7 @@ def load_explanations(engine: str, path: Path = HOLES) -> list[Explanation]:
     """Read the explanations of an engine's holes.
 
     Raises:
-        UserError: the file is not as it should be.
+        UserError: the file is malformed.
     """
     try:
         every = [Explanation(**table) for table in tomllib.loads(path.read_text())["hole"]]
@@ -162,9 +162,9 @@ def load_explanations(engine: str, path: Path = HOLES) -> list[Explanation]:
 
 
 def judge(counts: Mapping[Point, int], explanations: Sequence[Explanation]) -> Judgement:
-    """Hold the points that were never seen against their explanations; the first that fits counts.
+    """Match points that were never hit with explanations; the first match counts.
 
-    Explanations of modules that the design does not have are left alone.
+    Explanations of modules that the design does not have are ignored.
     """
     modules = {point.module for point in counts}
     explanations = [one for one in explanations if any(re.fullmatch(one.module, module) for module in modules)]
@@ -183,7 +183,7 @@ def judge(counts: Mapping[Point, int], explanations: Sequence[Explanation]) -> J
         if not bits:
             stale.append(str(explanation))
         elif missing := (explanation.wanted_bits or frozenset()) - bits:
-            stale.append(f"{explanation}: of its bits {', '.join(map(str, sorted(missing)))}")
+            stale.append(f"{explanation}: bits {', '.join(map(str, sorted(missing)))}")
     return Judgement(explained, unexplained, stale)
 
 
@@ -192,7 +192,7 @@ def _place(point: Point) -> tuple[str, int, int, str]:
 
 
 def describe(points: Iterable[Point]) -> list[str]:
-    """A line for each place: file, line and what was not seen, a signal's bits together."""
+    """Return a line for each place: file, line and what was not hit, with a signal's bits together."""
     places: dict[tuple[str, int, str], list[str]] = {}
     for point in points:
         if point.toggle:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tells, in every unit of the exact engine, which kinds of intersection are offered to its nearest hit.
+// Reports, in every unit of the exact engine, the kinds of intersection that are offered to its nearest hit.
 
 `timescale 1ns / 1ns
 
@@ -15,8 +15,8 @@ module intersection_probe #(
     input wire write_z_buf,
     input wire add_colour,
     input wire [15:0] unit,
-    input wire [1:0] axis,          // and what follows: of what find_intersection starts on
-    input wire back,                // the ray runs to lower coordinates
+    input wire [1:0] axis,          // from here on: of the rectangle that find_intersection starts
+    input wire back,                // the ray runs towards lower coordinates
     input wire signed [EYE_BITS+1:0] n, to_near_u, to_far_u, to_near_v, to_far_v,
     input wire [SLOPE_BITS-1:0] e, slope_u, slope_v,
     input wire hit,
@@ -24,7 +24,7 @@ module intersection_probe #(
     input wire [PRODUCT_BITS-1:0] offered_product,
     input wire [PRODUCT_BITS-1:0] nearest_product
 );
-    // Without the clipping at a mirror: beyond which bounds the ray is, or exactly on.
+    // Without clipping at a mirror: whether the ray is within the bounds, or exactly on one.
     wire signed [PRODUCT_BITS+3:0] wide_e = $signed({1'b0, e});
     wire signed [PRODUCT_BITS+3:0] way_u = n * $signed({1'b0, slope_u}), way_v = n * $signed({1'b0, slope_v});
     wire signed [PRODUCT_BITS+3:0] near_u = to_near_u * wide_e, far_u = to_far_u * wide_e;
@@ -32,7 +32,7 @@ module intersection_probe #(
     wire in_bounds = near_u <= way_u && way_u <= far_u && near_v <= way_v && way_v <= far_v;
     wire on_bound = near_u == way_u || way_u == far_u || near_v == way_v || way_v == far_v;
 
-    // From a rectangle's start to its offer: axis, slope, and parallel, on plane, behind, miss, edge or hit.
+    // From a rectangle's start to its offer: axis, slope and result (parallel, on plane, behind, miss, edge or hit).
     wire [1:0] slope = e == 0 ? 2'd1 : back ? 2'd0 : 2'd2;
     wire [2:0] way = e == 0 ? 3'd0 : n == 0 ? 3'd1 : n < 0 ? 3'd2 : !in_bounds ? 3'd4 : on_bound ? 3'd5 : 3'd6;
     reg [6:0] started, multiplied, compared;

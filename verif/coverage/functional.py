@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Functional coverage: which kinds of intersection an engine found, counted in cocotb-coverage's bins.
+"""Functional coverage: the kinds of intersection that an engine found, counted in cocotb-coverage's bins.
 
-A probe in each unit counts what is offered to its z buffer, or nearest hit, while the benches run. What culling gives
-up early is not offered, and not counted. The beam engine's probe counts what its testers report of rays that there are.
+A probe in each unit counts the rectangles offered to its z buffer, or nearest hit, while the benches run. Rectangles
+that culling ends early are not offered, so they are not counted. The beam engine's probe counts its testers' reports
+for rays that exist.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ COUNTER = HERE / "intersection_counter.v"
 PROBES = {
     name: (*((COUNTER,) if engine.line_buffered else ()), HERE / f"{name}_probe.v") for name, engine in ENGINES.items()
 }
-"""By engine, Verilog beside the design's, which writes what `read_bins` reads."""
+"""By engine, Verilog that is added to the design and writes the files that `read_bins` reads."""
 
 PROBE_MODULES = "intersection_counter", "intersection_probe", "pass_probe", "tester_probe"
 
@@ -29,60 +30,61 @@ POINTS = {
     name: {
         "axis": ("x", "y", "z"),
         "slope": ("negative", "zero", "positive"),
-        # In this order of precedence: parallel to the plane, from a point on it, running away from it; of the seed
-        # engine a quotient on u or v that is too large, of the exact engine between the mirrored eye and the mirror, or
-        # on an axis that was met there, else a hit; outside the bounds, exactly on one of them, inside.
+        # In order of precedence: parallel to the plane; from a point on it; running away from it; in the seed engine,
+        # a quotient on u or v that is too large; in the exact engine, between the mirrored eye and the mirror, or in
+        # the mirror's plane on an axis that was met there, though within the bounds; outside the bounds; exactly on a
+        # bound; inside.
         "result": (
             "parallel", "on plane", "behind", "overflow" if engine.divides else "before mirror", "miss", "edge", "hit",
         ),
-        # What is made of a hit.
+        # How a hit ranks.
         "rank": ("none", "first", "nearer", "tie", "farther"),
         "ray": ("primary", "first", "second"),
     }
     for name, engine in ENGINES.items()
 }  # fmt: skip
-"""By engine, the points that are crossed, and the bins of each: of the rectangle's plane, of the ray along it, ..."""
+"""By engine, the points that are crossed, and their bins: axis of the rectangle's plane, slope of the ray on it, ..."""
 
 SHAPE = tuple(map(len, POINTS[SEED.name].values()))
 CROSS = "raycaster.intersection"
 HITS = ("edge", "hit")
 Bin = tuple[str, str, str, str, str]
 Pattern = tuple[str | None, str | None, str | None, str | None, str | None]
-"""A bin, where None stands for every value."""
+"""A bin in which None matches every value."""
 
 
 def _impossible_in(engine: Engine) -> dict[str, tuple[Pattern, ...]]:
-    """Bins that no ray can hit, by the reason."""
+    """Return the bins that no ray can hit, by reason."""
     results, ranks = POINTS[engine.name]["result"], POINTS[engine.name]["rank"]
     return {
-        "without a slope along its axis a plane is never reached": tuple(
+        "a ray without a slope along the axis of a plane never reaches it": tuple(
             (None, "zero", result, None, None) for result in results if result != "parallel"
         ),
-        "with a slope along its axis a ray is not parallel to a plane": (
+        "a ray with a slope along the axis of a plane is not parallel to it": (
             (None, "negative", "parallel", None, None),
             (None, "positive", "parallel", None, None),
         ),
-        "hits are ranked": tuple((None, None, result, "none", None) for result in HITS),
-        "nothing but hits is ranked": tuple(
+        "every hit is ranked": tuple((None, None, result, "none", None) for result in HITS),
+        "only hits are ranked": tuple(
             (None, None, result, rank, None)
             for result in results
             if result not in HITS
             for rank in ranks
             if rank != "none"
         ),
-        "the slope along x is 100 in magnitude, never 0": (("x", "zero", None, None, None),),
+        "the slope along x has magnitude 100, never 0": (("x", "zero", None, None, None),),
         "primary rays run along positive x": (("x", "negative", None, None, "primary"),),
         **(_GIVEN_UP if engine.divides else _WITHOUT_MIRROR),
     }
 
 
-# A control that waits for divisions ends a rectangle that no ray of the group runs towards.
+# A control that waits for divisions skips a rectangle that no ray of the group runs towards.
 _GIVEN_UP: dict[str, tuple[Pattern, ...]] = {
-    "a group's primary rays run one way from one point; a plane that none runs towards is given up": (
+    "a group's primary rays run the same way from one point; a plane that none runs towards is skipped": (
         (None, None, "on plane", None, "primary"),
         (None, None, "behind", None, "primary"),
     ),
-    "a group's rays have the row's slope along z, so a plane that one is parallel to is given up": (
+    "all rays of a group have the row's slope along z, so a plane that they are parallel to is skipped": (
         ("z", None, "parallel", None, None),
     ),
 }
@@ -90,11 +92,11 @@ _WITHOUT_MIRROR: dict[str, tuple[Pattern, ...]] = {
     "primary rays have left no mirror": ((None, None, "before mirror", None, "primary"),),
 }
 IMPOSSIBLE = {name: _impossible_in(engine) for name, engine in ENGINES.items()}
-"""By engine, bins that no ray can hit, by the reason; with culling."""
+"""By engine, bins that no ray can hit with culling, by reason."""
 
 
 class FunctionalCoverage:
-    """The bins, empty at first. cocotb-coverage keeps them in one place a process, so a new one replaces the last."""
+    """Bins, empty at first. cocotb-coverage keeps one set per process, so a new object replaces the last one."""
 
     def __init__(self, engine: str = SEED.name):
         """Declare the bins.
@@ -125,14 +127,14 @@ class FunctionalCoverage:
             counts: as `read_bins` returns them.
 
         Raises:
-            ValueError: an intersection that was held to be impossible.
+            ValueError: an intersection is in a bin that was declared impossible.
         """
         for place in np.argwhere(counts):
             times = int(counts[tuple(place)])
             bins = tuple(values[index] for values, index in zip(self.points.values(), place, strict=True))
             if bins not in self.bins:
-                raise ValueError(f"{', '.join(bins)}: is said to be impossible, and came {times} times")
-            # cocotb-coverage counts one at a time; the rest of them is added to what it counted.
+                raise ValueError(f"{', '.join(bins)}: declared impossible, but found {times} times")
+            # cocotb-coverage counts one at a time; add the rest to its count.
             self._sample(*bins)
             self.bins[bins] += times - 1
             for name, value in zip(self.points, bins, strict=True):
@@ -140,7 +142,7 @@ class FunctionalCoverage:
 
     @property
     def bins(self) -> dict[Bin, int]:
-        """How often each possible bin of the cross was hit."""
+        """Number of hits of each possible bin of the cross."""
         return coverage_db[CROSS].detailed_coverage
 
     @property
@@ -150,7 +152,7 @@ class FunctionalCoverage:
 
     @property
     def ignored(self) -> dict[str, int]:
-        """How many bins of the cross are impossible, by the reason; one with several counts at the first."""
+        """Number of impossible bins of the cross, by reason; a bin with several reasons counts for the first."""
         found = dict.fromkeys(self._impossible, 0)
         for place in np.ndindex(SHAPE):
             bins = [values[index] for values, index in zip(self.points.values(), place, strict=True)]
@@ -161,7 +163,7 @@ class FunctionalCoverage:
         return found
 
     def export(self, path: Path) -> None:
-        """Write `path` with the endings .xml, as cocotb-coverage does, and .json."""
+        """Write `path` with the suffixes .xml, in the format of cocotb-coverage, and .json."""
         coverage_db.export_to_xml(str(path.with_suffix(".xml")))
         cross = coverage_db[CROSS]
         result = {
@@ -175,13 +177,13 @@ class FunctionalCoverage:
 
 
 def read_bins(directory: Path) -> np.ndarray:
-    """What the probes of a simulation counted in all its frames.
+    """Read the counts of all probes of a simulation, summed over its frames.
 
     Args:
-        directory: in which it ran.
+        directory: the one in which the simulation ran.
 
     Returns:
-        int64, with an axis for each of the points, in order.
+        int64, with one axis per point, in order.
     """
     counts = np.zeros(np.prod(SHAPE), dtype=np.int64)
     for path in directory.glob("bins.*"):

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Counts which kinds of intersection a ray unit finds, as the probe of its engine tells. A frame's counts are written as
-// a line "bin times bin times ..." each into the file bins.<unit> of the directory in which the simulation runs; bins
-// are numbered as functional.py has its points, the last the fastest.
+// Counts the kinds of intersection that a ray unit finds, as its engine's probe reports them. Each frame adds a line
+// "bin times bin times ..." to the file bins.<unit> in the directory in which the simulation runs. Bins are numbered in
+// the order of the points in functional.py; the last point varies fastest.
 
 `timescale 1ns / 1ns
 
@@ -11,15 +11,15 @@ module intersection_counter #(
     input wire clk,
     input wire first_group,         // of a frame
     input wire start_group,
-    input wire offer,               // of a rectangle, with what follows
+    input wire offer,               // of a rectangle, described by the next inputs
     input wire [1:0] axis,
     input wire [1:0] slope,
     input wire [2:0] result,
     input wire hit,
     input wire [DEPTH_BITS-1:0] depth,      // of a hit, in any measure
-    input wire [DEPTH_BITS-1:0] nearest,    // so far, in the same
+    input wire [DEPTH_BITS-1:0] nearest,    // the nearest so far, in the same measure
     input wire add_colour,
-    input wire found,               // anything so far
+    input wire found,               // anything was hit so far
     input wire [15:0] unit
 );
     localparam BINS = 3 * 3 * 7 * 5 * 3;
@@ -52,7 +52,7 @@ module intersection_counter #(
     initial write_frame;
     final write_frame;
 
-    // All decide within the edge, so nothing is lost between them.
+    // Blocking assignments: each statement sees the updates of the same clock edge.
     always @(posedge clk) begin
         if (start_group) begin
             if (first_group) write_frame;

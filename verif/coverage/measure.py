@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""What the regression exercises of an engine: `make coverage`.
+"""Measure what the regression exercises in an engine: `make coverage`.
 
-Code: lines, conditions and toggles of the converted Verilog, over the benches of the whole design. Function: kinds of
-intersection of a ray and a rectangle, over all scenes and random ones. Every hole must be closed or explained.
+Code: lines, conditions and toggles of the converted Verilog, in the benches of the whole design. Function: kinds of
+intersection of a ray with a rectangle, in all scenes and in random ones. Every hole must be closed or explained.
 """
 
 from __future__ import annotations
@@ -48,10 +48,10 @@ from raycaster.verif.coverage.functional import PROBE_MODULES, PROBES, Functiona
 from raycaster.verif.soak.soak import BENCH as SOAK
 from raycaster.waits import building
 
-# One design an engine that every bench can run, so that nothing must be merged. At full size, for the counters to run
-# through their range. Of the seed engine not 32 units but 16, whose budget is 159 cycles a group: all 12 rectangles
-# with two reflections take 202, of which culling leaves more than that where the bench of the underrun wants it; what
-# the other benches show takes less. So it is with four units of the exact engine, 52 cycles and a budget of 39.
+# One design per engine that every bench can run, so that nothing must be merged; at full size, so that the counters run
+# through their range. The seed engine has 16 units, not 32, and so a budget of 159 cycles per group. All 12 rectangles
+# with two reflections take 202 cycles; with culling, more than 159 remain only where the underrun bench needs them.
+# Likewise for the exact engine with four units: 52 cycles, and a budget of 39.
 DESIGNS = {
     config.engine: config
     for config in (
@@ -68,14 +68,14 @@ SOAK_DESIGNS = {
         configure(engine="beam", reflections=2),
     )
 }
-"""Without counters of lines they show a random scene several times as fast."""
+"""Designs for random scenes, which take a fraction of the time without coverage counters."""
 
 FLAGS = (
     *VERILATOR_FLAGS,
     "--coverage-line",
     "--coverage-expr",
     "--coverage-toggle",
-    # The widest bus of the design; what the bench gathers a line in is wider.
+    # The widest bus of the design; the bench's buffer for a line is wider.
     "--coverage-max-width",
     "1024",
 )
@@ -83,42 +83,42 @@ FLAGS = (
 
 @dataclass(frozen=True)
 class Run:
-    """A bench, and what it shows."""
+    """A run of a bench."""
 
     bench: str
     scene: Path | None = None
-    """A file, where the bench wants one."""
+    """Scene file, if the bench needs one."""
 
     reflections: int | None = None
-    """Instead of the scene's own."""
+    """Overrides the reflections of the scene."""
 
     @property
     def name(self) -> str:
-        """Of its directory."""
+        """Name of the directory of the run."""
         return f"{self.bench}-{self.scene.stem}" if self.scene else self.bench
 
 
 BENCHES = (
-    # Culled, it meets the row budget even with two reflections.
+    # With culling it meets the row budget even with two reflections.
     Run("verif.benches.register_bench", find_scene("floor"), 2),
     Run("verif.benches.motion_bench", find_scene("floor"), 2),
     Run("verif.benches.underrun_bench"),
     Run("verif.coverage.bench"),
 )
-"""Beyond a frame of every scene. The longest come first."""
+"""Runs in addition to a frame of every scene, longest first."""
 
 EXTRA_SCENE = Path(__file__).with_name("extra_scene.toml")
 EXTRA_ROOMS = tuple(sorted(Path(__file__).parent.glob("extra_rooms_*.toml")))
-"""For intersections that luck brings too seldom."""
+"""Scenes for intersections that random scenes rarely have."""
 
 
 def run_all(
     model: Model, runs: Sequence[Run], output: Path, jobs: int, console: Console, *, fresh: bool = False
 ) -> tuple[Counter[Point], list[str], list[Path]]:
-    """Run benches on a model that counts, some at a time; `fresh` as of `Kept`.
+    """Run benches, `jobs` at a time, on a model with coverage counters; `fresh` as in `Kept`.
 
     Returns:
-        The counts of all together, what failed runs said, and the directories of all.
+        The sum of all counts, the messages of failed runs, and the directories of all runs.
     """
     counts: Counter[Point] = Counter()
     failures = []
@@ -137,7 +137,7 @@ def _digest(run: Run, model: Model) -> str:
 
 
 def _run(run: Run, model: Model, directories: Mapping[Run, Path]) -> tuple[Counter[Point], str]:
-    """Its counts, and what it said if it failed."""
+    """Return the counts of a run, and its message if it failed."""
     directory = directories[run]
     emptied(directory)
     scene = str(run.scene.resolve()) if run.scene else ""
@@ -151,7 +151,7 @@ def _run(run: Run, model: Model, directories: Mapping[Run, Path]) -> tuple[Count
 
 
 def show_code(counts: Counter[Point], judgement: Judgement, console: Console) -> None:
-    """Print a line a module, the explanations, holes that have none, and explanations that have no hole."""
+    """Print a line per module, the explanations, holes without an explanation, and explanations without a hole."""
     table = Table(title="Code coverage: hit / all", title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
     table.add_column("module", no_wrap=True)
     for heading in (*KINDS, "explained", "holes"):
@@ -165,7 +165,7 @@ def show_code(counts: Counter[Point], judgement: Judgement, console: Console) ->
             table.add_section()
         table.add_row(module or "all", *cells, str(explained), Text(str(holes), "red" if holes else ""))
     console.print(table)
-    console.print("Points that cannot be seen, by their explanation:")
+    console.print("Points that cannot be hit, by explanation:")
     for reason, number in Counter(explanation.reason for explanation in judgement.explained.values()).items():
         console.print(f"  {number}: {reason}")
     for line in describe(judgement.unexplained):
@@ -184,7 +184,7 @@ def _share(hit: int, total: int) -> str:
 
 
 def export_code(counts: Counter[Point], judgement: Judgement, path: Path) -> None:
-    """Write hit and all by module, and every hole with its reason, as JSON."""
+    """Write the numbers of hit and of all points by module, and every hole with its reason, as JSON."""
     modules = {
         module: {name: _hits(counts, module, types) for name, types in KINDS.items()}
         for module in sorted({point.module for point in counts})
@@ -200,7 +200,7 @@ def export_code(counts: Counter[Point], judgement: Judgement, path: Path) -> Non
 
 
 def show_functional(functional: FunctionalCoverage, scenes: int, console: Console) -> None:
-    """Print the counts of the cross, with nothing where it is impossible, and the bins that were not hit."""
+    """Print the counts of the cross, with blanks for impossible bins, and the bins that were not hit."""
     bins, points = functional.bins, functional.points
     directions = [(axis, slope) for axis in points["axis"] for slope in points["slope"]]
     kinds = [
@@ -231,21 +231,21 @@ def show_functional(functional: FunctionalCoverage, scenes: int, console: Consol
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Build the parser of the command line."""
     parser = CommandParser("verify coverage", __doc__, "--seeds 10")
     parser.add_argument(
         "--engine", choices=list(DESIGNS), default="seed", metavar="NAME", help=f"{', '.join(DESIGNS)} (default: seed)"
     )
     parser.add_argument("--seeds", type=int, default=100, metavar="N", help="random scenes (default: %(default)s)")
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="simulations at a time (default: %(default)s)")
-    parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="where all output goes")
+    parser.add_argument("--build", type=Path, default=BUILD, metavar="DIR", help="directory of all output")
     add_fresh_option(parser)
     add_keep_option(parser)
     return parser
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what decides the command's figures."""
+    """Digest everything that decides the figures of the command."""
     designs = DESIGNS[arguments.engine], SOAK_DESIGNS[arguments.engine]
     return Provenance(designs, ["golden", "scenes", "verif/coverage", "verif/random_scenes.py"], ["verilator"])
 
@@ -265,7 +265,7 @@ CHECKS = (
 
 
 def main(argv: list[str] | None = None) -> int:
-    """The command.
+    """Run the command.
 
     Args:
         argv: its arguments, those of the process by default.
@@ -279,7 +279,7 @@ def main(argv: list[str] | None = None) -> int:
     design, probes = DESIGNS[arguments.engine], PROBES[arguments.engine]
     explanations = load_explanations(arguments.engine)
     scenes = [*packaged_scenes(plain=True).values(), EXTRA_SCENE, *EXTRA_ROOMS]
-    # Into a file or a pipe rich would print as if on 80 columns, which the tables do not fit.
+    # For a file or a pipe rich would assume 80 columns, too few for the tables.
     console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
     output = arguments.build / "coverage"
     output.mkdir(parents=True, exist_ok=True)
@@ -321,5 +321,5 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def verdict(judgement: Judgement, functional: FunctionalCoverage, failures: Sequence[str]) -> int:
-    """The exit code."""
+    """Return the exit code."""
     return int(bool(judgement.unexplained or judgement.stale or functional.holes or failures))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tells, in every ray unit of the seed engine, which kinds of intersection are offered to its z buffer.
+// Reports, in every ray unit of the seed engine, the kinds of intersection that are offered to its z buffer.
 
 `timescale 1ns / 1ns
 
@@ -15,8 +15,8 @@ module intersection_probe #(
     input wire write_z_buf,
     input wire add_colour,
     input wire [15:0] unit,
-    input wire [1:0] axis,          // of what is offered
-    input wire e_is_0,              // of what find_intersection starts on
+    input wire [1:0] axis,          // of the rectangle that is offered
+    input wire e_is_0,              // from here on: of the rectangle that find_intersection starts
     input wire e_negative,
     input wire [POSITION_BITS-1:0] plane,
     input wire [POSITION_BITS-1:0] start,
@@ -27,7 +27,7 @@ module intersection_probe #(
     input wire [POSITION_BITS-1:0] depth,
     input wire [POSITION_BITS-1:0] nearest
 );
-    // Of a rectangle, from its start to its offer: slope in the first two bits, parallel, on plane, behind or ahead.
+    // From a rectangle's start to its offer: slope in the upper two bits, then parallel, on plane, behind or ahead.
     wire [1:0] slope = e_is_0 ? 2'd1 : e_negative ? 2'd0 : 2'd2;
     wire [1:0] way = e_is_0 ? 2'd0 : plane == start ? 2'd1 : (plane < start) != e_negative ? 2'd2 : 2'd3;
     reg [3:0] started, loaded, stored;

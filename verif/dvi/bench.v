@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A board with nothing but its clock and its buttons; dvi_device, made for the board, has its pins. What its DVI connector
-// sends goes into a file, a hexadecimal digit for each bit time, half a cycle of shift_clk: clock, red, green, blue; what
-// its serial port says into another.
+// A board with only its clock and its buttons connected; dvi_device is generated for the board's pins. The output of
+// the DVI connector goes into a file, one hexadecimal digit per bit time, which is half a cycle of shift_clk: clock,
+// red, green, blue. The output of the serial port goes into another file.
 
 `timescale 1ns / 1ps
 
 module dvi_bench;
-    // Symbols must hold still for so many cycles of shift_clk before and after they are taken.
+    // Symbols must be stable for this many cycles of shift_clk before and after they are sampled.
     localparam real STILL_CYCLES = 1.5;
     localparam real SERIAL_BIT_NS = 1e9 / 115200;
 
@@ -43,7 +43,7 @@ module dvi_bench;
                 unsteady = unsteady + 1;
         end
 
-    // From the start bit on, each bit in its middle.
+    // Samples each bit in its middle, timed from the start bit.
     initial begin
         text = $fopen("serial.txt", "w");
         wait (serial === 1'b1);
@@ -55,7 +55,7 @@ module dvi_bench;
         end
     end
 
-    // +bits: bit times to record; +buttons: those that are held all the time; +late_ns: added to the reset.
+    // +bits: bit times to record; +buttons: buttons held all the time; +late_ns: extra duration of reset.
     initial begin
         if (!$value$plusargs("bits=%d", bits))
             bits = 0;
@@ -66,12 +66,12 @@ module dvi_bench;
         #1000 #(late_ns) reset = 1'b0;
         buttons = held;
         file = $fopen("gpdi.txt", "w");
-        // Reset has ended by then, and the serialiser found the pixels.
+        // By then reset has ended, and the serialiser has found the pixels.
         #5000;
         @(posedge device.top.board.shift_clk) rose = $realtime;
         @(posedge device.top.board.shift_clk) still = STILL_CYCLES * ($realtime - rose);
         recording = 1'b1;
-        // Within a bit, soon after its edge.
+        // Samples within a bit, soon after its edge.
         for (count = 0; count < bits; count = count + 1) begin
             @(device.top.board.shift_clk) #0.5;
             $fwrite(file, "%h", link);

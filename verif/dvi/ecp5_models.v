@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What tops need of the ECP5's own cells, for simulation: nothing but frequencies, phases and edges.
+// Simulation models of the ECP5 cells that tops use, with frequencies, phases and edges only.
 
 `timescale 1ns / 1ps
 
-// The PLL with its output CLKOP fed back; it locks within some cycles of its input.
+// The PLL, with feedback from CLKOP; it locks after eight input cycles.
 module EHXPLLL #(
     parameter CLKI_DIV = 1,
     parameter CLKFB_DIV = 1,
@@ -33,8 +33,8 @@ module EHXPLLL #(
     realtime rose;
     real half;
 
-    // Halves of the oscillator's period. Both outputs count the same ones, so that no rounding pulls them apart; rising
-    // edges are together where each phase is its divider less one.
+    // Counts half periods of the oscillator. Both outputs count the same half periods, so that rounding cannot separate
+    // them; their rising edges coincide if each phase is its divider minus one.
     integer op_count = 2 * (CLKOP_DIV - 1 - CLKOP_CPHASE);
     integer os_count = 2 * (CLKOS_DIV - 1 - CLKOS_CPHASE);
     initial begin
@@ -55,7 +55,7 @@ module EHXPLLL #(
     end
 endmodule
 
-// Two bits a cycle: D0 while the clock is high, D1 while it is low, both as they were at the rising edge.
+// Two bits per cycle: D0 while the clock is high, D1 while it is low, both sampled at the rising edge.
 module ODDRX1F (
     input wire SCLK, RST, D0, D1,
     output wire Q

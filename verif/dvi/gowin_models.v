@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What tops need of Gowin's own cells, for simulation: nothing but frequencies, phases and edges.
+// Simulation models of the Gowin cells that tops use, with frequencies, phases and edges only.
 
 `timescale 1ns / 1ps
 
-// The PLL, fed back within itself; it locks within some cycles of its input.
+// The PLL, with internal feedback; it locks after eight input cycles.
 module rPLL #(
     parameter FCLKIN = "100.0",
     parameter DEVICE = "GW1N-1",
@@ -49,7 +49,7 @@ module rPLL #(
     end
 endmodule
 
-// Of HCLKIN every second, or every fifth, cycle.
+// Divides HCLKIN by two or by five.
 module CLKDIV #(
     parameter DIV_MODE = "2"
 ) (
@@ -66,7 +66,7 @@ module CLKDIV #(
     end
 endmodule
 
-// Two bits a cycle: D0 while the clock is high, D1 while it is low, both as they were at the rising edge.
+// Two bits per cycle: D0 while the clock is high, D1 while it is low, both sampled at the rising edge.
 module ODDR (
     input wire D0, D1, TX, CLK,
     output wire Q0

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster verify dvi`: a DVI monitor in Python, from what a simulated board sends to pictures.
+"""`raycaster verify dvi`: decode the DVI output of a simulated board, as a monitor does.
 
-Everything is held against the standard, and every pixel against golden.
+The timing is checked against the standard, and every pixel is compared with the golden model.
 """
 
 from __future__ import annotations
@@ -52,22 +52,22 @@ def watch(
     """Simulate the board and return the first frames that its DVI connector sends after reset.
 
     Args:
-        board: it.
+        board: the board.
         sources: the board's Verilog, the design's included.
-        screen: what the design shows it on.
-        frames: how many.
+        screen: the design's screen.
+        frames: number of frames.
         directory: for the recording.
         simulator: one of `raycaster.sim.simulator.SIMULATORS`; only Icarus knows unknown bits.
-        buttons: a bit for each of the board's that is held all the time, as `scene_player.BUTTONS` has them.
-        late_ns: added to the time that reset lasts.
+        buttons: a bit for each button that is held all the time, in the order of `scene_player.BUTTONS`.
+        late_ns: extra duration of reset.
 
     Returns:
-        As `pictures`.
+        The frames, in the format of `pictures`.
 
     Raises:
         UserError: the simulator is missing.
         SimulationError: the simulation could not be built or run.
-        VideoError: anything departs from the standard, or the board takes symbols when they may change.
+        VideoError: the output departs from the standard, or the board samples symbols while they may change.
     """
     frame = screen.horizontal.total * screen.vertical.total * SYMBOL_BITS
     # Reset restarts the video before the first vertical sync, from which frames are counted.
@@ -80,11 +80,11 @@ def watch(
 
 
 def golden(design: Design, position: tuple[int, int, int] | None = None) -> np.ndarray:
-    """What a monitor must show.
+    """Render the picture that a monitor must show.
 
     Args:
-        design: what is shown, with which hardware.
-        position: of the camera, instead of the scene's.
+        design: the scene and the hardware.
+        position: position of the camera, which replaces the one in the scene.
 
     Returns:
         uint8 (visible lines, visible pixels, 3).
@@ -99,7 +99,7 @@ def golden(design: Design, position: tuple[int, int, int] | None = None) -> np.n
 def _record(
     board: OpenBoard, sources: Sequence[Path], directory: Path, simulator: str, arguments: Sequence[str]
 ) -> np.ndarray:
-    """What the board's DVI connector sends: bool (4, bits), blue, green, red and clock."""
+    """Record the output of the board's DVI connector: bool (4, bits), blue, green, red and clock."""
     directory.mkdir(parents=True, exist_ok=True)
     device = directory / "dvi_device.v"
     device.write_text(_device(board))
@@ -113,7 +113,7 @@ def _record(
         raise SimulationError(f"the board's simulation failed; its log is {directory / 'dvi.log'}")
     unsteady = re.search(r"^unsteady (\d+)$", done.stdout, re.MULTILINE)
     if unsteady is None or int(unsteady[1]):
-        raise VideoError(f"{unsteady[1] if unsteady else 'all'} symbols change when they are taken")
+        raise VideoError(f"{unsteady[1] if unsteady else 'all'} symbols change while they are sampled")
     digits = (directory / "gpdi.txt").read_text()
     if unknown := re.search("[^0-9a-f]", digits):
         raise VideoError(f"bit {unknown.start()}: a wire is neither 0 nor 1")
@@ -122,7 +122,7 @@ def _record(
 
 
 def _device(board: OpenBoard) -> str:
-    """A module with the board in it; its ports are those of every board. Without a button for reset, its PLL resets."""
+    """Return a module with the board in it and the same ports for any board. Without a reset button, its PLL resets."""
     lines, connections = [], []
     for name, signal in board.signals.items():
         bits = f" [{len(signal.pins) - 1}:0]" if isinstance(signal.pins, tuple) else ""
@@ -152,16 +152,16 @@ endmodule
 
 
 def symbols(wires: np.ndarray) -> np.ndarray:
-    """Cut wires into symbols, where the three channels' control symbols say.
+    """Split wires into symbols, aligned by the control symbols of the three channels.
 
     Args:
-        wires: bool (4, bits), from some time on at which the link runs.
+        wires: bool (4, bits), recorded while the link runs.
 
     Returns:
         int64 (3, pixels): blue, green, red; bit 0 was sent first.
 
     Raises:
-        VideoError: the channels have no common place to cut, or the link's clock is not a tenth of the bits' rate.
+        VideoError: the channels have no common alignment, or the link's clock is not a tenth of the bit rate.
     """
     starts = [_alignment(wires[channel]) for channel in range(3)]
     if len(set(starts)) != 1:
@@ -169,12 +169,12 @@ def symbols(wires: np.ndarray) -> np.ndarray:
     whole = (wires.shape[1] - starts[0]) // SYMBOL_BITS * SYMBOL_BITS
     cut = wires[:, starts[0] : starts[0] + whole].reshape(len(_CHANNELS), -1, SYMBOL_BITS)
     if (cut[3] != (np.arange(SYMBOL_BITS) < SYMBOL_BITS // 2)).any():
-        raise VideoError("the link's clock is not five ones and five zeros a symbol")
+        raise VideoError("the link's clock is not five ones and five zeros per symbol")
     return cut[:3] @ (1 << np.arange(SYMBOL_BITS))
 
 
 def _alignment(wire: np.ndarray) -> int:
-    """The only place, 0 to 9, from which control symbols are found one right after the other."""
+    """Return the only offset, 0 to 9, at which control symbols follow one another."""
     found = []
     for start in range(SYMBOL_BITS):
         whole = (len(wire) - start) // SYMBOL_BITS * SYMBOL_BITS
@@ -183,22 +183,22 @@ def _alignment(wire: np.ndarray) -> int:
         if (control[1:] & control[:-1]).mean() > 0.05:
             found.append(start)
     if len(found) != 1:
-        raise VideoError(f"control symbols are found from {len(found)} places on, expected 1")
+        raise VideoError(f"control symbols are found at {len(found)} offsets, expected 1")
     return found[0]
 
 
 def pictures(words: np.ndarray, screen: Screen) -> list[np.ndarray]:
-    """Decode symbols, hold every pixel's syncs and blanking against the standard, and return all whole frames.
+    """Decode symbols, check the syncs and the blanking of every pixel, and return all whole frames.
 
     Args:
-        words: of `symbols`.
+        words: the symbols, in the format of `symbols`.
         screen: the standard.
 
     Returns:
-        Of each frame uint8 (visible lines, visible pixels, 3).
+        For each frame uint8 (visible lines, visible pixels, 3).
 
     Raises:
-        VideoError: a symbol that stands for nothing, channels that disagree, or a departure from the standard.
+        VideoError: an invalid symbol, channels that disagree, or a departure from the standard.
     """
     table = np.full((1 << SYMBOL_BITS, 3), -1, dtype=np.int64)
     for symbol in range(1 << SYMBOL_BITS):
@@ -209,7 +209,7 @@ def pictures(words: np.ndarray, screen: Screen) -> list[np.ndarray]:
     visible, data, control = np.moveaxis(table[words], -1, 0)
     if (visible < 0).any():
         channel, pixel = np.argwhere(visible < 0)[0]
-        raise VideoError(f"{_CHANNELS[channel]}, pixel {pixel}: {words[channel, pixel]:010b} is no symbol")
+        raise VideoError(f"{_CHANNELS[channel]}, pixel {pixel}: {words[channel, pixel]:010b} is not a symbol")
     if (visible != visible[0]).any():
         raise VideoError("the channels are not in blanking together")
     if control[1:].any():
@@ -231,7 +231,7 @@ def pictures(words: np.ndarray, screen: Screen) -> list[np.ndarray]:
 
 
 def _held(levels: np.ndarray, visible: np.ndarray) -> np.ndarray:
-    """A sync where it is sent, and its last level where a picture is sent instead."""
+    """Return a sync signal, which keeps its last level while picture data is sent."""
     last = np.maximum.accumulate(np.where(visible == 0, np.arange(len(levels)), 0))
     return levels[last]
 
@@ -242,25 +242,25 @@ def _leading_edges(levels: np.ndarray, active_high: bool) -> np.ndarray:
 
 
 def _line(bits: np.ndarray) -> Line:
-    """As the bench of the VGA output hands lines over: the last sample first."""
+    """Return a line in the format of the bench of the VGA output, with the last sample first."""
     return Line("".join(map(str, bits[::-1].reshape(-1))), len(bits), 0)
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Build the parser of the command line."""
     parser = CommandParser("verify dvi", __doc__, "boxes")
     parser.add_argument("--board", default="ulx3s", help=f"{', '.join(board_names(OpenBoard))} (default: %(default)s)")
     add_scene_argument(parser, "what to show (mirror_room)", default=find_scene("mirror_room"))
-    parser.add_argument("--frames", type=int, default=1, help="to look at (default: %(default)s)")
+    parser.add_argument("--frames", type=int, default=1, help="number of frames to check (default: %(default)s)")
     add_simulator_option(parser)
-    parser.add_argument("--output", type=Path, default=Path("build/dvi"), help="(default: %(default)s)")
+    parser.add_argument("--output", type=Path, default=Path("build/dvi"), help="output directory (%(default)s)")
     add_fix_option(parser)
     add_configuration_options(parser)
     return parser
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """The command; returns its exit code."""
+    """Run the command and return its exit code."""
     arguments = command_parser().parse_args(argv)
     board = find_board(arguments.board, OpenBoard)
     console = Console()

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""The arithmetic at every value or at a volume, in compiled benches."""
+"""Compiled benches that check the arithmetic with all operands, or with very many."""

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the exhaustive benches share: the reference division, the clock, and how they talk to run.py, which
+// Shared by the exhaustive benches: the reference division, the clock, and the output for run.py, which
 // compiles them with POSITION_BITS, SLOPE_BITS, FRACTION_BITS, STEPS (cycles of a division) and NEAREST (rounding).
 #pragma once
 #include <cstdint>
@@ -16,7 +16,7 @@ struct Quotient {
     bool overflow;
 };
 
-// The definition, in 64 bits: nothing here overflows, and nothing iterates.
+// The definition, in 64 bits, without overflow or iteration.
 inline Quotient divide(uint64_t dividend, uint64_t divisor) {
     if (divisor == 0) return {0, true};
     const uint64_t value = NEAREST ? (2 * dividend + divisor) / (2 * divisor) : dividend / divisor;

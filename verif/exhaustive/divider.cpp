@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Divides each product of a slope and a distance by each divisor, back to back, and checks every quotient.
-// Arguments: the number of divisions (0 for all), and the seed that chooses them where they are not all.
+// Arguments: the number of divisions (0 for all), and the seed that chooses them if they are not all.
 #include <algorithm>
 #include <vector>
 
@@ -15,7 +15,7 @@ int main(int, char** argv) {
 
     const uint64_t pairs = dividends.size() * SLOPE_LIMIT;
     uint64_t count = argument(argv[1]);
-    // A large prime that does not divide the number of pairs: a part of them is spread over all, without repetition.
+    // A large prime that does not divide the number of pairs: a subset is spread over all of them, without repetition.
     uint64_t stride = 2147483647, start = argument(argv[2]) * 0x9e3779b97f4a7c15u % pairs;
     if (count == 0 || count >= pairs) {
         count = pairs;
@@ -32,11 +32,11 @@ int main(int, char** argv) {
         dividend = dividends[index / SLOPE_LIMIT];
         divisor = index % SLOPE_LIMIT;
         index = (index + stride) % pairs;
-        // The load of a division comes with the store of the one before it, whose quotient stands a cycle later.
+        // A division is loaded while the previous one is stored, whose quotient is valid from the next cycle.
         for (int step = 0; step < STEPS; step++) {
             dut.load_divider = step == 0;
             dut.store_quotient = step == 0;
-            // Only the load may look at the operands.
+            // The operands are valid in the cycle of the load only.
             dut.dividend = step == 0 ? dividend : ~dividend & ((1u << (POSITION_BITS + SLOPE_BITS)) - 1);
             dut.divisor = step == 0 ? divisor : ~divisor & (SLOPE_LIMIT - 1);
             dut.eval();

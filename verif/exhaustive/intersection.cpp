@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Streams operands through an a + b * (c - d) / e unit, a vector each STEPS cycles, and checks every result.
+// Streams operands through an a + b * (c - d) / e unit, one vector every STEPS cycles, and checks every result.
 // Arguments: the number of vectors (0 for every combination of operands), and the seed.
 #include "common.h"
 
@@ -37,7 +37,7 @@ uint32_t slope() {
 Vector random_vector() {
     Vector v{position(), slope(), position(), position(), slope(), below(2) != 0, below(2) != 0};
     if (below(4) == 0 && v.b != 0) {
-        // A distance that puts the quotient next to 0, 1 or the first that overflows.
+        // A distance that puts the quotient next to 0, 1 or the first value that overflows.
         const uint64_t targets[] = {0, 1, POSITION_LIMIT - 1, POSITION_LIMIT};
         const uint64_t distance = (targets[below(4)] * v.e + below(2) * (v.e / 2)) / v.b + below(3);
         if (distance > 0 && distance <= POSITION_LIMIT) {
@@ -90,7 +90,7 @@ Expected expect(const Vector& v) {
 
 uint64_t wrong = 0;
 
-// Counts results that are wrong, and reports the first.
+// Counts wrong results, and reports the first.
 void mismatch(const char* what, const Vector& v, const Expected& expected, int64_t hardware) {
     if (wrong++ > 0) return;
     std::printf("mismatch in %s: a %u, b %s%u, c %u, d %u, e %s%u: hardware %lld, expected valid %d, distance %u, "
@@ -111,7 +111,7 @@ int main(int, char** argv) {
     Vdut dut;
     dut.clk = 0;
     uint64_t valid = 0;
-    // A vector's value is out within two of the vectors after it, or three where a division takes two cycles.
+    // A vector's value is valid within the next two vectors, or the next three if a division takes two cycles.
     Vector ring[8];
     Expected wanted[8];
     const uint32_t position_mask = POSITION_LIMIT - 1, slope_mask = SLOPE_LIMIT - 1;
@@ -122,12 +122,12 @@ int main(int, char** argv) {
         for (int phase = 0; phase < STEPS; phase++) {
             const uint64_t cycle = number * STEPS + phase;
             dut.steps_find_intersection = phase == 0;
-            // From the start: load after 2 cycles, store STEPS later, stored results and `a` 1 later, value 1 later.
+            // Load 2 cycles after the start, store STEPS later, stored results and `a` 1 later, value 1 later.
             dut.steps_load_divider = dut.steps_store_quotient = phase == 2 % STEPS;
             const uint64_t stored = (cycle - STEPS - 3) / STEPS % 8, added = (cycle - STEPS - 4) / STEPS % 8;
             const bool check_stored = phase == 3 % STEPS && cycle >= STEPS + 3;
             const bool check_added = phase == 4 % STEPS && cycle >= STEPS + 4;
-            // Operands that are looked at too early or too late are wrong ones.
+            // Operands are wrong outside their cycle, so that reading them too early or too late is noticed.
             const uint32_t flip = phase == 0 ? 0 : ~0u;
             dut.b = (v.b ^ flip) & slope_mask;
             dut.c = (v.c ^ flip) & position_mask;

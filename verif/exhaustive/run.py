@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster verify exhaustive`: the arithmetic at a volume that only compiled benches reach.
+"""`raycaster verify exhaustive`: check the arithmetic with every operand, or with millions, in compiled benches.
 
-Each bench converts one block, compiles it with Verilator together with a C++ program that drives it back to back (a
-result each `divider_steps` cycles, operands held for the one cycle in which they may be looked at), and checks every
-result against 64-bit integer arithmetic.
+Each bench converts one block, compiles it with Verilator together with a C++ program that drives it back to back (one
+result every `divider_steps` cycles, operands valid for one cycle only), and compares every result with 64-bit integer
+arithmetic.
 
-divider: F = 0, 1 to 3 bits a cycle, both roundings. Its dividends are products of a slope's magnitude and a distance,
-9 bits each, and its divisors are slopes' magnitudes. The screens' slopes are 0..190; here both factors and the divisor
-take all of 0..511, which is everything that a 9-bit multiplier can hand to the divider, whatever the screen: the 67,592
-different products, each over each of 512 divisors, 0 included.
+divider: F = 0, 1 to 3 bits per cycle, both roundings. The dividends are products of a slope's magnitude and a distance,
+9 bits each; the divisors are magnitudes of slopes. Slopes of the screens are 0..190; here both factors and the divisor
+take all values 0..511, which covers everything that a 9-bit multiplier can pass to the divider, for any screen: 67,592
+different products, each with each of 512 divisors, 0 included.
 
 intersection: a + b * (c - d) / e at full width, F = 0, 1, 4 and 8; random operands, three in eight of them corners, and
-one vector in four with the quotient next to 0, 1 or the first that overflows.
+one vector in four with the quotient next to 0, 1 or the first value that overflows.
 
-reduced: the same unit with every combination of operands, at a width where they can be counted. The world's 9 bits and
-the slopes' are constants of the design, which are patched while the block is converted, and only for this bench. Four
-bits are the least: a division must take two cycles, and three bits a cycle are one of the cases.
+reduced: the same unit with every combination of operands, at a width that allows this. The 9 bits of the world and
+those of the slopes are constants of the design, which are patched while the block is converted, for this bench only.
+Four bits are the minimum: a division must take two cycles, and one of the cases computes three bits per cycle.
 """
 
 from __future__ import annotations
@@ -63,45 +63,45 @@ from raycaster.verif.seeds import seed
 
 SOURCES = Path(__file__).parent
 INTERSECTIONS = 400_000_000
-"""Random vectors of the intersection bench, over all of its configurations."""
+"""Number of random vectors of the intersection bench, over all its configurations."""
 
 REDUCED_BITS = 5
 
 
 class BenchError(Exception):
-    """A bench that did not end by itself."""
+    """A bench ended without a result."""
 
 
 class Mismatch(Exception):
-    """A result that the hardware got wrong: operands and both results."""
+    """A result of the hardware is wrong; the message has the operands and both results."""
 
 
 @dataclass(frozen=True)
 class Bench:
-    """One block in one configuration, and its C++ program."""
+    """A block in one configuration, and its C++ program."""
 
     kind: str
     config: Configuration
     coordinate_bits: int
     slope_bits: int
     vectors: int
-    """How many it runs; 0 for all that there are."""
+    """Number of vectors to run; 0 for all."""
 
     @property
     def label(self) -> str:
-        """A name that no other bench of a run has."""
+        """Name of the bench, unique in a run."""
         width = "" if self.kind != "reduced" else f"-w{self.coordinate_bits}"
         rounding = self.config.rounding[0]
         return f"{self.kind}{width}-f{self.config.fraction_bits}{rounding}-d{self.config.divider_bits}"
 
     @property
     def position_bits(self) -> int:
-        """Of positions and quotients."""
+        """Width of positions and quotients."""
         return self.coordinate_bits + self.config.fraction_bits
 
     @property
     def total(self) -> int:
-        """Vectors that it will run."""
+        """Number of vectors that it runs."""
         if self.vectors:
             return self.vectors
         if self.kind == "divider":
@@ -116,19 +116,19 @@ class Outcome:
 
     vectors: int
     valid: int
-    """Of them, those whose quotient did not overflow and, for intersections, whose plane lay ahead."""
+    """Number of vectors whose quotient did not overflow and, for intersections, whose plane is ahead."""
 
     wrong: int
     seconds: float
 
 
 def benches(intersections: int, divisions: int, reduced_bits: int) -> list[Bench]:
-    """All benches.
+    """List all benches.
 
     Args:
-        intersections: random vectors, shared by the configurations of that kind.
-        divisions: of each configuration, spread over all that there are; 0 for all.
-        reduced_bits: bits of positions in the reduced bench, and of slopes.
+        intersections: number of random vectors, divided among the configurations of that kind.
+        divisions: number of divisions per configuration, spread over all possible ones; 0 for all.
+        reduced_bits: width of positions and of slopes in the reduced bench.
     """
     found = []
     for rounding in ("truncate", "nearest"):
@@ -157,7 +157,7 @@ def _config(fraction_bits: int, rounding: str, divider_bits: int) -> Configurati
 
 @contextmanager
 def _widths(bench: Bench) -> Iterator[None]:
-    """The design's constants as the bench wants them, in each module that has a name of its own for them."""
+    """Set the design's constants to the widths of the bench, in each module that has imported their names."""
     patches = [
         (raycaster.configuration, "COORDINATE_BITS", bench.coordinate_bits),
         (raycaster.rtl.common.widths, "COORDINATE_BITS", bench.coordinate_bits),
@@ -198,11 +198,11 @@ def _arguments(bench: Bench) -> tuple[Callable, dict[str, Any]]:
 
 
 def build_bench(bench: Bench, spoil: Callable[[str], str] = str) -> list[str]:
-    """Convert and compile.
+    """Convert and compile a bench.
 
     Args:
-        bench: what.
-        spoil: applied to each Verilog text, to show that the bench would notice.
+        bench: the bench.
+        spoil: applied to each Verilog text, to show that the bench notices.
 
     Returns:
         The command that runs it.
@@ -238,8 +238,8 @@ def run(command: Sequence[str], bench: Bench, number: int) -> Outcome:
     """Run a compiled bench to its end.
 
     Args:
-        command: what `build_bench` made.
-        bench: of which.
+        command: as returned by `build_bench`.
+        bench: the bench.
         number: the seed.
 
     Raises:
@@ -263,7 +263,7 @@ def _check(bench: Bench, number: int) -> Outcome:
 
 
 def show(outcomes: Mapping[Bench, Outcome], number: int, console: Console) -> None:
-    """The table of results."""
+    """Print the table of results."""
     table = Table(title=f"No mismatch (seed {number})", title_justify="left", box=SIMPLE, padding=0)
     table.add_column("bench", no_wrap=True)
     for heading in ("vectors", "valid", "wrong", "seconds", "vectors/s"):
@@ -284,29 +284,29 @@ def show(outcomes: Mapping[Bench, Outcome], number: int, console: Console) -> No
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Build the parser of the command line."""
     parser = CommandParser("verify exhaustive", __doc__, "--only divider")
     parser.add_argument(
-        "--only", metavar="PREFIX", default="", help="only benches whose name begins so: divider, intersection-f4, ..."
+        "--only", metavar="PREFIX", default="", help="run only benches with this prefix: divider, intersection-f4, ..."
     )
     parser.add_argument(
-        "--count", type=int, default=INTERSECTIONS, help="random intersections in all (default: %(default)s)"
+        "--count", type=int, default=INTERSECTIONS, help="total number of random intersections (default: %(default)s)"
     )
     parser.add_argument(
-        "--divisions", type=int, default=0, help="of each divider, spread over all (default: 0, which is all)"
+        "--divisions", type=int, default=0, help="divisions per divider, spread over all (default: 0, which is all)"
     )
     parser.add_argument(
         "--reduced-bits", type=int, choices=(4, 5), default=REDUCED_BITS,
-        help="width of the reduced unit; 5 means up to 134 million vectors a configuration (default: %(default)s)",
+        help="width of the reduced unit; 5 means up to 134 million vectors per configuration (default: %(default)s)",
     )  # fmt: skip
     add_job_options(parser)
-    parser.add_argument("--seed", type=int, default=seed(), help="(default: %(default)s)")
+    parser.add_argument("--seed", type=int, default=seed(), help="seed of the operands (default: %(default)s)")
     add_keep_option(parser)
     return parser
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what decides the command's figures; three designs stand for all of its arithmetic."""
+    """Digest everything that decides the figures; three designs represent all of the arithmetic."""
     designs = [configure(), configure(divider_bits=2, rounding="nearest"), configure(divider_bits=3, fraction_bits=8)]
     return Provenance(designs, ["verif/exhaustive"])
 
@@ -327,7 +327,7 @@ CHECKS = (
 
 
 def main(argv: list[str] | None = None) -> int:
-    """The command.
+    """Run the command.
 
     Args:
         argv: its arguments, those of the process by default.
@@ -336,7 +336,7 @@ def main(argv: list[str] | None = None) -> int:
         Its exit code: 1 for a mismatch.
 
     Raises:
-        UserError: no such bench, or a tool is missing.
+        UserError: there is no such bench, or a tool is missing.
     """
     arguments = command_parser().parse_args(argv)
     if arguments.count < 1 or arguments.divisions < 0 or arguments.seed < 0:

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Proofs about the generated Verilog: what holds for every input, and not only for those that a bench thinks of."""
+"""Proofs about the generated Verilog, which hold for every input, not only for those that a bench tries."""

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// APB through the bridge to an agent: what the requester asks for, what the agent gets, what comes back.
+// APB through the bridge to an agent: the requester's accesses, the agent's transfers, and the answers.
 //
-// Assumed: an access has a setup phase of one cycle and then stays, with enable, until it is ready, as APB asks; the agent
-// makes wait for at most MOST_WAIT cycles a transfer, and answers a read with readdatavalid, once, 1 to MOST_LATENCY
-// cycles after it took it. One cycle of reset at first; it may come again at any time.
+// Assumed: an access has a setup phase of one cycle and is then held, with penable, until it is ready, as APB requires.
+// The agent asserts waitrequest for at most MOST_WAIT cycles per transfer, and answers a read with one readdatavalid, 1
+// to MOST_LATENCY cycles after it accepted it. One cycle of reset at first; it may come again at any time.
 
 module apb_transfers #(parameter ADDRESS_BITS = 4, parameter MOST_WAIT = 1, parameter MOST_LATENCY = 2) (
     input clk, input reset,
@@ -22,7 +22,7 @@ apb_bridge bridge (
     .avm_m0_waitrequest(waitrequest)
 );
 
-// The cycle before.
+// The previous cycle.
 reg known = 0;
 reg last_reset, last_psel, last_penable, last_pready, last_pwrite, last_read, last_write, last_waitrequest;
 reg [ADDRESS_BITS+1:0] last_paddr;
@@ -35,7 +35,7 @@ always @(posedge clk) begin
     {last_read, last_write, last_waitrequest} <= {read, write, waitrequest};
 end
 
-// What the present access has had so far: transfers that were taken, cycles, cycles of waitrequest.
+// The current access so far: accepted transfers, cycles, cycles of waitrequest.
 wire taken = (read || write) && !waitrequest, done = psel && penable && pready;
 reg outstanding;
 reg [1:0] transfers;
@@ -67,22 +67,22 @@ always @* begin
 end
 
 always @* if (known && !last_reset && !reset) begin
-    // Read and write exclude each other; nobody asks but the requester, and for what it says.
+    // Read and write exclude each other, and come only with a matching access of the requester.
     assert (!(read && write));
     if (read || write) assert (psel && write == pwrite && address == paddr[ADDRESS_BITS+1:2]);
     if (write) assert (writedata == pwdata && byteenable == pstrb);
     if (outstanding) assert (!read && !write);
-    // An access is ready once, with one transfer: a write as it is taken, a read with its answer. Never an error.
+    // An access is ready once, with one transfer: a write when it is accepted, a read with its answer. Never an error.
     if (done) assert (transfers + taken == 1);
     if (psel && !done) assert (!(write && taken) && transfers + taken <= 1);
     if (done && !pwrite) assert (outstanding && readdatavalid && prdata == readdata);
     if (readdatavalid) assert (done);
     assert (!pslverr);
-    // In time.
+    // Within the bounds.
     if (psel) assert (age <= MOST_WAIT + MOST_LATENCY + pwrite);
 end
 
-// A transfer holds still while it has to wait.
+// A transfer is stable while it waits.
 always @* if (known && !reset && !last_reset && (last_read || last_write) && last_waitrequest)
     assert (read == last_read && write == last_write);
 
@@ -98,7 +98,7 @@ always @* if (known && !reset && !last_reset) begin
 end
 always @* if (known && last_reset) assert (!\bridge.reading && !outstanding && transfers == 0 && age == 0 && waited == 0);
 
-// A read that waits and is answered late, and a write of some bytes that waits, right after it.
+// Covers a read that waits and is answered late, and right after it a write of some bytes that waits.
 reg was_read = 0, after_read = 0;
 always @(posedge clk) begin
     was_read <= !reset && done && !pwrite && waited == MOST_WAIT && since == MOST_LATENCY;

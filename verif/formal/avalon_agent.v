@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The registers and the scene memories as software sees them, against a model of one word at an arbitrary address.
+// The registers and the scene memories as software sees them, compared with a model of one word at any address.
 //
-// Assumed: a transfer reads or writes, and not both, as Avalon asks; one cycle of reset at first. Reset may come again
-// at any time, and StartScreen, the budget's counters and the renderer's flags do as they like. `watched` is chosen by
-// the solver and then stays, so that what holds for it holds for every address; so is the rectangle `watched_slot`.
+// Assumed: a transfer either reads or writes, as Avalon requires; one cycle of reset at first. Reset may come again at
+// any time; StartScreen, the budget's counters and the renderer's flags are arbitrary. The solver chooses the constant
+// `watched`, so what holds for it holds for every address; likewise the rectangle `watched_slot`.
 
 module avalon_agent #(
     parameter ADDRESS_BITS = 5, parameter [31:0] VERSION_WORD = 0, parameter [31:0] ENGINE_WORD = 0,
@@ -45,13 +45,13 @@ rect_mem rects (
     .rects_rect_word(rects_rect)
 );
 
-// The register map once more, by hand.
+// The register map, written a second time by hand.
 localparam ID = 0, VERSION = 1, ENGINE = 2, SIZE = 3, CONTROL = 4, STATUS = 5, CYCLES = 6, IRQ_ENABLE = 7,
     IRQ_PENDING = 8, BACKGROUND = 9, CAMERA = 10, TABLE = 16;
 localparam [31:0] POINT_BITS = 32'h1ff7fdff, SURFACE_BITS = 32'h80ffffff;
 localparam [95:0] SLOT_BITS = {POINT_BITS, POINT_BITS, SURFACE_BITS};
 (* anyconst *) reg [ADDRESS_BITS-1:0] watched;
-reg [31:0] implemented;  // of what is shadowed; the other words have none
+reg [31:0] implemented;  // bits of a shadowed word; the other words have none
 always @* case (watched)
     CONTROL: implemented = 32'h701;
     BACKGROUND: implemented = 32'h00ffffff;
@@ -71,10 +71,10 @@ always @* begin
     assume (!(read && write));
 end
 
-// waitrequest: the first cycle after reset, and never else.
+// waitrequest is high in the first cycle after reset only.
 always @* if (known) assert (waitrequest == last_reset);
 
-// What is accepted, and in the cycle after.
+// Accepted transfers, and the same one cycle later.
 wire accepted = !waitrequest && !reset;
 wire reads = read && accepted, writes = write && accepted;
 wire [31:0] mask = {{8{byteenable[3]}}, {8{byteenable[2]}}, {8{byteenable[1]}}, {8{byteenable[0]}}};
@@ -91,10 +91,10 @@ always @(posedge clk) begin
     committed_2 <= !reset && committed_1;
 end
 
-// Shadow, what was committed of it with the very write that asked for it, and what is shown. A commit takes two cycles
-// on its way, which is what StartScreen must leave it.
+// The shadow, its snapshot with the write that committed it, and the live word. A commit takes two cycles, so
+// StartScreen shows it only if it comes later.
 reg [31:0] shadow, snapshot, pending, live;
-reg outstanding;  // committed and not shown
+reg outstanding;  // committed but not shown yet
 always @(posedge clk) begin
     if (reset) begin
         shadow <= 0;
@@ -112,7 +112,7 @@ always @(posedge clk) begin
     if (committed_1) snapshot <= shadow;
 end
 
-// Status, interrupt and cycles: an event in the cycle in which a write clears it is kept.
+// Status, interrupt and cycles: an event in the same cycle as a write that clears it is kept.
 wire wrote_status = wrote && wrote_address == STATUS;
 wire wrote_cycles = wrote && wrote_address == CYCLES && wrote_mask != 0;
 reg status_underrun, status_bad, enabled, event_pending;
@@ -135,8 +135,8 @@ always @(posedge clk) begin
 end
 always @* if (known) assert (irq == (enabled && event_pending));
 
-// Every accepted read is answered two cycles later and nothing else is; the watched word with what was written before
-// the read was accepted.
+// Every accepted read, and nothing else, is answered two cycles later. The answer for the watched word has all writes
+// from before the read was accepted.
 reg read_1, read_2, watched_1, watched_2;
 reg [31:0] shadow_1, expected_1, expected_2;
 always @* case (watched)
@@ -149,7 +149,7 @@ always @* case (watched)
     CYCLES: expected_1 = {slowest_group, slowest_row};
     IRQ_ENABLE: expected_1 = enabled;
     IRQ_PENDING: expected_1 = event_pending;
-    default: expected_1 = shadow_1;  // which is 0 where there is nothing
+    default: expected_1 = shadow_1;  // 0 at an unmapped address
 endcase
 always @(posedge clk) begin
     read_1 <= reads;
@@ -165,12 +165,12 @@ always @* if (known && !last_reset) begin
 end
 always @* if (known && last_reset) assert (!readdatavalid);
 
-// An answer stays on the bus until the next one, which a host may rely on.
+// An answer stays on the bus until the next one; hosts may rely on this.
 reg [31:0] last_readdata;
 always @(posedge clk) last_readdata <= readdata;
 always @* if (known && !last_reset && !readdatavalid) assert (readdata == last_readdata);
 
-// What the renderer gets is the live word, which changes at StartScreen only.
+// The renderer gets the live word, which changes at StartScreen only.
 (* hierconn *) wire [31:0] \registers.live_control , \registers.live_background , \camera.lives_0 ;
 reg [31:0] shown;
 always @* case (watched)
@@ -200,9 +200,9 @@ always @* if (known) begin
     if (!last_start && !last_reset) assert (shown == last_shown && scene == last_scene);
 end
 
-// The watched rectangle: its three words as above, whether any was written since reset, and what the renderer gets of
-// it. What the sorter makes of words is arbitrary here, but always the same `result` of the same `words`: what holds
-// for these holds for any.
+// The watched rectangle: its three words as above, whether any was written since reset, and what the renderer gets. The
+// sorter is arbitrary here, except that `words` always give the same `result`; what holds for these holds for any
+// words.
 (* anyconst *) reg watched_slot;
 wire [ADDRESS_BITS-1:0] first = TABLE + 4 * watched_slot;
 wire in_slot = address[ADDRESS_BITS-1:2] == first[ADDRESS_BITS-1:2];
@@ -246,7 +246,7 @@ endfunction
 (* hierconn *) wire [RECT_BITS-1:0] \rects.sorted_rect_word ;
 always @* assume (\rects.latest_word != words || \rects.sorted_rect_word == result);
 
-// A fetch gives the live rectangle of its cycle, until the next one.
+// A fetch returns the rectangle that is live in its cycle, until the next fetch.
 reg fetched = 0;
 always @(posedge clk)
     if (rects_fetch) fetched <= known && rects_index == watched_slot && written_live && slot_live == words;
@@ -255,7 +255,7 @@ always @* if (known) begin
     if (fetched) assert (rects_rect == result);
 end
 
-// Its memories are registers in this model.
+// The memories of rect_mem are registers in this model.
 (* hierconn *) wire [95:0] \rects.shadow_words[0] , \rects.shadow_words[1] ;
 (* hierconn *) wire [RECT_BITS-1:0] \rects.places[0] , \rects.places[1] , \rects.places[2] , \rects.places[3] ,
     \rects.places[4] , \rects.places[5] ;
@@ -302,7 +302,7 @@ always @* if (known) begin
     if (committed_2) assert (slot_snapshot == slot_shadow_1 && written_snapshot == written_1);
 end
 
-// Invariants: the registers behind the bus are a cycle behind the model, and the pending copies equal its own.
+// Invariants: the registers behind the bus are one cycle behind the model, and its pending copies are the same.
 (* hierconn *) wire [31:0] \registers.control_word , \registers.background_word ,
     \registers.scene_word_0_i.pending , \registers.scene_word_1_i.pending , \camera.scene_word_i.pending ;
 (* hierconn *) wire [15:0] \registers.frame , \registers.slowest_row , \registers.slowest_group ;
@@ -341,7 +341,7 @@ always @* if (known) begin
     assert (\registers.irq_enable == enabled && \registers.irq_pending == event_pending);
 end
 
-// What was written and committed is shown, and read back; the interrupt is raised, and cleared.
+// Covers a written and committed word that is shown and read back, and an interrupt that is raised and cleared.
 reg was_irq = 0;
 always @(posedge clk) was_irq <= !reset && (was_irq || irq);
 always @* begin

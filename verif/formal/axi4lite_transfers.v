@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// AXI4-Lite through the bridge to an agent: what the manager hands over, what the agent gets, what comes back.
+// AXI4-Lite through the bridge to an agent: the manager's handshakes, the agent's transfers, and the responses.
 //
-// Assumed: a valid is low in reset, and then stays with its payload until it is taken, as AXI asks; the agent makes wait
-// for at most MOST_WAIT cycles a transfer, and answers a read with readdatavalid, once, 2 to MOST_LATENCY cycles after
-// it took it; its readdata changes with an answer only. Ready of the responses does as it likes. One cycle of reset at
-// first; it may come again at any time.
+// Assumed: valid is low in reset, and once high it stays high, with the same payload, until it is accepted, as AXI
+// requires. The agent asserts waitrequest for at most MOST_WAIT cycles per transfer, and answers a read with one
+// readdatavalid, 2 to MOST_LATENCY cycles after it accepted it; readdata changes with an answer only. bready and rready
+// are arbitrary. One cycle of reset at first; it may come again at any time.
 
 module axi4lite_transfers #(parameter ADDRESS_BITS = 4, parameter MOST_WAIT = 1, parameter MOST_LATENCY = 2) (
     input clk, input reset,
@@ -27,7 +27,7 @@ axi4lite_bridge bridge (
     .avm_m0_waitrequest(waitrequest)
 );
 
-// The cycle before.
+// The previous cycle.
 reg known = 0;
 reg last_reset, last_awvalid, last_awready, last_wvalid, last_wready, last_bvalid, last_bready, last_arvalid,
     last_arready, last_rvalid, last_rready, last_read, last_write, last_waitrequest;
@@ -46,8 +46,8 @@ always @(posedge clk) begin
     last_address <= address;
 end
 
-// Of each kind, what the agent has taken and the manager has not yet handed over, and what was handed over and is not
-// answered; of a read, what the agent answered.
+// For each kind, transfers that the agent has accepted and that wait for the manager's handshake, and handshakes that
+// wait for a response; for a read, the agent's answer.
 wire write_taken = write && !waitrequest, read_taken = read && !waitrequest;
 wire aw = awvalid && awready, w = wvalid && wready, b = bvalid && bready, ar = arvalid && arready, r = rvalid && rready;
 reg [1:0] writes_at_agent, addresses, words, responses, reads_at_agent, asked, outstanding;
@@ -92,28 +92,28 @@ always @* begin
 end
 
 always @* if (known && !last_reset && !reset) begin
-    // A transfer is of what stands at the manager's side, with all of it.
+    // A transfer has all that the manager presents.
     assert (!(read && write));
     if (write) assert (awvalid && wvalid && address == awaddr[ADDRESS_BITS+1:2] && writedata == wdata
         && byteenable == wstrb);
     if (read) assert (arvalid && address == araddr[ADDRESS_BITS+1:2]);
-    // Each write is one transfer, and is handed over once it was: none is lost, none comes twice.
+    // Each write is one transfer, followed by its handshakes: none is lost, none comes twice.
     assert (writes_at_agent <= 1 && aw == (writes_at_agent == 1) && w == aw);
     if (writes_at_agent == 1) assert (!write);
     assert (reads_at_agent <= 1 && ar == (reads_at_agent == 1));
     if (reads_at_agent == 1) assert (!read);
-    // Each has one response, after it was handed over.
+    // Each has one response, after its handshakes.
     assert (addresses <= 1 && words == addresses && bvalid == (addresses == 1));
     assert (asked <= 1 && outstanding <= 1);
     if (rvalid) assert (asked == 1 && !ar && rdata == (readdatavalid ? readdata : answer));
     if (readdatavalid) assert (rvalid);
     assert (bresp == 0 && rresp == 0);
-    // In time, since the manager last held up the response before.
+    // Within the bounds, from when the manager last held up the previous response.
     assert (write_age <= 2 * MOST_WAIT + 1);
     assert (read_age <= 2 * MOST_WAIT + MOST_LATENCY + 3);
 end
 
-// Responses, and transfers that have to wait, hold still.
+// Responses, and transfers that wait, are stable.
 always @* if (known && !last_reset && !reset) begin
     if (last_bvalid && !last_bready) assert (bvalid);
     if (last_rvalid && !last_rready) assert (rvalid && rdata == last_rdata);
@@ -122,7 +122,7 @@ always @* if (known && !last_reset && !reset) begin
 end
 always @* if (known && last_reset) assert (!bvalid && (!rvalid || readdatavalid));
 
-// What the manager sees are registers: no input of the same cycle passes through.
+// No input from the manager affects an output to it in the same cycle.
 (* hierconn *) wire \bridge.write_taken , \bridge.read_taken , \bridge.responding , \bridge.answer_kept ,
     \bridge.reading , \bridge.read_waits ;
 always @* if (known) begin
@@ -144,7 +144,7 @@ always @* if (known && !last_reset && !reset) begin
     assert (last_reset || reads_at_agent == (last_read && !last_waitrequest));
 end
 
-// A write of some bytes that waits, right after a response that waited; and a read that a write went before.
+// Covers a write of some bytes that waits, right after a response that waited, and a read after a write.
 reg waited_response = 0, waited_answer = 0;
 always @(posedge clk) begin
     waited_response <= !reset && ((last_bvalid && !last_bready && b) || (waited_response && !b));

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The beam engine's rectangle tests at its own widths, ray_tester or where FOLDED fold_tester, with any function
-// instead of multiplication: a rectangle is hit where the cross-multiplied definition says so of the ray from the
-// mirrored eye E': t = n / D'[a] with n = k - E'[a] is ahead, within the bounds, and beyond the last mirror or in its
-// plane.
+// The beam engine's rectangle tests at its own widths, ray_tester or, if FOLDED, fold_tester, with any function instead
+// of multiplication. A rectangle is hit if the cross-multiplied definition says so for the ray from the mirrored eye
+// E': t = n / D'[a] with n = k - E'[a] is ahead, within the bounds, and beyond the last mirror or in its plane.
 //
-// The walk, the offsets and T are those that walked-products, turned-walks and fold-products prove. Assumed of
-// products: the lemmas product-in-range, next-column (n D[p] = (n - T[a]) D[p] + T[a] D[p]) and ahead-of-mirror, and
-// that a product with 0 is 0. Assumed, as the lane has it: the rectangle and the camera are constant, as are D[x] and
-// D[z] unless TURN; each input comes in the cycle in which it is read; an axis of three; the last mirror was ahead.
+// The walk, the offsets and T are as walked-products, turned-walks and fold-products prove. Assumed about products: the
+// lemmas product-in-range, next-column (n D[p] = (n - T[a]) D[p] + T[a] D[p]) and ahead-of-mirror, and that a product
+// with 0 is 0. Assumed, as the lane guarantees: the rectangle and the camera are constant, as are D[x] and D[z] unless
+// TURN; each input comes in the cycle in which it is read; an axis is 0, 1 or 2; the last mirror was ahead.
 
 module beam_tester_products #(
     parameter FOLDED = 0, parameter STAGED = 0, parameter TURN = 0, parameter PATTERNS = 0,
@@ -90,7 +89,7 @@ wire signed [WALK_BITS-1:0] border = mirror_distance * d_a;
 wire signed [2*WALK_BITS-1:0] ways, lows, highs;
 wire [2*FOLD_BITS-1:0] offsets;
 
-// The definition: n, and on each of the other two axes whether the hit is within and beyond.
+// The definition: n, and on each of the other two axes whether the hit is within the bounds and beyond the mirror.
 wire signed [WIDE-1:0] n = k - eye_a;
 wire signed [FOLD_BITS-1:0] narrow_n = n;
 wire falls = d_a < 0, runs_back = falls != back_a, ahead = d_a != 0 && n != 0 && (n < 0) == runs_back;
@@ -115,8 +114,8 @@ generate
         assign highs[i*WALK_BITS +: WALK_BITS] = high_way;
         assign offsets[i*FOLD_BITS +: FOLD_BITS] = offset;
 
-        // D[a] (P - E) of the hit P and the camera E: by folded-bounds compared with the products of bounds and
-        // mirror. The design has it as a sum of the way, or its complement, and the offset.
+        // D[a] (P - E) of the hit P and the camera E, which folded-bounds compares with the products of bounds and
+        // mirror. The design computes it as the way, or its complement, plus the offset.
         wire signed [FOLD_BITS-1:0] from_eye = narrow_n * d, narrow_offset = offset;
         wire signed [FOLD_BITS-1:0] folded = (differ ? ~way : way) + narrow_offset;
         wire signed [SUM-1:0] w_from_eye = from_eye, point = differ ? w_moved - w_from_eye : w_moved + w_from_eye;
@@ -183,8 +182,8 @@ wire [4*WALK_BITS-1:0] bounds = {
 };
 wire [3*SLOPE_BITS-1:0] sizes_read = all_sizes[3*SLOPE_BITS*SLOPE_AT +: 3*SLOPE_BITS];
 
-// Words of records, the first field in the highest bits: see `raycaster.rtl.common.records`. A fold's fields for other
-// axes than the rectangle's are arbitrary.
+// Words of records, the first field in the highest bits: see `raycaster.rtl.common.records`. Fields of the fold for
+// other axes than that of the rectangle are arbitrary.
 localparam HIT_BITS = 2 + NUMERATOR_BITS + SLOPE_BITS + (PATTERNS ? 5 : 0) + INDEX_BITS;
 localparam WALK_WORD = (TURN ? 6 : 5) * WALK_BITS, FACET_WORD = 3 + DISTANCE_BITS + (TURN ? 0 : WALK_BITS) + LOOK_BITS;
 wire [WALK_WORD-1:0] walk = TURN ? {way_p, way_q, bounds} : {way_p, bounds};
@@ -244,7 +243,7 @@ always @* cover (age[HIT_AT] && steps[HIT_AT] && hit_valid && (!FOLDED || hit_at
 always @* cover (age[HIT_AT] && steps[HIT_AT] && hit_valid && !hit_at_mirror);
 endmodule
 
-// A value in this cycle, in the lowest bits, and in the cycles before.
+// A value in this cycle, in the lowest bits, and in the previous cycles.
 module delayed #(parameter BITS = 1, parameter CYCLES = 3) (
     input clk, input [BITS-1:0] now, output [BITS*(CYCLES+1)-1:0] all
 );

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The beam engine's colours against golden's definition, at full width: what the last ray sees shows alone, and behind
-// each mirror before it as many quarters as it mirrors, two where MIXES is 0; nothing is rounded before the end. From the
-// first ray that found nothing on, the background is seen.
+// The beam engine's colours compared with the golden model's definition, at full width. The blend starts with the
+// colour that the last ray sees; each mirror before it adds its colour and keeps as many quarters of the blend as it
+// mirrors, two if MIXES is 0. Nothing is rounded before the end. From the first ray that found nothing on, the
+// background is seen.
 //
-// Assumed, as the registers have it: no more reflections than the design has; a mirror of 0 to 4 quarters; a picture that
-// is constant while a pixel is computed. What is seen may change in every cycle.
+// Assumed, as the registers guarantee: no more reflections than the design has; mirrors of 0 to 4 quarters; a picture
+// that is constant while a pixel is computed. The seen colours may change in every cycle.
 
 module blend_exact #(
     parameter MIRRORS = 1, parameter MIXES = 0, parameter COLOUR_BITS = 8, parameter LATENCY = 2
@@ -40,7 +41,7 @@ colour_blend dut (
     .clk(clk), .seen(seen), .picture_reflections(reflections), .picture_background(background), .pixel_word(pixel)
 );
 
-// A product, number by number: the solver looks at one after the other.
+// A product with a case for each factor, so that the solver can treat them one by one.
 function [WIDE-1:0] times(input [2:0] factor, input [WIDE-1:0] value);
     times = factor == 4 ? value << 2 : factor == 3 ? (value << 1) + value : factor == 2 ? value << 1 : factor == 1 ? value : 0;
 endfunction

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The cell of a pattern at the engine's own widths, with any function in the place of multiplication. With w = E e + D n,
-// which is P e, the finder's digits and its remainder make w / 8 = e * digits + remainder, with the remainder below e;
-// so by the lemma division the digits are those of P, down to the smallest cell, and one of them is the cell's parity.
-// e * digits is added up digit by digit.
+// The cell of a pattern at the engine's own widths, with any function instead of multiplication. With w = E e + D n,
+// which is P e, the finder's digits and remainder satisfy w / 8 = e * digits + remainder, with the remainder below e.
+// So by the lemma division the digits are those of P, down to the smallest cell, and one of them is the cell's parity.
+// e * digits is summed up digit by digit.
 //
-// Assumed, as the control has it: P[v] is begun three cycles after P[u], and all holds still meanwhile. Assumed of what
-// is hit: it lies within the world, 0 <= P <= 511.
+// Assumed, as the control guarantees: P[v] starts three cycles after P[u], and all inputs are constant meanwhile. The
+// hit is assumed to be within the world, 0 <= P <= 511.
 
 module cell_products #(
     parameter COORDINATE_BITS = 9, parameter LOOK_BITS = 56, parameter SLOPE_BITS = 8, parameter EYE_BITS = 11
@@ -30,7 +30,7 @@ cell_finder dut (
 (* hierconn *) wire [SLOPE_BITS-1:0] \dut.slope_q , \dut.remainder , \dut.remainder_2 ;
 (* hierconn *) wire [DIGITS-1:0] \dut.digits , \dut.digits_2 ;
 
-// How long ago a point was begun; 0: none is under way.
+// Cycles since a point was started; 0: none is in progress.
 reg [1:0] age = 0;
 reg on_v = 1'b0;
 wire [3*EYE_BITS+4*SLOPE_BITS+EYE_BITS+7:0] still = {x, y, z, signs, dx, dy, dz, n, e, axis, cell_size};
@@ -46,7 +46,7 @@ always @* begin
     if (age != 0 && !load) assume (still == last_still);
 end
 
-// The definition of w; the product's operands are the design's own, which are what they should be.
+// The definition of w. The operands of its products are signals of the design, which are asserted to be right.
 wire signed [EYE_BITS-1:0] eye = store ? (axis == 2 ? y : z) : axis == 0 ? y : x;
 wire [SLOPE_BITS-1:0] slope = store ? (axis == 2 ? dy : dz) : axis == 0 ? dy : dx;
 wire back = store ? (axis == 2 ? signs[1] : signs[0]) : axis == 0 ? signs[1] : signs[2];
@@ -61,7 +61,7 @@ always @* if (load || store) begin
     assume (e != 0 && w >= 0 && w <= most);
 end
 
-// Long division, two digits a cycle: the digits of w that were taken in are e * quotient + remainder.
+// Long division, two digits per cycle: the digits of w so far are e * quotient + remainder.
 reg [POINT_BITS-1:0] point;
 reg [DIGITS-1:0] quotient;
 reg [POINT_BITS-1:0] multiple;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// One contest of the beam engine at full width, with any function in the place of multiplication: of two candidates the
-// nearer goes on, by cross-multiplication, the first where both are as near, and with all that belongs to it.
+// One contest of the beam engine at full width, with any function instead of multiplication: the nearer of two
+// candidates, by cross-multiplication, is passed on with all its fields, or the first one if they tie.
 //
-// Assumed of products, where a factor is wider than a multiplier, is the lemma product-in-parts. All may change in every
-// cycle.
+// Assumed about products with a factor wider than a multiplier is the lemma product-in-parts. All inputs may change in
+// every cycle.
 
 module contest_products #(
     parameter LATENCY = 2, parameter NUMERATOR_BITS = 10, parameter DENOMINATOR_BITS = 9, parameter REST_BITS = 4

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The divider: quotient * divisor + remainder = dividend with remainder < divisor, rounded as configured, or overflow.
 //
-// Assumed, as the control has it: store_quotient comes STEPS cycles after load_divider and at no other time, and
-// load_divider not before that. The operands are any, also those that overflow.
+// Assumed, as the control guarantees: store_quotient comes STEPS cycles after load_divider and at no other time, and
+// the next load_divider no earlier. The operands are arbitrary, including those that overflow.
 //
-// A product of two variables is hard for a solver, so in the second part multiplication is any function of which this is
-// known: with digits appended to a number, its product is the old one, shifted, with theirs added (`digits-appended`).
-// That is how a division delivers its digits, so the proof by induction needs additions only.
+// A product of two variables is hard for a solver. So in the second part multiplication is any function with one known
+// property: appending digits to a number shifts its product and adds that of the digits (`digits-appended`). As a
+// division delivers its digits in this way, the proof by induction needs only additions.
 
 module divider_exact #(
     parameter WIDTH = 9, parameter BITS = 1, parameter STEPS = 9, parameter NEAREST = 0, parameter PART = 2
@@ -49,7 +49,7 @@ always @* begin
     if (load_divider) assume (!busy || step == STEPS - 1);
 end
 
-// product times 2 ** BITS, plus as many digits times the divisor.
+// product times 2 ** BITS, plus BITS digits times the divisor.
 function [PRODUCT-1:0] append(input [PRODUCT-1:0] product, input [BITS-1:0] digits, input [8:0] by);
     integer i;
     begin
@@ -62,18 +62,18 @@ function [PRODUCT-1:0] times(input [DIGITS-1:0] number, input [8:0] by);
     times = number * by;
 endfunction
 
-// The result stands from the cycle after store_quotient on. `down` is the quotient rounded down.
+// The result is valid from the cycle after store_quotient. `down` is the quotient rounded down.
 reg [WIDTH-1:0] down;
 (* hierconn *) wire [DIGITS-1:0] \dut.last_pending ;
 always @(posedge clk) if (store_quotient) down <= \dut.last_pending ;
 reg [PRODUCT-1:0] result_product;  // before the last step
 wire [PRODUCT-1:0] last_step = append(result_product, down[BITS-1:0], result_divisor);
 wire [PRODUCT-1:0] multiple = times(down, result_divisor);
-// The second part proves that these two are one where the result counts; the third wants the simpler.
+// The second part proves that these two are equal where the result counts; the third part uses the simpler one.
 wire [PRODUCT-1:0] below = PART == 2 ? last_step : multiple;
 wire [PRODUCT-1:0] left = result_dividend - below;
 wire round_up = NEAREST && 2 * left >= result_divisor;
-wire too_large = result_dividend >> WIDTH >= result_divisor;  // so it is where the divisor is 0
+wire too_large = result_dividend >> WIDTH >= result_divisor;  // also for a divisor of 0
 wire [WIDTH:0] rounded = down + round_up;
 always @* if (stored && PART == 2) begin
     if (too_large) assert (overflow);
@@ -84,9 +84,9 @@ always @* if (stored && PART == 2) begin
     end
 end
 
-// Invariants for each step and for the result, in parts that are proved one after the other, each on the ground of
-// those before: the product and the remainder are the dividend's top digits; the product is that of the divisor and the
-// quotient's digits so far. The third part is the claim.
+// Invariants for each step and for the result, in parts that are proved in order, each on the basis of the previous
+// ones: product + remainder are the dividend's top digits; the product is the divisor times the quotient's digits so
+// far. The third part is the claim.
 (* hierconn *) wire [8:0] \dut.remainder , \dut.divisor_held , \dut.last_remainder ;
 (* hierconn *) wire [DIGITS-1:0] \dut.pending ;
 (* hierconn *) wire \dut.too_large ;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The mirrored eye at the engine's own widths: at the camera, and after each mirror at 2 k - E on the mirror's axis, in
-// numbers that hold any of them; which components of the slope have turned around, and what the ray left last.
+// The mirrored eye at the engine's own widths: it is at the camera, and after each mirror at 2 k - E on the mirror's
+// axis, computed without overflow. Also which components of the slope have turned around, and the mirror left last.
 //
-// Assumed, as the control has it: a ray is loaded before it is reflected; an axis of three. What a mirror beyond the
-// last reflection does is not looked at. All else may change in every cycle.
+// Assumed, as the control guarantees: a ray is loaded before it is reflected; an axis is 0, 1 or 2. Mirrors beyond the
+// last reflection are don't care. All other inputs may change in every cycle.
 
 module eye_exact #(
     parameter COORDINATE_BITS = 9, parameter LOOK_BITS = 24, parameter BASIS_BITS = 0, parameter EYE_BITS = 11,
@@ -42,7 +42,7 @@ generate
 endgenerate
 always @* assume (axis < 3);
 
-// The definition. As the design has them, x is the highest bit of three.
+// The definition. As in the design, x is the highest bit of three.
 reg loaded = 1'b0;
 reg [2:0] mirrors;
 reg signed [WIDE-1:0] eye_x, eye_y, eye_z;

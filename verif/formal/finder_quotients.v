@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The seed engine's intersection at full width, with any function in the place of multiplication and of division: hit,
-// depth and point are golden's a + b * (c - d) / e within the bounds, whatever products and quotients are. What the
-// quotient is, and when, divider-exact says. With patterns, a hit's parities are those of the cells that its point is in,
-// u by u and v by v.
+// The seed engine's intersection at full width, with any function instead of multiplication and division: hit, depth
+// and point are the golden model's a + b * (c - d) / e within the bounds, for any products and quotients. divider-exact
+// proves the quotient and its timing. With patterns, a hit's parities on u and on v are those of the point's cell.
 //
-// Assumed, as the control has it: a division starts two cycles after its plane was taken, with none taken between, lasts
-// STEPS cycles, and follows the one before after as many; it may be given up as it starts. The ray holds still while a
-// rectangle is under way. `offered` is the rectangle that has left the dividers.
+// Assumed, as the control guarantees: a division starts two cycles after its plane was taken, with none taken in
+// between, lasts STEPS cycles, and starts at least as many after the previous one; it may be abandoned at its start.
+// The ray is constant while a rectangle is in progress. `offered` is the rectangle that has left the dividers.
 
-// A product of a width that nothing else has, which is any function; overflow and quotient are bits of it.
+// A product of a width used nowhere else, so it is any function; overflow and quotient are bits of it.
 module any_division #(parameter POSITION_BITS = 9) (
     input [POSITION_BITS+8:0] dividend, input [8:0] divisor, output [POSITION_BITS:0] result
 );
@@ -26,7 +25,7 @@ module finder_quotients #(
 );
 localparam P = POSITION_BITS, RECT_BITS = LOOK_BITS + 47, RAY_BITS = 3 * P + 30;
 
-// How many cycles ago planes were taken, and divisions started.
+// Planes taken and divisions started in the previous cycles, one bit per cycle.
 reg [1:0] found = 0;
 reg [STEPS+1:0] loaded = 0;
 wire store = loaded[STEPS-1], verdict = loaded[STEPS+1];
@@ -48,7 +47,7 @@ generate
     end
 endgenerate
 
-// c - d: how far the plane is.
+// c - d: the distance of the plane.
 function signed [P:0] numerator(
     input [RECT_BITS-1:0] of, input signed [P:0] from_x, input signed [P:0] from_y, input signed [P:0] from_z
 );
@@ -62,7 +61,7 @@ function [P-1:0] size(input signed [P:0] number);
     size = number < 0 ? -number : number;
 endfunction
 
-// Golden's operands: the axis of the plane divides (e, and d beside it); u is x, or y where that is the axis.
+// The golden model's operands: e and d are those of the plane's axis; u is x, or y if the plane is on x.
 wire [1:0] axis = rect[RECT_BITS-1 -: 2];
 wire signed [P:0] n = numerator(rect, x, y, z);
 wire [8:0] e = axis == 0 ? dx : axis == 1 ? dy : dz, b_u = axis == 0 ? dy : dx, b_v = axis < 2 ? dz : dy;
@@ -75,7 +74,7 @@ wire [P:0] result_u, result_v;
 any_division #(P) golden_u (.dividend(product_u), .divisor(e), .result(result_u));
 any_division #(P) golden_v (.dividend(product_v), .divisor(e), .result(result_v));
 
-// What follows a rectangle into the dividers and out of them.
+// Values that follow a rectangle into the dividers and out of them.
 localparam WAY_BITS = 2 * P + 5;
 wire [WAY_BITS-1:0] ways = {towards, u_negative, v_negative, result_u, result_v};
 reg [RECT_BITS-1:0] taken_rect, divided_rect, offered;
@@ -95,7 +94,7 @@ always @(posedge clk) begin
     if (store) {offered, offered_ways} <= {divided_rect, divided_ways};
 end
 
-// Golden's verdict.
+// The golden model's verdict.
 wire ahead, back_u, back_v;
 wire [P:0] far_u, far_v;
 assign {ahead, back_u, back_v, far_u, far_v} = offered_ways;
@@ -123,7 +122,7 @@ generate
             .rect_word(rect), .offered_word(offered), .ray_word(ray_word), .slope_dx(dx), .slope_dy(dy), .slope_dz(dz),
             .hit(hit), .depth(depth), .odd_u(odd_u), .odd_v(odd_v), .towards(is_towards), .point_word(point)
         );
-        // Below the bounds and the second colour is log2 of a cell's size, less three.
+        // Above the bounds and the second colour: log2 of a cell's size, minus three.
         wire [2:0] cell_size = offered[60 +: 3];
         wire [8:0] cell_u = at_u >> FRACTION_BITS + 3 + cell_size, cell_v = at_v >> FRACTION_BITS + 3 + cell_size;
         always @* if (verdict && hit) assert (odd_u == cell_u[0] && odd_v == cell_v[0]);
@@ -142,8 +141,8 @@ always @* if (verdict) begin
     if (hit) assert (depth == golden_depth && point == {golden_x, golden_y, golden_z});
 end
 
-// Both axes' units, and the dividers' contract: a result is of the operands at load_divider, and stands from the cycle
-// after its store on.
+// The units of both axes, and the dividers' contract: a result belongs to the operands at load_divider, and is valid
+// from the cycle after its store.
 (* hierconn *) wire [8:0] \patterns.dut.intersection_helper_0_i.started_b , \patterns.dut.intersection_helper_1_i.started_b ;
 (* hierconn *) wire [8:0] \patterns.dut.intersection_helper_0_i.started_e , \patterns.dut.intersection_helper_1_i.started_e ;
 (* hierconn *) wire [P+1:0] \patterns.dut.intersection_helper_0_i.started_word , \patterns.dut.intersection_helper_1_i.started_word ;
@@ -173,7 +172,7 @@ generate
         end
         always @* assume ({overflow, quotient} == result_stored);
 
-        // Invariants: what is on its way is of the rectangle that came in.
+        // Invariants: values in flight belong to the rectangle that came in.
         wire [P:0] far_taken = unit ? taken_ways[P:0] : taken_ways[2*P+1 -: P+1];
         wire [P:0] far_divided = unit ? divided_ways[P:0] : divided_ways[2*P+1 -: P+1];
         wire [P+8:0] product_taken = unit ? taken_product_v : taken_product_u;

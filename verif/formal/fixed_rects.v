@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A fixed scene's table against the general memory into which that scene's words were written: every engine asks both
-// for any rectangle at any time, and gets the same.
+// A fixed scene's table compared with the general memory into which the scene's words were written: an engine may fetch
+// any rectangle at any time, and gets the same from both.
 //
-// Assumed: what is written are words of the scene, whole, each in its place; when, in which order and how often is
-// arbitrary, as commit and StartScreen are, but that no commit comes in the cycle after a write, which is proved of the
-// registers; one cycle of reset at first, which may come again. Engines are the same modules behind either, so this is
-// what a fixed scene changes.
+// Assumed: only whole words of the scene are written, each in its place, at any time, in any order and any number of
+// times. Commit and StartScreen are arbitrary, except that no commit comes in the cycle after a write, as is proved for
+// the registers. One cycle of reset at first, which may come again. Behind either, an engine consists of the same
+// modules, so this is all that a fixed scene changes.
 
 module fixed_rects #(
     parameter INDEX_BITS = 2, parameter ADDRESS_BITS = 5, parameter RECT_BITS = 71, parameter LATENCY = 1,
@@ -18,7 +18,7 @@ module fixed_rects #(
     input write, input [1:0] slot, input [1:0] word, input commit, input go_live
 );
 localparam TABLE = 16;
-localparam [95:0] KEPT = {CORNER_BITS, CORNER_BITS, SURFACE_BITS};  // the bits that hold anything
+localparam [95:0] KEPT = {CORNER_BITS, CORNER_BITS, SURFACE_BITS};  // the implemented bits
 localparam [95:0] SCENE_0 = {CORNER_0_0, CORNER_1_0, SURFACE_0}, SCENE_1 = {CORNER_0_1, CORNER_1_1, SURFACE_1},
     SCENE_2 = {CORNER_0_2, CORNER_1_2, SURFACE_2};
 wire [95:0] words = slot == 0 ? SCENE_0 : slot == 1 ? SCENE_1 : SCENE_2;
@@ -44,7 +44,7 @@ always @* begin
     assume (!(commit && wrote));
 end
 
-// Which words of a slot are written, and of which slots a copy is the scene's.
+// Words of each slot that are written, and slots whose copies are from the scene.
 reg [2:0] written_0, written_1, written_2, pending, live;
 wire [2:0] shadow = {&written_2, &written_1, &written_0};
 always @(posedge clk) begin
@@ -58,7 +58,7 @@ always @(posedge clk) begin
     end
 end
 
-// Whether what is at hand was the scene's when it was fetched.
+// True if the rectangle at the outputs was from the scene when it was fetched.
 reg fetched = 0, held = 0;
 always @(posedge clk) begin
     if (fetch) fetched <= live[index] && running;
@@ -100,14 +100,14 @@ fixed_rects_slot #(RECT_BITS, SCENE_2, KEPT) slot_2 (
     \memory.rect_slot_2_i.live , \memory.rect_slot_2_i.shadow_usable , \memory.rect_slot_2_i.pending_usable
 );
 
-// Any of them, after any other.
+// Covers fetches of one rectangle after another.
 reg [INDEX_BITS-1:0] before = 0;
 always @(posedge clk) if (fetch) before <= index;
 always @* cover (known && fetch && index == 2 && before == 0);
 always @* cover (known && fetch && index == 0 && before == 2);
 endmodule
 
-// Of one slot: what is written of it, and each copy that is the scene's, sorted by another sorter here.
+// One slot: its written words, and each copy that is from the scene, compared with the result of a second sorter.
 module fixed_rects_slot #(parameter RECT_BITS = 71, parameter [95:0] SCENE = 0, parameter [95:0] KEPT = 0) (
     input running, input wrote, input storing, input [95:0] latest, input [2:0] words, input shadow, input pending,
     input live, input written, input [95:0] kept,

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The beam engine's folded ray against the definition, with a division: the ray from the mirrored eye, P = E' + D' t, is
-// ahead, within the bounds, and beyond the last mirror on the side that the slope points to: strictly, or in the mirror's
-// point where the ray has met no mirror on the rectangle's axis there.
+// The beam engine's folded ray compared with the definition, with a division: P = E' + D' t, on the ray from the
+// mirrored eye, is ahead, within the bounds, and beyond the last mirror on the side that the slope points to: strictly,
+// or in the mirror's plane if the ray has met no mirror on the rectangle's axis there.
 //
-// One ray, one rectangle and up to two mirrors hold still; the pipeline is long enough after a few cycles. Assumed, as the
-// engine has it: bounds in order, axes of three, and mirrors that the ray meets, one after the other, or in one point where
-// they are on different axes. VIEW_DISTANCE is the slope along x, 0 for any, as a camera that turns has it.
+// One ray, one rectangle and up to two mirrors are constant, and after a few cycles have passed the pipeline. Assumed,
+// as the engine guarantees: bounds in order, axes 0 to 2, and mirrors that the ray meets one after the other, or in one
+// point if they are on different axes. VIEW_DISTANCE is the slope along x; 0 means any slope, as with a camera that
+// turns.
 
 module fold_exact #(
     parameter COORDINATE_BITS = 2, parameter SLOPE_BITS = 2, parameter VIEW_DISTANCE = 2, parameter MIRRORS = 1,
@@ -20,7 +21,7 @@ localparam TURN_BITS = COORDINATE_BITS + 2, WIDE = 2 * (COORDINATE_BITS + SLOPE_
 wire signed [SLOPE_BITS:0] dx = VIEW_DISTANCE == 0 ? any_dx : VIEW_DISTANCE;
 (* anyconst *) reg [1:0] axis, axis_1, axis_2, count;
 
-// Everything wide enough for any value; 0, 1, 2 are x, y, z.
+// All numbers are wide enough for any value; 0, 1, 2 are x, y, z.
 function signed [WIDE-1:0] of_three(input [1:0] which, input signed [WIDE-1:0] first, input signed [WIDE-1:0] second,
                                     input signed [WIDE-1:0] third);
     of_three = which == 0 ? first : which == 1 ? second : third;
@@ -42,7 +43,7 @@ wire signed [WIDE-1:0] z_2 = two && axis_2 == 2 ? 2 * k_2 - z_1 : z_1;
 wire signed [WIDE-1:0] dx_2 = two && axis_2 == 0 ? -dx_1 : dx_1, dy_2 = two && axis_2 == 1 ? -dy_1 : dy_1;
 wire signed [WIDE-1:0] dz_2 = two && axis_2 == 2 ? -dz_1 : dz_1;
 
-// How far each mirror is, over the slope along its axis: it must be met, and the second after the first.
+// The distance of each mirror, and the slope along its axis: the ray must meet it, and the second after the first.
 wire signed [WIDE-1:0] n_1 = k_1 - of_three(axis_1, eye_x, eye_y, eye_z), e_1 = of_three(axis_1, view, wide_dy, wide_dz);
 wire signed [WIDE-1:0] n_2 = k_2 - of_three(axis_2, x_1, y_1, z_1), e_2 = of_three(axis_2, dx_1, dy_1, dz_1);
 wire met_1 = n_1 * e_1 > 0;
@@ -56,8 +57,8 @@ always @* begin
     if (two) assume (met_2);
 end
 
-// What the engine feeds its blocks: distances from the camera, and their products with the slope. Its p is y unless the
-// plane is on y, then x; its q is z unless the plane is on z, then x. The rectangle's bounds are in the order x, y, z.
+// Inputs of the engine's blocks: distances from the camera, and their products with the slope. p is y unless the plane
+// is on y, then x; q is z unless the plane is on z, then x. The rectangle's bounds are in the order x, y, z.
 wire signed [WIDE-1:0] low_0 = {1'b0, u_low}, high_0 = {1'b0, u_high}, low_1 = {1'b0, v_low}, high_1 = {1'b0, v_high};
 wire swapped = axis == 2;
 wire [1:0] on_p = axis == 1 ? 0 : 1, on_q = axis == 2 ? 0 : 2;
@@ -77,7 +78,7 @@ localparam FOLD_WORD = 7 + 3 * TURN_BITS + 6 * FOLD_BITS + 3 * WALK_BITS + 2 + C
 wire [FOLD_WORD-1:0] fold;
 
 // Words of records, the first field in the highest bits: see `raycaster.rtl.common.records`. Before the second mirror the
-// ray has met the first one: the image of the room is where that moves the eye to.
+// ray has met the first one, which moves the image of the room as it moves the eye.
 wire [2:0] before = two ? 3'b100 >> axis_1 : 3'b000;
 wire signed [WIDE-1:0] moved_x = two ? x_1 - eye_x : 0, moved_y = two ? y_1 - eye_y : 0, moved_z = two ? z_1 - eye_z : 0;
 ray_fold folder (
@@ -111,7 +112,7 @@ fold_tester folded (
 );
 assign {hit, hit_at_mirror, numerator, denominator, hit_index} = one ? seen_folded : seen_at_once;
 
-// By the definition: t = n / e, and the whole part and the rest of the way on p and on q from the mirrored eye.
+// The definition: t = n / e, and the whole part and the rest of the way on p and on q from the mirrored eye.
 wire signed [WIDE-1:0] eye_a = of_three(axis, x_2, y_2, z_2), slope = of_three(axis, dx_2, dy_2, dz_2);
 wire signed [WIDE-1:0] eye_p = of_three(on_p, x_2, y_2, z_2), slope_p = of_three(on_p, dx_2, dy_2, dz_2);
 wire signed [WIDE-1:0] eye_q = of_three(on_q, x_2, y_2, z_2), slope_q = of_three(on_q, dx_2, dy_2, dz_2);
@@ -148,6 +149,6 @@ always @* if (age == 7) begin
     if (hit) assert (numerator == n && denominator == e && hit_index && hit_at_mirror == at_mirror);
 end
 
-// Hits with as many mirrors as there are.
+// Covers a hit after all the mirrors.
 always @* cover (age == 7 && hit && count == MIRRORS);
 endmodule

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // A fold at the engine's own widths, with any function instead of multiplication: after each mirror the camera plus T
-// is the mirrored eye, 2 k - E' on the mirror's axis, and the offsets are T[p] D[a] -+ T[a] D[p] of the lemma
-// folded-way, one more where the ray runs the other way on just one of the two axes.
+// is the mirrored eye, 2 k - E' on the mirror's axis, and the offsets are T[p] D[a] -+ T[a] D[p] as in the lemma
+// folded-way, plus one if the ray is reversed on exactly one of the two axes.
 //
-// Assumed of products: the lemma product-in-range, and that a product with 0 is 0. Assumed of the image before the
-// mirror is what is proved of the image after it: its range, by the number of mirrors so far. Assumed, as the lane has
-// it: an axis of three, and a slope that is read in the cycle after the mirror. All inputs may change in every cycle;
-// the mirror's number may not.
+// Assumed about products: the lemma product-in-range, and that a product with 0 is 0. Assumed about the image before
+// the mirror is what is proved about the image after it: its range, by the number of mirrors so far. Assumed, as the
+// lane guarantees: an axis is 0, 1 or 2, and the slope is read in the cycle after the mirror. All inputs except the
+// number of the mirror may change in every cycle.
 
 module fold_products #(
     parameter COORDINATE_BITS = 9, parameter SLOPE_BITS = 9, parameter STEEPEST = 320, parameter REFLECTIONS = 1,
@@ -21,7 +21,7 @@ module fold_products #(
 localparam LAST = (1 << COORDINATE_BITS) - 1, WIDE = TURN_BITS + 3, DISTANCE_BITS = COORDINATE_BITS + 1;
 localparam FIELDS = 6, SUM = FOLD_BITS + 2;
 
-// Vectors have x in the lowest bits, the design's words in the highest.
+// Vectors have x in the lowest bits; words of the design have it in the highest.
 wire [3*WIDE-1:0] eye, mirrored, moved, reflected;
 wire [3*TURN_BITS-1:0] turn;
 wire [2:0] on_axis = 1 << axis, back_after = back ^ on_axis, met_after = at_mirror ? met | on_axis : on_axis;
@@ -30,7 +30,7 @@ wire signed [WIDE-1:0] k = {1'b0, plane}, distance = k - $signed(eye[axis*WIDE +
 always @* assume (axis < 3 && number >= 1 && number <= REFLECTIONS);
 
 // An even number of mirrors on an axis moves the eye by twice a distance for each pair; an odd number is one mirror
-// more, and turns the axis. So T fits its bits, and the eye is in the range of the lemma eye-in-range.
+// more, which turns the axis. So T fits its bits, and the eye is in the range of the lemma eye-in-range.
 function in_reach(input signed [WIDE-1:0] camera, input signed [WIDE-1:0] place, input turned, input [2:0] mirrors);
     reg signed [WIDE-1:0] even, odd;
     begin
@@ -105,7 +105,7 @@ always @* if (age[2]) begin
     assert (fold_mirror_back == runs_back_3);
 end
 
-// p is y unless the plane is on y, then x; q is z unless the plane is on z, then x: first p's of the three, then q's.
+// p is y unless the plane is on y, then x; q is z unless the plane is on z, then x: first p for all three axes, then q.
 function [1:0] along(input integer field);
     along = field == 1 || field == 5 ? 0 : field < 3 ? 1 : 2;
 endfunction

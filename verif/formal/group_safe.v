@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Culling at full width: a rectangle that a ray of the group hits is never left out. `ray` is any one of the group's, so
-// what is asserted of it holds of each.
+// Culling at full width: a rectangle that a ray of the group hits is never left out. `ray` is an arbitrary ray of the
+// group, so what is asserted for it holds for all.
 //
-// Products and bounds are any numbers that grow along the row; that they are products is row-setup's. Assumed of them is
-// the lemma between, and that they fit their bits at the group's end, as at its start.
+// Products and bounds are arbitrary numbers that grow linearly along the row; row-setup proves that they are products.
+// Assumed about them: the lemma between, and that they fit their bits at the group's end, as at its start.
 
 module group_safe #(
     parameter UNITS = 4, parameter UNIT_BITS = 2, parameter RECTANGLES = 12, parameter INDEX_BITS = 4,
@@ -23,7 +23,7 @@ group_tester dut (
     .facet_word({usable, axis, distance, way_q}), .growth_word(growth), .start_word(start)
 );
 
-// The five, the way along p and the bounds low and high on p and on q, at both ends of the group, and at this ray.
+// Five values, the way along p and the low and high bounds on p and on q, at both ends of the group and at `ray`.
 wire signed [WALK_BITS-1:0] first [0:4], there [0:4];
 wire signed [WIDE-1:0] last [0:4];
 generate
@@ -49,7 +49,7 @@ wire signed [SLOPE_BITS:0] column_there = column + $signed({1'b0, ray});
 wire forward = axis == 1 ? column_there > 0 : axis == 2 ? row > 0 : 1'b1;
 wire back = axis == 1 ? column_there < 0 : axis == 2 ? row < 0 : 1'b0;
 
-// The cross-multiplied definition: ahead, and within the bounds, which a slope below 0 turns around.
+// The cross-multiplied definition: ahead, and within the bounds, which a negative slope swaps.
 wire hits_forward = distance > 0 && forward && there[1] <= there[0] && there[0] <= there[2] && there[3] <= way_q
     && way_q <= there[4];
 wire hits_back = distance < 0 && back && there[2] <= there[0] && there[0] <= there[1] && there[4] <= way_q

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The processor's way to an Avalon-MM agent: each of its accesses is one transfer, whatever the agent does.
+// The path from the processor to an Avalon-MM agent: each access is one transfer, whatever the agent does.
 //
-// Assumed of the processor is that an access holds still until it is ready; of the agent, that it answers nothing but a
-// read that it took in an earlier cycle, and that waitrequest and the time to an answer are bounded, without which
-// nothing would be in time; one cycle of reset at first, which may come again at any time and ends every access.
+// Assumed: the processor holds an access until it is ready. The agent answers only reads that it accepted in an earlier
+// cycle; waitrequest and the time to an answer are bounded, else no access would be. One cycle of reset at first, which
+// may come again at any time and ends every access.
 
 module host_transfers #(
     parameter ADDRESS_BITS = 6, parameter MOST_WAIT = 3, parameter MOST_LATENCY = 3
@@ -24,7 +24,7 @@ avalon_host host (
     .avm_m0_waitrequest(waitrequest)
 );
 
-// The cycle before.
+// The previous cycle.
 reg known = 0;
 reg last_reset, last_select, last_ready, last_read, last_write, last_waitrequest;
 reg [3:0] last_strobe, last_byteenable;
@@ -38,8 +38,8 @@ always @(posedge clk) begin
     {last_byteenable, last_bus_address, last_writedata} <= {byteenable, bus_address, writedata};
 end
 
-// What the present access has had so far: transfers that were taken, cycles, cycles of waitrequest, and cycles since a
-// read was taken that is not answered.
+// The current access so far: accepted transfers, cycles, cycles of waitrequest, and cycles since an unanswered read was
+// accepted.
 wire taken = (read || write) && !waitrequest;
 reg outstanding;
 reg [1:0] transfers;
@@ -68,26 +68,26 @@ always @* begin
 end
 
 always @* if (known && !reset) begin
-    // Read and write exclude each other, and nobody asks but the processor.
+    // Read and write exclude each other, and come only with an access of the processor.
     assert (!(read && write));
     if (read) assert (select && strobe == 0);
     if (write) assert (select && strobe != 0);
-    // A transfer says what the access says.
+    // A transfer has the address, bytes and data of the access.
     if (read || write) assert (bus_address == address);
     if (read) assert (byteenable == 4'b1111);
     if (write) assert (byteenable == strobe && writedata == data);
-    // One read at a time is outstanding, and nothing overtakes it.
+    // At most one read is outstanding, and nothing overtakes it.
     if (outstanding) assert (!read && !write);
-    // An access is ready once, with one transfer: no write lost or doubled, no read answered by another's answer.
+    // An access is ready once, with one transfer: no write is lost or repeated, no read gets the answer of another.
     if (ready) assert (select && transfers + taken == 1);
     if (!ready) assert (!(write && taken) && transfers + taken <= 1);
     if (ready && strobe == 0) assert (outstanding && readdatavalid && word == readdata);
     if (readdatavalid) assert (ready);
-    // In time.
+    // Within the bounds.
     if (select) assert (age <= MOST_WAIT + MOST_LATENCY);
 end
 
-// A transfer holds still while it has to wait.
+// A transfer is stable while it waits.
 always @* if (known && !reset && !last_reset && (last_read || last_write) && last_waitrequest)
     assert (read == last_read && write == last_write && bus_address == last_bus_address
         && byteenable == last_byteenable && (!write || writedata == last_writedata));
@@ -104,7 +104,7 @@ always @* if (known && !reset && !last_reset) begin
 end
 always @* if (known && last_reset) assert (!\host.waiting && !outstanding && transfers == 0 && age == 0 && waited == 0);
 
-// A read that waits and is answered late, and a write of some bytes that waits, right after it.
+// Covers a read that waits and is answered late, and right after it a write of some bytes that waits.
 reg was_read = 0;
 always @(posedge clk) was_read <= !reset && ready && strobe == 0 && waited == MOST_WAIT && since == MOST_LATENCY;
 reg after_read = 0;

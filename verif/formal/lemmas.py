@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""What the exact engine rests on beyond its Verilog: facts of numbers of any size, each proved by two solvers.
+"""Facts about numbers of any size that the engines rely on beyond their Verilog, each proved by two solvers.
 
-The proofs at full width compare the hardware's products and comparisons with the specification's, and know nothing of
-multiplication. These facts lead from there to the definition, which is of rational numbers.
+The proofs at full width compare products and comparisons in the hardware with those in the specification, and know
+nothing about multiplication. These facts lead from there to the definition, which uses rational numbers.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ SOLVERS = ("z3", "cvc5")
 
 @dataclass(frozen=True)
 class Lemma:
-    """A fact of numbers.
+    """A fact about numbers.
 
-    `given` and `then` are written with Python's operators: what is proved, what a test evaluates and what a page shows
-    is one text. == between two conditions is "if and only if"; there is no division.
+    `given` and `then` are written with Python's operators: the same text is proved, evaluated by a test and shown on a
+    page. == between two conditions is "if and only if"; there is no division.
 
     Attributes:
-        label: its name.
-        claim: in a few words.
-        variables: separated by spaces.
+        label: name of the lemma.
+        claim: the claim in a few words.
+        variables: names of the variables, separated by spaces.
         given: the hypotheses.
         then: the conclusion.
-        integers: whether the variables are integers; else they are real numbers, so integers and rationals too.
-        truths: variables that are true or false.
+        integers: True if the variables are integers; else they are real numbers, which include integers and rationals.
+        truths: names of variables that are true or false.
     """
 
     label: str
@@ -52,7 +52,7 @@ class Lemma:
     small: ClassVar[bool] = True
 
     def smt(self) -> str:
-        """SMT-LIB that is unsatisfiable where the lemma holds."""
+        """Return SMT-LIB that is unsatisfiable if the lemma holds."""
         sort = "Int" if self.integers else "Real"
         names = {name: sort for name in self.variables.split()} | {name: "Bool" for name in self.truths.split()}
         lines = ["(set-logic ALL)", "(set-option :produce-models true)"]
@@ -72,7 +72,7 @@ OPERATORS = {
 
 
 def _smt(node: ast.expr, point: str) -> str:
-    """SMT-LIB of an expression, whose constants end with `point`."""
+    """Translate an expression to SMT-LIB; constants end with `point`."""
     match node:
         case ast.Name(name):
             return name
@@ -89,19 +89,19 @@ def _smt(node: ast.expr, point: str) -> str:
             pairs = zip(operators, sides, sides[1:], strict=False)
             parts = [f"({OPERATORS[type(operator)]} {one} {other})" for operator, one, other in pairs]
             return parts[0] if len(parts) == 1 else f"(and {' '.join(parts)})"
-    raise ValueError(f"{ast.unparse(node)} is nothing that a lemma has")
+    raise ValueError(f"{ast.unparse(node)} is not allowed in a lemma")
 
 
 def prove_lemma(lemma: Lemma, directory: Path, timeout: float) -> tuple[str, str]:
-    """Have both solvers prove it.
+    """Prove a lemma with both solvers.
 
     Args:
-        lemma: what to prove.
-        directory: replaced; holds what the solvers read.
-        timeout: seconds that either may take.
+        lemma: the lemma to prove.
+        directory: replaced; holds the input of the solvers.
+        timeout: time limit of each solver in seconds.
 
     Returns:
-        "proved", or which solver did what instead; and what the solver found, where that is a counterexample.
+        "proved", or the solver that did not prove it and why; and its counterexample, if it found one.
     """
     emptied(directory)
     path = directory / "lemma.smt2"
@@ -118,13 +118,13 @@ def _z3(path: Path, timeout: float) -> tuple[str, str]:
         done = run_program(["z3", path.name], path.parent, timeout)
     except subprocess.TimeoutExpired:
         return "timeout", ""
-    # After "unsat" there are no values, and it complains.
+    # After "unsat" there are no values, and z3 reports an error.
     verdict, _, model = done.stdout.partition("\n")
     return verdict, model
 
 
 def _cvc5(path: Path, timeout: float) -> tuple[str, str]:
-    cvc5: Any = importlib.import_module("cvc5")  # an optional package, which says nothing of its types
+    cvc5: Any = importlib.import_module("cvc5")  # an optional package without type information
     solver = cvc5.Solver()
     solver.setOption("tlimit-per", str(round(timeout * 1000)))
     parser = cvc5.InputParser(solver)
@@ -141,16 +141,16 @@ def _cvc5(path: Path, timeout: float) -> tuple[str, str]:
     return verdict, ""
 
 
-# E is the eye, D the slope, t the ray's parameter, P = E + D t; k is a plane, n and e are such that t = n/e; lo and hi,
-# near and far are bounds. An axis that is turned around has its coordinates complemented: ~x = -x - 1.
+# E is the eye, D the slope, t the ray's parameter, P = E + D t; k is a plane, and t = n/e; lo and hi, near and far are
+# bounds. On an axis that is turned around, coordinates are complemented: ~x = -x - 1.
 LEMMAS: tuple[Lemma, ...] = (
     Lemma(
-        "bounds", "lo <= E + D n/e <= hi is (lo - E) e <= D n <= (hi - E) e",
+        "bounds", "lo <= E + D n/e <= hi is equivalent to (lo - E) e <= D n <= (hi - E) e",
         "lo hi E D n e t", ("e > 0", "t*e == n"),
         "(lo <= E + D*t <= hi) == ((lo - E)*e <= D*n <= (hi - E)*e)",
     ),
     Lemma(
-        "plane-ahead", "a plane is ahead, t > 0, where n and e have one sign; with e > 0, where n > 0",
+        "plane-ahead", "a plane is ahead, t > 0, if n and e have the same sign; with e > 0, if n > 0",
         "n e t", ("e != 0", "t*e == n"),
         "((t > 0) == (n*e > 0)) and (not e > 0 or (t > 0) == (n > 0))",
     ),
@@ -160,28 +160,28 @@ LEMMAS: tuple[Lemma, ...] = (
         "t*(-D) == (-k - 1) - (-E - 1)",
     ),
     Lemma(
-        "turned-bounds", "with D[u] = -d, complemented: the bounds change places, and P = E + D t becomes ~E + d t",
+        "turned-bounds", "with D[u] = -d, complemented: the bounds are swapped, and P = E + D t becomes ~E + d t",
         "lo hi E d P t", ("P == E + -d*t",),
         "(lo <= P <= hi) == (-hi - 1 <= (-E - 1) + d*t <= -lo - 1)",
     ),
     Lemma(
-        "passed-bound", "a near bound behind the eye is passed; none is within a far bound behind it",
+        "passed-bound", "every point is past a near bound behind the eye, and none is within a far bound behind it",
         "near far n e d", ("n > 0", "e > 0", "d >= 0"),
         "(near >= 0 or near*e <= d*n) and (far >= 0 or not d*n <= far*e)",
     ),
     Lemma(
-        "nearer", "n1/e1 < n2/e2 is n1 e2 < n2 e1, and equal where those are",
+        "nearer", "n1/e1 < n2/e2 is equivalent to n1 e2 < n2 e1, and so are their equalities",
         "n1 e1 t1 n2 e2 t2", ("e1 > 0", "e2 > 0", "t1*e1 == n1", "t2*e2 == n2"),
         "((t1 < t2) == (n1*e2 < n2*e1)) and ((t1 == t2) == (n1*e2 == n2*e1))",
     ),
     Lemma(
-        "kept-is-nearest", "what takes the kept hit's place is nearer than all that the kept one was no further than",
+        "kept-is-nearest", "a hit that replaces the kept one is nearer than all hits that were no nearer than that",
         "n1 e1 t1 n2 e2 t2 n3 e3 t3",
         ("e1 > 0", "e2 > 0", "e3 > 0", "t1*e1 == n1", "t2*e2 == n2", "t3*e3 == n3", "n1*e2 < n2*e1", "n2*e3 <= n3*e2"),
         "n1*e3 < n3*e1",
     ),
     Lemma(
-        "depth", "of two hits the nearer along x is that of the lesser t, where D[x] is not 0",
+        "depth", "the nearer of two hits along x has the smaller t, if D[x] is not 0",
         "D t1 t2", ("D != 0", "t1 >= 0", "t2 >= 0"),
         "(D*t1*(D*t1) < D*t2*(D*t2)) == (t1 < t2)",
     ),
@@ -191,7 +191,7 @@ LEMMAS: tuple[Lemma, ...] = (
         "E + D*c*s1 == E + D*t1 and (s1 < s2) == (t1 < t2)",
     ),
     Lemma(
-        "mirrored-eye", "reflected at k = E + D m: after s more, the ray is where the one from 2k - E, -D is at m + s",
+        "mirrored-eye", "reflected at k = E + D m: after s more, the ray is where that from 2k - E with -D is at m + s",
         "E D k m s", ("k == E + D*m",),
         "k + -D*s == (2*k - E) + -D*(m + s)",
     ),
@@ -201,54 +201,54 @@ LEMMAS: tuple[Lemma, ...] = (
         "k - (2*k - E) == -(k - E)",
     ),
     Lemma(
-        "beyond-on-the-same-axis", "planes n and m on one axis: t = n/e is beyond m/e where n > m",
+        "beyond-on-the-same-axis", "planes n and m on one axis: t = n/e is beyond m/e if n > m",
         "n m e t s", ("e > 0", "t*e == n", "s*e == m"),
         "((t > s) == (n > m)) and ((t == s) == (n == m))",
     ),
     Lemma(
-        "beyond-on-another-axis", "beyond a mirror m ahead on u, t > m/d, where d n > m e; in its plane where equal",
+        "beyond-on-another-axis", "beyond a mirror m ahead on u, t > m/d, if d n > m e; in its plane if equal",
         "n e t m d s", ("e > 0", "d > 0", "t*e == n", "s*d == m"),
         "((t > s) == (d*n > m*e)) and ((t == s) == (d*n == m*e))",
     ),
     Lemma(
-        "order-kept", "two distances compare as their products with one e > 0",
+        "order-kept", "two distances compare as their products with the same e > 0",
         "a b e", ("e > 0",),
         "((a < b) == (a*e < b*e)) and ((a == b) == (a*e == b*e))",
     ),
     Lemma(
-        "corner-rule", "t > s, or t = s on an axis not met there, is m e <= d n but for equality on one that was met",
+        "corner-rule", "t > s, or t = s on an axis not met there, is m e <= d n, except equality on a met axis",
         "n e t m d s", ("e > 0", "d > 0", "t*e == n", "s*d == m"),
         "(t > s or (t == s and not met)) == (m*e <= d*n and not (met and m*e == d*n))",
         truths="met",
     ),
     Lemma(
-        "eye-in-range", "after r mirrors -w r <= E <= w (r + 1) and no plane is further than w (r + 1); then for r + 1",
+        "eye-in-range", "if -w r <= E <= w (r + 1) after r mirrors, no plane is further than w (r + 1); so for r + 1",
         "E k w r", ("r >= 0", "w >= 0", "-w*r <= E <= w*(r + 1)", "0 <= k <= w"),
         "-w*(r + 1) <= 2*k - E <= w*(r + 2) and -w*(r + 1) <= k - E <= w*(r + 1)",
     ),
     Lemma(
-        "product-fits", "a factor up to a and one up to b have a product up to a b, which A B values hold",
+        "product-fits", "the product of one factor below A and one below B is below A B",
         "x y A B", ("0 <= x < A", "0 <= y < B"),
         "0 <= x*y < A*B",
         integers=True,
     ),
     Lemma(
-        "product-in-range", "of factors no further from 0 than A and B the product is no further than A B",
+        "product-in-range", "the product of factors no further from 0 than A and B is no further from 0 than A B",
         "x y A B", ("-A <= x <= A", "-B <= y <= B"),
         "-A*B <= x*y <= A*B",
     ),
     Lemma(
-        "slope-in-range", "a slope of parts no further from 0 than M is no further than M times the sum of its factors",
+        "slope-in-range", "a slope of parts up to M in magnitude is at most M times the sum of its factors",
         "f r u V c h C H M", ("V >= 0", "-C <= c <= C", "-H <= h <= H", "-M <= f <= M", "-M <= r <= M", "-M <= u <= M"),
         "-M*(V + C + H) <= V*f + c*r + h*u <= M*(V + C + H)",
     ),
     Lemma(
-        "next-column", "the product at the next column is the product and its growth, R times the distance",
+        "next-column", "the product at the next column is the product plus its growth, R times the distance",
         "n D R now next", ("now == n*D", "next == now + n*R"),
         "next == n*(D + R)",
     ),
     Lemma(
-        "fold-at-a-mirror", "of x - E = s (X - E) + T a mirror at n makes 2 n - (x - E), with -s and 2 n - T",
+        "fold-at-a-mirror", "a mirror at n turns x - E = s (X - E) + T into 2 n - (x - E), with -s and 2 n - T",
         "X E s T n", ("s*s == 1",),
         "2*n - (s*(X - E) + T) == -s*(X - E) + (2*n - T)",
     ),
@@ -258,18 +258,18 @@ LEMMAS: tuple[Lemma, ...] = (
         "2*n - (2*m - x) == x + 2*(n - m)",
     ),
     Lemma(
-        "folded-way", "where s t D[a] + T[a] = n, D[a] (z t D[p] + T[p]) = s z n D[p] + T[p] D[a] - s z T[a] D[p]",
+        "folded-way", "if s t D[a] + T[a] = n, D[a] (z t D[p] + T[p]) = s z n D[p] + T[p] D[a] - s z T[a] D[p]",
         "s z t Da Dp Ta Tp n", ("s*s == 1", "s*t*Da + Ta == n"),
         "Da*(z*t*Dp + Tp) == s*z*n*Dp + (Tp*Da - s*z*Ta*Dp)",
     ),
     Lemma(
-        "folded-bounds", "with E = C + T: lo <= E + D n/e <= hi is (lo - C) e <= D n + T e <= (hi - C) e, or turned",
+        "folded-bounds", "E = C + T: lo <= E + D n/e <= hi is (lo - C) e <= D n + T e <= (hi - C) e, reversed if e < 0",
         "lo hi C T D n e t", ("e != 0", "t*e == n"),
         "(lo <= C + T + D*t <= hi) == ((e > 0 and (lo - C)*e <= D*n + T*e <= (hi - C)*e)"
         " or (e < 0 and (hi - C)*e <= D*n + T*e <= (lo - C)*e))",
     ),
     Lemma(
-        "ahead-of-mirror", "what is beyond a mirror that is ahead, m/d > 0, or in its plane, is ahead",
+        "ahead-of-mirror", "a point beyond a mirror that is ahead, m/d > 0, or in its plane, is ahead",
         "n e m d", ("e > 0", "d > 0", "m > 0", "m*e <= d*n"),
         "n > 0",
     ),
@@ -279,34 +279,34 @@ LEMMAS: tuple[Lemma, ...] = (
         "a + b + 1 == a - (-b - 1) and (-b - 1) + 1 == -b",
     ),
     Lemma(
-        "division", "with w = e q + r, 0 <= r < e: k e <= w is k <= q; k e < w, and w <= k e, look at r where k = q",
+        "division", "with w = e q + r, 0 <= r < e: k e <= w is k <= q; k e < w and w <= k e depend on r if k = q",
         "w e q r k", ("w == e*q + r", "0 <= r < e"),
         "((k*e <= w) == (k <= q)) and ((k*e < w) == (k < q or (k == q and r > 0)))"
         " and ((w <= k*e) == (q < k or (q == k and r == 0)))",
         integers=True,
     ),
     Lemma(
-        "division-step", "a bit more of the dividend: 2 r + b is compared with e, and is left as it is or e less",
+        "division-step", "for the next bit b of the dividend, 2 r + b is the new remainder, less e if it is at least e",
         "p e q r b d s", ("p == e*q + r", "0 <= r < e", "0 <= b <= 1", "0 <= d <= 1", "(d == 1) == (2*r + b >= e)",
                           "s == 2*r + b - d*e"),
         "2*p + b == e*(2*q + d) + s and 0 <= s < e",
         integers=True,
     ),
     Lemma(
-        "cell-number", "floor(w/(e c)) = floor(floor(w/e)/c), so the cell of P = w/e is that of the whole part of P",
+        "cell-number", "floor(w/(e c)) = floor(floor(w/e)/c), so P = w/e is in the same cell as its whole part",
         "w e q r c i j", ("w == e*q + r", "0 <= r < e", "q == c*i + j", "0 <= j < c"),
         "e*c*i <= w < e*c*(i + 1)",
         integers=True,
     ),
     Lemma(
-        "cell-parity", "i + j is odd where just one of i and j is",
+        "cell-parity", "i + j is odd if exactly one of i and j is",
         "i j f g a b h c",
         ("i == 2*f + a", "j == 2*g + b", "i + j == 2*h + c", "0 <= a <= 1", "0 <= b <= 1", "0 <= c <= 1"),
         "(c == 1) == (a != b)",
         integers=True,
     ),
     Lemma(
-        "digits-appended", "with digits of value m appended to n, b n + m, its product p with d is b p + m d",
+        "digits-appended", "appending digits of value m to n gives b n + m; a product p with d becomes b p + m d",
         "n d p b m", ("p == n*d",),
         "(b*n + m)*d == b*p + m*d",
     ),
@@ -316,12 +316,12 @@ LEMMAS: tuple[Lemma, ...] = (
         "0 <= x - q < 1",
     ),
     Lemma(
-        "quotient-nearest", "with 2 w + e = 2 e q + r, 0 <= r < 2 e, the quotient q is at most a half from w/e",
+        "quotient-nearest", "with 2 w + e = 2 e q + r, 0 <= r < 2 e, the quotient q is at most one half from w/e",
         "w e q r x", ("2*w + e == 2*e*q + r", "0 <= r < 2*e", "x*e == w"),
         "-1 <= 2*(x - q) < 1",
     ),
     Lemma(
-        "way-of-magnitudes", "ahead n and e have one sign s, so D n/e is the quotient of magnitudes, with D's sign",
+        "way-of-magnitudes", "if n and e have the same sign s, D n/e is the quotient of the magnitudes, with D's sign",
         "A n e t s d", ("s*s == 1", "d*d == 1", "e > 0", "t*(s*e) == s*n"),
         "(d*A)*t*e == d*(A*n)",
     ),
@@ -333,19 +333,39 @@ LEMMAS: tuple[Lemma, ...] = (
         "-(c*e + A*b + q*e) <= (p - P)*e <= c*e + A*b + q*e",
     ),
     Lemma(
-        "between", "what grows evenly and is less than another at both ends of a row is less between them",
+        "between", "a linear value that is less than another at both ends of a row is less between them",
         "x y a g b h N i",
         ("0 <= i <= N", "a < b", "a + N*g < b + N*h", "x == a + i*g", "y == b + i*h"),
         "x < y",
     ),
     Lemma(
-        "shares", "of m quarters of a mirror: a weight's worth is what the mirror keeps of it and what it passes on",
+        "shares", "if m quarters are mirrored, a weight is the sum of what the mirror keeps and what it passes on",
         "w v m s T U", ("4*T == (4 - m)*s + m*U", "4*v == w*m"),
         "w*T == (w - v)*s + v*U",
     ),
     Lemma(
-        "product-in-parts", "a product is that of the low part of a factor, and c times that of the high part",
+        "product-in-parts", "a product is the product with a factor's low part, plus c times that with its high part",
         "n e l h c", ("e == l + c*h",),
         "n*e == n*l + c*(n*h)",
+    ),
+    Lemma(
+        "from-the-light", "S = (E - L) e + D n leads from the light L to the point E + D n/e, which it meets at 1/e",
+        "E L D S n e t s", ("t*e == n", "s*e == 1", "S == (E - L)*e + D*n"),
+        "L + S*s == E + D*t",
+    ),
+    Lemma(
+        "before-the-point", "n/d is before 1/e if n e < d",
+        "n d e t s", ("d > 0", "e > 0", "t*d == n", "s*e == 1"),
+        "(t < s) == (n*e < d)",
+    ),
+    Lemma(
+        "lit-side", "eye and light are strictly on the same side of the plane k if the ray passes L before k",
+        "E L D t k", ("t > 0", "D != 0", "E + D*t == k"),
+        "((E - k)*(L - k) > 0) == ((D > 0 and L < k) or (D < 0 and k < L))",
+    ),
+    Lemma(
+        "shadow-slope-in-range", "with point and light in the world, 0 to w, the slope S = (P - L) e is within w e",
+        "P L S e w", ("e > 0", "0 <= P <= w", "0 <= L <= w", "S == (P - L)*e"),
+        "-w*e <= S <= w*e",
     ),
 )  # fmt: skip

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A section of the line buffer: what is written is not what is read in the same cycle, whichever half is selected.
+// A section of the line buffer is not written in a cycle in which it is read, whichever half is selected.
 //
-// Assumed is what `render_counters` proves of the renderer: the offset that is read, and that of each write, lie below
-// the number of groups. There is no state in it, so one step is every step.
+// Assumed, as `render_counters` proves for the renderer: the offsets of reads and writes are below the number of
+// groups. No state is involved, so one step covers all steps.
 
 module line_sections #(
     parameter GROUPS = 10, parameter WRITE_BITS = 4, parameter READ_BITS = 4, parameter ADDRESS_BITS = 5,
@@ -30,7 +30,7 @@ always @* begin
     end
 end
 
-// The halves are told apart: the same offset of both is two addresses, and two offsets of one half are two.
+// The halves are separate: every offset of either half has its own address.
 always @* begin
     assert (\dut.write_address == (line_buf_sel ? write_offset + GROUPS : write_offset) || !write);
     assert (\dut.read_address == (line_buf_sel ? read_offset : read_offset + GROUPS));

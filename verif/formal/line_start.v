@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What each line of a camera that turns begins with, at full width and with any function in the place of
-// multiplication: from AIM_LATENCY cycles after start_line on aim is the first column's slope, view distance * forward
-// - centre * right + row_slope * up, by slope-in-range within its bits. After the sweep with it aim is what a step
-// adds: right, or with two pixels a clock the second column's slope, and then twice right. Each sweep but the first
-// starts as the one before ends.
+// The start of each line with a camera that turns, at full width and with any function instead of multiplication: from
+// AIM_LATENCY cycles after start_line, aim is the first column's slope, view distance * forward - centre * right +
+// row_slope * up, which fits its bits by slope-in-range. After the sweep with it, aim is the growth per step: right, or
+// with two pixels per clock first the second column's slope, and then twice right. Each sweep except the first starts
+// when the previous one ends.
 //
-// Assumed, as rect_setup has it: its last load comes LATENCY cycles or more after its start. Assumed of the renderer:
-// no line starts within AIM_LATENCY cycles of another, and a camera that is constant along the line.
+// Assumed, as rect_setup guarantees: its last load comes at least LATENCY cycles after its start. Assumed about the
+// renderer: lines start at least AIM_LATENCY cycles apart, and the camera is constant along a line.
 
 module line_start #(
     parameter PIXELS = 1, parameter CAMERA_BITS = 117, parameter BASIS_BITS = 10, parameter FACTOR_BITS = 9,
@@ -20,7 +20,7 @@ wire start_sweep;
 wire [PIXELS-1:0] enter;
 wire [3*SLOPE_BITS-1:0] aim;
 
-// Cycles since the line's start and since a sweep's, up to those that count; sweeps that have ended in the line.
+// Cycles since the start of the line and of a sweep, up to the latency; sweeps that have ended in the line.
 reg ready = 1'b0, was_entered;
 reg [2:0] age, sweep_age;
 reg [1:0] ended;
@@ -50,7 +50,7 @@ always @* begin
     end
 end
 
-// The factors are not constants here, so that their products are the function's too.
+// The factors are not constants here, so that the function replaces their products too.
 (* anyconst *) reg signed [FACTOR_BITS-1:0] view, first_column;
 always @* assume (view == VIEW_DISTANCE && first_column == -CENTRE);
 wire [2:0] to_end = {ended == 2, ended == 1, ended == 0};

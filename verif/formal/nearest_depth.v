@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The seed engine's nearest hit at full width: of all hits that were offered since the last reset the one that is kept is
-// the nearest along x, of several as near the first, and all of it is kept. `picked` is any one of them, chosen at any
-// time; so what is asserted of it holds of each.
+// The seed engine's nearest hit at full width: of all hits offered since the last reset, the nearest along x is kept
+// with all its fields, or the first one of a tie. `picked` is an arbitrary one of these hits, so what is asserted for
+// it holds for all.
 //
-// Assumed, as the control has it: nothing is offered in the cycle of a reset. All else may change in every cycle.
+// Assumed, as the control guarantees: nothing is offered in the cycle of a reset. All other inputs may change in every
+// cycle.
 
 module nearest_depth #(parameter POSITION_BITS = 9, parameter LOOK_BITS = 24, parameter MATERIALS = 0) (
     input clk, input reset, input write, input hit, input [POSITION_BITS-1:0] depth, input [3*POSITION_BITS-1:0] point,
@@ -41,7 +42,7 @@ wire [HIT_BITS-1:0] now = {axis, mirror, colour, point};
 wire [HIT_BITS-1:0] kept = {found_axis, found_mirror, found_colour, found_point};
 always @* assume (!(reset && write));
 
-// The one that was picked; and the depth of what is kept, which came before it, after it, or is it.
+// The picked hit, and the depth of the kept hit, which came before it, came after it, or is the same.
 reg ready = 1'b0, picked = 1'b0, before, same;
 reg [P-1:0] picked_depth, kept_depth;
 reg [HIT_BITS-1:0] kept_hit;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The nearest hit at the engine's own widths, with any function in the place of multiplication: of all hits that were
-// offered since the last reset the one that is kept is the nearest, by cross-multiplication, and of several as near the
-// first. `picked` is any one of them, chosen at any time; so what is asserted of it holds of each.
+// The nearest hit at the engine's own widths, with any function instead of multiplication: of all hits offered since
+// the last reset, the nearest by cross-multiplication is kept, or the first one of a tie. `picked` is an arbitrary one
+// of these hits, so what is asserted for it holds for all.
 //
-// Assumed of products is the lemma kept-is-nearest. Assumed of the engine: a hit's denominator is not 0, and nothing is
-// offered in the cycle of a reset. All else may change in every cycle.
+// Assumed about products is the lemma kept-is-nearest. Assumed about the engine: a hit's denominator is not 0, and
+// nothing is offered in the cycle of a reset. All other inputs may change in every cycle.
 
 module nearest_products #(
     parameter SURFACE_BITS = 35, parameter SLOPE_BITS = 8, parameter DISTANCE_BITS = 10
@@ -32,7 +32,7 @@ always @* begin
     if (hit) assume (e != 0);
 end
 
-// What is kept was offered, and is kept as it was.
+// The kept hit was offered, and is kept unchanged.
 reg running = 1'b0, ready = 1'b0, was_found, was_offered, was_reset;
 reg [HIT_BITS-1:0] was_now, was_kept;
 always @(posedge clk) begin
@@ -50,7 +50,7 @@ always @* if (running) begin
     if (found && !was_found) assert (kept == was_now);
 end
 
-// The one that was picked; whether what is kept came before it, after it, or is it.
+// The picked hit; whether the kept hit came before it, came after it, or is the same.
 reg picked = 1'b0, later, same;
 reg [DISTANCE_BITS-1:0] picked_n;
 reg [SLOPE_BITS-1:0] picked_e;

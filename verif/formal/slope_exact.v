@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The primary ray's slope at the engine's own widths, in sign and magnitude: view distance * forward + (column - centre)
-// * right + (horizon - row) * up, and without a basis its factors alone. With a basis, any function is in the place of
-// multiplication, but for two facts of products, which are the lemmas next-column and slope-in-range.
+// The primary ray's slope at the engine's own widths, in sign and magnitude: view distance * forward + (column -
+// centre) * right + (horizon - row) * up, or without a basis only its factors. With a basis, multiplication is any
+// function with two known properties, which are the lemmas next-column and slope-in-range.
 //
-// Assumed, as the renderer has it: a pixel on the screen, and a place and a basis that hold still from the cycle before
-// the ray is loaded.
+// Assumed, as the renderer guarantees: the pixel is on the screen, and its place and the basis are constant from the
+// cycle before the ray is loaded.
 
 module slope_exact #(
     parameter TURN = 0, parameter SLOPE_BITS = 8, parameter COORDINATE_BITS = 9, parameter BASIS_BITS = 10,
@@ -19,7 +19,8 @@ localparam WIDE = SLOPE_BITS + 4;
 
 wire [2:0] negative;
 wire [SLOPE_BITS-1:0] dx, dy, dz;
-// In numbers that hold any of them: from the centre to the first unit's column, and to this one's; from the horizon up.
+// In numbers that are wide enough: from the centre to the first unit's column, and to that of this unit; from the
+// horizon up.
 wire signed [WIDE-1:0] first = offset * UNITS - CENTRE, column = first + base, level = HORIZON - row;
 wire [3*WIDE-1:0] slope;
 wire signed [WIDE-1:0] x = slope[0 +: WIDE], y = slope[WIDE +: WIDE], z = slope[2*WIDE +: WIDE];
@@ -92,8 +93,8 @@ end
 always @* cover (loaded && negative == (TURN ? 7 : 3) && dy > CENTRE - 1);
 endmodule
 
-// A component: its products at the design's width, which by the lemma product-in-range holds them. The operands are the
-// design's own; they are asserted above to be what they should be.
+// One component: its products have the width of the design, in which they fit by the lemma product-in-range. The
+// operands are signals of the design, which are asserted above to be right.
 module slope_along #(
     parameter BASIS_BITS = 10, parameter PRODUCT_BITS = 20, parameter WIDE = 22, parameter VIEW_DISTANCE = 100,
     parameter CENTRE = 160, parameter HORIZON = 190, parameter UNIT_BITS = 2,
@@ -107,8 +108,9 @@ localparam MOST = VIEW_DISTANCE + CENTRE + HORIZON << BASIS_BITS - 1;
 wire signed [UNIT_BITS:0] base_part = {1'b0, base};
 wire signed [PRODUCT_BITS-1:0] ahead = forward * VIEW_DISTANCE, upward = up * row;
 wire signed [PRODUCT_BITS-1:0] to_first = right * first, aside = right * base_part;
-// By next-column, right * first + right * base is right * column; by slope-in-range the sum is within these bits. All
-// but the base's part is of the cycle before, in which the pixel was the same: so the solver need not add it again.
+// By next-column, right * first + right * base is right * column; by slope-in-range the sum fits these bits. All
+// summands except that of the base are from the previous cycle, with the same pixel, so that the solver need not add
+// them again.
 reg signed [PRODUCT_BITS-1:0] before;
 always @(posedge clk) before <= ahead + to_first + upward;
 wire signed [PRODUCT_BITS-1:0] sum = before + aside;

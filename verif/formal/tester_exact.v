@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The rectangle test against its definition, with a division: the point P = E + D (k - E[a]) / D[a] is ahead of the eye,
-// within the bounds, and beyond the mirror on the side that the slope points to, or in its plane where no mirror on the
-// rectangle's axis was met there.
+// The rectangle test compared with its definition, with a division: the point P = E + D (k - E[a]) / D[a] is ahead of
+// the eye, within the bounds, and beyond the mirror on the side that the slope points to, or in its plane if no mirror
+// on the rectangle's axis was met there.
 //
-// Assumed, as the engine has it: bounds in order, an axis of three, an eye as far away as so many mirrors can put it, and
-// a mirror that the ray met ahead of the eye. The ray and the rectangle may change in every cycle.
+// Assumed, as the engine guarantees: bounds in order, an axis of 0, 1 or 2, an eye no further away than REFLECTIONS
+// mirrors can move it, and a mirror ahead of the eye. The ray and the rectangle may change in every cycle.
 
 module tester_exact #(
     parameter COORDINATE_BITS = 3, parameter SLOPE_BITS = 3, parameter EYE_BITS = 5, parameter REFLECTIONS = 1
@@ -24,7 +24,7 @@ wire [SLOPE_BITS-1:0] denominator;
 
 wire [RECT_BITS-1:0] rect = {axis, position, 24'd0, u_low, u_high, v_low, v_high};
 wire [2:0] signs = {backward[0], backward[1], backward[2]};
-// The mirror's distance is read a cycle after all else.
+// The mirror's distance is read one cycle after all other inputs.
 wire [SLOPE_BITS-1:0] mirror_slope = mirror_axis == 0 ? dx : mirror_axis == 1 ? dy : dz;
 wire mirror_back = mirror_axis == 0 ? backward[0] : mirror_axis == 1 ? backward[1] : backward[2];
 wire signed [WIDE-1:0] mirror_eye = mirror_axis == 0 ? x : mirror_axis == 1 ? y : z;
@@ -51,7 +51,7 @@ always @* begin
     if (mirrored) assume (REFLECTIONS > 1 ? met[mirror_axis] : met == 1 << mirror_axis);
 end
 
-// The axes as the rectangle has them; all that follows is wide enough for any value.
+// The axes from the rectangle's point of view; all numbers below are wide enough for any value.
 wire signed [WIDE-1:0] eye_a = axis == 0 ? x : axis == 1 ? y : z;
 wire signed [WIDE-1:0] eye_u = axis == 0 ? y : x;
 wire signed [WIDE-1:0] eye_v = axis == 2 ? y : z;
@@ -91,7 +91,7 @@ wire allowed = in_mirror ? !met[axis] : (!on_u || beyond(base_u, more_u, back_u,
 wire defined = ahead && within(base_u, more_u, back_u, low_u, high_u) && within(base_v, more_v, back_v, low_v, high_v)
     && (!on_a || beyond(plane, 1'b0, back, mirror_place)) && allowed;
 
-// It comes three cycles later.
+// The result comes three cycles later.
 reg [2:0] valid = 3'b000, hits, in_mirrors;
 reg [WIDE-1:0] n_1, n_2, n_3, e_1, e_2, e_3;
 always @(posedge clk) begin

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The rectangle test at the engine's own widths, with any function in the place of multiplication: a hit is what the
-// cross-multiplied definition says, whatever products are, but for two facts of them, which are lemmas: order-kept,
+// The rectangle test at the engine's own widths, with any function instead of multiplication: a rectangle is hit if the
+// cross-multiplied definition says so, for any products with two known properties, which are lemmas: order-kept,
 // assumed below, and passed-bound, by which a near bound behind the eye needs no product.
 //
-// All differences are taken here in numbers that hold any of them; those that are multiplied are asserted to fit the
-// unsigned operands of the engine. Assumed, as the engine has it: an axis of three, and an eye as far away as so many
-// mirrors can put it. The ray, the rectangle and the mirror may change in every cycle.
+// All differences are computed here in numbers that are wide enough; those that are multiplied are asserted to fit the
+// engine's unsigned operands. Assumed, as the engine guarantees: an axis of 0, 1 or 2, and an eye no further away than
+// REFLECTIONS mirrors can move it. The ray, the rectangle and the mirror may change in every cycle.
 
 module tester_products #(
     parameter COORDINATE_BITS = 9, parameter LOOK_BITS = 24, parameter SLOPE_BITS = 8, parameter EYE_BITS = 11,
@@ -27,7 +27,7 @@ wire [SLOPE_BITS-1:0] denominator;
 wire [2 + LOOK_BITS + 5 * COORDINATE_BITS - 1:0] rect = {axis, position, look, u_low, u_high, v_low, v_high};
 wire [2:0] signs = {backward[0], backward[1], backward[2]};
 reg [DISTANCE_BITS-1:0] mirror_1;
-always @(posedge clk) mirror_1 <= mirror;  // it is read a cycle after all else
+always @(posedge clk) mirror_1 <= mirror;  // read one cycle after all other inputs
 wire [DISTANCE_BITS + 2 + (REFLECTIONS > 1 ? 3 : 0):0] mirror_word =
     {mirrored, mirror_axis, mirror_1, met[0], met[1], met[2]} >> (REFLECTIONS > 1 ? 0 : 3);
 rect_tester dut (
@@ -46,7 +46,7 @@ always @* begin
     if (mirrored && REFLECTIONS < 2) assume (met == 1 << mirror_axis);
 end
 
-// The axes as the rectangle has them, and how far its plane and its bounds are along the ray's own direction.
+// The axes from the rectangle's point of view, and the distances of its plane and bounds in the ray's direction.
 wire signed [WIDE-1:0] eye_a = axis == 0 ? x : axis == 1 ? y : z;
 wire signed [WIDE-1:0] eye_u = axis == 0 ? y : x;
 wire signed [WIDE-1:0] eye_v = axis == 2 ? y : z;
@@ -72,7 +72,7 @@ function fits(input signed [WIDE-1:0] distance);
 endfunction
 always @* assert (fits(n) && fits(near_u) && fits(near_v) && fits(far_u) && fits(far_v));
 
-// Products of what is not negative; of the rest they are not read.
+// Products of distances that are not negative; those of others are not read.
 wire [DISTANCE_BITS-1:0] n_part = n, near_u_part = near_u, near_v_part = near_v, far_u_part = far_u;
 wire [DISTANCE_BITS-1:0] far_v_part = far_v;
 wire [WAY_BITS-1:0] way_u = n_part * slope_u, way_v = n_part * slope_v;
@@ -90,7 +90,7 @@ wire in_mirror = on_u && way_u == to_mirror || on_v && way_v == to_mirror;
 wire beyond = (!on_a || n > place) && (!on_u || way_u > to_mirror) && (!on_v || way_v > to_mirror);
 wire defined = ahead && within_u && within_v && (beyond || in_mirror && !met[axis]);
 
-// It comes three cycles later.
+// The result comes three cycles later.
 reg [2:0] valid = 3'b000, hits, in_mirrors;
 reg [DISTANCE_BITS-1:0] n_1, n_2, n_3;
 reg [SLOPE_BITS-1:0] e_1, e_2, e_3;

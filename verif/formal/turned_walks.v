@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The walkers of a beam engine whose camera turns, at their own widths, with any function in the place of
-// multiplication: whatever steps add up to a slope, a rectangle's registers are the products of its distances with that
-// slope. The first step of a row adds its first slope to 0, each other what a column adds. The ways, the bounds and the
+// The walkers of a beam engine whose camera turns, at their own widths, with any function instead of multiplication:
+// whichever steps add up to a slope, a rectangle's registers are the products of its distances with that slope. The
+// first step of a row adds its first slope to 0, all others add the growth per column. The ways, the bounds and the
 // slope may be stepped in different cycles.
 //
-// Assumed of products are the lemma next-column, and that one with 0 is 0. Assumed of a step is what row-setup proves:
-// it adds a distance's product with what the slope grows by. By slope-in-range no slope along a row is too steep.
+// Assumed about products are the lemma next-column, and that a product with 0 is 0. Assumed about a step, as row-setup
+// proves: it adds a distance times the growth of the slope. By slope-in-range no slope along a row is too steep.
 
 module turned_walks #(
     parameter WALK_BITS = 29, parameter DISTANCE_BITS = 10, parameter SLOPE_BITS = 20, parameter STEEPEST = 400000
@@ -15,7 +15,7 @@ module turned_walks #(
 );
 localparam WIDE = SLOPE_BITS + 1, FIELDS = 6;
 
-// Of a rectangle: its axis, and n and the distances to the four bounds, n in the lowest bits.
+// A rectangle: its axis, and n and the distances to the four bounds, n in the lowest bits.
 reg started = 1'b0;
 reg [1:0] axis;
 reg [5*DISTANCE_BITS-1:0] distances;
@@ -25,7 +25,7 @@ always @(posedge clk) begin
 end
 always @* assume (any_axis < 3);
 
-// The sums of what steps added, x in the lowest bits.
+// The sums of all steps, x in the lowest bits.
 wire [3*WIDE-1:0] way_slope, bounds_slope, slope;
 slope_sum #(.SLOPE_BITS(SLOPE_BITS), .STEEPEST(STEEPEST)) ways (
     .clk(clk), .start(start_line), .started(started), .step(step_way), .aim(aim), .slope(way_slope)
@@ -82,7 +82,7 @@ end
 always @* cover (started && way_slope != bounds_slope && bounds_slope != 0 && slope != way_slope);
 endmodule
 
-// What steps have added up to, within the steepest slope.
+// The sum of all steps, no steeper than STEEPEST.
 module slope_sum #(parameter SLOPE_BITS = 20, parameter STEEPEST = 400000) (
     input clk, input start, input started, input step, input [3*SLOPE_BITS-1:0] aim, output [3*(SLOPE_BITS+1)-1:0] slope
 );

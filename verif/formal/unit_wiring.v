@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// A unit of the exact engine and its control: each block's inputs are those that its own proof assumes. A test gets
-// the rectangle at hand, the mirrored eye, the slope and the last mirror. Its verdict is offered with that rectangle's
-// surface. The nearest hit reaches the eye, the cells, which need it constant for as long as they divide, and the
-// colours.
+// A unit of the exact engine and its control: each block gets the inputs that its own proof assumes. A test gets the
+// current rectangle, the mirrored eye, the slope and the last mirror. Its verdict is offered with the surface of the
+// same rectangle. The nearest hit reaches the eye, the colours, and the cells, which need it constant while they
+// divide.
 //
-// Any function stands for multiplication. Verdicts are read at the tester's outputs; tester-products, nearest-products
-// and slope-exact say that blocks' outputs are right. Assumed: a reset first, an axis of three, and a slope that is
-// constant from the cycle after its step, as slope-exact proves for a constant pixel. All else may change in every
-// cycle.
+// Multiplication is any function. Verdicts are read at the tester's outputs; tester-products, nearest-products and
+// slope-exact prove that outputs of blocks are right. Assumed: a reset first, an axis of 0, 1 or 2, and a slope that is
+// constant from the cycle after its step, as slope-exact proves for a constant pixel. All other inputs may change in
+// every cycle.
 
 module unit_wiring #(
     parameter PATTERNS = 0, parameter REFLECTIONS = 1, parameter RECTANGLES = 2,
@@ -93,7 +93,7 @@ always @* begin
     if (add) assert (state == 3);
 end
 
-// Tests under way, the latest first, and the surfaces of their rectangles.
+// Tests in flight, the latest first, and the surfaces of their rectangles.
 reg [TRAVEL-1:0] starts;
 reg [3*SURFACE_BITS-1:0] tested;
 always @(posedge clk) begin

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The video generator against a reference that knows the standard only: a half, a column and a line of the total
-// frame, with the blanking first, and the sync pulses as pixel counts from its start. Where a clock has two pixels a
-// column is both of them, and where a pixel takes one clock there is one half only: vga_clk is the clock itself then.
+// The video generator compared with a reference that only knows the standard: a half, a column and a line of the total
+// frame, with the blanking first, and the sync pulses as pixel counts from its start. With two pixels per clock, a
+// column is a pair of them. With one clock per pixel there is only one half, and vga_clk is the clock itself.
 //
-// Nothing is assumed of the inputs: reset may come at any time, the colours are whatever they are. The frame's strobes
-// are functions of the reference position, which visits every place of the frame once; that start_row comes ROWS times
-// a frame is counted besides. The invariants at the end tie the generator's registers to the reference, which makes
-// the proof inductive at any size of screen.
+// Nothing is assumed about the inputs: reset may come at any time, and the colours are arbitrary. The frame's strobes
+// are functions of the reference position, which visits every place of the frame once; in addition, start_row is
+// counted to come ROWS times per frame. The invariants at the end tie the generator's registers to the reference, which
+// makes the proof inductive at any size of screen.
 
 module video_timing #(
     parameter H_VISIBLE = 640, parameter H_FRONT = 16, parameter H_SYNC = 96, parameter H_BACK = 48,
@@ -14,7 +14,7 @@ module video_timing #(
     parameter V_VISIBLE = 480, parameter V_FRONT = 10, parameter V_SYNC = 2, parameter V_BACK = 33,
     parameter V_HIGH = 0,
     parameter DOUBLING = 2, parameter ROWS = 240, parameter COLOUR_BITS = 8,
-    parameter CLOCKS = 2, parameter LEAD = 0,   // a pixel; pixels by which columns are announced early
+    parameter CLOCKS = 2, parameter LEAD = 0,   // clocks per pixel; pixels by which columns are announced early
     parameter X_BITS = 11, parameter Y_BITS = 10, parameter REPEAT_BITS = 1
 ) (
     input clk, input reset,
@@ -35,12 +35,12 @@ video_generator dut (
     .vga_sync_n(vga_sync_n), .vga_clk(vga_clk)
 );
 
-// The system is reset once before anything is asked of it.
+// The system is reset once before anything is checked.
 reg known = 0;
 always @(posedge clk) known <= 1;
 always @* if (!known) assume (reset);
 
-// The position that is prepared, and the one that the outputs show, a pixel behind; none of it since reset.
+// The position that is prepared, and the one on the outputs, a pixel behind, if there was one since reset.
 reg half;
 wire first_half = CLOCKS == 1 || !half, last_half = CLOCKS == 1 || half;
 reg [11:0] column, line, shown_column, shown_line;
@@ -66,14 +66,14 @@ always @(posedge clk) begin
     end
 end
 
-// What a monitor must see. The vertical pulse starts and ends where a horizontal one starts.
+// The expected outputs. The vertical pulse starts and ends where a horizontal one starts.
 wire h_active = showing && shown_column >= H_FRONT && shown_column < H_FRONT + H_SYNC;
 wire past_v_start = shown_line > V_FRONT || (shown_line == V_FRONT && shown_column >= H_FRONT);
 wire past_v_end = shown_line > V_FRONT + V_SYNC || (shown_line == V_FRONT + V_SYNC && shown_column >= H_FRONT);
 wire v_active = showing && past_v_start && !past_v_end;
 wire picture = showing && shown_column >= H_BLANK && shown_line >= V_BLANK;
 
-// The colours that were there when the shown pixel was taken.
+// The colours when the shown pixel was sampled.
 reg [COLOUR_BITS-1:0] taken_red, taken_green, taken_blue;
 always @(posedge clk) if (last_half) begin
     taken_red <= red;
@@ -92,7 +92,7 @@ always @* if (known) begin
     assert (CLOCKS == 1 || vga_clk == half);
 end
 
-// Outputs change at the falling edge of the pixel clock only, reset aside.
+// Except in reset, outputs change only at the falling edge of the pixel clock.
 wire [OUTPUTS-1:0] outputs = {vga_r, vga_g, vga_b, vga_hs, vga_vs, vga_blank_n, vga_sync_n};
 reg [OUTPUTS-1:0] last_outputs;
 reg last_clk, last_reset;
@@ -116,7 +116,7 @@ always @* if (known) begin
     assert (next_column == (last_half && in_columns && picture_column % DOUBLING == (LEAD ? 0 : DOUBLING - 1)));
 end
 
-// Rows since StartScreen: all of them when the next one comes.
+// Rows since StartScreen: all ROWS when the next StartScreen comes.
 reg [11:0] rows_seen;
 reg screen_seen;
 always @(posedge clk) begin
@@ -135,8 +135,8 @@ always @* if (known && screen_seen) begin
     if (start_screen) assert (rows_seen == ROWS);
 end
 
-// Invariants: the reference in range, its shown position behind the prepared one, and the generator's registers as the
-// position says.
+// Invariants: the reference is in range, its shown position is behind the prepared one, and the generator's registers
+// match the position.
 (* hierconn *) wire signed [X_BITS-1:0] \dut.x ;
 (* hierconn *) wire signed [Y_BITS-1:0] \dut.y ;
 (* hierconn *) wire \dut.pixel_end ;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The walkers of a beam engine whose camera does not turn, at their own widths, with any function in the place of
+// The walkers of a beam engine whose camera does not turn, at their own widths, with any function instead of
 // multiplication: at each column of a row a rectangle's registers are the products of its distances with the slope
 // there, whose D[y] is the column. The ways, the bounds and the slope may be stepped in different cycles.
 //
-// Assumed of products is the lemma next-column. Assumed of a row's start is what row-setup proves: products with the
-// first column's slope, and the distances that a column adds. Assumed, as the lane has it: they are constant along the
+// Assumed about products is the lemma next-column. Assumed about a row's start, as row-setup proves: products with the
+// first column's slope, and the growth per column. Assumed, as the lane guarantees: the growth is constant along the
 // row, and no step comes before the start or after the last column.
 
 module walked_products #(
@@ -18,12 +18,12 @@ module walked_products #(
 localparam WIDE = SLOPE_BITS + 1, FIELDS = 6, STRIDE_BITS = DISTANCE_BITS + PIXELS - 1;
 localparam signed [SLOPE_BITS-1:0] AHEAD = VIEW_DISTANCE, FIRST_COLUMN = -CENTRE, LANE_COLUMN = LANE - CENTRE;
 
-// Of a row: the first column's slope, x in the lowest bits; D[z] is any.
+// A row: the first column's slope, x in the lowest bits; D[z] is arbitrary.
 reg [SLOPE_BITS-1:0] level;
 always @(posedge clk) if (start_line) level <= any_level;
 wire [3*SLOPE_BITS-1:0] first = {level, LANE_COLUMN, AHEAD}, first_of_row = {level, FIRST_COLUMN, AHEAD};
 
-// Of a rectangle: its axis, and n and the distances to the four bounds, n in the lowest bits.
+// A rectangle: its axis, and n and the distances to the four bounds, n in the lowest bits.
 reg [1:0] axis;
 reg [5*DISTANCE_BITS-1:0] distances;
 reg started = 1'b0, was_given = 1'b0;
@@ -35,7 +35,7 @@ always @(posedge clk) begin
     was_given <= given;
     started <= started || start_line;
 end
-wire load = PIXELS > 1 ? was_given : given;  // in the cycle after, the walker has its start
+wire load = PIXELS > 1 ? was_given : given;  // in the next cycle the walker has its start
 
 // The columns of the ways, of the bounds and of the slope.
 wire way_valid, bounds_valid, slope_valid;
@@ -51,7 +51,7 @@ column_slope #(
 );
 always @* begin
     assume (given_axis < 3);
-    // Each rectangle is loaded once in a row, after its start.
+    // Each rectangle is loaded once per row, after the start of the row.
     if (start_line || !started) assume (!given && !was_given);
     if (was_given) assume (!given);
     if (given || load) assume (!step_way && !step_bounds);
@@ -85,7 +85,7 @@ generate
         wire signed [WALK_BITS-1:0] product = distance * here, next_product = distance * next;
         wire valid = (field < 2 ? way_valid : bounds_valid) && !(PIXELS > 1 && was_given);
 
-        // What a step adds: a distance or nothing, for each of a clock's columns.
+        // The growth per step: a distance or nothing, for each column of a clock.
         wire signed [WALK_BITS-1:0] distance_once = which == 1 ? distance : 0;
         wire signed [WALK_BITS-1:0] grows = PIXELS > 1 ? distance_once << 1 : distance_once;
         assign stride[(FIELDS-1-field)*STRIDE_BITS +: STRIDE_BITS] = grows;
@@ -102,7 +102,7 @@ generate
         wire signed [WALK_BITS-1:0] value = walk[(FIELDS-1-field)*WALK_BITS +: WALK_BITS];
         always @* if (valid && field != 1) assert (value == product);
 
-        // A second lane starts a column on: there it must load the product with that column's slope.
+        // A second lane starts one column further, and must load the product with the slope of that column.
         wire signed [SLOPE_BITS-1:0] loaded_slope = narrow(first, which);
         wire signed [WALK_BITS-1:0] to_load = distance * loaded_slope;
         wire signed [WALK_BITS-1:0] loading = loads[(FIELDS-1-field)*WALK_BITS +: WALK_BITS];
@@ -113,7 +113,7 @@ generate
     localparam [63:0] FARTHEST = STEEPEST * ((1 << DISTANCE_BITS - 1) - 1);
     always @* assert (FARTHEST < 64'd1 << WALK_BITS - 1);
 
-    // A way along q does not walk.
+    // The way along q is constant.
     localparam REST = 4 * WALK_BITS, REST_STRIDE = 4 * STRIDE_BITS, REST_DISTANCE = 4 * DISTANCE_BITS;
     wire [5*WALK_BITS-1:0] lane_start = {start[FIELDS*WALK_BITS-1 -: WALK_BITS], start[REST-1:0]};
     wire [5*WALK_BITS-1:0] walker_start;
@@ -151,7 +151,7 @@ endgenerate
 always @* cover (way_valid && bounds_valid && slope_valid && way_slope != bounds_slope && slope != way_slope);
 endmodule
 
-// The slope of a column: D[y] is the column itself, counted from the centre; the rest is the row's.
+// The slope of a column: D[y] is the column, counted from the centre; the other components are those of the row.
 module column_slope #(
     parameter SLOPE_BITS = 10, parameter STEEPEST = 190, parameter COLUMNS = 320, parameter PIXELS = 1
 ) (

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Wishbone through the bridge to an agent: what the master asks for, what the agent gets, what comes back.
+// Wishbone through the bridge to an agent: the master's accesses, the agent's transfers, and the answers.
 //
-// Assumed: the agent makes wait for at most MOST_WAIT cycles a transfer, and answers a read with readdatavalid, once, 1 to
-// MOST_LATENCY cycles after it took it. An access holds still until it is acknowledged, or ends with a cycle in which
-// there is none: the master may give up. One cycle of reset at first; it may come again at any time.
+// Assumed: the agent asserts waitrequest for at most MOST_WAIT cycles per transfer, and answers a read with one
+// readdatavalid, 1 to MOST_LATENCY cycles after it accepted it. An access is held until it is acknowledged, or ends
+// with a cycle without an access, as the master may give up. One cycle of reset at first; it may come again at any
+// time.
 
 module wishbone_transfers #(parameter ADDRESS_BITS = 4, parameter MOST_WAIT = 1, parameter MOST_LATENCY = 2) (
     input clk, input reset,
@@ -22,7 +23,7 @@ wishbone_bridge bridge (
 );
 wire access = cyc && stb;
 
-// The cycle before.
+// The previous cycle.
 reg known = 0;
 reg last_reset, last_access, last_we, last_ack, last_read, last_write, last_waitrequest;
 reg [ADDRESS_BITS-1:0] last_adr;
@@ -35,7 +36,7 @@ always @(posedge clk) begin
     {last_read, last_write, last_waitrequest} <= {read, write, waitrequest};
 end
 
-// Transfers of the present access; the one whose answer is due, and whether it is another access's.
+// Transfers of the current access; the transfer whose answer is due, and whether it belongs to an earlier access.
 wire taken = (read || write) && !waitrequest;
 reg [1:0] transfers;
 reg outstanding, stale;
@@ -65,22 +66,22 @@ always @* begin
 end
 
 always @* if (known && !last_reset && !reset) begin
-    // Read and write exclude each other; nobody asks but the master, and for what it says.
+    // Read and write exclude each other, and come only with a matching access of the master.
     assert (!(read && write));
     if (read || write) assert (access && write == we && address == adr);
     if (write) assert (writedata == dat_w && byteenable == sel);
-    // One read at a time is outstanding, and nothing overtakes it.
+    // At most one read is outstanding, and nothing overtakes it.
     if (outstanding) assert (!read && !write);
-    // An access is acknowledged once, with one transfer: a write as it is taken, a read with its own answer.
+    // An access is acknowledged once, with one transfer: a write when it is accepted, a read with its own answer.
     if (ack) assert (access && transfers + taken == 1);
     if (!ack) assert (!(write && taken) && transfers + taken <= 1);
     if (ack && !we) assert (outstanding && !stale && readdatavalid && dat_r == readdata);
     if (readdatavalid && !stale && access) assert (ack);
-    // In time, even after another master's that was given up.
+    // Within the bounds, even after an access that another master gave up.
     if (access) assert (age <= MOST_WAIT + 2 * MOST_LATENCY);
 end
 
-// A transfer of an access that stays holds still while it has to wait.
+// A transfer is stable while it waits and its access is held.
 always @* if (known && !reset && !last_reset && access && (last_read || last_write) && last_waitrequest)
     assert (read == last_read && write == last_write);
 
@@ -99,7 +100,7 @@ always @* if (known && !last_reset) begin
 end
 always @* if (known && last_reset) assert (!\bridge.reading && transfers == 0 && age == 0);
 
-// A read that was given up, then another that waits and is answered late.
+// Covers an abandoned read, then another read that waits and is answered late.
 reg gave_up = 0;
 always @(posedge clk) gave_up <= !reset && (stale || (gave_up && !ack));
 always @* cover (gave_up && !stale && ack && !we && since == MOST_LATENCY && age == MOST_WAIT + MOST_LATENCY + 1);

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Faults planted in every module, which its leaf tests must find."""
+"""Mutation testing: faults are planted in every module, and its leaf tests must find them."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whether a mutant can be told from its module at all, as z3 sees it."""
+"""Show with z3 that a mutant is equivalent to its module."""
 
 from __future__ import annotations
 
@@ -14,30 +14,30 @@ from raycaster.errors import UserError
 from raycaster.tools import run_yosys
 
 SECONDS = 60
-"""For each mutant; after that it is not known to be equivalent."""
+"""Time limit per mutant; when it is over, the mutant is not known to be equivalent."""
 
 
 class ContractError(UserError):
-    """An invariant that does not hold."""
+    """An invariant of a contract does not hold."""
 
 
 class Comparison:
-    """Compares a netlist with each mutant that it holds, by induction over its registers.
+    """Compare a netlist with each mutant that it contains, by induction over its registers.
 
-    Both start with equal registers. Bits that may differ a cycle later, for any inputs, are from then on arbitrary in
-    the mutant; when no further bits come to differ, the outputs must still be equal. Where the module has a reset, bits
-    of its registers that never change after it are known.
+    Both start with equal registers. Bits that may differ one cycle later, for any inputs, are arbitrary in the mutant
+    from then on; when no further bits can differ, the outputs must still be equal. If the module has a reset, bits of
+    its registers that never change after it are known.
 
     Args:
-        work: has the netlist with all mutants as `<module>.smt2`, as Yosys writes it, the input `mutsel` to choose one.
-        module: its name.
-        read: masks of outputs that are inputs of submodules: the bits that the submodule reads. In the others the
-            mutant may differ.
-        assumptions: Verilog expressions of its inputs that are taken to hold always.
-        invariants: Verilog expressions of its registers that hold from reset on, which is proved first.
+        work: directory with Yosys's `<module>.smt2`, the netlist with all mutants and an input `mutsel` to choose one.
+        module: name of the module.
+        read: by output that is an input of a submodule, a mask of the bits that the submodule reads; the mutant may
+            differ in the other bits.
+        assumptions: Verilog expressions of the module's inputs that are assumed to hold always.
+        invariants: Verilog expressions of the module's registers that hold from reset on, which is proved first.
 
     Raises:
-        ContractError: an invariant does not hold, or an expression names what is not there.
+        ContractError: an invariant does not hold, or an expression has an unknown name.
     """
 
     def __init__(
@@ -69,7 +69,7 @@ class Comparison:
             for match in re.finditer(rf"^  \(= (.+) \(\|({number})\| next_state\)\) ; ", self._model, re.M)
         ]
         outputs = re.findall(r"^; yosys-smt2-output (\S+) (\d+)$", self._model, re.M)
-        # Of each output its width and the bits that count.
+        # For each output, its width and the bits that count.
         self._outputs = {name: (int(width), read.get(name, -1) & (1 << int(width)) - 1) for name, width in outputs}
         inputs = re.findall(r"^; yosys-smt2-input (\S+) \d+$", self._model, re.M)
         self._resets = [name for name in ("reset", "reset_ray_caster") if name in inputs]
@@ -83,9 +83,9 @@ class Comparison:
             self._find_constants()
 
     def equivalent(self, mutant: int) -> bool:
-        """Whether it is shown that this mutant behaves as the netlist does."""
+        """True if the mutant is shown to behave as the netlist does."""
         deadline = time.monotonic() + SECONDS
-        # Of each register, the bits that are equal in both.
+        # For each register, the bits that are equal in both.
         equal = [(1 << high - low + 1) - 1 for _, (high, low) in self._registers]
         while True:
             text = self._both(mutant, equal)
@@ -111,13 +111,13 @@ class Comparison:
         return _solve(f"{self._both(mutant, equal)}(assert (or false {' '.join(unequal)}))", deadline) == {}
 
     def _output(self, name: str, state: str) -> str:
-        """What counts of an output's value."""
+        """Return an output without the bits that do not count."""
         width, mask = self._outputs[name]
         value = f"(|{self._module}_n {name}| {state})"
         return value if mask == (1 << width) - 1 else f"(bvand {value} (_ bv{mask} {width}))"
 
     def _both(self, mutant: int, equal: Iterable[int]) -> str:
-        """A state of the module, and one of the mutant with the same inputs and these bits of its registers."""
+        """Declare a state of the module, and one of the mutant with the same inputs and the same bits `equal`."""
         sources = ["module"] * self._bits
         for (_, (high, low)), mask in zip(self._registers, equal, strict=True):
             for place in range(low, high + 1):
@@ -138,7 +138,7 @@ class Comparison:
         return text + self._known()
 
     def _known(self) -> str:
-        """The module's constant bits."""
+        """Assert the module's constant bits."""
         text = ""
         for index, (mask, value) in self._constants.items():
             high, low = self._registers[index][1]
@@ -147,7 +147,7 @@ class Comparison:
         return text
 
     def _find_constants(self) -> None:
-        """Start from what reset makes of each register, and drop the bits that it leaves, or that change afterwards."""
+        """Start from the registers after reset, and drop the bits that reset does not set or that change afterwards."""
         after_reset = f"(assert (|{self._module}_n {self._resets[0]}| module))\n"
         widths = {index: high - low + 1 for index, (_, (high, low)) in enumerate(self._registers)}
         first = self._next_values(after_reset, "")
@@ -156,7 +156,7 @@ class Comparison:
         self._drop_changing("", known=True)
 
     def _next_values(self, given: str, goal: str) -> dict[str, int]:
-        """Next states of the registers that have constant bits, in any state that fits; empty where none does."""
+        """Return the next states of the registers, in any state that fits; empty if none does."""
         text = f"{self._state('module', 0)}{given}"
         for index, (term, (high, low)) in enumerate(self._registers):
             text += f"(declare-const next{index} {_vector(high - low + 1)})\n"
@@ -183,7 +183,7 @@ class Comparison:
                     del self._constants[index]
 
     def _state(self, name: str, selector: int) -> str:
-        """A state, and what the contract sees of it."""
+        """Declare a state, and the signals of it that the contract uses."""
         high, low = self._selector
         text = self._model if name == "module" else ""
         text += f"(declare-const {name} {_vector(self._bits)})\n"
@@ -198,12 +198,12 @@ class Comparison:
         return f"(|contract_n {kind}_holds| {state}_seen)"
 
     def _translate(self, work: Path, expressions: dict[str, Sequence[str]]) -> list[str]:
-        """Add the expressions to the model, as a module of their own, and say which names they see."""
+        """Add the expressions to the model, as a separate module, and return the names that they use."""
         there = dict(re.findall(r"^; yosys-smt2-(?:input|output|wire|register) (\S+) (\d+)$", self._model, re.M))
         words = re.findall(r"(?<![\w'$])[A-Za-z_]\w*", " ".join([*expressions["assumed"], *expressions["invariant"]]))
         names = list(dict.fromkeys(words))
         if missing := [name for name in names if name not in there]:
-            raise ContractError(f"the contract of {self._module} speaks of {', '.join(missing)}, which are not there")
+            raise ContractError(f"the contract of {self._module} has unknown names: {', '.join(missing)}")
         ports = [f"input [{int(there[name]) - 1}:0] {name}" for name in names]
         ports += [f"output {kind}_holds" for kind in expressions]
         lines = [f"module contract({', '.join(ports)});"]
@@ -242,7 +242,7 @@ def _state_bits(model: str) -> int:
 
 
 def _solve(text: str, deadline: float) -> dict[str, int] | None:
-    """The values that fit, empty where none do; None where time ran out."""
+    """Return values that fit, empty if none do; None if time ran out."""
     solver = z3.Solver(ctx=z3.Context())
     remaining = deadline - time.monotonic()
     if remaining <= 0:

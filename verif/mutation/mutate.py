@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""`raycaster verify mutate`: would the leaf tests notice a fault? Mutation testing of every module.
+"""`raycaster verify mutate`: plant faults in every module and check that its leaf tests notice (mutation testing).
 
-The leaf tests run once and record what they drive and expect. Then, for each recording, Yosys plants up to --mutants
-faults, spread over the cells of the module under test, into its Verilog: an inverted or stuck bit of a cell's port, for
-all values or for those of another bit. A submodule's input bit that the submodule does not read is no place for a
-fault, as nobody could see it there. Verilator compiles the netlist with all faults in it and an input that chooses
-one, and each fault is replayed. It is caught where an output differs from the expected one in a cycle that the test
-looks at; registers start as zeros, as ones and at random, as the tests' own simulator has them unknown.
+The leaf tests run once and record their inputs and the outputs that they expect. Then, for each recording, Yosys plants
+up to --mutants faults in the Verilog of the module under test, spread over its cells: an inverted or stuck bit of a
+cell's port, always or depending on another bit. Input bits that a submodule does not read get no fault, because it
+would have no effect. Verilator compiles the netlist with all faults and an input that chooses one, and each fault is
+replayed. It is caught if an output differs from the expected one in a cycle that the test checks. Registers start as
+zeros, as ones and at random, because they are unknown in the tests' simulator.
 
-What survives goes to the solver z3, which may find that no input sequence tells it from the module: it is equivalent
-(or equivalent under the module's contract, where that names what its inputs never do; invariants of its registers are
-proved first). The solver looks at the module's own cells: its submodules' inputs must stay as they are. What else
-survives must be explained in mutation.toml, or it is an error; so is an explanation that nothing needs.
+Survivors go to the solver z3. If no input sequence distinguishes a mutant from the module, it is equivalent, or
+equivalent under the module's contract, which lists assumptions about inputs, and invariants of registers that are
+proved first. The solver compares the module's own cells, so the inputs of submodules must not differ. All other
+survivors must be explained in mutation.toml, or it is an error; so is an explanation that no mutant needs.
 """
 
 from __future__ import annotations
@@ -59,25 +59,25 @@ RTL = Path(rtl.__file__).parent
 MUTANTS = 200
 SEED = 20150
 LEAST_CAUGHT = 0.97
-"""Of the mutants that are not equivalent, in each module."""
+"""Minimum share of the mutants that are not equivalent, in each module."""
 
 OUTCOMES = ("caught", "equivalent", "contract", "explained", "surviving")
 
 
 class MutationError(ToolError):
-    """Mutation testing that could not be done, or a data file that does not fit the design."""
+    """Mutation testing failed, or the data file does not match the design."""
 
 
 @dataclass(frozen=True)
 class Explanation:
-    """Why a mutant may survive; a field that is empty fits every mutant.
+    """Reason why a mutant may survive; an empty field fits every mutant.
 
     Attributes:
         why: the reason.
-        at: the Verilog that the cell stands for, as `Mutant.at` has it.
-        kind: of cell.
-        port: of the cell, with the bit or without.
-        mode: of the fault.
+        at: Verilog of the cell, as in `Mutant.at`.
+        kind: kind of cell.
+        port: port of the cell, with the bit or without.
+        mode: mode of the fault.
     """
 
     why: str
@@ -87,7 +87,7 @@ class Explanation:
     mode: str = ""
 
     def fits(self, mutant: Mutant) -> bool:
-        """Whether it is about this mutant."""
+        """True if it applies to this mutant."""
         ports = ("", mutant.port, mutant.port.partition("[")[0])
         return (
             self.at in ("", mutant.at)
@@ -99,14 +99,14 @@ class Explanation:
 
 @dataclass(frozen=True)
 class Expectation:
-    """What the data file says of a module.
+    """Entry of a module in the data file.
 
     Attributes:
         tests: leaf tests whose recordings are used, as `file::test[parameters]`.
-        assumptions: Verilog expressions of the module's inputs that its contract makes true, each with its reason.
+        assumptions: Verilog expressions of the module's inputs that its contract guarantees, each with its reason.
         invariants: Verilog expressions of its registers, true from reset on; proved.
-        look_into: submodules that the solver sees into.
-        explained: the survivors that remain.
+        look_into: submodules that are part of what the solver compares.
+        explained: explanations of the other survivors.
     """
 
     tests: tuple[str, ...]
@@ -120,7 +120,7 @@ def expectations(path: Path = SOURCES / "mutation.toml") -> dict[str, Expectatio
     """Read the data file.
 
     Raises:
-        MutationError: it says what nobody asks for.
+        MutationError: it has an unknown key.
     """
     found = {}
     for module, values in tomllib.loads(path.read_text()).items():
@@ -135,15 +135,15 @@ def expectations(path: Path = SOURCES / "mutation.toml") -> dict[str, Expectatio
 
 @dataclass
 class Mutant:
-    """One fault.
+    """A planted fault.
 
     Attributes:
         selector: the number that chooses it.
-        mode: inv, const0, const1; cnot0 and cnot1 invert where another bit is 0 or 1.
-        kind: of the cell: add, procmux, procdff, a submodule's instance, ...
-        port: of the cell, with the bit.
+        mode: inv, const0, const1; cnot0 and cnot1 invert if another bit is 0 or 1.
+        kind: kind of the cell: add, procmux, procdff, a submodule's instance, ...
+        port: port of the cell, with the bit.
         at: the Verilog that the cell was made from.
-        options: as Yosys wants them.
+        options: options of Yosys's mutate command.
         outcome: one of `OUTCOMES`.
         detail: the cycle that caught it, or why it may survive.
     """
@@ -163,7 +163,7 @@ class Mutant:
 
 @dataclass
 class Result:
-    """A recording's mutants."""
+    """Mutants of a recording."""
 
     module: str
     recording: str
@@ -180,7 +180,7 @@ class Result:
 
 
 class Recording:
-    """What `Leaf.record` left of a leaf test, and work on it.
+    """Recording of a leaf test by `Leaf.record`, and the work on it.
 
     Args:
         directory: the recording.
@@ -203,10 +203,10 @@ class Recording:
             shutil.copy(directory / name, work)
 
     def run(self, count: int, seed: int, expectation: Expectation) -> Result:
-        """Plant faults, replay them, and let the solver look at the survivors.
+        """Plant faults, replay them, and let the solver judge the survivors.
 
         Args:
-            count: how many faults at most.
+            count: maximum number of faults.
             seed: chooses them.
             expectation: assumptions, invariants and explanations.
 
@@ -232,13 +232,13 @@ class Recording:
         return [
             f"read_verilog {' '.join(self._files)}",
             f"hierarchy -check -top {self.module}",
-            # A module with parameters has a name for each set of their values, and becomes part of this one.
+            # A module with parameters has one name per set of values, and is flattened into this one.
             *(f"setattr -mod -set keep_hierarchy 1 {name}" for name in self._submodules()),
             f"select {self.module}",
             "flatten",
             *(f"setattr -mod -unset keep_hierarchy {name}" for name in self._submodules()),
             f"select {self.module}",
-            # MyHDL's constants have 32 bits, of which most faults would change nothing.
+            # MyHDL's constants have 32 bits; faults in most of these would change nothing.
             "proc -norom",  # a fault in the address of a ROM would make a memory that Yosys cannot write
             "opt",
             "wreduce",
@@ -246,7 +246,7 @@ class Recording:
         ]
 
     def _submodules(self) -> list[str]:
-        """The modules below this one that have no parameters, by name."""
+        """List the names of the modules below this one that have no parameters."""
         return [
             Path(name).stem
             for name in self._files[:-1]
@@ -257,23 +257,23 @@ class Recording:
         """Choose faults, and write the netlist with all of them, for simulation and for the solver.
 
         Args:
-            count: how many at most.
+            count: maximum number of faults.
             seed: chooses them.
-            look_into: submodules that are part of what the solver sees.
+            look_into: submodules that are part of what the solver compares.
         """
         submodules = self._submodules()
         lines = self._choose(count, seed)
         mutants = [self._describe(number, line) for number, line in enumerate(lines, 1)]
         cut = [
-            # Of a $pmux with two bits of S set, Verilog and SMT-LIB would each have another branch.
+            # For a $pmux with two bits of S set, Verilog and SMT-LIB would choose different branches.
             "pmuxtree",
             f"write_verilog -noattr -selected {self.module}_mutants.v",
             "select -clear",
             *(f"setattr -mod -set keep_hierarchy 1 {name}" for name in submodules if name not in look_into),
             *(f"proc -norom {name}" for name in submodules if name in look_into),
             "flatten",
-            # For the solver, other submodules are their ports: they answer equal inputs equally.
-            f"expose -evert -sep _ {self.module}/c:*",  # of its cells only: wires would all become outputs
+            # For the solver, other submodules are only ports: equal inputs give equal outputs.
+            f"expose -evert -sep _ {self.module}/c:*",  # of its cells only, else all wires would become outputs
             "memory_map",
             "opt_clean",
             "async2sync",
@@ -286,7 +286,7 @@ class Recording:
         return mutants
 
     def _choose(self, count: int, seed: int) -> list[str]:
-        """Yosys's commands for as many faults, or all that there are, numbered from 1 without a gap for the replay."""
+        """Return Yosys's commands for `count` faults, or all possible ones, numbered from 1 without a gap."""
         width, wanted = count.bit_length(), count
         while True:
             listing = f"mutate -list {wanted} -seed {seed} -ctrl mutsel {width} 1 -o mutants.ys"
@@ -302,9 +302,9 @@ class Recording:
         ]
 
     def _hidden(self, line: str) -> bool:
-        """Whether the fault is in a bit that the submodule does not read, or where Yosys's memories allow none."""
+        """True if the fault is in a bit that a submodule does not read, or where Yosys's memories allow none."""
         options = dict(re.findall(r"-(cell|port|portbit) (\S+)", line))
-        # What a memory starts with is constant, and its ports have one clock.
+        # The initial words of a memory must be constant, and its ports must have one clock.
         if "$meminit" in options["cell"] or ("proc_memwr" in options["cell"] and options["port"] == "CLK"):
             return True
         read = self.read_bits.get((options["cell"], options["port"]), -1)
@@ -312,9 +312,9 @@ class Recording:
 
     @cached_property
     def read_bits(self) -> dict[tuple[str, str], int]:
-        """Of the input ports of the submodules, by instance and port: a mask of the bits that the submodule reads.
+        """Masks of the bits that submodules read of their input ports, by instance and port.
 
-        What does not reach an output of the submodule, through whatever it is made of, is not read.
+        A bit that does not reach an output of the submodule, through all its cells, is not read.
         """
         run_yosys(self._work, "instances", [*self._read(), "write_json -selected instances.json"])
         cells = _netlist(self._work / "instances.json", self.module)["cells"]
@@ -327,8 +327,8 @@ class Recording:
                 f"hierarchy -top {name}",
                 "proc -norom",
                 "flatten",
-                # Only what is certain whatever registers start with; in the end cells of a bit each, where that is
-                # possible, so that those which no output needs go.
+                # Only simplify what holds for any initial registers; then split cells into single bits if possible, so
+                # that those which no output needs are removed.
                 "opt_expr -keepdc",
                 "opt_clean",
                 "wreduce -keepdc",
@@ -353,11 +353,11 @@ class Recording:
         )
 
     def _text(self, source: str) -> str:
-        """The Verilog from `file:line.column` up to `line.column`, or the first line of it."""
+        """Return the Verilog from `file:line.column` up to `line.column`, or its first line."""
         [(file, *numbers)] = re.findall(r"^(.+):(\d+)\.(\d+)-(\d+)\.(\d+)$", source)
         first, start, last, end = map(int, numbers)
         line = (self._work / file).read_text().splitlines()[first - 1]
-        # The label of a case has a place, and no extent.
+        # The label of a case has a position but no extent.
         return line[start - 1 : end - 1 if first == last and start < end else None].strip()
 
     def _replay(self, mutants: list[Mutant]) -> None:
@@ -404,7 +404,7 @@ endmodule
 """
 
     def _compare(self, survivors: Iterable[Mutant], expectation: Expectation) -> None:
-        # z3 may be missing where only this file's help or names are wanted.
+        # z3 may be missing if only this file's help or names are needed.
         from raycaster.verif.mutation.equivalence import Comparison  # noqa: PLC0415
 
         read = {f"{instance}_{port}": mask for (instance, port), mask in self.read_bits.items()}
@@ -420,12 +420,12 @@ endmodule
 
 
 def _netlist(path: Path, module: str) -> dict[str, Any]:
-    """A module as Yosys writes it as JSON."""
+    """Read a module from Yosys's JSON."""
     return json.loads(path.read_text())["modules"][module]
 
 
 def _read_masks(netlist: Mapping[str, Any]) -> dict[str, int]:
-    """Of each input port, the bits that a cell or an output of the netlist is connected to."""
+    """Return for each input port the bits that are connected to a cell or an output of the netlist."""
     used = {bit for cell in netlist["cells"].values() for bits in cell["connections"].values() for bit in bits}
     ports = netlist["ports"]
     used |= {bit for port in ports.values() if port["direction"] != "input" for bit in port["bits"]}
@@ -441,11 +441,11 @@ def record(tests: Iterable[str], directory: Path, jobs: int) -> None:
 
     Args:
         tests: `file::test[parameters]`.
-        directory: gets a recording each; a recording of the same sources stays.
-        jobs: tests at a time.
+        directory: gets one recording per test; a recording of the same sources is kept.
+        jobs: number of tests at a time.
 
     Raises:
-        MutationError: a test failed, or there is none of that name.
+        MutationError: a test failed or does not exist.
     """
     tested = SOURCES.parent / "tests"
     packages = (Path(package.__path__[0]) for package in (raycaster, rtl, golden, convert))
@@ -466,7 +466,7 @@ def record(tests: Iterable[str], directory: Path, jobs: int) -> None:
 
 
 def stale(results: Iterable[Result], known: Mapping[str, Expectation]) -> list[str]:
-    """Explanations that no mutant needs."""
+    """List the explanations that no mutant needs."""
     found = []
     for module, expectation in known.items():
         mutants = [mutant for result in results if result.module == module for mutant in result.mutants]
@@ -477,7 +477,7 @@ def stale(results: Iterable[Result], known: Mapping[str, Expectation]) -> list[s
 
 
 def count_outcomes(mutants: Iterable[Mutant]) -> dict[str, int]:
-    """How many mutants had each outcome."""
+    """Count the mutants with each outcome."""
     counts: dict[str, int] = dict.fromkeys(OUTCOMES, 0)
     for mutant in mutants:
         counts[mutant.outcome] += 1
@@ -485,7 +485,7 @@ def count_outcomes(mutants: Iterable[Mutant]) -> dict[str, int]:
 
 
 def share_caught(counts: Mapping[str, int]) -> float:
-    """Of the mutants that are not equivalent. What is merely explained counts as not caught."""
+    """Return the caught share of the mutants that are not equivalent; explained ones count as not caught."""
     different = counts["caught"] + counts["explained"] + counts["surviving"]
     return counts["caught"] / different if different else 1.0
 
@@ -516,11 +516,11 @@ def _counts(results: list[Result]) -> dict[str, int]:
 
 
 def complaints(results: list[Result], known: Mapping[str, Expectation]) -> list[str]:
-    """Whatever makes the command fail.
+    """List the reasons why the command fails.
 
     Args:
-        results: of all recordings.
-        known: whose explanations must each be needed.
+        results: results of all recordings.
+        known: entries whose explanations must all be needed.
     """
     found = [
         f"{result.module}: survives the vectors of {result.recording}: {mutant}"
@@ -537,7 +537,7 @@ def complaints(results: list[Result], known: Mapping[str, Expectation]) -> list[
 
 @dataclass(frozen=True)
 class Job:
-    """A recording to work on, without the explanations: another one does not change what survives."""
+    """A recording to work on, without the explanations, which do not change what survives."""
 
     test: str
     module: str
@@ -548,16 +548,16 @@ class Job:
 
     @property
     def name(self) -> str:
-        """Of the recording."""
+        """Name of the recording."""
         return recording_name(self.test.partition("::")[2])
 
     @property
     def directory(self) -> Path:
-        """The recording."""
+        """Directory of the recording."""
         return self.build / "recordings" / self.name
 
     def place(self) -> Path:
-        """The file in which the result is kept."""
+        """Return the file in which the result is kept."""
         files = sorted(path for path in self.directory.iterdir() if path.is_file())
         tools = [SOURCES / "equivalence.py", SOURCES / "replay.cpp"]
         choice = self.mutants, self.seed, replace(self.expectation, tests=())
@@ -565,18 +565,18 @@ class Job:
         return self.build / "results" / f"{self.name}-{key}.pickle"
 
     def run(self) -> Result | str:
-        """The result, or what is wrong."""
+        """Return the result, or an error message."""
         try:
             recording = Recording(self.directory, self.build / "work" / self.name)
             if recording.module != self.module:
-                return f"{self.test} is no test of {self.module}, but of {recording.module}"
+                return f"{self.test}: expected a test of {self.module}, got one of {recording.module}"
             return recording.run(self.mutants, self.seed, self.expectation)
         except UserError as error:
             return f"{self.test}: {error}"
 
 
 def _progress(console: Console) -> Callable[[Job, Result | str], None]:
-    """Prints a line for each recording as soon as it is done, for a log that has no progress bar."""
+    """Return a function that prints a line for each finished recording, for a log without a progress bar."""
 
     def finished(job: Job, found: Result | str) -> None:
         said = (
@@ -588,22 +588,22 @@ def _progress(console: Console) -> Callable[[Job, Result | str], None]:
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Build the parser of the command line."""
     parser = CommandParser("verify mutate", __doc__, "--module divider")
-    parser.add_argument("--module", action="append", metavar="NAME", help="only this one; repeatable")
+    parser.add_argument("--module", action="append", metavar="NAME", help="mutate only this module; repeatable")
     parser.add_argument(
-        "--mutants", type=positive, default=MUTANTS, help="of each recording, at most (default: %(default)s)"
+        "--mutants", type=positive, default=MUTANTS, help="most faults per recording (default: %(default)s)"
     )
-    parser.add_argument("--seed", type=positive, default=SEED, help="chooses the faults (default: %(default)s)")
+    parser.add_argument("--seed", type=positive, default=SEED, help="seed of the faults (default: %(default)s)")
     add_job_options(parser)
     add_fresh_option(parser)
-    parser.add_argument("--build", type=Path, default=Path("build/mutation"), help="(default: %(default)s)")
+    parser.add_argument("--build", type=Path, default=Path("build/mutation"), help="output directory (%(default)s)")
     add_keep_option(parser)
     return parser
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what decides the command's figures: a design of each engine with all that it can have."""
+    """Digest everything that decides the figures, with a design of each engine that has all looks."""
     designs = [
         configure(engine=engine.name, allow_underrun=True, **dict.fromkeys(engine.looks, True))
         for engine in ENGINES.values()
@@ -623,7 +623,7 @@ def _found(kept: Outcome) -> str:
 
 
 def unmutated(known: Iterable[str]) -> list[str]:
-    """Blocks of the hardware that are not among these modules."""
+    """List the blocks of the hardware that are not among these modules."""
     blocks = {path.stem for path in RTL.rglob("*.py") if f"@block\ndef {path.stem}(" in path.read_text()}
     return sorted(blocks - set(known))
 
@@ -635,16 +635,16 @@ PUBLISHED = (
 
 
 def main(argv: list[str] | None = None) -> int:
-    """The command.
+    """Run the command.
 
     Args:
         argv: its arguments, those of the process by default.
 
     Returns:
-        Its exit code: 1 where a survivor is not explained, an explanation is stale, or too few mutants are caught.
+        Its exit code: 1 if a survivor is not explained, an explanation is stale, or too few mutants are caught.
 
     Raises:
-        UserError: no such module, or a tool is missing.
+        UserError: there is no such module, or a tool is missing.
     """
     arguments = command_parser().parse_args(argv)
     arguments.build = arguments.build.resolve()  # tools run in the folders below it
@@ -654,11 +654,11 @@ def main(argv: list[str] | None = None) -> int:
     known = expectations()
     for module in arguments.module or []:
         if module not in known:
-            raise UserError(f"--module: {module} is none of {', '.join(known)}")
+            raise UserError(f"--module: got {module}, expected one of {', '.join(known)}")
     known = {module: known[module] for module in arguments.module or known}
     tests = {test: module for module, expectation in known.items() for test in expectation.tests}
 
-    # A table of this many columns is read from a log as well as on a screen.
+    # A table with this many columns is readable in a log as well.
     console = Console(width=None if sys.stdout.isatty() else 150)
     with console.waiting("recording the leaf tests"):
         record(tests, arguments.build / "recordings", arguments.jobs)
@@ -688,7 +688,7 @@ def main(argv: list[str] | None = None) -> int:
         provenance,
         ", ".join(unmutated(known)),
     )
-    # Another choice of faults need not have the survivors that are explained.
+    # Other choices of faults need not have the survivors that are explained.
     usual = (arguments.mutants, arguments.seed) == (MUTANTS, SEED)
     found = failures + complaints(results, known if usual and not failures else {})
     for complaint in found:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Replays a leaf test's vectors on every mutant of a netlist, and tells which of them the vectors notice.
+// Replays a leaf test's vectors on every mutant of a netlist, and reports which mutants the vectors detect.
 // Arguments: the file of vectors, the first cycle whose outputs count, the number of mutants.
 // Selector 0 is the netlist without a fault.
 #include <cstdio>
@@ -35,14 +35,14 @@ std::vector<Cycle> read(const char* path) {
     return cycles;
 }
 
-// How Verilator sets registers at first, and what is undefined: all zeros, all ones, or at random with the seed. What
-// depends on an unknown value differs in one of them.
+// Verilator's initial registers and undefined values: all zeros, all ones, or random with the seed. A result that
+// depends on an unknown value differs in one of these.
 struct Start {
     int reset, seed;
 };
 const Start starts[] = {{0, 1}, {1, 2}, {2, 3}, {2, 4}};
 
-// The first cycle whose outputs are not those expected, or -1.
+// Returns the first cycle with unexpected outputs, or -1.
 long first_difference(const std::vector<Cycle>& cycles, size_t settled, unsigned selector, Start start) {
     VerilatedContext context;
     context.randReset(start.reset);

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Random scenes at full size."""
+"""Soak tests: random scenes at full size."""

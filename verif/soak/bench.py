@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: one random or stiff scene after the other, a frame each, held against golden in every pixel."""
+"""cocotb: random or stiff scenes, a frame each; every pixel is compared with the golden model."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from raycaster.verif.random_scenes import random_scene
 
 @cocotb.test()
 async def soak(bench: HierarchyObject) -> None:
-    """Show the job's seeds; write a line of JSON for each, and each failing scene, whole and shrunk, as a file."""
+    """Show the scenes of the job's seeds; write a line of JSON for each, and failing scenes, whole and shrunk."""
     harness = Harness(bench)
     job, configuration = harness.job, harness.configuration
     output = Path(job.output)
@@ -43,7 +43,7 @@ async def soak(bench: HierarchyObject) -> None:
 
 
 async def show(harness: Harness, scene: Scene) -> dict[str, int]:
-    """One frame of a scene, and how many of its pixels are wrong; follows the frame before without a gap."""
+    """Show one frame of a scene, right after the previous frame, and count its wrong pixels."""
     await harness.bus.load_scene(scene)
     await harness.bus.commit(reflections=scene.reflections)
     frame = await harness.monitor.frame()
@@ -57,7 +57,7 @@ async def show(harness: Harness, scene: Scene) -> dict[str, int]:
 
 
 async def shrink(harness: Harness, scene: Scene) -> Scene:
-    """Leave out rectangles, one by one, for as long as pixels are still wrong."""
+    """Remove rectangles, one by one, while pixels are still wrong."""
     index = 0
     while index < len(scene.rect) and len(scene.rect) > 1:
         fewer = scene.model_copy(update={"rect": scene.rect[:index] + scene.rect[index + 1 :]})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Random or stiff scenes through the converted hardware at full size, every pixel held against golden: `make soak`."""
+"""Draw random or stiff scenes with the converted hardware, at full size, and check every pixel: `make soak`."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ BENCH = "raycaster.verif.soak.bench"
 def show(
     results: list[dict], seconds: float, configuration: Configuration, console: Console, *, stiff: bool = False
 ) -> None:
-    """Print what was checked, by style and reflections."""
+    """Print the results, by style and reflections."""
     rows: dict[tuple[str, int], list[dict]] = defaultdict(list)
     for result in results:
         rows["stiff" if stiff else style_of(result["seed"]), result["reflections"]].append(result)
@@ -45,18 +45,18 @@ def show(
         pixels = sum(result["pixels"] for result in group)
         rounding = sum(result["wrong_vs_exact"] for result in group)
         wrong = sum(result["wrong_vs_golden"] for result in group)
-        # Golden of an engine that does not round is exact, so that there is nothing more to count.
+        # The golden model of an engine that does not round is exact, so there is no rounding to count.
         share = f"{100 * rounding / pixels:.2f} %" if pixels and configuration.facts.divides else ""
         table.add_row(style, str(reflections), str(len(group)), f"{pixels:,}", f"{wrong:,}", share)
     console.print(table)
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Build the parser of the command line."""
     parser = CommandParser("verify soak", __doc__, "--seeds 10")
-    parser.add_argument("--seeds", type=int, default=100, metavar="N", help="how many scenes (default: %(default)s)")
-    parser.add_argument("--first", type=int, default=0, metavar="SEED", help="the first one's (default: %(default)s)")
-    parser.add_argument("--stiff", action="store_true", help="all cases of the stiff catalogue instead")
+    parser.add_argument("--seeds", type=int, default=100, metavar="N", help="number of scenes (default: %(default)s)")
+    parser.add_argument("--first", type=int, default=0, metavar="SEED", help="first seed (default: %(default)s)")
+    parser.add_argument("--stiff", action="store_true", help="run all cases of the stiff catalogue instead")
     add_job_options(parser)
     add_fresh_option(parser)
     add_simulator_option(parser)
@@ -71,7 +71,7 @@ def _configuration(arguments: argparse.Namespace) -> Configuration:
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what decides the command's figures."""
+    """Digest everything that decides the figures of the command."""
     return Provenance([_configuration(arguments)], ["golden", "verif/random_scenes.py"])
 
 
@@ -95,7 +95,7 @@ CHECKS = (
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """The command; returns its exit code."""
+    """Run the command and return its exit code."""
     arguments = command_parser().parse_args(argv)
     if arguments.seeds < 1 or arguments.first < 0:
         raise UserError("seeds: must be 1 or more, first: 0 or more")
@@ -118,7 +118,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             which = {"stiff": True} if arguments.stiff else {"seeds": 1, "first": result["seed"]}
             repeat = command_line("verify soak", options=which | given_options(arguments))
             console.print(
-                f"seed {result['seed']}: {result['wrong_vs_golden']} wrong pixels; the scene, and what it shrinks to, "
+                f"seed {result['seed']}: {result['wrong_vs_golden']} wrong pixels; the scene, whole and shrunk, "
                 f"is in {output}/*/from*/{result['seed']}*.toml; repeat with: {repeat}",
                 style="red",
                 soft_wrap=True,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the tests that simulate share: a directory of their own, and models built once for all of them."""
+"""Fixtures shared by tests that simulate: output directories, and models that are built once for all of them."""
 
 from __future__ import annotations
 
@@ -33,19 +33,19 @@ SMALL_SCENE = Path(__file__).with_name("small.toml")
 
 Bench = Callable[..., Path]
 
-# One store for all tests, for the commands that they run, and for both workers: what one has built all have.
+# One store for all tests, the commands that they run and all workers, so that each model is built once.
 os.environ.setdefault(MODELS_VARIABLE, str(BUILD / "model"))
 
 WITH_MYHDL = pytest.StashKey[bool]()
-"""Whether a test's leaves are simulated in MyHDL, too."""
+"""True if the leaves of a test are simulated in MyHDL too."""
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark slow parameter sets, and choose the set of each test whose leaves are simulated in MyHDL, too.
+    """Mark slow parameter sets, and choose the set of each test whose leaves are simulated in MyHDL too.
 
     Raises:
-        pytest.UsageError: a mark is about no set of its test, where whole files were collected.
+        pytest.UsageError: a mark matches no set of its test, and whole files were collected.
     """
     in_myhdl: dict[str, pytest.Item] = {}
     unused: dict[tuple[str, str], bool] = {}
@@ -57,7 +57,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
                 unused[test, begin] = unused.get((test, begin), True) and not sets.startswith(begin)
             if sets.startswith(slow or "") and not sets.startswith(tuple(quick)):
                 item.add_marker("slow")
-        # The last one that is not slow.
+        # The last set that is not slow.
         if test not in in_myhdl or not item.get_closest_marker("slow"):
             in_myhdl[test] = item
     for item in items:
@@ -75,27 +75,27 @@ def one_set_in_myhdl(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyP
 
 @pytest.fixture(autouse=True)
 def forgotten_signals() -> Iterator[None]:
-    """Those of a test end with it: MyHDL would look at them in each later simulation, which took 40 times as long."""
+    """Forget a test's signals when it ends: MyHDL would search them in later simulations, 40 times as slowly."""
     with forgetting():
         yield
 
 
 @pytest.fixture
 def random(request: pytest.FixtureRequest) -> np.random.Generator:
-    """Random numbers, the same for each test; the report of one that fails says how to repeat it."""
+    """Random numbers, the same for each test; the report of a failing test says how to repeat it."""
     request.node.add_report_section("setup", "random numbers", repeat())
     return np.random.default_rng(seed())
 
 
 @pytest.fixture
 def names_for_digests(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Digest no design for a test that keeps figures: its name stands for the digest of its Verilog."""
+    """Do not digest designs in a test that keeps figures: the name of a design replaces the digest of its Verilog."""
     monkeypatch.setattr(provenance, "verilog_digest", lambda configuration: configuration.name)
 
 
 @pytest.fixture
 def output(request: pytest.FixtureRequest) -> Path:
-    """An empty directory that outlives the test, for a person to look into."""
+    """Empty directory that is kept after the test, for inspection."""
     directory = BUILD / "test" / re.sub(r"[^\w.-]+", "-", request.node.name).strip("-")
     shutil.rmtree(directory, ignore_errors=True)
     directory.mkdir(parents=True)
@@ -104,7 +104,7 @@ def output(request: pytest.FixtureRequest) -> Path:
 
 @pytest.fixture
 def bench(output: Path) -> Bench:
-    """Runs a cocotb bench on a design and returns the directory of its results; fails where the bench does."""
+    """Return a function that runs a cocotb bench on a design and returns the directory of its results."""
 
     def run(
         module: str,
@@ -135,7 +135,7 @@ def bench(output: Path) -> Bench:
 
 @pytest.fixture
 def refuses(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
-    """Runs a command's body that must end with one line on standard error, which it returns."""
+    """Return a function that runs a command, which must fail with one line on standard error, and returns the line."""
 
     def refused(main: Callable[[], int | None], *options: str) -> str:
         monkeypatch.setattr("sys.argv", ["command", *options])
@@ -151,7 +151,7 @@ def refuses(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str])
 
 
 def called(*words: str, cwd: Path, program: Callable[[list[str]], int | None] = main) -> subprocess.CompletedProcess:
-    """Run a command line in a directory, as a shell would, but in this process, which has everything loaded."""
+    """Run a command line in a directory, as a shell would, but in this process, where everything is loaded."""
     out, err = io.StringIO(), io.StringIO()
     with (
         contextlib.chdir(cwd),
@@ -165,5 +165,5 @@ def called(*words: str, cwd: Path, program: Callable[[list[str]], int | None] = 
 
 @pytest.fixture
 def scenes() -> Path:
-    """The directory of scene files."""
+    """Directory of scene files."""
     return ROOT / "scenes"

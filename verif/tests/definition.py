@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The image contract written out ray by ray with fractions, for the tests of what computes it in other ways."""
+"""The image contract written out ray by ray with fractions, to test code that computes it in other ways."""
 
 from __future__ import annotations
 
@@ -16,35 +16,35 @@ Vector = Sequence[int | Fraction]
 
 @dataclass(frozen=True)
 class Stop:
-    """Where a ray is between two mirrors."""
+    """A segment of a ray, which starts at the camera or at a mirror."""
 
     met: frozenset[int] | None
-    """Axes of the mirrors that it met in the point where it starts; None for a ray from the camera."""
+    """Axes of the mirrors that the ray met in its starting point; None for a ray from the camera."""
 
     points: list[list[Fraction] | None]
-    """Where it meets each rectangle, None for those that it does not meet."""
+    """Point where the ray meets each rectangle, or None."""
 
     winner: int
-    """The nearest of them, -1 for none."""
+    """Index of the nearest rectangle, -1 for none."""
 
     corner: bool
-    """That the nearest is met in the point where the ray starts."""
+    """True if the nearest rectangle is met in the starting point."""
 
     colour: tuple[int, ...]
-    """The colour that is seen there, in the light or in the dark."""
+    """Colour that is seen there, lit or in shadow."""
 
     quarters: int
-    """How much of it is a mirror; 0 where nothing is hit."""
+    """Quarters that are mirrored; 0 if nothing is hit."""
 
 
 def plane_of(table: Rectangles, index: int) -> int | None:
-    """The axis of an enabled rectangle, None where it has none."""
+    """Return the axis of an enabled rectangle's plane, or None."""
     first, second = table.corners[index].tolist()
     return next((axis for axis in range(3) if first[axis] == second[axis] and table.enabled[index]), None)
 
 
 def distance(table: Rectangles, index: int, origin: Vector, slope: Vector, met: frozenset[int] | None):
-    """How far along the slope a ray meets a rectangle, None where it does not; 0 in a corner."""
+    """Return how far along the slope a ray meets a rectangle, None if it does not; 0 in a corner."""
     axis = plane_of(table, index)
     if axis is None or slope[axis] == 0:
         return None
@@ -57,7 +57,7 @@ def distance(table: Rectangles, index: int, origin: Vector, slope: Vector, met: 
 
 
 def colour_at(table: Rectangles, index: int, point: Vector) -> tuple[int, ...]:
-    """The colour of a rectangle at a point of it."""
+    """Return the colour of a rectangle at a point."""
     u, v = (axis for axis in range(3) if axis != plane_of(table, index))
     number_u, number_v = (floor(point[axis] / Fraction(int(table.cells[index]))) for axis in (u, v))
     odd = {0: 0, 1: number_u + number_v, 2: number_v, 3: number_u}[int(table.kinds[index])] % 2
@@ -65,7 +65,7 @@ def colour_at(table: Rectangles, index: int, point: Vector) -> tuple[int, ...]:
 
 
 def is_lit(table: Rectangles, light: Vector, index: int, point: Vector, slope: Vector) -> bool:
-    """Whether the light reaches the point that a ray of this slope hit on a rectangle."""
+    """True if the light reaches the point where a ray of this slope hit a rectangle."""
     axis = plane_of(table, index)
     if not (light[axis] - point[axis]) * -slope[axis] > 0:
         return False
@@ -90,7 +90,7 @@ def follow(
     reflections: int,
     light: Light | None = None,
 ) -> list[Stop]:
-    """Every stop of a ray, until it has made its reflections, hits nothing or meets what does not mirror."""
+    """Return all stops of a ray, until its last reflection, a miss, or a rectangle that does not mirror."""
     origin, slope, met, path = [Fraction(c) for c in camera], [Fraction(d) for d in slope], None, []
     for _ in range(reflections + 1):
         distances = [distance(table, index, origin, slope, met) for index in range(len(table))]
@@ -114,7 +114,7 @@ def follow(
 
 
 def pixel(path: Sequence[Stop]) -> list[int]:
-    """The colour of a ray's pixel."""
+    """Return the colour of a ray's pixel."""
     colour = [Fraction(channel) for channel in path[-1].colour]
     for stop in reversed(path[:-1]):
         pairs = zip(stop.colour, colour, strict=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What may become of a group's rays, for tests of those who control them."""
+"""Possible fates of a group's rays, for tests of the blocks that control them."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -19,7 +19,7 @@ from raycaster.verif.leaf import Leaf, TraceCycle, slot_length
 
 
 def control_leaf(function: Callable, config: Configuration, directory: Path) -> Leaf:
-    """Of ray_control, exact_control, or the ray_sequencer in either."""
+    """Build a leaf of ray_control, exact_control, or the ray_sequencer in either of them."""
     write_at = slot_length(config) + 3 if config.facts.divides else 2
     arguments = {"offered": partial(rect_of if config.facts.divides else surface_of, config)}
     if function is ray_sequencer:
@@ -44,7 +44,7 @@ def control_leaf(function: Callable, config: Configuration, directory: Path) -> 
 
 
 def usable_masks(random: np.random.Generator, count: int, some: int) -> list[int]:
-    """Which of so many rectangles are usable, as masks: all, none, each alone, each with the first, and some others."""
+    """Return masks of usable rectangles: all, none, each alone, each with the first, and `some` random ones."""
     every = (1 << count) - 1
     masks = [every, 0, 1, 1 << (count - 1), every]
     masks += [int(random.integers(1 << count)) & int(random.integers(1 << count)) for _ in range(some)]
@@ -52,7 +52,7 @@ def usable_masks(random: np.random.Generator, count: int, some: int) -> list[int
 
 
 def flat_rectangles(random: np.random.Generator, count: int) -> Rectangles:
-    """Rectangles anywhere, all enabled, each with a plane on a random axis."""
+    """Return random rectangles, all enabled, each with a plane on a random axis."""
     table = Rectangles(
         random.integers(WORLD_SIZE, size=(count, 2, 3)),
         random.integers(256, size=(count, 3)).astype(np.uint8),
@@ -64,7 +64,7 @@ def flat_rectangles(random: np.random.Generator, count: int) -> Rectangles:
 
 
 def random_fate(random: np.random.Generator, usable: Sequence[int], reflections: int, number: int) -> dict[str, Any]:
-    """The keyword arguments of `trace_cycles`; number 0 is the worst case, in which nothing is culled."""
+    """Return keyword arguments of `trace_cycles`; number 0 is the worst case, in which nothing is culled."""
     if number == 0:
         return {"may_hit": usable, "behind": (), "lost": None}
     share = random.choice([0, 0.3, 0.7, 1])
@@ -81,7 +81,7 @@ def random_fate(random: np.random.Generator, usable: Sequence[int], reflections:
 
 
 def group_fate_in(random: np.random.Generator, cycle: TraceCycle, leaf: Leaf) -> dict[str, int]:
-    """What the units say in a cycle, and anything where it is don't care."""
+    """Return the outputs of the units in a cycle, random where they are don't care."""
     said = {"fate_any_towards": cycle.towards, "fate_any_alive": cycle.alive}
     return {
         name: int(random.integers(2)) if value is None else value for name, value in said.items() if name in leaf.inputs
@@ -89,18 +89,18 @@ def group_fate_in(random: np.random.Generator, cycle: TraceCycle, leaf: Leaf) ->
 
 
 def mask_of(indices: Sequence[int]) -> int:
-    """A bit for each."""
+    """Return a mask with a bit set for each index."""
     return sum(1 << index for index in indices)
 
 
 def margin_of(config: Configuration) -> int:
-    """How far outside a rectangle's bounds a primary ray may pass that hits it: a rounded coordinate is off by less
-    than one."""
+    """Return how far outside a rectangle's bounds a primary ray that hits it may pass: rounding moves a coordinate by
+    less than one."""
     return 1 if config.engine == "seed" else 0
 
 
 def may_hit_mask(config: Configuration, table: Rectangles, camera, row: int, offset: int) -> int:
-    """The culler's rule, for the rays at a group's ends: a bit for each rectangle that is enabled and has a plane."""
+    """Apply the culler's rule to the rays at a group's ends: a bit for each rectangle that they may hit."""
     first = [int(d) for d in primary_slopes(config.screen_geometry)[row, offset * config.units]]
     ends = [first, [first[0], first[1] + config.units, first[2]]]
     margin = margin_of(config)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Worlds and settings for tests of what holds for anything: Hypothesis draws, and shrinks what fails."""
+"""Random worlds and settings for property-based tests: Hypothesis generates examples, and shrinks failing ones."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from raycaster.verif.seeds import seed
 
 
 def examples(count: int) -> Callable:
-    """A test of so many examples, drawn from the seed that all random tests have."""
+    """Return a decorator for a test with `count` examples, generated from the seed of all random tests."""
     settings = hypothesis.settings(max_examples=count, deadline=None, database=None, print_blob=True)
     return lambda test: hypothesis.seed(seed())(settings(test))
 
 
 class World(NamedTuple):
-    """A table, and rays from one camera; as `raycaster.golden.model.Model.trace` takes them."""
+    """A table, and rays from one camera, as arguments of `raycaster.golden.model.Model.trace`."""
 
     rectangles: Rectangles
     camera: np.ndarray
@@ -34,15 +34,15 @@ class World(NamedTuple):
 
 @st.composite
 def worlds(draw: st.DrawFn, lowest: int = 0, highest: int = WORLD_SIZE - 1) -> World:
-    """Few rectangles and few rays, with coordinates in a range."""
+    """Generate a few rectangles and a few rays, with coordinates in a range."""
     inside = [one for one in (*EXTREMES, lowest, highest) if lowest <= one <= highest]
-    # Few different ones, so that planes, edges and the camera are often in line.
+    # Few different coordinates, so that planes, edges and the camera often coincide.
     pool = draw(st.lists(st.sampled_from(inside) | st.integers(lowest, highest), min_size=2, max_size=4))
     coordinate = st.sampled_from(pool)
     point = st.tuples(coordinate, coordinate, coordinate)
     rectangle = st.tuples(point, point, st.integers(0, 2), st.booleans() | st.just(True))
     drawn = draw(st.lists(rectangle, min_size=1, max_size=5))
-    # Some stand in one place, for ties.
+    # Copies of some, for ties.
     drawn += draw(st.lists(st.sampled_from(drawn), max_size=3))
     corners = np.array([(first, second) for first, second, *_ in drawn], dtype=np.int64)
     for pair, (_, _, axis, _) in zip(corners, drawn, strict=True):
@@ -56,7 +56,7 @@ def worlds(draw: st.DrawFn, lowest: int = 0, highest: int = WORLD_SIZE - 1) -> W
 
 
 def engine_options(engine: Engine) -> dict[str, st.SearchStrategy]:
-    """Options that an engine takes, beside those that every engine takes."""
+    """Return options of an engine in addition to those of every engine."""
     found: dict[str, st.SearchStrategy] = {"screen": st.sampled_from(sorted({name for name, _ in engine.screens}))}
     if "turn" in engine.looks:
         found["turn"] = st.booleans()
@@ -86,12 +86,12 @@ ODD = {
     "rounding": "up", "divider_bits": 4, "colour_bits": "x", "screen": "cinema", "culling": 2, "colour": 8,
     "bus": "pci",
 }  # fmt: skip
-"""Of each option something that no engine takes, and one that is none."""
+"""Values that no engine accepts, and an option that does not exist."""
 
 
 @st.composite
 def options(draw: st.DrawFn, odd: bool = False) -> dict[str, Any]:
-    """A configuration's options, most of which go together; now and then with an odd one."""
+    """Generate options of a configuration, mostly compatible ones; if `odd`, sometimes with an invalid one."""
     engine = draw(st.sampled_from(list(ENGINES)))
     chosen = draw(st.fixed_dictionaries({}, optional=ANY_OPTIONS | engine_options(ENGINES[engine])))
     chosen |= {"engine": engine, "allow_underrun": draw(st.booleans())}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Scenes for leaf tests in which one ray tells a lot: it meets mirrors to its end, and edges where it does."""
+"""Scenes for leaf tests in which a single ray exercises much: it meets mirrors to its end, close to their edges."""
 
 from collections.abc import Callable, Collection
 from dataclasses import replace
@@ -18,9 +18,9 @@ from raycaster.verif.seeds import repeat
 def rectangles_in_view(
     random: np.random.Generator, camera: np.ndarray, slopes: np.ndarray, count: int, axis: int | None = None
 ) -> Rectangles:
-    """Small rectangles where some ray passes, so that rays see this one or that one; the first on an axis."""
+    """Return small rectangles on the way of some rays, so that rays see different ones; the first on `axis`."""
     seen = slopes[random.integers(len(slopes), size=count)]
-    # The steepest component of one is some 160 units, whatever its camera's basis is.
+    # Scale the steepest component of a slope to 160 units, whatever the camera's basis is.
     reach = 160 / np.abs(seen).max(axis=1, initial=1, keepdims=True)
     targets = camera + seen * reach * random.uniform(0, 3.5, (count, 1))
     size = random.choice([0, 3, 40, 400], (count, 2, 3)) * np.array([-1, 1]).reshape(1, 2, 1)
@@ -33,7 +33,7 @@ def rectangles_in_view(
 
 
 def scene_of(random: np.random.Generator, slopes: np.ndarray, count: int) -> tuple[np.ndarray, Rectangles]:
-    """A camera and a table: some in view, some from anywhere."""
+    """Return a camera and a table, with rectangles in view or anywhere."""
     if random.random() < 0.4:
         table = random_rectangles(random, count, closed=None if count >= 7 else False)
         return random_camera(random, table), table
@@ -42,12 +42,12 @@ def scene_of(random: np.random.Generator, slopes: np.ndarray, count: int) -> tup
 
 
 def mirrored_on(random: np.random.Generator, table: Rectangles, camera, slope, mirrors: int) -> Rectangles:
-    """The table with some rectangles across the ray's way, each where the one before it would send the ray."""
+    """Return the table with some rectangles moved into the ray's way, each where the previous one reflects the ray."""
     corners, enabled = table.corners.copy(), table.enabled.copy()
     place, way = np.array(camera, dtype=float), np.array(slope, dtype=float)
     for index in random.permutation(len(table))[:mirrors]:
         moving = np.flatnonzero(way)
-        # As far as it is to the world's end.
+        # The way to the end of the world.
         most = min((np.where(way > 0, WORLD_SIZE - 1, 0) - place)[moving] / way[moving])
         axis = int(random.choice(moving))
         plane = round(place[axis] + way[axis] * most * random.uniform(0.1, 1))
@@ -61,7 +61,7 @@ def mirrored_on(random: np.random.Generator, table: Rectangles, camera, slope, m
 
 
 def with_looks(random: np.random.Generator, config: Configuration, table: Rectangles) -> Rectangles:
-    """The table with all mirrors and patterns that the design knows of."""
+    """Return the table with random mirrors and patterns, as far as the design has them."""
     looks = random_looks(random, table)
     if not config.materials:
         looks = replace(looks, mirrors=table.mirrors)
@@ -71,8 +71,8 @@ def with_looks(random: np.random.Generator, config: Configuration, table: Rectan
 
 
 def edged(random: np.random.Generator, config: Configuration, golden, table: Rectangles) -> Rectangles:
-    """The table with the rectangle that the first ray hits last made hard to tell: one of its edges moved to the hit
-    point or next to it, or a copy of it a few units before or behind."""
+    """Return the table with a close decision at the last hit of the first ray: an edge of that rectangle is moved to
+    the hit point or next to it, or the rectangle gets a copy a few units in front or behind."""
     hits = [(bounce, int(winner[0])) for bounce, winner in zip(golden.bounces, golden.winners, strict=True)]
     hits = [(bounce, winner) for bounce, winner in hits if winner >= 0]
     if not hits:
@@ -91,7 +91,7 @@ def edged(random: np.random.Generator, config: Configuration, golden, table: Rec
 
 
 def rivalled(random: np.random.Generator, table: Rectangles, winner: int, camera, slope) -> Rectangles:
-    """The table with a rectangle across the ray on another axis, where the ray hits the winner or next to there."""
+    """Return the table with a rectangle on another axis that the ray meets at or next to its hit of the winner."""
     axis, rival = int(table.axes[winner]), int(random.integers(len(table)))
     across = int(random.choice(OTHER_AXES[axis]))
     if winner in (-1, rival) or slope[across] == 0:
@@ -106,8 +106,8 @@ def rivalled(random: np.random.Generator, table: Rectangles, winner: int, camera
 
 
 def cornered(random: np.random.Generator, table: Rectangles, camera, slope) -> Rectangles:
-    """The table with one rectangle, or two of different axes, that the ray meets at a point of whole coordinates: a
-    corner, on an edge, inside, or the camera; in some after another mirror. Unchanged where there is no such point."""
+    """Return the table with one rectangle, or two on different axes, that the ray meets at whole coordinates: at a
+    corner, on an edge, inside, or at the camera, sometimes after another mirror. Unchanged if there is none."""
     camera, slope = np.array(camera), np.array(slope)
     moving = np.flatnonzero(slope)
     if len(moving) < 2 or len(table) < 3:
@@ -137,8 +137,8 @@ def cornered(random: np.random.Generator, table: Rectangles, camera, slope) -> R
 
 
 def facing(random: np.random.Generator, table: Rectangles, camera, slope) -> Rectangles:
-    """The table with two rectangles that fill opposite walls of the world, between which the ray goes as far as any
-    does, and a third that crosses it on its way."""
+    """Return the table with two rectangles that fill opposite walls of the world, which give the ray the longest
+    possible way, and a third one across it."""
     corners, enabled = table.corners.copy(), np.zeros(len(table), bool)
     other, axis = np.argsort(np.abs(slope))[1:]
     t = random.uniform(0, 3 * WORLD_SIZE / abs(slope[axis]))
@@ -152,14 +152,14 @@ def facing(random: np.random.Generator, table: Rectangles, camera, slope) -> Rec
 
 
 def tracer(config: Configuration, **given) -> Callable:
-    """Golden's trace by a design's engine, with these of its arguments, to be called with the others."""
+    """Return the golden model's trace for a design's engine, with some of its arguments already given."""
     return partial(model_of(config).trace, keep=True, **given)
 
 
 def traced_scene(random: np.random.Generator, config: Configuration, slopes: np.ndarray) -> tuple:
-    """Camera, table, background and reflections, and golden's trace of them.
+    """Return camera, table, background and reflections, and the golden model's trace of them.
 
-    In most, the first ray meets mirrors to its end, and the last of them near an edge: what comes late tells most.
+    In most of them the first ray meets mirrors to its end, the last one near an edge, as late hits exercise the most.
     """
     rich = random.random() < 0.7
     for _ in range(300):
@@ -177,11 +177,11 @@ def traced_scene(random: np.random.Generator, config: Configuration, slopes: np.
             table = edged(random, config, golden, table)
             golden = trace(table)
         return camera, table, background, reflections, golden
-    raise AssertionError(f"no ray of these meets a mirror {config.reflections} times; {repeat()}")
+    raise AssertionError(f"no scene has a ray that meets mirrors {config.reflections} times; {repeat()}")
 
 
 def pixel_word(config: Configuration, colour) -> int:
-    """A pixel of 8 bits a channel as the design puts it out."""
+    """Return the design's output for a pixel of 8 bits per channel."""
     word = 0
     for channel in colour:
         word = word << config.colour_bits | int(channel) >> (CHANNEL_BITS - config.colour_bits)
@@ -189,7 +189,7 @@ def pixel_word(config: Configuration, colour) -> int:
 
 
 def pixel_of(config: Configuration, output: dict[str, int]) -> int:
-    """The same of what a leaf put out at a `Pixel` that is called pixel."""
+    """Return the word of `pixel_word` from a leaf's output `Pixel` named pixel."""
     return sum(
         output[f"pixel_{name}"] << place * config.colour_bits for place, name in enumerate(("blue", "green", "red"))
     )
@@ -198,15 +198,15 @@ def pixel_of(config: Configuration, output: dict[str, int]) -> int:
 def verdict(
     table: Rectangles, index: int, eye, slope, mirror, met: Collection[int] = (0, 1, 2)
 ) -> tuple[bool, int, int]:
-    """The definition, in fractions: hit, n and e.
+    """Apply the definition, in fractions: return hit, n and e.
 
     Args:
-        table: sorted.
-        index: of the rectangle.
-        eye: where the ray seems to start.
-        slope: with signs.
-        mirror: axis and coordinate of the plane that it left last, or None.
-        met: axes of all mirrors that it met in the point that it left last; by default it hits nothing there.
+        table: sorted rectangles.
+        index: index of the rectangle.
+        eye: mirrored starting point of the ray.
+        slope: slope with signs.
+        mirror: axis and coordinate of the plane that the ray left last, or None.
+        met: axes of all mirrors met in the point that the ray left last; by default nothing can be hit there.
     """
     axis = int(table.axes[index])
     if slope[axis] == 0:
@@ -221,13 +221,13 @@ def verdict(
 
 
 def beside(random: np.random.Generator, place: int) -> int:
-    """As far from a coordinate as one of its bits is worth, or not at all."""
+    """Return a coordinate changed by a power of two, or unchanged."""
     return int(np.clip(place + int(random.choice([-1, 0, 1])) * (1 << int(random.integers(9))), 0, WORLD_SIZE - 1))
 
 
 def sharpened(random: np.random.Generator, table: Rectangles, index: int, eye, slope, mirror) -> Rectangles:
-    """The table with a rectangle moved to where it is hard to tell: an edge to the hit point or next to it, or the
-    plane to where the ray left the mirror."""
+    """Return the table with a rectangle moved so that the decision is close: an edge to the hit point or next to it, or
+    the plane to where the ray left the mirror."""
     axis, corners = int(table.axes[index]), table.corners.copy()
     if slope[axis] == 0:
         return table

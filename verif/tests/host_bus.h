@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The driver's way to the registers where it runs on the host: two functions that the test gives. Goes before raycaster.h.
+// Register access of the driver on the host, through two functions from the test. Include before raycaster.h.
 #pragma once
 #include <stdint.h>
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The C sources of sw/ compiled for the host, on the model of the registers."""
+"""The C sources of sw/, compiled for the host and connected to the model of the registers."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ EVENTS = {
 }
 FIRE = 1 << BUTTON_NAMES.index("fire")
 CONFIG = configure(engine="exact", screen="tiny", rectangles=12)
-"""The design on whose registers the software is tried."""
+"""Design whose registers the software is tested with."""
 
 _Read = ctypes.CFUNCTYPE(ctypes.c_uint32, ctypes.c_uint32)
 _Write = ctypes.CFUNCTYPE(None, ctypes.c_uint32, ctypes.c_uint32)
@@ -90,12 +90,12 @@ class Turned(ctypes.Structure):
 
     @classmethod
     def of(cls, basis: Basis) -> Turned:
-        """One of these three vectors."""
+        """Convert from Python vectors."""
         return cls(*(Direction(*vector) for vector in basis))
 
     @property
     def basis(self) -> Basis:
-        """Its three vectors."""
+        """The three vectors in Python."""
         return tuple(tuple(getattr(getattr(self, name), axis) for axis in "xyz") for name, _ in self._fields_)
 
 
@@ -132,14 +132,14 @@ class Game(ctypes.Structure):
 
 
 def enumerators(header: Path, name: str) -> list[str]:
-    """The names of an enumeration of a header whose values count from 0."""
+    """Return the names in an enumeration of a header, whose values count from 0."""
     body = re.search(rf"enum {name} {{(.*?)}}", header.read_text(), re.S)[1]
     assert "=" not in body
     return re.findall(r"\w+", body)
 
 
 def compile_library(directory: Path, *sources: str | Path) -> ctypes.CDLL:
-    """Compile sources of sw/, or of elsewhere by their whole paths, and load them."""
+    """Compile sources from sw/, or from elsewhere by absolute path, and load them."""
     compiler = shutil.which("gcc") or shutil.which("cc")
     library = directory / "library.so"
     tests = Path(__file__).parent
@@ -163,12 +163,12 @@ def compile_library(directory: Path, *sources: str | Path) -> ctypes.CDLL:
 
 
 class Registers:
-    """A ray tracer of which only the registers are there; a StartScreen comes when it is asked for.
+    """Registers of a ray tracer, without the rest; StartScreen comes on demand.
 
     Attributes:
         file: the model.
-        written: offsets in bytes, and words, in the order in which they came.
-        polls_to_frame: looks at the pending interrupt until the next StartScreen, or None for never.
+        written: byte offsets and words of all writes, in order.
+        polls_to_frame: reads of the pending interrupt until the next StartScreen, or None for never.
     """
 
     def __init__(self, config: Configuration):
@@ -179,7 +179,7 @@ class Registers:
         self.file.clock(True, None)
 
     def read(self, offset: int) -> int:
-        """The word at an offset in bytes."""
+        """Read the word at an offset in bytes."""
         assert offset % 4 == 0
         if offset == self._pending and self.polls_to_frame is not None:
             self.polls_to_frame -= 1
@@ -198,27 +198,27 @@ class Registers:
     def _request(self, request: Request) -> None:
         while not self.file.clock(False, request):
             pass
-        # One to answer or to write, one for what a commit copies.
+        # One clock to answer or to write, and one for a commit's copy.
         self.file.clock(False, None)
         answer = self.file.agent.answer
         self.file.clock(False, None)
         self.file.agent.answer = answer
 
     def start_screen(self) -> LiveScene:
-        """What a StartScreen now makes live."""
+        """Let StartScreen come now; return the live scene."""
         self.file.clocks = self.file.start_screen_clock
         self.file.clock(False, None)
         return self.file.live
 
     def say(self, register: str, **fields: int) -> None:
-        """Let a register that cannot be written answer something else in some fields."""
+        """Change what some fields of a read-only register return."""
         words, known = self.file.agent._constants, self.file.agent.registers[register]
         words[register] = known.pack(**{**known.unpack(words[register]), **fields})
 
 
 @contextmanager
 def attached(library: ctypes.CDLL, registers: Registers) -> Iterator[None]:
-    """Let a library's driver reach registers."""
+    """Connect the driver in a library to registers."""
 
     class HostBus(ctypes.Structure):
         _fields_ = [("read", _Read), ("write", _Write)]
@@ -229,14 +229,14 @@ def attached(library: ctypes.CDLL, registers: Registers) -> Iterator[None]:
 
 
 def probed(library: ctypes.CDLL) -> RayCaster:
-    """The handle of what is attached."""
+    """Return the handle of the attached device."""
     device = RayCaster()
     assert library.raycaster_probe(ctypes.byref(device), None) == 0
     return device
 
 
 class Frame(NamedTuple):
-    """What came of a step: events, the scene then live, and what was written for it."""
+    """Results of a step: events, the scene that is live afterwards, and the writes for it."""
 
     events: set[str]
     live: LiveScene
@@ -257,21 +257,21 @@ class Session:
         library.game_init(ctypes.byref(self.game), seed)
 
     def draw(self) -> int:
-        """The driver's error."""
+        """Draw; return the driver's error."""
         with attached(self.software, self.registers):
             return self.software.game_draw(ctypes.byref(self.game), ctypes.byref(self.device))
 
     def step(self, buttons: int) -> set[str]:
-        """What happens in a frame with these buttons, without a picture."""
+        """Run a frame with these buttons, without drawing; return its events."""
         bits = self.software.game_step(ctypes.byref(self.game), buttons)
         return {name for name, bit in EVENTS.items() if bits & bit}
 
     def autoplay(self) -> int:
-        """What a good player would hold now."""
+        """Return the buttons that a good player would hold now."""
         return self.software.game_autoplay(ctypes.byref(self.game))
 
     def play(self, script: Iterable[int]) -> Iterator[Frame]:
-        """Frame after frame, drawn and shown; the sticky errors stay clear."""
+        """Play, draw and show frame after frame; the sticky errors must stay clear."""
         for buttons in script:
             self.registers.written.clear()
             events = self.step(buttons)
@@ -288,5 +288,5 @@ class Session:
         assert self.step(FIRE) == {"STARTED"}
 
     def phase(self) -> str:
-        """Which of `enum game_phase`."""
+        """Return the name of the phase in `enum game_phase`."""
         return enumerators(GAME_HEADER, "game_phase")[self.game.phase].removeprefix("GAME_")

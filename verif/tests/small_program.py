@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A small program for the processor, assembled here: a scene, a camera that the buttons move, a line of text."""
+"""A small program for the processor, assembled here: it shows a scene, moves the camera by buttons, and prints text."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Line = tuple[str | int, ...]
 
 
 def assemble(lines: list[Line]) -> list[int]:
-    """Words of RV32IM instructions, one a line, from address 0 on.
+    """Assemble RV32IM instructions, one per line, from address 0 on.
 
     `("label", name)` and `("word", value)` make no instruction; `("li", x, value)` makes two. Memory accesses are
     (name, value, offset, address); branches and `("jal", x, label)` name a label, which `li` may take for a value.
@@ -82,16 +82,16 @@ def _encode(name: str, values: list[int], here: int) -> list[int]:
 
 
 def send(register: str) -> list[Line]:
-    """A byte to the serial port, whose address is in x8; it waits by itself."""
+    """Send a byte to the serial port, whose address is in x8 and which waits by itself."""
     return [("sw", register, 0, "x8")]
 
 
 def small_program(scene: Scene, config: Configuration) -> list[int]:
-    """Words of a program that sends `RAYC`, as it reads it, and shows the scene; sends `M` and `E`, if its memory and
-    arithmetic work, and `go` and a newline; and then, each frame, moves the camera to the side by what is held, and
-    sends that as a letter, `@` and on.
+    """Return the words of a program that sends `RAYC`, as read from the registers, and shows the scene; sends `M` and
+    `E`, if its memory and arithmetic work, then `go` and a newline. Then, in each frame, it moves the camera sideways
+    by the held buttons, and sends these as a letter from `@` on.
 
-    Left and right are 8 of y, in either direction.
+    Left and right move by 8 along y.
     """
     registers = register_map(config.table)
     camera, control, pending, enable = (
@@ -109,13 +109,13 @@ def small_program(scene: Scene, config: Configuration) -> list[int]:
         ("li", "x10", RAY_TRACER),
         ("lw", "x5", 0, "x10"),
         ("addi", "x6", "x0", 4),
-        ("label", "name"),  # from the highest byte on
+        ("label", "name"),  # highest byte first
         ("srli", "x7", "x5", 24),
         *send("x7"),
         ("slli", "x5", "x5", 8),
         ("addi", "x6", "x6", -1),
         ("bne", "x6", "x0", "name"),
-        # Address and word, one after the other.
+        # Pairs of address and word.
         ("li", "x11", "scene"),
         ("li", "x12", "end"),
         ("label", "next"),
@@ -126,7 +126,7 @@ def small_program(scene: Scene, config: Configuration) -> list[int]:
         ("bne", "x11", "x12", "next"),
         ("addi", "x5", "x0", 1),
         ("sw", "x5", enable, "x10"),
-        # Bytes into a word at the memory's end, and what is nowhere ignores writes and reads 0.
+        # Write a byte into the last word of the memory; an unmapped address ignores writes and reads 0.
         ("li", "x13", 4 * MEMORY_WORDS - 4),
         ("sw", "x0", 0, "x13"),
         ("addi", "x5", "x0", ord("M")),
@@ -137,7 +137,7 @@ def small_program(scene: Scene, config: Configuration) -> list[int]:
         ("sw", "x5", 8, "x9"),
         ("or", "x6", "x6", "x7"),
         *send("x6"),
-        # 7 * 13 - 200 / 9 is E.
+        # 7 * 13 - 200 / 9 is the letter E.
         ("addi", "x5", "x0", 7),
         ("addi", "x6", "x0", 13),
         ("mul", "x5", "x5", "x6"),
@@ -147,7 +147,7 @@ def small_program(scene: Scene, config: Configuration) -> list[int]:
         ("sub", "x5", "x5", "x6"),
         *send("x5"),
         *(line for letter in b"go\n" for line in (("addi", "x5", "x0", letter), *send("x5"))),
-        # x14: y; x15: the camera's other fields; x16: what commits; x17: 1
+        # x14: y; x15: the camera's other fields; x16: word that commits; x17: 1
         ("li", "x14", y),
         ("li", "x15", still),
         ("li", "x16", start),
@@ -179,7 +179,7 @@ def small_program(scene: Scene, config: Configuration) -> list[int]:
 
 
 def write_program(scene: Path, configuration: Configuration, directory: Path) -> Path:
-    """The program for a scene and a design, as a file that a memory is loaded from."""
+    """Write the program for a scene and a design as a file from which a memory is loaded."""
     words = small_program(load_scene(scene, configuration.rectangles), configuration)
     program = directory / "small.hex"
     program.write_text("".join(f"{word:08x}\n" for word in words))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A real Tcl for what Intel's tools would run."""
+"""Run Tcl scripts made for Intel's tools in a real Tcl interpreter."""
 
 from __future__ import annotations
 

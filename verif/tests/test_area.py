@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Yosys's counts for a small design: which modules there are, their multipliers, and parts that add up."""
+"""Yosys's cell counts for a small design: its modules, their multipliers, and parts that add up to the whole."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ INSTANCES = {
     "intersection_finder": 2, "intersection_helper": 4,
     "divider": 4, "divider_step": 4, "z_buffer": 2, "ray_mem": 2, "colour_combiner": 2, "colour_share": 2,
     "colour_sum": 6,
-    # Of the ray caster's clock, and of the memories' clock.
+    # For the ray caster's clock and the memories' clock.
     "clock_gate": 2,
 }  # fmt: skip
 
@@ -40,17 +40,17 @@ INSTANCES = {
 @pytest.mark.slow
 @families
 def test_modules_and_their_multipliers(family, tmp_path):
-    """Each ray unit has two multipliers, no other module has one, and the modules add up to the whole."""
+    """Each ray unit has two multipliers, other modules have none, and the modules add up to the whole."""
     modules = measure_modules(SMALL, family, tmp_path / "modules")
     assert {name: instances for name, (instances, _) in modules.items()} == INSTANCES
     multipliers = {name: area.multipliers for name, (_, area) in modules.items() if area.multipliers}
     assert multipliers == {"intersection_helper": 1}
-    # On an FPGA the clocks go on.
+    # On an FPGA, clocks are never gated.
     assert modules["clock_gate"][1] == Area(0, 0, 0, 0, 0)
     parts = sum((area * instances for instances, area in modules.values()), Area(0, 0, 0, 0, 0))
     whole = measure(SMALL, family, tmp_path / "whole")
     assert whole.multipliers == parts.multipliers == 2 * SMALL.units
-    # Flattening finds constants across modules. It adds no register.
+    # Flattening propagates constants across modules and adds no registers.
     assert 0.6 * parts.registers < whole.registers <= parts.registers
     assert 0.6 * parts.tables < whole.tables <= 1.05 * parts.tables
 
@@ -63,8 +63,8 @@ UNIT = {
 
 @pytest.mark.slow
 @families
-def test_what_culling_takes(family, tmp_path):
-    """No multiplier, as products are sums, and less than four ray units take."""
+def test_the_cost_of_culling(family, tmp_path):
+    """Culling needs no multiplier, as its products are sums, and less logic than four ray units."""
     modules = measure_modules(replace(SMALL, culling=True), family, tmp_path / "area")
     found, taken = Counter(), Area(0, 0, 0, 0, 0)
     for name, (instances, counted) in modules.items():
@@ -78,7 +78,7 @@ def test_what_culling_takes(family, tmp_path):
         (modules[name][1] * (count // SMALL.units) for name, count in INSTANCES.items() if name in UNIT),
         Area(0, 0, 0, 0, 0),
     )
-    # An eighth of the units of the default design.
+    # Four units are an eighth of the default design.
     assert taken.tables < 4 * unit.tables
     assert taken.registers < 4 * unit.registers
 
@@ -86,7 +86,7 @@ def test_what_culling_takes(family, tmp_path):
 @pytest.mark.slow_sets("cycloneive")
 @pytest.mark.parametrize(("family", "multipliers"), [("ecp5", 1), ("cycloneive", 2)])
 def test_wide_multipliers(family, multipliers, tmp_path):
-    """9 by 17 bits: one of 18 bits, or two of 9."""
+    """9 by 17 bits take one 18-bit multiplier, or two 9-bit ones."""
     wide = configure(
         screen="tiny", units=2, rectangles=2, fraction_bits=8, divider_bits=1, allow_underrun=True, culling=False
     )
@@ -111,7 +111,7 @@ def test_one_more_register_shows(tmp_path, monkeypatch):
     assert measure(SMALL, family, tmp_path / "broken").registers == sound.registers + 1
 
 
-def test_the_model_foretells_what_is_linear():
+def test_the_model_predicts_linear_growth():
     shared, unit = Area(100, 50, 120, 0, 2), Area(10, 5, 12, 2, 1)
     model = Model.of((4, shared + unit * 4), (16, shared + unit * 16))
     assert model == Model(shared, unit)
@@ -122,7 +122,7 @@ def test_the_model_foretells_what_is_linear():
 
 
 def test_bridges(tmp_path, monkeypatch, capsys, names_for_digests):
-    """Each one by itself, out of a design that has it."""
+    """Each bridge is counted alone, in a design that has it."""
 
     def count(config, family, directory, top):
         assert (family.name, top) == ("ecp5", f"{config.bus}_bridge")
@@ -146,7 +146,7 @@ FEATURES = {
 
 
 def test_features(tmp_path, monkeypatch, capsys, names_for_digests):
-    """Each one alone and all, of a ray unit of the seed engine and of the others as a whole."""
+    """Each feature alone and all together: in one ray unit for the seed engine, in whole designs for the others."""
 
     def count(config, family, directory, top):
         assert (family.name, top) == ("ecp5", "ray_unit" if config.engine == "seed" else "ray_caster_module")
@@ -183,7 +183,7 @@ def test_features(tmp_path, monkeypatch, capsys, names_for_digests):
 
 
 def test_each_pin_has_a_register(tmp_path):
-    """Of each port but the clocks a register of its width, on the way in or out; Icarus takes it with the design."""
+    """Every port except the clocks gets an input or output register of its width; Icarus accepts the result."""
     config = configure(engine="beam", screen="tiny", rectangles=1, reflections=0, colour_bits=5, pixels=2)
     files = write_verilog(config, tmp_path)
     [module] = [path.read_text() for path in files if path.name == "ray_caster_module.v"]
@@ -203,7 +203,7 @@ def test_each_pin_has_a_register(tmp_path):
 
 
 def test_placing_and_routing_alone(tmp_path, monkeypatch, capsys, names_for_digests):
-    """What nextpnr reports is kept, with the seed that it was given."""
+    """nextpnr's report is kept with its seed."""
     calls = []
 
     def run_nextpnr(command, directory, timeout):
@@ -248,8 +248,8 @@ def test_placing_and_routing_alone(tmp_path, monkeypatch, capsys, names_for_dige
     ],
     ids=["met", "met then", "missed", "no end", "failed"],
 )
-def test_what_is_late_is_routed_again(reached, code, kept, calls, tmp_path, monkeypatch):
-    """Once, where the first result misses a clock; None takes too long, which leaves the first result."""
+def test_a_missed_clock_is_routed_again(reached, code, kept, calls, tmp_path, monkeypatch):
+    """A missed clock is routed once more; None stands for a timeout, which keeps the first result."""
     made = []
 
     def run_nextpnr(command, directory, timeout):
@@ -279,7 +279,7 @@ def test_the_command(tmp_path):
     options = ("--screen", "tiny", "--units", "4", "--rectangles", "1", "--allow-underrun", "--culling", "0")
     options += ("--family", "ecp5")
     done = called("area", *options, cwd=tmp_path)
-    assert (done.returncode, done.stderr) == (0, "area: usually 3 min, less where results are kept\n")
+    assert (done.returncode, done.stderr) == (0, "area: usually 3 min, less with kept results\n")
     published = json.loads((tmp_path / "build" / "area" / "area.json").read_text())["families"]["ecp5"]
     assert set(published) == {"units", "shared", "unit"}
     assert [area["multipliers"] for area in published["units"].values()] == [8, 4, 2]
@@ -288,9 +288,9 @@ def test_the_command(tmp_path):
 @pytest.mark.parametrize(
     ("options", "complaint"),
     [
-        (("--family", "ice40"), "error: family: ice40 is not known here; choose one of ecp5, cycloneive, cyclonev"),
+        (("--family", "ice40"), "error: family: expected one of ecp5, cycloneive, cyclonev, got ice40"),
         (("--units", "7"), "error: units: 7 does not divide the 320 columns"),
-        (("--features", "--engine", "beam"), "error: features: it has designs of its own"),
+        (("--features", "--engine", "beam"), "error: features: counts a fixed set of designs"),
     ],
 )
 def test_bad_options_get_one_line(tmp_path, options, complaint):
@@ -302,7 +302,7 @@ def test_bad_options_get_one_line(tmp_path, options, complaint):
 
 
 def test_a_design_is_counted_once(tmp_path, monkeypatch):
-    """A count that is kept needs no Yosys; another design, family or module has a count of its own."""
+    """A kept count needs no Yosys; other designs, families and modules are counted separately."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PATH", "")
     asked = []

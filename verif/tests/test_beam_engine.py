@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The configurations of the beam engine: screens, two pixels a clock, and what fits into a line's blanking."""
+"""Configurations of the beam engine: screens, two pixels per clock, and set-ups that fit into a line's blanking."""
 
 from dataclasses import replace
 from unittest import mock
@@ -40,7 +40,7 @@ def test_a_beam_is_as_fine_as_its_monitor(options, shown):
 
 @pytest.mark.parametrize(("pixels", "rate"), [(1, 30), (2, 60)])
 def test_full_hd_at_a_clock_that_chips_reach(pixels, rate):
-    """As CEA-861 has it: 2200 x 1125, both syncs high; two pixels a clock are as many clocks, and twice the frames."""
+    """The timing is CEA-861's: 2200 x 1125, both syncs high; two pixels per clock double the frame rate."""
     screen = beam_config(rows=180, scale=6, pixels=pixels).screen_geometry
     horizontal, vertical = screen.horizontal, screen.vertical
     assert (horizontal.visible, horizontal.front, horizontal.sync, horizontal.back) == (1920, 88, 44, 148)
@@ -65,7 +65,7 @@ def test_a_finer_view_is_the_same_view(options):
 @pytest.mark.parametrize(
     ("options", "complaint"),
     [
-        ({"units": 4}, "^units: the beam engine has one for each of PIXELS=1 a clock, not 4$"),
+        ({"units": 4}, "^units: the beam engine has one per pixel of a clock, PIXELS=1, not 4$"),
         ({"scale": 3}, "^scale: the beam engine shows 240 rows at 1 or 2, not 3$"),
         ({"rows": 180, "scale": 8}, "^scale: the beam engine shows 180 rows at 1 or 2 or 3 or 4 or 6, not 8$"),
         ({"fraction_bits": 1}, "^fraction_bits: the beam engine has none, not 1$"),
@@ -73,19 +73,19 @@ def test_a_finer_view_is_the_same_view(options):
         ({"engine": "exact", "screen": "play"}, "^screen: play needs the beam engine, ENGINE=beam, not exact$"),
         ({"engine": "exact", "rows": 180}, "180 rows need the beam engine, ENGINE=beam$"),
         ({"pixels": 3}, "^pixels: expected 2 or less, got 3$"),
-        ({"pixels": 2, "units": 1}, "^units: the beam engine has one for each of PIXELS=2 a clock, not 1$"),
-        ({"engine": "seed", "pixels": 2}, "^pixels: 2 a clock need the beam engine, ENGINE=beam, not seed$"),
+        ({"pixels": 2, "units": 1}, "^units: the beam engine has one per pixel of a clock, PIXELS=2, not 1$"),
+        ({"engine": "seed", "pixels": 2}, "^pixels: 2 per clock need the beam engine, ENGINE=beam, not seed$"),
         (
             {"pixels": 2, "scale": 1},
-            "^pixels: 2 a clock need a column for each of the monitor's pixels, SCALE=2, not 1$",
+            "^pixels: 2 per clock need one column per pixel of the monitor, SCALE=2, not 1$",
         ),
         (
             {"pixels": 2, "rows": 180, "scale": 3},
-            "^pixels: 2 a clock need a column for each of the monitor's pixels, SCALE=6, not 3$",
+            "^pixels: 2 per clock need one column per pixel of the monitor, SCALE=6, not 3$",
         ),
     ],
 )
-def test_what_the_beam_engine_has_not(options, complaint):
+def test_options_that_the_beam_engine_refuses(options, complaint):
     with pytest.raises(ConfigurationError, match=complaint):
         configure(**{"engine": "beam"} | options)
 
@@ -97,7 +97,7 @@ def test_two_pixels_a_clock_take_an_even_line(part):
     with (
         mock.patch.dict(BEAM_SCREENS, {("play", 240): replace(screen, horizontal=line)}),
         pytest.raises(
-            ConfigurationError, match=r"^pixels: 2 a clock need an even width and blanking, and the play screen"
+            ConfigurationError, match=r"^pixels: 2 per clock need an even width and blanking, which the play screen"
         ),
     ):
         configure(engine="beam", screen="play", pixels=2)
@@ -107,7 +107,7 @@ def test_two_pixels_a_clock_take_an_even_line(part):
 @pytest.mark.parametrize("rectangles", [1, 2, 12, 32])
 @pytest.mark.parametrize("reflections", range(MOST_REFLECTIONS + 1))
 def test_every_row_is_set_up_in_its_blanking(place, rectangles, reflections):
-    """The latest column has left, and all rectangles are loaded, before the first column's turn."""
+    """The previous line's last column is out, and all rectangles are loaded, before the first column starts."""
     screen, rows = place
     size = {"screen": screen, "rows": rows, "rectangles": rectangles, "reflections": reflections}
     if screen == "vga" or rectangles < 32 or reflections < 3:
@@ -121,7 +121,7 @@ def test_every_row_is_set_up_in_its_blanking(place, rectangles, reflections):
     ("screen", "rows", "most"), [("vga", 240, 4), ("vga", 180, 4), ("tiny", 48, 2), ("play", 240, 1)]
 )
 def test_every_row_of_a_turned_camera_is_set_up_in_its_blanking(screen, rows, most):
-    """That of a dozen rectangles, with all there is; on small screens with so many reflections at most."""
+    """A dozen rectangles with all features fit; small screens allow at most the given number of reflections."""
     config = beam_config(screen=screen, rows=rows, reflections=most, turn=True, materials=True, patterns=True)
     assert blanking_left(config) >= 0
     with pytest.raises(
@@ -142,9 +142,9 @@ def test_every_row_of_a_turned_camera_is_set_up_in_its_blanking(screen, rows, mo
     ],
 )
 def test_two_pixels_a_clock_halve_the_blanking(options, fits):
-    """There is one set-up for both lanes, which the shorter blanking must be long enough for."""
+    """Both lanes share one set-up, which must fit into the shorter blanking."""
     if fits:
         assert blanking_left(configure(engine="beam", pixels=2, **options)) >= 0
         return
-    with pytest.raises(ConfigurationError, match=r"^rectangles: .* at two pixels a clock, the .*PIXELS=1$"):
+    with pytest.raises(ConfigurationError, match=r"^rectangles: .* at two pixels per clock, the .*PIXELS=1$"):
         configure(engine="beam", pixels=2, **options)

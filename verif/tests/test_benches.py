@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The benches of the whole design beyond a single frame, on every engine.
+"""Benches of the whole design beyond a single frame, on every engine.
 
-Verilator has the full scene memory; Icarus, some hundred times slower, a design and a scene of three rectangles.
+Verilator runs the full scene memory; Icarus, some hundred times slower, gets a design and a scene of three rectangles.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ on_every_engine = pytest.mark.parametrize(("simulator", "configuration", "scene"
 
 
 def run_with_seed(bench: Bench, *arguments: Any, **options: Any) -> None:
-    """A bench that draws random numbers; where it fails, the line that repeats it is told."""
+    """Run a bench that uses random numbers; a failure shows the command that repeats it."""
     try:
         bench(*arguments, **options)
     except SimulationError as error:
@@ -43,27 +43,27 @@ def run_with_seed(bench: Bench, *arguments: Any, **options: Any) -> None:
 @pytest.mark.slow_sets(quick=["exact"])
 @on_every_engine
 def test_motion(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
-    """Changes show in whole frames only; StartScreen and its interrupt."""
+    """Changes appear only in whole frames; check StartScreen and its interrupt."""
     bench("verif.benches.motion_bench", configuration, simulator, scene)
 
 
 @pytest.mark.slow
 def test_motion_full_size(bench: Bench):
-    """The same at 640x480."""
+    """Motion at 640x480."""
     bench("verif.benches.motion_bench", configure(), "verilator", FULL_SCENE)
 
 
 @pytest.mark.slow_sets("beam", "everything", "icarus", "seed")
 @on_every_engine
 def test_registers(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
-    """The register map, and what its bits do."""
+    """The register map and the function of its bits."""
     run_with_seed(bench, "verif.benches.register_bench", configuration, simulator, scene)
 
 
 @pytest.mark.slow_sets("beam", "everything", "icarus", "seed")
 @on_every_engine
 def test_traffic(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
-    """Random traffic and a reset at every moment: each answer, the interrupt, the sync and the picture."""
+    """Random traffic, and resets at any time: check every answer, the interrupt, the sync and the picture."""
     first = 100 * seed()
     seeds = tuple(range(first, first + TRAFFIC_SEEDS[simulator]))
     run_with_seed(bench, "verif.benches.traffic_bench", configuration, simulator, seeds=seeds)
@@ -81,14 +81,14 @@ def test_traffic(bench: Bench, simulator: str, configuration: Configuration, sce
     ],
 )
 def test_underrun(bench: Bench, simulator: str, options: dict[str, Any]):
-    """Fewer units than the scene would need; the beam engine, which takes all rectangles at once, is never late."""
+    """Fewer units than the scene needs; the beam engine tests all rectangles at once and is never late."""
     configuration = configure(**{"screen": "tiny", "allow_underrun": True} | options)
     bench("verif.benches.underrun_bench", configuration, simulator)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_the_main_program_is_as_cocotbs(tmp_path: Path, engine: str):
-    """In models with our main program everything happens as with cocotb's: the same events, times and picture."""
+def test_the_main_program_matches_cocotb(tmp_path: Path, engine: str):
+    """Our main program and cocotb's main program give the same events, times and picture."""
     configuration = configure(engine=engine, screen="tiny", rectangles=3, **{"units": 8} if engine == "seed" else {})
     events, pictures = [], []
     for own_main in (True, False):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is measured beside ours: that the software draws the picture, and a small design of somebody else's."""
+"""Comparisons: software that draws the right picture, a small third-party design, and our own designs."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ endmodule
 
 
 def test_the_software_draws_every_scene(tmp_path):
-    """Whose camera does not turn; it is compared with the golden model before its time counts."""
+    """Scenes without a turned camera are compared with the golden model before the time counts."""
     scenes = {name: scene for name, path in packaged_scenes().items() if not (scene := load_scene(path)).camera.turned}
     assert len(scenes) > 10
     for name, scene in scenes.items():
@@ -49,7 +49,7 @@ def test_the_software_draws_every_scene(tmp_path):
     ],
 )
 def test_software_that_draws_something_else(right, wrong, tmp_path, monkeypatch):
-    """Where one of the scenes shows it."""
+    """A fault that shows in any scene stops the measurement."""
     text = beside.SOFTWARE.read_text()
     assert right in text
     changed = tmp_path / "software.cpp"
@@ -62,7 +62,7 @@ def test_software_that_draws_something_else(right, wrong, tmp_path, monkeypatch)
 
 
 def other(**changed) -> Other:
-    """Somebody's design of a few cells."""
+    """Make a third-party design of a few cells."""
     defines = {"CLOCK": "clk", "RESET": "reset", "IN_RESET": "1", "SHOWN": "shown"}
     return Other(**{
         "title": "Stripes", "address": "https://example.org/stripes", "top": "stripes",
@@ -73,7 +73,7 @@ def other(**changed) -> Other:
 
 @pytest.fixture
 def checkout(tmp_path, monkeypatch):
-    """Of that; placing and routing takes long, and is area's."""
+    """A checkout of the small third-party design; slow placing and routing is replaced, as tests of area cover it."""
     monkeypatch.setattr(beside, "route_netlist", lambda directory, clock_mhz, seed: {"routed_mhz": 99.5})
     directory = tmp_path / "stripes"
     directory.mkdir()
@@ -82,7 +82,7 @@ def checkout(tmp_path, monkeypatch):
     return directory
 
 
-def test_a_design_of_somebody_elses(checkout, tmp_path):
+def test_a_third_party_design(checkout, tmp_path):
     found = measure_other(other(), checkout, tmp_path / "out")
     assert found["registers"] == 6
     assert found["luts"] > 0
@@ -92,8 +92,8 @@ def test_a_design_of_somebody_elses(checkout, tmp_path):
 
 
 @pytest.mark.parametrize("engine", ["exact", "beam"])
-def test_a_design_of_ours(engine, tmp_path, monkeypatch):
-    """It is started, and shows something; counting and routing take long, and are area's."""
+def test_our_design(engine, tmp_path, monkeypatch):
+    """The design starts and shows a picture; slow counting and routing are replaced, as tests of area cover them."""
     monkeypatch.setattr(beside, "measure", lambda config, family, directory: Area(100, 50, 100, 2, 1))
     monkeypatch.setattr(beside, "route", lambda config, directory, seed: {"routed_mhz": 88.0})
     found = measure_ours({"engine": engine, "screen": "tiny"}, packaged_scenes()["boxes"], tmp_path)
@@ -108,9 +108,9 @@ def test_a_design_that_shows_nothing(checkout, tmp_path):
         measure_other(other(), checkout, tmp_path / "out")
 
 
-def test_a_checkout_of_something_else(tmp_path):
+def test_a_wrong_checkout(tmp_path):
     checkouts = checkouts_of([f"racing_the_beam={tmp_path / 'nowhere'}"])
-    with pytest.raises(UserError, match=r"nowhere/Pano.v: is not there; give a checkout of https://github.com/tomv"):
+    with pytest.raises(UserError, match=r"nowhere/Pano.v: not found; give a checkout of https://github.com/tomv"):
         measure_beside("boxes", checkouts, tmp_path / "out", Console(quiet=True))
     assert not (tmp_path / "out").exists()
 
@@ -135,6 +135,6 @@ def test_a_design_that_fails_does_not_lose_the_others(tmp_path, monkeypatch, cap
 
 
 @pytest.mark.parametrize("given", ["racing_the_beam", "racing_the_beam=", "quake=../quake"])
-def test_what_is_not_known(given):
-    with pytest.raises(UserError, match=rf"^beside: {given.partition('=')[0]} is not known here; give some of racing"):
+def test_an_unknown_design(given):
+    with pytest.raises(UserError, match=rf"^beside: {given.partition('=')[0]}: expected racing_the_beam=CHECKOUT or "):
         checkouts_of([given])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The ULX3S: what its DVI connector sends, decoded and held against golden, and the way to its bitstream."""
+"""The ULX3S: its decoded DVI output, compared with the golden model, and its bitstream."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def sources(design, tmp_path_factory) -> list[Path]:
 
 @pytest.fixture
 def shown(design, sources, tmp_path):
-    """The first frames that a DVI monitor sees, with a text in one file replaced by another."""
+    """A function that returns the first frames that a DVI monitor sees, with a text in one file replaced."""
 
     def show(*fault: str, frames: int = 1, simulator: str = "icarus", **pressed: int) -> list[np.ndarray]:
         board = {path.name: Path(shutil.copy(path, tmp_path)) for path in sources}
@@ -59,7 +59,7 @@ def shown(design, sources, tmp_path):
     return show
 
 
-# Reset that ends a clock later leaves the pixels at another place among the cycles of the shift clock.
+# A reset that ends one clock later moves the pixels relative to the cycles of the shift clock.
 @pytest.mark.slow_sets("icarus-1", "icarus-2-0")
 @pytest.mark.parametrize(("simulator", "frames", "late_ns"), [("icarus", 2, 0), ("icarus", 1, 20), ("verilator", 2, 0)])
 def test_the_dvi_stream_is_golden(design, shown, simulator, frames, late_ns):
@@ -67,7 +67,7 @@ def test_the_dvi_stream_is_golden(design, shown, simulator, frames, late_ns):
         assert np.array_equal(frame, golden(design))
 
 
-# Which of these a button is in, and the way in which it moves, no other shares.
+# Each button is in a different set of these cases and moves the camera in a different way.
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("buttons", "direction"),
@@ -79,7 +79,7 @@ def test_the_dvi_stream_is_golden(design, shown, simulator, frames, late_ns):
     ids=["forward-down-right", "back-down-left", "back-up-right"],
 )
 def test_buttons_move_the_camera(design, shown, buttons, direction):
-    """The first frame shows the scene as it is, the next the camera a step further."""
+    """The first frame shows the scene as it is, the next one with the camera moved a step."""
     pressed = sum(1 << BUTTONS.index(button) for button in buttons)
     first, second = shown(frames=2, buttons=pressed)
     start = design.scene.camera.position
@@ -90,12 +90,12 @@ def test_buttons_move_the_camera(design, shown, buttons, direction):
 
 
 PROGRAM_STEP = 8
-"""World units that the small program moves the camera each frame."""
+"""World units per frame by which the small program moves the camera."""
 
 
 @pytest.mark.slow
 def test_a_processor_on_the_board(tmp_path):
-    """Its program says on the serial port what it says, and shows what it shows, moved by the board's buttons."""
+    """The program writes to the serial port and shows its scene; the board's buttons move the camera."""
     config = configure(engine="exact", screen="tiny", rectangles=4)
     scene = load_scene(SMALL_SCENE)
     program = write_program(SMALL_SCENE, config, tmp_path)
@@ -104,7 +104,7 @@ def test_a_processor_on_the_board(tmp_path):
     files = write_project(ULX3S, ProcessorDesign(program, config), project)
     right = 1 << BUTTONS.index("right")
     frames = watch(ULX3S, files, config.screen_geometry, 6, project, simulator="verilator", buttons=right)
-    # Nothing is shown before the program has started, and by then an interrupt waits: the first picture is a step on.
+    # The screen is blank until the program has started; an interrupt waits by then, so the first picture is a step on.
     blank, *drawn = frames
     assert not blank.any()
     x, y, z = scene.camera.position
@@ -146,7 +146,7 @@ def test_a_broken_link_is_noticed(design, shown, file, right, wrong, complaint):
 
 @pytest.mark.slow
 def test_reflections_are_those_asked_for(tmp_path):
-    """As if the scene had named them itself."""
+    """Reflections from an option have the same effect as reflections from the scene."""
     options = {"screen": "tiny", "units": 16, "rectangles": 4}
     mirrors = tmp_path / "mirrors.toml"
     mirrors.write_text(f"reflections = 2\n{SMALL_SCENE.read_text()}")
@@ -162,7 +162,7 @@ def test_reflections_are_those_asked_for(tmp_path):
 
 
 def test_a_small_bitstream(tmp_path):
-    """All the way, and every clock is fast enough."""
+    """The whole flow runs, and every clock is fast enough."""
     options = {"screen": "tiny", "units": 1, "rectangles": 4, "allow_underrun": True, "culling": False}
     design = design_for(SMALL_SCENE, options)
     outcome = make_bitstream(ULX3S, design, tmp_path / "out")
@@ -173,7 +173,7 @@ def test_a_small_bitstream(tmp_path):
     assert outcome.crossings["clk to shift_clk"][1] == 8.0
     assert json.loads((tmp_path / "out" / "result.json").read_text())["clocks"]["clk"] == list(outcome.clocks["clk"])
     assert len((tmp_path / "out" / "ulx3s.bit").read_bytes()) > 10_000
-    # What no simulation sees: the PLL's charge pump and filter, and the pairs of pins.
+    # No simulation covers the PLL's charge pump and filter, and the pairs of pins.
     config = (tmp_path / "out" / "ulx3s.config").read_text()
     for setting in ("ICP_CURRENT 01100", "LPF_RESISTOR 0001000", "MFG_ENABLE_FILTEROPAMP 1", "MFG_GMCREF_SEL 10"):
         assert f"word: {setting}\n" in config
@@ -217,7 +217,7 @@ def test_too_slow_gets_one_line(tmp_path, monkeypatch, capsys, clk, shift_clk, c
         ),
         (
             (str(SMALL_SCENE), "--engine", "beam", "--rows", "180", "--scale", "6", "--pixels", "2"),
-            "error: pixels: the board's link sends one pixel a clock; leave 2 out, or take make verilog",
+            "error: pixels: the board's link sends one pixel per clock; leave out PIXELS=2, or use make verilog",
         ),
     ],
 )
@@ -233,15 +233,15 @@ def test_bad_options_get_one_line(tmp_path, words, options, complaint):
 @pytest.mark.parametrize(
     ("script", "made", "complaint"),
     [
-        ("true", False, r"\S+/ulx3s/ulx3s\.bit: is not there; run raycaster bitstream --board ulx3s first"),
-        (None, True, r"openFPGALoader is not on the path, and loads \S+/ulx3s\.bit onto the board; install it .*"),
+        ("true", False, r"\S+/ulx3s/ulx3s\.bit: does not exist; run raycaster bitstream --board ulx3s first"),
+        (None, True, r"openFPGALoader, which loads \S+/ulx3s\.bit onto the board, is not on the path; install it .*"),
         ("echo; echo no device >&2; exit 1", True, r"openFPGALoader failed on the Radiona ULX3S.*: no device"),
         ("exit 3", True, "openFPGALoader failed on the .*: exit code 3"),
         ("while true; do :; done", True, "openFPGALoader took more than 0.5 s on the .*"),
     ],
 )
 def test_nothing_is_loaded(script, made, complaint, tmp_path, monkeypatch, refuses):
-    """Each reason in one line; the script is what is called as openFPGALoader is."""
+    """Each reason is reported in one line; the script stands in for openFPGALoader."""
     monkeypatch.setattr(bitstream, "LOAD_TIMEOUT", 0.5)
     monkeypatch.setattr("raycaster.tools._search_path", lambda: str(tmp_path / "bin"))
     (tmp_path / "bin").mkdir()
@@ -272,6 +272,6 @@ def test_the_loader_is_called_for_the_board(tmp_path, monkeypatch, capsys):
 @pytest.mark.parametrize("given", [(str(SMALL_SCENE),), ("--fix", "all")], ids=["scene", "fix"])
 def test_the_game_takes_no_scene(tmp_path, monkeypatch, given):
     monkeypatch.setattr(sys, "argv", ["bitstream", "--game", *given, "--output", str(tmp_path / "out")])
-    with pytest.raises(UserError, match=r"^game: it sets up its own scene; leave SCENE, FIX and FIT out$"):
+    with pytest.raises(UserError, match=r"^game: the game sets up its own scene; leave out SCENE, FIX and FIT$"):
         bitstream.main()
     assert not list(tmp_path.iterdir())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Boards that the open tools serve: their descriptions, pin files, tops, PLLs, and the way to each one's bitstream."""
+"""Boards supported by the open tools: their descriptions, pin files, tops, PLLs and bitstreams."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ every_board = pytest.mark.parametrize("name", BOARDS)
 
 
 def small_design(board: OpenBoard):
-    """A small scene built in, as small as the board's monitor allows; each pixel is drawn in time."""
+    """Make a design with a built-in scene, as small as the board's monitor allows; each pixel is drawn in time."""
     screen = {"screen": "tiny"} if board.video == "dvi" else {"rows": 60}
     return fix(SMALL_SCENE, board.configuration | {"engine": "exact"} | screen, "all").design
 
 
 def changed(name: str, directory: Path, right: str, wrong: str) -> OpenBoard:
-    """A board with something replaced in its description."""
+    """Load a board with a text of its description replaced."""
     shutil.copytree(find_board(name, OpenBoard).directory, directory / name)
     path = directory / name / "board.toml"
     assert right in path.read_text()
@@ -50,8 +50,8 @@ def test_every_folder_with_a_description_is_a_board():
 def test_a_board_has_what_a_bitstream_needs(name):
     board = find_board(name, OpenBoard)
     configure(**board.configuration)
-    for told in (board.title, board.chip, board.source, board.confirmation, board.disagreements, *board.loader):
-        assert told.strip()
+    for text in (board.title, board.chip, board.source, board.confirmation, board.disagreements, *board.loader):
+        assert text.strip()
     assert {"link_p"} <= set(board.outputs.values()) or {"vga_r", "vga_clk"} <= set(board.outputs.values())
 
 
@@ -80,7 +80,7 @@ _STANDARDS = {"lpf": r'^IOBUF PORT "(\S+)" IO_TYPE=\w', "pcf": r"^set_io (\S+) .
 @pytest.mark.slow_sets(quick=["icebreaker"])
 @every_board
 def test_each_port_has_a_pin_and_a_standard(name, tmp_path):
-    """Of the top as Yosys has it, with nothing that it warns of."""
+    """The ports are those of the top as Yosys elaborates it, without a warning."""
     board = find_board(name, OpenBoard)
     files = [path.relative_to(tmp_path) for path in write_project(board, small_design(board), tmp_path)]
     suffix, _ = FLOWS[board.flow].pin_file
@@ -88,7 +88,7 @@ def test_each_port_has_a_pin_and_a_standard(name, tmp_path):
     script = [
         *(f"read_verilog {file}" for file in files),
         f"{FLOWS[board.flow].synthesis} -top {name} -run :coarse",
-        # A bare pattern would match the ports of the submodules too, where synthesis flattens later than this.
+        # A bare pattern would also match submodule ports, as some syntheses flatten only after this step.
         f"tee -q -o ports.txt select -list {name}/o:* {name}/i:* %u",
     ]
     run_yosys(tmp_path, "elaborate", script)
@@ -109,11 +109,11 @@ def test_each_port_has_a_pin_and_a_standard(name, tmp_path):
             "serial_tx.standard: expected",
         ),
         ('serial_tx = "serial"', 'serial_rx = "serial"', "outputs: serial_rx is not among the signals"),
-        ('serial_tx = "serial"', "", "signals: serial_tx is neither the clock nor among inputs or outputs"),
-        ('"~gpio[3]"', '"~gpio[4]"', "inputs: down: ~gpio[4] is no bit of a signal here, or of an output"),
-        ('"~gpio[3]"', '"gpdi[3]"', "inputs: down: gpdi[3] is no bit of a signal here, or of an output"),
-        ("down =", "fire =", "inputs: fire is none of reset, forward, back, left, right, up, down"),
-        ('clock = "clk50"', 'clock = "clk"', "signals: clk is missing, and the board's clocks name it"),
+        ('serial_tx = "serial"', "", "signals: serial_tx is neither the clock nor used in inputs or outputs"),
+        ('"~gpio[3]"', '"~gpio[4]"', "inputs: down: ~gpio[4] is not a bit of a signal here, or is an output"),
+        ('"~gpio[3]"', '"gpdi[3]"', "inputs: down: gpdi[3] is not a bit of a signal here, or is an output"),
+        ("down =", "fire =", "inputs: fire is not one of reset, forward, back, left, right, up, down"),
+        ('clock = "clk50"', 'clock = "clk"', "signals: clk is missing, but is one of the board's clocks"),
         ('flow = "ecp5"', 'flow = "ecp4"', "flow: expected ecp5, ice40 or gowin, got ecp4 (did you mean ecp5?)"),
         ('flow = "ecp5"', 'flow = "', "is not TOML"),
         ('PULLMODE = "NONE"', 'PULLMODE = ["NONE", "UP"]', "PULLMODE has 2 values for"),
@@ -147,12 +147,12 @@ def test_the_pll_makes_the_monitors_clock(name, options, nets, parameters):
 @pytest.mark.parametrize(
     ("name", "options", "complaint"),
     [
-        ("icebreaker", {}, "^rows: the .* takes a clock a pixel; choose ROWS=120, 96 or 60, or ENGINE=beam$"),
+        ("icebreaker", {}, "^rows: the .* takes one clock per pixel; choose ROWS=120, 96 or 60, or ENGINE=beam$"),
         ("icebreaker", {"engine": "beam", "screen": "play"}, "^screen: play is for simulation only"),
         ("icebreaker", {"engine": "beam", "rows": 180, "scale": 6, "pixels": 2}, "^pixels: "),
     ],
 )
-def test_no_clock_for_that(name, options, complaint):
+def test_unsupported_clocks(name, options, complaint):
     with pytest.raises(UserError, match=complaint):
         clocks_for(find_board(name, OpenBoard), configure(**options))
 
@@ -164,7 +164,7 @@ def test_no_clock_near_enough(tmp_path):
 
 
 def test_the_smallest_products_are_left_to_logic():
-    """Those of one size by their names; what is wider than a factor takes more than one multiplier."""
+    """Products of one size go by name; a product wider than a factor takes more than one multiplier."""
     cells = (("a", 9, 9), ("b", 20, 9), ("c", 9, 8), ("d", 8, 9), ("e", 3, 3))
     text = "".join(
         f"  cell $mul \\{name}\n    parameter \\A_SIGNED 0\n"
@@ -181,7 +181,7 @@ def test_the_smallest_products_are_left_to_logic():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in BOARDS if name not in ("ulx3s",)])
 def test_a_small_bitstream(name, tmp_path):
-    """All the way, within the multipliers that there are; every clock is fast enough."""
+    """The whole flow runs within the board's multipliers, and every clock is fast enough."""
     board = find_board(name, OpenBoard)
     outcome = make_bitstream(board, small_design(board), tmp_path / "out")
     assert not outcome.missed
@@ -203,7 +203,7 @@ def test_a_small_bitstream(name, tmp_path):
     ids=["the other pin of a pair", "no pin of the package", "another voltage in a bank"],
 )
 def test_nextpnr_refuses_a_pin(tmp_path, monkeypatch, right, wrong):
-    """In one line, which says where the log is; without synthesis, as nextpnr looks at pins first."""
+    """One line gives nextpnr's error and the place of its log; the design is a stub, as nextpnr checks pins first."""
     board = changed("icepi_zero", tmp_path, right, wrong)
 
     def only_pins(board, design, work):

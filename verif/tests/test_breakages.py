@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The bench must notice: designs broken on purpose, each with the complaint that it must cause."""
+"""Faults that the bench must notice: designs broken on purpose, each with its expected error."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from raycaster.sim.simulator import SimulationError, convert
 
 CONFIGURATION = configure(screen="tiny", units=8, rectangles=3)
 
-# A module that passes for the design, with the design inside and one thing wrong at the video output.
+# A module that wraps the design under its name, with one fault at the video output.
 WRAPPER = """
 module ray_caster_module (
     input clk, input reset,
@@ -34,7 +34,7 @@ module ray_caster_module (
         .avs_s0_waitrequest(avs_s0_waitrequest), .irq(irq), .vga_r(r), .vga_g(g), .vga_b(b), .vga_hs(hs), .vga_vs(vs),
         .vga_blank_n(blank_n), .vga_sync_n(vga_sync_n), .vga_clk(pixel_clk)
     );
-    // What the bench counts cycles by.
+    // The bench counts cycles by these.
     wire progress_start_screen = inner.progress_start_screen, progress_busy = inner.progress_busy;
     // The pixel's position in the picture, from 1, for faults in one place only.
     integer x, y;
@@ -42,7 +42,7 @@ module ray_caster_module (
         x <= blank_n ? x + 1 : 0;
         y <= !vs ? 0 : blank_n && x == 0 ? y + 1 : y;
     end
-    // A pixel late: taken in the middle of a pixel, given out at its end.
+    // One pixel late: sampled in the middle of a pixel, output at its end.
     reg hs_taken, hs_late, vs_taken, vs_late;
     reg [7:0] r_taken, r_late;
     always @(posedge pixel_clk) {{hs_taken, vs_taken, r_taken}} <= {{hs, vs, r}};
@@ -84,7 +84,7 @@ PINS = {"hs": "hs", "vs": "vs", "blank_n": "blank_n", "clk": "pixel_clk", "r": "
     ],
 )
 def test_is_noticed(bench: Bench, tmp_path, pins, complaint):
-    """One fault at a time; without any, the wrapper makes no difference."""
+    """One fault at a time; without a fault, the wrapper changes nothing."""
     files = []
     for source in convert(CONFIGURATION, BUILD):
         copy = tmp_path / source.name

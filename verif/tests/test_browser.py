@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The browser that pages are tested in."""
+"""The browser in which pages are tested."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The whole design behind each bus: others' drivers write and read its registers, and it draws."""
+"""The whole design behind each bus: third-party drivers write and read its registers, and it draws."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def small(bus: str):
 @pytest.mark.parametrize("simulator", SIMULATORS)
 @pytest.mark.parametrize("bus", BRIDGED)
 def test_bus(bench: Bench, bus, simulator):
-    """Random words with back-pressure, a frame, and the cycles of an access; in Icarus registers start unknown."""
+    """Random words with back-pressure, a frame, and cycles per access; in Icarus, registers start unknown."""
     first = seed()
     bench("verif.benches.bus_bench", small(bus), simulator, SMALL_SCENE, seeds=(first, first + 1, first + 2))
 
@@ -36,7 +36,7 @@ def test_bus(bench: Bench, bus, simulator):
 @pytest.mark.parametrize("start", [1, 2])
 @pytest.mark.parametrize("bus", BRIDGED)
 def test_random_start(bench: Bench, bus, start):
-    """Registers start with random values, and nothing of them is seen after reset."""
+    """Registers start with random values, and none is visible after reset."""
     values = ("+verilator+rand+reset+2", f"+verilator+seed+{start}")
     bench("sim.frame_bench", small(bus), "verilator", SMALL_SCENE, plusargs=values)
 
@@ -67,7 +67,7 @@ def test_a_fault_is_noticed(bench: Bench, tmp_path: Path, bus, right, wrong, com
 
 
 @pytest.mark.parametrize("write", [write_system, lambda *given: write_scene_system(*given[:1], SCENE, *given[1:])])
-def test_what_drives_the_registers_itself_takes_no_other_bus(tmp_path, write):
+def test_systems_with_their_own_host_refuse_other_buses(tmp_path, write):
     with pytest.raises(ConfigurationError, match=r"bus: a system with.* processor drives .*; leave out apb$"):
         write(small("apb"), tmp_path / "verilog")
     assert not any(tmp_path.iterdir())

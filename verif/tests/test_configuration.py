@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What holds for every configuration that options may make."""
+"""Properties of every configuration that options can make."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from raycaster.options import CommandParser, add_configuration_options, as_optio
 
 
 def made(chosen) -> Configuration | None:
-    """A configuration, or nothing where that is refused with one line."""
+    """Return a configuration, or None if it is refused with a one-line error."""
     try:
         return configure(**chosen)
     except ConfigurationError as error:
@@ -31,7 +31,7 @@ def parsed(parser: argparse.ArgumentParser, words: list[str]) -> Configuration:
 
 @examples(150)
 @given(options(odd=True))
-def test_options_make_a_design_that_holds_together_or_one_line(chosen):
+def test_options_make_a_consistent_design_or_a_one_line_error(chosen):
     config = made(chosen)
     odd = [name for name, value in ODD.items() if chosen.get(name) == value]
     assert config is None or not odd
@@ -42,7 +42,7 @@ def test_options_make_a_design_that_holds_together_or_one_line(chosen):
     assert None not in [getattr(config, name) for name in OPTIONS]
     assert config.units * config.groups == screen.columns
     assert config.quotient_bits == 9 + config.fraction_bits
-    # A row holds its last cycle to hand over; a beam has its pixels' time.
+    # A row needs its last cycle for the hand-over; the beam engine keeps pace with the pixels.
     if config.engine != "beam" and not config.allow_underrun:
         assert config.groups * config.group_cycles < screen.row_cycles
     assert config.divider_bits in ((1, 2, 3) if config.engine == "seed" else (0,))
@@ -50,8 +50,8 @@ def test_options_make_a_design_that_holds_together_or_one_line(chosen):
 
 @examples(60)
 @given(options())
-def test_options_are_said_again(chosen):
-    """As a command has them, as make does, and as messages say them."""
+def test_options_survive_a_round_trip(chosen):
+    """Options survive the form of a command, of make, and of messages."""
     config = made(chosen)
     if config is None:
         return
@@ -70,7 +70,7 @@ def test_options_are_said_again(chosen):
 @examples(60)
 @given(options(), options())
 def test_names_are_unique(chosen, other):
-    """Of designs that differ in one option, and in which one only; a design that may be late is the same hardware."""
+    """Designs that differ in one option have different names; allow_underrun is fixed, as it changes no hardware."""
     base = made(chosen | {"allow_underrun": True})
     for name in {*chosen, *other} - {"allow_underrun"}:
         changed = {one: value for one, value in chosen.items() if one != name}
@@ -81,8 +81,8 @@ def test_names_are_unique(chosen, other):
         assert (base.name == one.name) == (base == one), (base, one)
 
 
-def test_most_options_that_are_drawn_make_a_design():
-    """Of each engine, or what is said of them all would be of few."""
+def test_drawn_options_reach_every_engine():
+    """Every engine gets enough designs, so that the other properties are not tested on few of them."""
     engines = Counter()
 
     @examples(200)

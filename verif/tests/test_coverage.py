@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Coverage, briefly: counts are read and added up, holes are reported, and so are explanations without a hole."""
+"""Coverage: counts are read and added up; holes are reported, and explanations without a hole."""
 
 from __future__ import annotations
 
@@ -54,14 +54,14 @@ NOTHING = Judgement({}, [], [])
 
 
 def record(directory: Path, count: int, **fields: object) -> str:
-    """A line as Verilator writes it."""
+    """Format a line as Verilator does."""
     values = {"f": directory / "counter.v", "l": 3, "n": 5, "page": "v_x/counter", "h": "bench.dut"} | fields
     return "C '" + "".join(f"\1{name}\2{value}" for name, value in values.items()) + f"' {count}"
 
 
 @pytest.fixture
 def counts(tmp_path):
-    """Of a branch not taken, a condition not met, and three edges not seen, in two files of a run."""
+    """Counts with a branch not taken, a condition not met and three edges not seen, in two files of a run."""
     (tmp_path / "counter.v").write_text(SOURCE)
     lines = [
         record(tmp_path, 7, t="branch", o="if", S="3-4"),
@@ -93,7 +93,7 @@ EXPLAINED = [
 
 
 def test_counts_are_read(counts):
-    """Every point, with what stands at its line; those of the bench are left out."""
+    """Every point has its source line; points of the bench are left out."""
     _, alone = counts
     assert {(point.kind, point.what): times for point, times in alone.items()} == {
         ("branch", "if: if (on) begin"): 7,
@@ -110,7 +110,7 @@ def test_counts_are_read(counts):
 
 
 def test_an_unexplained_hole_fails(counts, capsys):
-    """It is named with its file and line, the bits of a signal together."""
+    """The hole is reported with its file and line, and bits of one signal together."""
     _, alone = counts
     judgement = judge(alone, EXPLAINED[1:2])
     assert describe(judgement.unexplained) == [
@@ -127,18 +127,18 @@ def test_an_unexplained_hole_fails(counts, capsys):
 
 
 def test_a_stale_explanation_fails(counts):
-    """One that nothing needs, or of which some bit is seen or does not exist."""
+    """An explanation is stale if no hole needs it, or if one of its bits is covered or does not exist."""
     _, alone = counts
     for extra in (explanation(signal="velocity"), explanation(code="never"), explanation(signal="value", edge="0->9")):
         assert len(judge(alone, [*EXPLAINED, extra]).stale) == 2, "that, and bit 14"
     judgement = judge(alone, EXPLAINED)
     assert not judgement.unexplained
-    assert judgement.stale == ["count.*: value[0, 14-15] (because): of its bits 14"]
+    assert judgement.stale == ["count.*: value[0, 14-15] (because): bits 14"]
     assert judge_code(judgement) == 1
 
 
 def test_runs_add_up(counts, tmp_path):
-    """What one run saw is no hole; and with every other explained, all is well."""
+    """A point that any run covers is no hole; with all others explained, the verdict is good."""
     together = counts[1] + counts[0]
     together.update(dict.fromkeys(counts[1], 0))
     judgement = judge(together, [*EXPLAINED[:2], explanation(signal="value", bits="15"), EXPLAINED[3]])
@@ -151,7 +151,7 @@ def test_runs_add_up(counts, tmp_path):
 
 
 def judge_code(judgement: Judgement) -> int:
-    """The exit code of a command whose bins are all hit."""
+    """Return the exit code of a command whose bins are all hit."""
     functional = FunctionalCoverage()
     functional.add(np.array([reachable(functional, place) for place in np.ndindex(SHAPE)]).reshape(SHAPE))
     return verdict(judgement, functional, [])
@@ -166,7 +166,7 @@ def reachable(functional: FunctionalCoverage, place: tuple[int, ...]) -> int:
     "text", ["", "[[hole]]\nmodule = 'm'\nreason = 'r'", "[[hole]]\nmodule = 'm'\nsignal = 's'", "hole = ["]
 )
 def test_bad_explanations_are_refused(tmp_path, text):
-    """What is missing is told."""
+    """The error names the file."""
     path = tmp_path / "holes.toml"
     path.write_text(text)
     with pytest.raises(UserError, match=r"holes\.toml"):
@@ -174,13 +174,13 @@ def test_bad_explanations_are_refused(tmp_path, text):
 
 
 def test_the_explanations_can_be_read():
-    """All of them have a reason."""
+    """Every explanation has a reason."""
     every = {one for engine in DESIGNS for one in load_explanations(engine)}
     assert all(len(explanation.reason) > 5 for explanation in every)
 
 
-def test_explanations_are_of_modules_that_are_there(output):
-    """Of a design without the module an explanation says nothing, so each must have one that it speaks of."""
+def test_explanations_name_existing_modules(output):
+    """Every explanation needs a design that has its module, as it has no effect elsewhere."""
     every, there = set(), set()
     for engine, design in DESIGNS.items():
         modules, mine = {path.stem for path in convert(design, output)}, set(load_explanations(engine))
@@ -192,12 +192,12 @@ def test_explanations_are_of_modules_that_are_there(output):
 
 @pytest.mark.slow
 def test_verilator_counts(output):
-    """A small design, from the model to the figures."""
+    """A small design, from the model to the counts."""
     configuration = configure(screen="tiny", units=2, rectangles=1, reflections=0, divider_bits=3)
     small = load_scene(SMALL_SCENE)
     one = output / "one.toml"
     one.write_text(dump_scene(small.model_copy(update={"rect": small.rect[1:2]})))
-    # Not optimised: there is more to compile than to run.
+    # Not optimised, as compiling takes longer than running.
     model = build_model(configuration, build=BUILD, flags=(*FLAGS, "-CFLAGS", "-O0"))
     counts, failures, _ = run_all(model, [Run("sim.frame_bench", one, 0)], output / "runs", 1, Console())
     assert failures == []
@@ -207,7 +207,7 @@ def test_verilator_counts(output):
     seen = {(point.module, point.what) for point, times in counts.items() if times}
     assert {("z_buffer", "found:0->1"), ("divider", "quotient[0]:1->0")} <= seen
     holes = {(point.module, point.what) for point in judge(counts, []).unexplained}
-    # No interrupt is enabled, and with one rectangle there is nothing nearer.
+    # No interrupt is enabled, and with one rectangle nothing is nearer.
     assert {("avalon_interface", "irq_enable:0->1"), ("ray_caster_module", "irq:0->1")} <= holes
     assert ("avalon_interface", "if: if (progress_underrun) begin") in holes
     assert any(module == "z_buffer" and "depth < nearest" in what for module, what in holes)
@@ -217,7 +217,7 @@ SMALL = {"screen": "tiny", "units": 16, "rectangles": 7, "reflections": 2, "allo
 
 
 def counted(scene: Scene, config: Configuration) -> np.ndarray:
-    """As `read_bins` has it, of all intersections that golden computes, those that culling would give up among them."""
+    """Count all intersections in the golden model as `read_bins` does, including those that culling would skip."""
     rectangles = Rectangles.of_scene(scene)
     slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
     position, background = scene.camera.position, scene.background
@@ -225,7 +225,7 @@ def counted(scene: Scene, config: Configuration) -> np.ndarray:
     traced = model_of(config).trace(rectangles, position, background, slopes, scene.reflections, keep=True)
     counts = np.zeros(np.prod(SHAPE), dtype=np.int64)
     for number, bounce in enumerate(traced.bounces):
-        # Those that have hit nothing before go on missing, and nothing of them is seen.
+        # Rays that have missed before are not counted.
         alive = bounce.alive
         nearest = np.full(alive.sum(), Fraction(1 << 40), dtype=object)
         found = np.zeros(alive.sum(), dtype=bool)
@@ -239,7 +239,7 @@ def counted(scene: Scene, config: Configuration) -> np.ndarray:
                 bounds = np.broadcast_to(bounds << config.fraction_bits, (len(slope), *bounds.shape))
                 behind, fourth = np.sign(numerator) != np.sign(slope), ~bounce.valid[index][alive].all(axis=1)
             else:
-                # Points and depths are in fractions of the slope; n has its sign already.
+                # Points and depths are fractions over the slope; n already includes its sign.
                 bounds = bounds * slope[:, None, None]
                 within = ((bounds[:, 0] <= point[:, extent]) & (point[:, extent] <= bounds[:, 1])).all(axis=1)
                 behind, fourth = numerator < 0, within & ~hit
@@ -269,14 +269,14 @@ def counted(scene: Scene, config: Configuration) -> np.ndarray:
     ],
 )
 def test_the_hardware_counts_its_intersections(output, options):
-    """Without culling as golden computes them; with it all hits, fewer of what does not hit, and nothing impossible."""
+    """Without culling, counts are the golden model's own; with it, all hits, fewer misses, and no impossible bin."""
     config = configure(**SMALL | options)
     model = build_model(config, build=BUILD, verilog=[*convert(config, BUILD), *PROBES[config.engine]])
     results = POINTS[config.engine]["result"]
     hits, total = [results.index(name) for name in HITS], 0
-    # Without a line buffer a row is computed again for each of its lines.
+    # Without a line buffer, a row is recomputed for each of its lines.
     lines = 1 if config.facts.line_buffered else config.screen_geometry.doubling
-    # None of the random ones has two rectangles at one depth, which a wrong comparison would take for nearer.
+    # No random scene has two rectangles at equal depth, which would expose a wrong comparison, so add one that has.
     scenes = {f"seed {seed}": random_scene(seed, config.rectangles, config.reflections) for seed in range(4)}
     for name, scene in (scenes | {"extra": load_scene(EXTRA_SCENE)}).items():
         directory = output / f"{config.name}-{name}"
@@ -296,7 +296,7 @@ def test_the_hardware_counts_its_intersections(output, options):
 
 
 def test_bins_that_were_not_hit_are_reported(tmp_path, capsys):
-    """A primary ray only hits primary bins; every other possible one is a hole, and makes the command fail."""
+    """Primary rays hit only primary bins; every other possible bin is a hole and makes the command fail."""
     functional = FunctionalCoverage()
     counts = np.zeros(SHAPE, np.int64)
     bins = "z", "negative", "hit", "first", "primary"
@@ -320,16 +320,16 @@ def test_bins_that_were_not_hit_are_reported(tmp_path, capsys):
     assert sum(int(found.get("hits")) for found in points) == sum(hits[-1] for hits in written["hits"]) == 14
 
 
-def test_what_is_declared_impossible_must_not_come():
-    """It would mean that the list is wrong."""
+def test_an_impossible_bin_must_not_be_hit():
+    """A hit in such a bin means that the list is wrong."""
     counts = np.zeros(SHAPE, np.int64)
     counts[0, 1, 0, 0, 0] = 3
-    with pytest.raises(ValueError, match="x, zero, parallel, none, primary: is said to be impossible, and came 3"):
+    with pytest.raises(ValueError, match="x, zero, parallel, none, primary: declared impossible, but found 3"):
         FunctionalCoverage().add(counts)
 
 
-def test_the_extra_scene_has_what_it_is_for():
-    """Ties on an edge, in a second reflection along negative x."""
+def test_the_extra_scene_hits_its_bin():
+    """The scene has ties on an edge in a second reflection along negative x."""
     scene = load_scene(EXTRA_SCENE)
     bins = "x", "negative", "edge", "tie", "second"
     place = tuple(values.index(name) for values, name in zip(POINTS["seed"].values(), bins, strict=True))

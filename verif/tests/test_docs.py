@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The documentation: its drawings are of the design as it is, its pages hang together, and its commands exist."""
+"""The documentation: drawings match the design, pages are consistent, and commands exist."""
 
 from __future__ import annotations
 
@@ -43,15 +43,15 @@ from raycaster.verif import rtl_lint
 from raycaster.verif.formal.properties import PROPERTIES
 
 NOMINAL = {"74.0 MHz", "74.25 MHz"}
-"""Frequencies that are set, not measured."""
+"""Frequencies that are specified, not measured."""
 
 COMMANDS = commands_of(commands.PAGES)
 QUICK = ("make verilog ENGINE=exact RECTANGLES=20", "make registers")
-"""Of these, run for real; `make commands` runs all of them."""
+"""Commands that the tests really run; `make commands` runs all of them."""
 
 
 def make(*arguments: str, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
-    """Run it as a person would, even where another make runs the tests."""
+    """Run make as a person would, even if another make runs the tests."""
     return subprocess.run(
         ["make", *arguments], cwd=cwd, env=outside_make(), capture_output=True, text=True, check=False
     )
@@ -59,18 +59,18 @@ def make(*arguments: str, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
 
 @cache
 def accepts(words: tuple[str, ...]) -> str:
-    """What the program says against these words, which it checks before it gives its help."""
+    """Return the program's complaint about these words, which it checks before it prints its help."""
     return called(*words, "--help", cwd=ROOT).stderr
 
 
-def test_what_a_command_does_not_take():
+def test_unknown_words_are_refused():
     assert "SEEDS: raycaster sim does not take it" in accepts(("sim", "SEEDS=3"))
     assert "unknown command: simulate" in accepts(("simulate",))
 
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_command(command: str):
-    """Its target is the Makefile's, the program takes its variables or options, and its files are there."""
+    """The Makefile has its target, the program accepts its variables or options, and its files exist."""
     words = shlex.split(command)
     lines = [command]
     if words[0] == "make":
@@ -84,7 +84,7 @@ def test_command(command: str):
         lines = done.stdout.splitlines()
     else:
         assert shutil.which(Path(words[0]).name, path=sysconfig.get_path("scripts")), f"{words[0]} is not installed"
-        # A test that a page tells how to write is no file of the clone.
+        # Tests that a page explains how to write are not in the repository.
         written = set(re.findall(r"`(verif/tests/\S+\.py)`:", (ROOT / "docs" / "extend.md").read_text()))
         assert all((ROOT / word).is_file() for word in words if word.endswith(".py") and word not in written)
     for line in lines:
@@ -94,7 +94,7 @@ def test_command(command: str):
 
 @pytest.mark.parametrize("command", QUICK)
 def test_quick_command(command: str, tmp_path: Path):
-    """As a reader would run it, but in another directory, and with the environment that is there."""
+    """Run the command as a reader would, but in another directory and with the existing environment."""
     assert command in COMMANDS
     for name in ("Makefile", "pyproject.toml", "constraints.txt"):
         shutil.copy(ROOT / name, tmp_path)
@@ -108,7 +108,7 @@ def test_quick_command(command: str, tmp_path: Path):
 
 
 def test_commands_are_run(tmp_path: Path, monkeypatch, capsys):
-    """Each once, but for those that have a reason; one that fails is told."""
+    """Each command runs once, except those skipped for a reason; failures are reported."""
     page = tmp_path / "page.md"
     blocks_of_page = ("sh\necho well # so it is\nmake test\nmake quartus\n", "\nexit 1\n", "sh\nexit 3\necho well\n")
     page.write_text("".join(f"```{block}```\n\n" for block in blocks_of_page))
@@ -120,12 +120,12 @@ def test_commands_are_run(tmp_path: Path, monkeypatch, capsys):
     assert {path.name: path.read_text() for path in logs.iterdir()} == {"00.log": "well\n", "03.log": ""}
     assert capsys.readouterr().out.count("left out") == 2
     assert commands.main(["--output", str(logs), "--only", "echo"]) == 0
-    with pytest.raises(UserError, match="only: no command of the documentation has 'sing' in it"):
+    with pytest.raises(UserError, match="only: no command in the manual contains 'sing'"):
         commands.main(["--output", str(logs), "--only", "sing"])
 
 
 def test_every_module_is_on_the_page_of_the_structure():
-    """Its list of modules has each file of the hardware with a block of its name, and nothing else."""
+    """The list of modules has every hardware file with a block of the same name, and nothing else."""
     listed = re.search(r"^```\n(ray_caster_module .*?)^```", (ROOT / "docs/structure.md").read_text(), re.M | re.S)[1]
     named = {word for word in re.findall(r"\w+", listed) if "_" in word}
     there = {path.stem for path in (ROOT / "rtl").rglob("*.py") if f"@block\ndef {path.stem}(" in path.read_text()}
@@ -133,8 +133,8 @@ def test_every_module_is_on_the_page_of_the_structure():
     assert all(re.search(rf"\b{name}\b", listed) for name in there)
 
 
-def test_the_module_that_the_page_adds(tmp_path: Path, monkeypatch):
-    """`docs/extend.md` has a module and its leaf test: they do what it says, by the project's own rules."""
+def test_the_example_module_works(tmp_path: Path, monkeypatch):
+    """The module and the leaf test in `docs/extend.md` work as described and follow the project's rules."""
     page = (ROOT / "docs/extend.md").read_text()
     module, _, leaf = re.findall(r"^```python\n(.*?)^```", page, re.M | re.S)
     texts = {"rtl/engine/colour_dimmer.py": module, "verif/tests/leaves/engine/test_colour_dimmer.py": leaf}
@@ -154,7 +154,7 @@ def test_the_module_that_the_page_adds(tmp_path: Path, monkeypatch):
 
 
 def draw_anew(verilog: list[Path] | None = None) -> dict[str, list[tuple[str, str]]]:
-    """Simulate; by diagram, the lines that are not as they are kept with the sources, and those."""
+    """Simulate; return, by diagram, the kept lines that differ, each with its new version."""
     BUILD.mkdir(exist_ok=True)
     parted = {}
     for name, drawn in timing.simulate(BUILD, verilog):
@@ -163,16 +163,16 @@ def draw_anew(verilog: list[Path] | None = None) -> dict[str, list[tuple[str, st
     return parted
 
 
-def test_timing_is_true():
-    """What is kept with the sources is what the converted Verilog does, lane by lane."""
+def test_timing_diagrams_match_the_design():
+    """The kept diagrams match the converted Verilog, lane by lane."""
     parted = draw_anew()
     assert set(parted) == {path.stem for path in timing.SOURCES.iterdir()}
     lines = [f"{name}\n  kept {old}\n   now {new}" for name, pairs in parted.items() for old, new in pairs]
-    assert not lines, "the design does something else by now; make docs draws it anew:\n" + "\n".join(lines)
+    assert not lines, "the design has changed; run make docs to redraw:\n" + "\n".join(lines)
 
 
 def test_a_changed_design_is_noticed(output: Path):
-    """The halves of the line buffer trade places: the picture stays right, so that golden says nothing."""
+    """With the halves of the line buffer swapped, the picture stays right, so the golden model notices nothing."""
     files, right = [], "assign line_buf_sel = place_row[0];"
     for path in convert(timing.CONFIGURATION, BUILD):
         files.append(output / path.name)
@@ -181,7 +181,7 @@ def test_a_changed_design_is_noticed(output: Path):
     parted = {
         (name, json.loads(old.rstrip(","))["name"]) for name, pairs in draw_anew(files).items() for old, _ in pairs
     }
-    # The address in the line buffer has the half in its highest bit.
+    # The highest bit of a line buffer's address is its half.
     assert parted == {
         ("video_and_counters", "line_buf_sel"),
         ("renderer_and_ray_unit", "line_buf_sel"),
@@ -189,8 +189,8 @@ def test_a_changed_design_is_noticed(output: Path):
     }
 
 
-def test_timing_says_what_the_configuration_says():
-    """Two accounts of the same cycles: counted in the simulation, and computed for the row budget."""
+def test_timing_diagrams_match_the_configuration():
+    """Cycles counted in the simulation equal those computed for the row budget."""
     cycles = {
         (diagram.name, start, end): measured
         for diagram in timing.DIAGRAMS
@@ -205,7 +205,7 @@ def test_timing_says_what_the_configuration_says():
 
 
 class FakeFrame:
-    """Lanes' texts instead of a waveform."""
+    """A stand-in for a waveform: lanes given as text."""
 
     def __init__(self, **lanes: str):
         self._lanes = lanes
@@ -220,7 +220,7 @@ def fake_diagram(*arrows: timing.Arrow) -> timing.Diagram:
 
 
 def test_wave_json():
-    """Gaps, repeated values, unknown ones, and an arrow over a gap."""
+    """Gaps, repeated and unknown values, and an arrow across a gap."""
     frame = FakeFrame(strobe="x010000100", number="xx5577778")
     source = timing.wave_json(fake_diagram(timing.Arrow("strobe", 0, "strobe", 1)), frame)
     clock, cycle, _, (group, strobe, number) = json.loads(source)["signal"]
@@ -232,7 +232,7 @@ def test_wave_json():
 
 
 def test_an_arrow_without_its_edge():
-    with pytest.raises(UserError, match="strobe rises 1 times in what is drawn, not 2"):
+    with pytest.raises(UserError, match="strobe rises 1 times in the diagram, not 2"):
         timing.wave_json(
             fake_diagram(timing.Arrow("strobe", 0, "strobe", 1)), FakeFrame(strobe="001000000", number=9 * "1")
         )
@@ -253,12 +253,12 @@ def top():
 
 @pytest.fixture(scope="module")
 def renderer(top):
-    """The inside of its renderer, whose ray_caster is opened."""
+    """The inside of the small design's renderer, including the inside of its ray_caster."""
     return look_inside(find_block(top, "ray_caster_renderer"), {"ray_caster"})
 
 
 def test_look_inside(renderer):
-    """Blocks and processes; equal blocks each; who drives what, through slices and concatenations too."""
+    """Blocks (equal ones each) and processes; drivers and readers are found through slices and concatenations."""
     names = [part.name for part in renderer.parts]
     assert names.count("line_buffer") == names.count("ray_unit") == 2
     assert "ray_caster" not in names
@@ -271,11 +271,11 @@ def test_look_inside(renderer):
 
     assert called(parts["delay_reset"].reads) == {"restart"}
     assert called(parts["delay_reset"].drives) == {"reset_delay"}
-    # Its input is a slice of all pixels, and join_pixels puts those together of the units' words.
+    # Its input is a slice of all pixels, which join_pixels concatenates from the units' words.
     assert "pixels" in called(parts["line_buffer"].reads)
     assert called(parts["join_pixels"].reads) == {"unit_pixels_0_word", "unit_pixels_1_word"}
     assert "done" in called(parts["ray_control"].drives) & called(parts["finish_group"].reads)
-    # A counter reads itself; that goes nowhere.
+    # A counter that reads itself makes no connection.
     assert "place_row" not in called(parts["count_rows"].reads)
 
 
@@ -285,11 +285,11 @@ def test_find_block_of_no_such_name(top):
 
 
 def test_nets(renderer):
-    """Signals that go the same way are one net; ports have no driver where they come in."""
+    """Signals with the same drivers and readers are one net; input ports have no driver."""
     nets = {net.names: net for net in blocks.nets(renderer)}
     assert nets["reset_delay",].drivers == {"delay_reset"}
     assert nets["reset_delay",].readers == {"join_resets"}
-    # Of a record that a block is given it reads fields.
+    # A block that gets a record reads its fields.
     assert nets["pixel_word",].drivers == {"show"}
     assert nets["pixel_word",].readers == {"video_generator"}
     assert nets["vga_*",].is_port
@@ -300,18 +300,18 @@ def test_nets(renderer):
 
 
 def test_table():
-    """Columns of numbers stand to the right, with commas."""
+    """Columns of numbers are right-aligned and have commas."""
     assert outcomes.table(["a", "b"], [["x", 1234], ["y", 5]]) == "| a | b |\n| --- | ---: |\n| x | 1,234 |\n| y | 5 |"
 
 
 @pytest.fixture(scope="module")
 def values():
-    """All that is made, by its name in the pages' markers."""
+    """All generated texts, by their names in the pages' markers."""
     return facts.facts() | tables.tables() | proofs.proofs()
 
 
-def test_the_blocks_proofs_are_named_as_they_are():
-    """Each is in the right column, and no other is named."""
+def test_the_table_of_proved_blocks():
+    """Proofs are in the right columns, and the exact engine's rows are exactly its blocks."""
     rows = [line.split(" | ") for line in proofs.proved_blocks().splitlines()]
     blocks = {row[1]: row for row in rows}
     full = "`tester-products` and lemmas, `unit-wiring` and lemmas"
@@ -322,7 +322,7 @@ def test_the_blocks_proofs_are_named_as_they_are():
     }
 
 
-def test_the_sizes_of_proofs_are_those_of_their_designs():
+def test_sizes_of_proofs():
     eyes = [proof for proof in PROPERTIES if proof.name == "eye-exact"]
     assert proofs.scale(eyes) == (True, "full width, 0 to 4 reflections")
     assert (
@@ -332,14 +332,14 @@ def test_the_sizes_of_proofs_are_those_of_their_designs():
     assert proofs.scale(tables) == (False, "2 rectangles, 1 and 2 reflections")
 
 
-def test_all_that_is_made_has_its_place_on_a_page(values):
+def test_every_generated_text_is_on_a_page(values):
     text = "".join(page.read_text() for page in pages.PAGES)
     assert {name for name in values if f"<!--{name}-->" not in text} == set()
 
 
 @pytest.mark.parametrize("page", pages.PAGES, ids=lambda page: page.name)
-def test_the_page_has_what_was_measured(page: Path, values):
-    """What stands between its markers is what is made; what is typed there is noticed."""
+def test_the_page_has_the_generated_texts(page: Path, values):
+    """The text between markers is the generated text; a manual edit there is noticed."""
     text = page.read_text()
     assert pages.rendered(text, values, page.name) == text, "raycaster results --render writes it"
     if made := [found for found in pages.MADE.finditer(text) if found[2].strip()]:
@@ -349,7 +349,7 @@ def test_the_page_has_what_was_measured(page: Path, values):
 
 @pytest.mark.parametrize("page", pages.PAGES, ids=lambda page: page.name)
 def test_no_measured_number_is_typed(page: Path):
-    """Long counts, clocks and shares stand between markers, or in commands and examples."""
+    """Long counts, clocks and shares appear only between markers, or in commands and examples."""
     typed = re.sub(r"^```.*?^```$", "", pages.MADE.sub("", page.read_text()), flags=re.MULTILINE | re.DOTALL)
     found = re.findall(r"\d,\d{3}\b|\d+\.\d+ (?:MHz|ms|%)", typed)
     assert set(found) <= NOMINAL
@@ -357,7 +357,7 @@ def test_no_measured_number_is_typed(page: Path):
 
 @pytest.mark.parametrize("page", pages.PAGES, ids=lambda page: page.name)
 def test_a_forge_shows_the_page(page: Path):
-    """Nothing in it waits for Sphinx; its pictures and pages are there; no marker makes a line a block of HTML."""
+    """The page needs no Sphinx, its pictures and pages exist, and no marker turns its line into an HTML block."""
     text = re.sub(r"^```(?!\{).*?^```$", "", page.read_text(), flags=re.MULTILINE | re.DOTALL)
     assert "{{" not in text
     assert not re.search(r"^```\{", text, re.MULTILINE)
@@ -366,8 +366,8 @@ def test_a_forge_shows_the_page(page: Path):
     assert not re.search(r"^<!--\w*-->.|^<!--/-->.", text, re.MULTILINE)
 
 
-def test_a_marker_that_nothing_is_made_for():
-    with pytest.raises(UserError, match=r"page: nothing is none of what is made; there are a, b"):
+def test_an_unknown_marker():
+    with pytest.raises(UserError, match=r"page: unknown marker nothing; expected one of a, b"):
         pages.rendered("<!--nothing-->0<!--/-->", {"a": "1", "b": "2"}, "page")
 
 
@@ -380,7 +380,7 @@ def test_figures_that_are_missing(monkeypatch, tmp_path: Path):
 
 
 def test_figures_are_kept(tmp_path: Path, monkeypatch):
-    """With the command that was given, the design and the day; without `--keep`, nothing is written."""
+    """Figures are kept with the command, the design and the date; without `--keep`, nothing is written."""
     monkeypatch.chdir(tmp_path)
     parser = CommandParser("area", "Cells.", "")
     outcomes.add_keep_option(parser)
@@ -405,7 +405,7 @@ def test_figures_are_kept(tmp_path: Path, monkeypatch):
 
 
 def test_comments_make_no_figure_stale(tmp_path: Path):
-    """Comments, docstrings and empty lines do not count; everything else does, in Python and in Verilog."""
+    """Comments, docstrings and empty lines do not change a digest; everything else does, in Python and Verilog."""
 
     def digests(python: str, verilog: str) -> tuple[str, str]:
         code, module = tmp_path / "code.py", tmp_path / "module.v"
@@ -421,7 +421,7 @@ def test_comments_make_no_figure_stale(tmp_path: Path):
 
 
 def test_only_what_decides_a_figure_makes_it_stale(monkeypatch):
-    """One operator in a block of the exact engine: the digests of the other engines stay."""
+    """A change to a block of the exact engine changes no digest of the other engines."""
     designs = [configure(engine=name, screen="tiny", rectangles=3) for name in ENGINES]
     before = [provenance.verilog_digest(design) for design in designs]
     assert before == [provenance.verilog_digest(design) for design in designs]
@@ -442,7 +442,7 @@ def test_only_what_decides_a_figure_makes_it_stale(monkeypatch):
 
 
 def test_one_design_has_one_count():
-    """Two tables that name one design have one number of LUT4 for it; stale figures are marked, and left out."""
+    """All tables have the same LUT4 count for a design; stale figures are marked, and are left out here."""
     found: dict[str, dict[str, int]] = {}
     for kept in tables.outcomes().values():
         for name, count in counts_of(kept):
@@ -452,7 +452,7 @@ def test_one_design_has_one_count():
 
 
 def counts_of(kept: outcomes.Outcome) -> Iterator[tuple[str, int]]:
-    """LUT4 of an ECP5 that a kept file has of whole designs, by the configuration's name."""
+    """Yield the name and the ECP5 LUT4 count of each whole design in a kept file."""
     figures = kept.figures
     if kept.name == "area":
         config = configure()
@@ -460,7 +460,7 @@ def counts_of(kept: outcomes.Outcome) -> Iterator[tuple[str, int]]:
             yield replace(config, units=int(units), allow_underrun=True).name, area["tables"]
     elif kept.name in ("engines", "features", "scaling", "report"):
         for row in figures["designs"]:
-            series = row.get("option", "units") != "resolution"  # which is no option
+            series = row.get("option", "units") != "resolution"  # resolution is no option
             if row.get("found", True) and row.get("module", TOP) == TOP and "refused" not in row and series:
                 options = {"allow_underrun": True, **row.get("options", {})}
                 options |= {"engine": row["engine"]} if "engine" in row else {}
@@ -472,14 +472,14 @@ def counts_of(kept: outcomes.Outcome) -> Iterator[tuple[str, int]]:
 
 
 def test_a_count_that_differs_is_noticed(monkeypatch):
-    """What the test above compares is there, and it is not a comparison of nothing."""
+    """Several tables have a count of the same design, so the test above really compares counts."""
     name = configure(engine="exact").name
     of_it = [kept.name for kept in tables.outcomes().values() if name in dict(counts_of(kept))]
     assert {"engines", "features", "scaling", "report"} <= set(of_it)
 
 
-def test_the_diagrams_are_of_the_design_as_it_is():
-    """Those that are kept say what is drawn now; where it stands is left to the fonts of who draws."""
+def test_the_diagrams_match_the_design():
+    """The kept diagrams have the words of newly drawn ones; positions may differ with the fonts."""
     there = {path.stem: path.read_text() for path in drawings.DIAGRAMS.glob("*.svg")}
     now = drawings.drawn()
     assert there.keys() == now.keys()
@@ -489,7 +489,7 @@ def test_the_diagrams_are_of_the_design_as_it_is():
 
 
 def test_pages(tmp_path: Path):
-    """All of them, without a warning, in a directory that appears whole; the fonts may be others elsewhere."""
+    """All pages build without a warning, and their directory appears only when complete; fonts may differ."""
     output = tmp_path / "site"
     done = subprocess.run(
         [sys.executable, "-m", "raycaster.cli", "docs", "--keep-timing", "--no-web", "--output", str(output)],
@@ -511,7 +511,7 @@ def test_pages(tmp_path: Path):
 
 
 def test_pages_with_a_fault(tmp_path: Path):
-    """A warning is one too."""
+    """A warning counts as a fault too."""
     shutil.copytree(ROOT / "docs", tmp_path / "docs", ignore=shutil.ignore_patterns("__pycache__"))
     (tmp_path / "docs" / "scenes.md").write_text("# Scenes\n\n[nowhere](nowhere.md)\n")
     script = (
@@ -532,7 +532,7 @@ def test_pages_with_a_fault(tmp_path: Path):
     assert [path.name for path in (tmp_path / "build").iterdir()] == []
 
 
-def test_the_measured_designs_drew_what_they_had_to():
+def test_the_measured_designs_drew_the_right_pictures():
     designs = tables.outcomes()["engines"].figures["designs"]
     assert [design["options"] for design in designs] == list(map(dict, engine_figures.DESIGNS))
     for design in designs:
@@ -540,8 +540,8 @@ def test_the_measured_designs_drew_what_they_had_to():
         assert (design["wrong_vs_exact"] > 0) == (design["options"]["engine"] == "seed")
 
 
-def test_how_designs_grow(tmp_path: Path, monkeypatch):
-    """A row for each design, those that are refused too; a design of two series is counted once."""
+def test_the_scaling_figures(tmp_path: Path, monkeypatch):
+    """Every design has a row, refused ones too; a design in two series is counted once."""
     counted = []
 
     def count(config, family, directory):
@@ -564,7 +564,7 @@ def test_how_designs_grow(tmp_path: Path, monkeypatch):
 @pytest.mark.slow
 @pytest.mark.parametrize("break_it", [False, True])
 def test_a_frame_is_timed(tmp_path: Path, monkeypatch, break_it):
-    """Of a scene that fills the table; a wrong pixel shows."""
+    """The timed scene fills the table, and wrong pixels are noticed."""
     config = configure(engine="beam", screen="tiny", rectangles=14)
     assert len(scaling.scene_for(config).rect) == 14
     if break_it:
@@ -575,8 +575,8 @@ def test_a_frame_is_timed(tmp_path: Path, monkeypatch, break_it):
         assert 0 <= scaling.frame_time(config, BUILD) < 1000
 
 
-def test_the_plot_of_the_growth():
-    """It is of what the tables are of."""
+def test_the_scaling_plot():
+    """The plot shows the figures of the tables."""
     plot = (pages.HERE / "scaling.svg").read_text()
     assert f"measured {tables.outcomes()['scaling'].date}" in plot
     assert set(drawings.words(plot)) > {*ENGINES, "rectangles", "reflections", "LUT4"}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The C driver on the model of the registers: what it writes, what it refuses, and what it says."""
+"""The C driver on the register model: the words it writes, the calls it refuses, and its error texts."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def error(number: int) -> str:
     ],
     ids=lambda config: config.name,
 )  # fmt: skip
-def test_probe_reads_what_the_design_is(library, config):
+def test_probe_reads_the_configuration(library, config):
     with attached(library, Registers(config)):
         found = probed(library)
     for name in (
@@ -118,7 +118,7 @@ def test_probe_refuses_others(library, registers, register, fields, expected):
 
 
 class ShownWhenPolled(Registers):
-    """What was committed goes live while software waits for that."""
+    """A register model that makes a commit live while software polls for it."""
 
     live = None
 
@@ -132,7 +132,7 @@ class ShownWhenPolled(Registers):
 
 @pytest.mark.parametrize("language", ["c", "python"])
 def test_the_programs_of_the_page(language, tmp_path):
-    """As they stand there, they draw what the golden model draws of the same rectangle."""
+    """Unchanged, the page's programs draw the same picture of their rectangle as the golden model."""
     scene = tmp_path / "scene.toml"
     scene.write_text(
         '[camera]\nposition = [20, 250, 40]\n[[rect]]\ncorners = [[300, 60, 0], [300, 400, 180]]\ncolour = "#50a0ff"\n'
@@ -159,7 +159,7 @@ def test_the_programs_of_the_page(language, tmp_path):
     np.testing.assert_array_equal(shown, full.render(load_scene(scene), screen, 1))
 
 
-def test_a_scene_is_the_words_that_the_project_writes(library, registers, device, scenes):
+def test_a_scene_gives_the_same_words_as_the_project(library, registers, device, scenes):
     for path in sorted(scenes.glob("*.toml")):
         scene = load_scene(path)
         if scene.reflections > CONFIG.reflections or scene.lacks(()):
@@ -181,7 +181,7 @@ def test_a_scene_is_the_words_that_the_project_writes(library, registers, device
             results.append(library.raycaster_commit(ctypes.byref(device)))
         assert set(results) == {0}
         expected = [(4 * address, word) for address, word in scene_words(scene, CONFIG)]
-        # Run and reflections share a register with commit, and are written one by one.
+        # Run and reflections share a register with commit, and each is written separately.
         run_and_reflections = len(model.written) - len(expected)
         assert run_and_reflections == 2
         assert model.written[: len(expected) - 1] + model.written[-1:] == expected
@@ -240,7 +240,7 @@ def test_the_whole_table_of_a_larger_design(library):
 
 
 @pytest.mark.parametrize(("built_in", "camera"), [(1, "OK"), (2, "FIXED")])
-def test_what_is_built_in_is_not_set(library, registers, built_in, camera):
+def test_built_in_parts_cannot_be_set(library, registers, built_in, camera):
     registers.say("engine", fixed=built_in)
     registers.say("size", rectangles=0)
     device = probed(library)
@@ -256,7 +256,7 @@ def test_what_is_built_in_is_not_set(library, registers, built_in, camera):
 
 @pytest.fixture
 def everything(library):
-    """The registers of a design that has all that scenes may need, and its handle."""
+    """The registers of a design with all features that scenes may need, and its handle."""
     model = Registers(configure(engine="exact", screen="tiny", **dict.fromkeys(EXACT.looks, True)))
     with attached(library, model):
         yield model, ctypes.byref(probed(library))
@@ -282,7 +282,7 @@ def test_looks(library, everything):
     assert (live.cells == 8 << indices % 6).all()
     assert live.colours_2.tolist() == [[index, 5, 6] for index in range(12)]
     assert (live.colours == [1, 2, 3]).all()
-    # Another rectangle in its place has no look of the one before; one that is left out for a while has.
+    # A new rectangle in the same place has default looks; one that was only disabled for a while keeps its looks.
     assert library.raycaster_set_rectangle(handle, 3, *corners, Colour(7, 8, 9)) == 0
     for enable in (False, True):
         assert library.raycaster_enable_rectangle(handle, 7, enable) == 0
@@ -292,7 +292,7 @@ def test_looks(library, everything):
 
 
 @pytest.mark.parametrize("quarters", [5, 8, 0xFFFFFFFF])
-def test_mirrors_that_are_none(library, everything, quarters):
+def test_invalid_mirrors(library, everything, quarters):
     model, handle = everything
     assert error(library.raycaster_set_mirror(handle, 0, quarters)) == "NO_SUCH_LOOK"
     assert error(library.raycaster_set_mirror(handle, 12, 1)) == "NO_SUCH_RECTANGLE"
@@ -303,7 +303,7 @@ def test_mirrors_that_are_none(library, everything, quarters):
     ("pattern", "cell"),
     [(len(PATTERNS), 32), (0xFFFFFFFF, 32), (1, 0), (1, 4), (1, 12), (1, 257), (1, 512), (1, 0x80000000)],
 )
-def test_patterns_that_are_none(library, everything, pattern, cell):
+def test_invalid_patterns(library, everything, pattern, cell):
     model, handle = everything
     assert error(library.raycaster_set_pattern(handle, 0, pattern, cell, WHITE)) == "NO_SUCH_LOOK"
     assert error(library.raycaster_set_pattern(handle, 12, 1, 8, WHITE)) == "NO_SUCH_RECTANGLE"
@@ -361,8 +361,8 @@ def test_a_camera_turns(library, everything):
     assert len(model.written) == written
 
 
-def test_angles_are_those_of_scenes(library):
-    """Each angle alone and with others at whole right angles and others; and any three."""
+def test_angles_match_those_of_scenes(library):
+    """Any angle with selected values of the other two, and random triples, give the same basis as in scenes."""
     random = np.random.default_rng(seed())
     some = [*range(-360, 361, 45), -37, 1, 89]
     angles = [(one, other, third) for one in range(-360, 361) for other in some[::2] for third in some[::3]]
@@ -400,7 +400,7 @@ def test_a_commit_waits_for_the_one_before(library, registers, device):
     library.raycaster_set_run(handle, True)
     assert library.raycaster_commit(handle) == 0
     assert library.raycaster_is_committing(handle)
-    # What is changed now belongs to the next commit, and must not make one.
+    # Changes from now on belong to the next commit and must not trigger one.
     assert library.raycaster_set_reflections(handle, 1) == 0
     assert library.raycaster_set_camera(handle, Point(1, 2, 3)) == 0
     written = len(registers.written)
@@ -425,7 +425,7 @@ def test_waiting_for_a_frame(library, registers, device):
     assert library.raycaster_frame(handle) == 0
     assert error(library.raycaster_wait_frame(handle, 9)) == "OK"
     assert library.raycaster_frame(handle) == 1
-    # Each frame counts once; one that came before it was waited for counts too.
+    # Each frame counts once, even if it came before the wait.
     assert error(library.raycaster_wait_frame(handle, 100)) == "NO_FRAME"
     registers.start_screen()
     assert error(library.raycaster_wait_frame(handle, 1)) == "OK"
@@ -455,7 +455,7 @@ def test_the_interrupt(library, registers, device):
 def test_sticky_errors(library, registers, device):
     handle = ctypes.byref(device)
     assert error(library.raycaster_check(handle)) == "OK"
-    # Past the driver, which would refuse it.
+    # Bypass the driver, which would refuse the rectangle.
     table = register_map(CONFIG.rectangles)
     registers.write(4 * table["rectangle[3].corner_0"].address, table["rectangle[3].corner_0"].pack(x=1, y=2, z=3))
     assert library.raycaster_enable_rectangle(handle, 3, True) == 0
@@ -482,7 +482,7 @@ def test_cycles(library, registers, device):
     assert (cycles.row, cycles.group) == (0, 0)
 
 
-def test_every_error_has_a_text_of_its_own(library):
+def test_every_error_has_its_own_text(library):
     texts = [library.raycaster_error_text(number).decode() for number in range(len(ERRORS) + 1)]
     assert len(set(texts)) == len(texts)
     assert texts[-1] == "unknown error"
@@ -492,7 +492,7 @@ def test_every_error_has_a_text_of_its_own(library):
 @pytest.mark.parametrize("standard", ["c99", "c11"])
 @pytest.mark.parametrize("level", ["-O0", "-Os", "-O2"])
 def test_plain_memory_and_no_library(tmp_path, standard, level):
-    """With the driver's own access to the registers, and nothing but itself to link with."""
+    """The driver works with its own register access and links without any library."""
     compiler = shutil.which("gcc") or shutil.which("cc")
     flags = (f"-std={standard}", *STRICT[1:], level, "-ffreestanding", "-shared", "-fPIC", "-nostdlib", "-Wl,-z,defs")
     subprocess.run([compiler, *flags, SOFTWARE / "raycaster.c", "-o", tmp_path / "driver.so"], check=True)
@@ -515,7 +515,7 @@ def test_a_cpp_compiler_takes_the_header():
 
 
 def test_the_driver_for_nios(tmp_path):
-    """The description, run by a real Tcl against stand-ins: it names files that exist, and the component."""
+    """The description runs in a real Tcl with stub commands, and names existing files and the component."""
     script = "".join(
         f"proc {name} {{args}} {{ puts [join [list {name} {{*}}$args] \\t] }}\n"
         for name in ("create_driver", "set_sw_property", "add_sw_property")

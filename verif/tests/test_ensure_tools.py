@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How tools come that pip does not have."""
+"""Installation of tools that pip does not provide."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ def _program(directory: Path, name: str, text: str = "exit 1") -> None:
         ("chromium", "brew", 1000, "brew install --cask google-chrome"),
     ],
 )
-def test_how_a_tool_is_installed(tmp_path, monkeypatch, tool, manager, uid, expected):
-    """With the package manager that is there, through sudo where this user is not root."""
+def test_install_command(tmp_path, monkeypatch, tool, manager, uid, expected):
+    """The available package manager is used, through sudo unless the user is root."""
     _program(tmp_path, manager)
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setattr(os, "geteuid", lambda: uid)
@@ -45,7 +45,7 @@ def test_how_a_tool_is_installed(tmp_path, monkeypatch, tool, manager, uid, expe
     ("tool", "program"),
     [("icarus", "iverilog"), ("chromium", "chromium"), ("chromium", "google-chrome"), ("tcl", "tclsh")],
 )
-def test_what_is_there_is_taken(tmp_path, monkeypatch, tool, program):
+def test_an_installed_tool_is_used(tmp_path, monkeypatch, tool, program):
     monkeypatch.setenv("PATH", str(tmp_path))
     _program(tmp_path, program)
     monkeypatch.setattr(ensure_tools, "_run", lambda *command: pytest.fail(f"ran {command}"))
@@ -63,7 +63,7 @@ def test_without_root(tmp_path, monkeypatch):
 
 
 def test_without_package_manager(tmp_path, monkeypatch):
-    """One line, and no guess."""
+    """The error is one line and suggests no command."""
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(UserError, match=r"^Icarus .*, and no package manager is known here; see steveicarus"):
         ensure("icarus")
@@ -80,7 +80,7 @@ def test_it_cannot_be_installed(tmp_path, monkeypatch, reason):
 
 @pytest.mark.parametrize(("tool", "program"), [("icarus", "iverilog"), ("chromium", "chromium"), ("tcl", "tclsh")])
 def test_it_is_installed(tmp_path, monkeypatch, capsys, tool, program):
-    """As root, after an update where the first attempt fails, as in a fresh container."""
+    """If root's first attempt fails, as in a fresh container, the package lists are updated before the next."""
     tools = tmp_path / "bin"
     _program(tools, "template", "exit 0")
     _program(

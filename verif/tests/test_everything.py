@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What `make test` leaves out, and `raycaster verify all`, which does not."""
+"""Selection of slow tests, which `make test` skips, and `raycaster verify all`, which runs every test."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Item:
 
 
 def collected(mark: pytest.MarkDecorator, *arguments: str) -> tuple[list[bool], list[bool]]:
-    """Which of three parameter sets and an unmarked test are slow, and which are simulated in MyHDL, too."""
+    """Return whether each of three parameter sets and an unmarked test is slow, and whether MyHDL also simulates it."""
     sets = ("a-1", "a-2", "b-1")
     items = [*(Item(f"test_a.py::test_b[{one}]", mark.mark) for one in sets), Item("test_a.py::test_c")]
     conftest.pytest_collection_modifyitems(SimpleNamespace(args=arguments), items)
@@ -48,8 +48,8 @@ def collected(mark: pytest.MarkDecorator, *arguments: str) -> tuple[list[bool], 
     ],
     ids=["some", "some with an exception", "all with an exception", "two"],
 )
-def test_a_mark_is_how_parameter_sets_begin(mark, slow, in_myhdl):
-    """The last set that is not slow is simulated in MyHDL; a test that is no leaf test decides for itself."""
+def test_a_mark_is_a_prefix_of_parameter_sets(mark, slow, in_myhdl):
+    """MyHDL simulates the last quick set of a leaf test; other tests decide for themselves."""
     assert collected(mark) == (slow, in_myhdl)
     others = [Item("test_b.py::test_b[1]"), Item("test_b.py::test_b[2]")]
     for other in others:
@@ -59,8 +59,8 @@ def test_a_mark_is_how_parameter_sets_begin(mark, slow, in_myhdl):
 
 
 @pytest.mark.parametrize("mark", [pytest.mark.slow_sets("d"), pytest.mark.slow_sets("a", quick=["c"])], ids=["d", "c"])
-def test_a_mark_about_nothing_is_refused(mark):
-    """Tests that were asked for by name may lack some of a test's sets."""
+def test_a_mark_without_a_match_is_refused(mark):
+    """When tests are selected by name, some of a test's sets may be missing."""
     with pytest.raises(pytest.UsageError, match=r"slow_sets: no parameter set begins so: \S+test_b: [cd]$"):
         collected(mark)
     collected(mark, "verif/tests/test_a.py::test_b[a-1]")
@@ -90,7 +90,7 @@ def test_absent():
 
 @pytest.fixture
 def run_all(tmp_path, monkeypatch, names_for_digests):
-    """Runs the command on a small clone; returns its exit code, the tests that ran, and the figures."""
+    """Return a function that runs the command on a small clone and returns its exit code, tests run and figures."""
     clone, ran, kept = tmp_path / "clone", tmp_path / "ran", tmp_path / "clone" / "results" / "kept.json"
     tests = clone / "verif" / "tests"
     tests.mkdir(parents=True)
@@ -99,7 +99,7 @@ def run_all(tmp_path, monkeypatch, names_for_digests):
     subprocess.run(["git", "init", "-q", str(clone)], check=True)
     monkeypatch.setattr(everything.ensure_tools, "ensure", lambda tool: None)
     monkeypatch.setattr(everything, "TESTS", tests)
-    # Each run starts two interpreters, which load no plugins that they have no use for.
+    # Each run starts two interpreters, which load only the plugin that they need.
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
     monkeypatch.setenv("PYTEST_PLUGINS", "xdist.plugin")
     monkeypatch.setenv("RAN", str(ran))
@@ -120,18 +120,18 @@ def test_all_is_resumed(run_all, tmp_path, capsys):
     assert figures["failed"] == ["verif/tests/test_small.py::test_wrong"]
     assert figures["skipped"] == {"no such board": 1}
     assert (figures["tests"], figures["passed"], figures["not_run"], figures["runs"]) == (6, 4, 0, 1)
-    # With the same sources only what has not passed yet.
+    # With the same sources, only tests that have not passed yet run.
     (tmp_path / "mended").touch()
     code, ran, figures = run_all()
     assert (code, ran, figures["failed"], figures["passed"], figures["runs"]) == (0, ["wrong"], [], 5, 2)
     assert "resumed: 4 of 6 tests have passed" in capsys.readouterr().out
-    # Anew, the longest first.
+    # A fresh run starts with the longest test.
     code, ran, figures = run_all("--fresh")
     assert (code, ran[0], len(ran), figures["runs"]) == (0, "long", 5, 1)
-    # With other sources too.
+    # After a source has changed, all tests run again.
     (tmp_path / "clone" / "rtl.py").write_text("changed")
     assert len(run_all()[1]) == 5
-    # A page is no source, and a change in a file of tests is one of its tests alone.
+    # A page is not a source, and a new or changed test file runs only its own tests.
     (tmp_path / "clone" / "page.md").write_text("changed")
     tests = tmp_path / "clone" / "verif" / "tests" / "leaves"
     tests.mkdir()
@@ -145,8 +145,8 @@ def test_all_is_resumed(run_all, tmp_path, capsys):
     assert (code, figures["tests"], figures["passed"]) == (0, 12, 10)
 
 
-def test_what_an_interrupted_run_found_is_kept(tmp_path):
-    """A state ends where the machine stopped, maybe within a line."""
+def test_results_of_an_interrupted_run_are_kept(tmp_path):
+    """The state file ends where the machine stopped, possibly in the middle of a line."""
     state = everything.State(tmp_path / "state")
     state.add({"sources": "a", "files": {}, "fresh": False})
     state.add({"wanted": ["x", "y"]})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The exact engine against the image contract, written out ray by ray with fractions."""
+"""Compare the exact engine's model with the image contract, written out ray by ray with fractions."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ BACKGROUND = (7, 80, 201)
 
 
 def corner_worlds(rng):
-    """Tables, cameras and rays that run into corners."""
+    """Return a table, a camera and rays that run into corners."""
     corners, camera = random_grid(rng, 10)
     table = Rectangles(corners, rng.integers(256, size=(10, 3)).astype(np.uint8), np.ones(10, dtype=bool))
     slopes = np.where(rng.random((RAYS, 1)) < 0.4, rng.choice([-1, 1], (RAYS, 3)), rng.integers(-2, 3, (RAYS, 3)))
@@ -41,7 +41,7 @@ def corner_worlds(rng):
 
 
 def anywhere(rng):
-    """Tables, cameras and rays of any kind, those of a turned camera among them."""
+    """Return a table, a camera and rays of any kind, including those of a turned camera."""
     table = random_rectangles(rng)
     slopes = random_slopes(rng, RAYS)
     if rng.random() < 0.5:
@@ -88,7 +88,7 @@ def test_traces_as_fractions_do(world, reflections):
     assert min(shaded[True, True], shaded[False, True]) > TABLES, f"few points in the light or in the dark; {repeat()}"
     assert min(ended, patterned) > 0, f"no ray ended early or met a pattern; {repeat()}"
     if world is corner_worlds:
-        # Of two planes with one reflection, and of three with two.
+        # One reflection reaches corners of two planes; two also reach corners of three.
         assert set(in_corners) == set(range(1, min(reflections, 2) + 1)), f"{in_corners}; {repeat()}"
         assert min(in_corners.values(), default=TABLES) >= TABLES, f"{in_corners}; {repeat()}"
 
@@ -154,7 +154,7 @@ def test_renders_as_fractions_do(turn, reflections):
 
 
 def room_from_its_middle():
-    """A closed room whose edges lie on the diagonals of pixels."""
+    """Return a closed room whose edges lie on pixel diagonals."""
     walls = [{"corners": corners, "colour": (40 * index, 250 - 30 * index, 99)} for index, corners in enumerate(ROOM)]
     return Scene(camera={"position": (255, 255, 255)}, reflections=2, rect=walls)
 

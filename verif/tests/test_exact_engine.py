@@ -30,7 +30,7 @@ def test_as_few_units_as_meet_the_row_budget(options, units, cycles):
 
 @pytest.mark.parametrize("reflections", [1, 2])
 def test_a_room_that_does_not_mirror_takes_fewer_cycles(reflections):
-    """As test_controls holds the control to these cycles: at most 60 % of those of a room of mirrors."""
+    """A matte room takes at most 60 % of a mirror room's cycles; test_controls checks the control for these counts."""
     config = configure(engine="exact", reflections=reflections, materials=True)
     every = range(config.rectangles)
     matte, mirrors = (len(trace_cycles(config, every, reflections, lost=lost)) + 3 for lost in (0, None))
@@ -46,11 +46,11 @@ def test_a_room_that_does_not_mirror_takes_fewer_cycles(reflections):
         ({"divider_bits": 2}, "^divider_bits: the exact engine has no divider; leave out 2$"),
         (
             {"units": 2},
-            "^row budget: a group of 2 columns takes 36 cycles with 12 rectangles, 1 reflections and 1 cycles a",
+            "^row budget: a group of 2 columns takes 36 cycles with 12 rectangles, 1 reflections and 1 cycles per",
         ),
         ({"reflections": 0, "units": 2}, "leaves it 19 .less than 3200 cycles over 160 groups.; take more units"),
     ],
 )
-def test_what_an_engine_without_quotients_has_not(options, complaint):
+def test_options_for_quotients_are_refused(options, complaint):
     with pytest.raises(ConfigurationError, match=complaint):
         configure(engine="exact", **options)

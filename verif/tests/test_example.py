@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The examples of a design of one's own do what they say: converted as a user would, each shows the scene."""
+"""Examples of custom designs work as documented: converted as a user would, each shows the scene."""
 
 import importlib.util
 import os
@@ -45,7 +45,7 @@ endmodule
     ("name", "bus", "ports"),
     [
         ("picture_frame", "avalon", {}),
-        # Amaranth names a reset and the members of a member in its own way.
+        # Amaranth names resets and nested members differently.
         ("amaranth_picture_frame", "wishbone", {".vga_": ".vga__", ".reset(": ".rst("}),
     ],
     ids=["myhdl", "amaranth"],
@@ -107,7 +107,7 @@ endmodule
 @pytest.mark.slow_sets("204061")
 @pytest.mark.parametrize(("colour", "alike"), [("204060", True), ("204061", False)])
 def test_apb_background(colour, alike, tmp_path):
-    """In plain Verilog, as it stands beside what `make verilog` writes."""
+    """The plain Verilog example works with the files that `make verilog` writes."""
     config = configure(screen="tiny", units=8, rectangles=3, bus="apb")
     files = write_verilog(config, tmp_path / "verilog")
     (tmp_path / "bench.v").write_text(BACKGROUND_BENCH.replace("COLOUR", colour))
@@ -131,7 +131,7 @@ def test_apb_background(colour, alike, tmp_path):
     ids=["icarus", "fault", "verilator"],
 )
 def test_cocotb_picture(simulator, fault, tmp_path):
-    """The test that the page shows, with waveforms, away from the project; a wrong picture fails it."""
+    """The documented cocotb test runs outside the project and writes waveforms; a wrong picture fails it."""
     [example] = (ROOT / "examples" / "cocotb_picture").glob("*.py")
     text = example.read_text()
     assert text.count("golden = shown(") == 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The compiled arithmetic benches, briefly: they pass on the design, and catch designs that were spoilt."""
+"""Short runs of the compiled arithmetic benches: they pass on the design and catch planted faults."""
 
 import re
 
@@ -23,7 +23,7 @@ def run_briefly(bench: Bench, spoil=str) -> exhaustive.Outcome:
 def test_a_part_of_the_vectors(label):
     outcome = run_briefly(BENCHES[label])
     assert outcome.vectors == VECTORS, repeat()
-    assert VECTORS // 5 < outcome.valid < VECTORS, "quotients were to overflow, and not to"
+    assert VECTORS // 5 < outcome.valid < VECTORS, "expected quotients both with and without overflow"
     assert outcome.wrong == 0, repeat()
 
 
@@ -43,7 +43,7 @@ def test_every_division_is_in_the_full_run():
 @pytest.mark.parametrize(
     ("label", "before", "after"),
     [
-        # The quotient that is the first to overflow.
+        # The smallest quotient that overflows.
         ("divider-f0t-d1", r"too_large <= (.*) >= (\w+);", r"too_large <= \1 > \2;"),
         ("divider-f0n-d2", r"twice_remainder >= divisor_held", r"twice_remainder > divisor_held"),
         ("divider-f0t-d3", r"difference < 0", r"difference <= 0"),
@@ -53,7 +53,7 @@ def test_every_division_is_in_the_full_run():
         ("reduced-w4-f0t-d2", r"backward = a - quotient", r"backward = a + quotient"),
     ],
 )
-def test_what_is_spoilt_is_caught(label, before, after):
+def test_planted_faults_are_caught(label, before, after):
     spoilt = []
 
     def spoil(text: str) -> str:
@@ -63,7 +63,7 @@ def test_what_is_spoilt_is_caught(label, before, after):
 
     with pytest.raises(Mismatch, match=r"mismatch .*hardware .*expected .*; [1-9]\d* are wrong$"):
         run_briefly(BENCHES[label], spoil)
-    assert sum(spoilt) == 1, "the text was to be changed in one place"
+    assert sum(spoilt) == 1, "the fault must change exactly one place"
 
 
 def test_the_command_reports(capsys):
@@ -74,7 +74,7 @@ def test_the_command_reports(capsys):
 
 
 def test_the_command_fails_at_a_mismatch(monkeypatch, capsys):
-    # Workers are forked, and have it too.
+    # Forked workers inherit the patch.
     monkeypatch.setattr(
         exhaustive, "build_bench", lambda bench: build_bench(bench, lambda text: text.replace("difference < 0", "1"))
     )
@@ -85,6 +85,6 @@ def test_the_command_fails_at_a_mismatch(monkeypatch, capsys):
 
 
 @pytest.mark.parametrize("arguments", [["--only", "adder"], ["--count", "0"], ["--divisions", "-1"], ["--seed", "-1"]])
-def test_what_a_user_can_mend_is_told(arguments):
+def test_bad_options_are_refused(arguments):
     with pytest.raises(UserError):
         main(arguments)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The firmware, as built for the PicoRV32, in an emulator on the model of the registers."""
+"""Run the firmware built for the PicoRV32 in an emulator, with a model of the registers."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ def firmware(tmp_path_factory) -> Firmware:
 
 
 class Machine:
-    """The system: memory from the image, the ray tracer's registers, buttons, and a UART that is busy for a while.
+    """Emulated system: memory from the image, the ray tracer's registers, buttons, and a UART busy after each byte.
 
     Attributes:
-        said: what went over the UART.
-        frames: for each frame, the words that were written to the ray tracer, and how many instructions it took.
+        said: text sent over the UART.
+        frames: for each frame, the words written to the ray tracer and the number of instructions.
     """
 
     def __init__(self, words: Path, script: tuple[int, ...], registers: Registers):
@@ -56,18 +56,18 @@ class Machine:
         uc.hook_add(unicorn.UC_HOOK_MEM_READ | unicorn.UC_HOOK_MEM_WRITE, self._check_access)
 
     def run(self) -> None:
-        """Until the script ends, or main does."""
+        """Run until the script or main ends."""
         self.uc.emu_start(MEMORY, MEMORY_BYTES, count=20_000_000)
 
     def _count(self, uc, address, size, _) -> None:
         self._instructions += size // 4
-        # A jump to itself is where the program ends.
+        # The program ends in a jump to itself.
         if size == 4 and address == self._block:
             self.uc.emu_stop()
         self._block = address
 
     def _check_access(self, uc, access, address, size, value, _) -> None:
-        # A PicoRV32 traps on others.
+        # A PicoRV32 traps on unaligned accesses.
         assert address % size == 0
 
     def _read_registers(self, uc, offset, size, _) -> int:
@@ -126,16 +126,16 @@ def test_the_demo_is_played_as_on_the_host(firmware, tmp_path):
     host = Session(compile_library(tmp_path, "raycaster.c", "game/game.c"))
     status = 4 * register_map(CONFIG.rectangles)["status"].address
     for number, (expected, (written, _)) in enumerate(zip(host.play(script), machine.frames, strict=True)):
-        # After the picture's words come the commit and the forgotten errors.
+        # The last two writes commit the picture and clear the errors.
         assert written[:-2] == expected.written, f"frame {number}"
         assert written[-1][0] == status
-    # A PicoRV32 takes some five cycles an instruction, and a frame is 420,000 cycles of 25 MHz.
+    # A PicoRV32 takes about five cycles per instruction, and a frame is 420,000 cycles at 25 MHz.
     instructions = [count for _, count in machine.frames]
-    print(f"instructions a frame: at most {max(instructions)}, mean {sum(instructions) / len(instructions):.0f}")
+    print(f"instructions per frame: at most {max(instructions)}, mean {sum(instructions) / len(instructions):.0f}")
     assert max(instructions) < 420_000 / 5 / 2
 
 
-def test_a_lost_game_is_told(firmware):
+def test_a_lost_game_is_reported(firmware):
     corner = 0b0101
     machine = Machine(firmware.words, (0, FIRE) + (corner,) * 700, Registers(CONFIG))
     machine.run()
@@ -151,7 +151,7 @@ def test_a_lost_game_is_told(firmware):
         ("size", {"rectangles": 11}, "ray tracer: the rectangle's index is beyond the table"),
     ],
 )
-def test_errors_are_told_once(firmware, register, fields, complaint):
+def test_errors_are_reported_once(firmware, register, fields, complaint):
     registers = Registers(CONFIG)
     registers.say(register, **fields)
     machine = Machine(firmware.words, (0,) * 5, registers)
@@ -160,9 +160,9 @@ def test_errors_are_told_once(firmware, register, fields, complaint):
     assert machine.said.endswith(f"{complaint}\r\n")
 
 
-@pytest.mark.parametrize(("frame", "told"), [(0, 0), (3, 1)])
-def test_an_underrun_is_told(firmware, frame, told):
-    """But not what was before the start."""
+@pytest.mark.parametrize(("frame", "reports"), [(0, 0), (3, 1)])
+def test_an_underrun_is_reported(firmware, frame, reports):
+    """Underruns before the start are not reported."""
 
     class Late(Registers):
         def start_screen(self) -> LiveScene:
@@ -173,12 +173,12 @@ def test_an_underrun_is_told(firmware, frame, told):
     registers.file.agent.underrun = frame == 0
     machine = Machine(firmware.words, (0,) * 9, registers)
     machine.run()
-    assert machine.said.count("ray tracer: a row was not complete in time\r\n") == told
+    assert machine.said.count("ray tracer: a row was not complete in time\r\n") == reports
     assert not registers.file.agent.underrun
 
 
 def test_the_image_is_the_program(firmware):
-    """The words are what is linked, from the first instruction on, and nothing is compressed."""
+    """The image begins with the linked program, without compressed instructions, and is 0 after it."""
     words = firmware.words.read_text().split()
     assert len(words) == MEMORY_BYTES // 4
     program = firmware.sections[".text"] // 4

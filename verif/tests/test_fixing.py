@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Scenes built into the hardware: what is left out, that nothing else is, and that no pixel changes."""
+"""Scenes built into the hardware: only unneeded parts are left out, and no pixel changes."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ BOXES = ROOT / "scenes" / "boxes.toml"
 
 
 def scene_of(*corners, **values) -> Scene:
-    """A scene of rectangles in colours of their own, seen from the middle of the world's near side."""
+    """Return a scene of differently coloured rectangles, seen from the middle of the world's near side."""
     rect = [{"corners": pair, "colour": f"#{number:06x}"} for number, pair in enumerate(corners, 1)]
     return Scene(**{"camera": {"position": (0, 255, 100)}, "rect": rect, **values})
 
 
 def matte(scene: Scene, index: int) -> Scene:
-    """The scene with one rectangle that is no mirror."""
+    """Return the scene with one rectangle made matte."""
     rect = list(scene.rect)
     rect[index] = rect[index].model_copy(update={"mirror": 0.0})
     return scene.model_copy(update={"rect": tuple(rect)})
@@ -58,7 +58,7 @@ FLOOR = ((0, 0, 0), (511, 511, 0))
 NEAR = ((0, 0, 0), (0, 511, 511))
 
 
-# What is not needed ---------------------------------------------------------------------------------------------------
+# Unneeded parts -------------------------------------------------------------------------------------------------------
 
 
 def test_the_earlier_of_two_in_a_plane_covers_the_later():
@@ -84,7 +84,7 @@ def test_nothing_is_reflected_where_nothing_mirrors():
 
 
 def test_a_turned_camera_looks_back(tmp_path):
-    """What is at x = 0 stays where the camera is live, and where it is in sight."""
+    """A rectangle at x = 0 is kept if the camera can turn or sees it."""
     path = tmp_path / "back.toml"
     scene = scene_of(NEAR, WALL, FLOOR, camera={"position": (200, 250, 100), "yaw": 170})
     path.write_text(dump_scene(scene))
@@ -92,14 +92,14 @@ def test_a_turned_camera_looks_back(tmp_path):
     assert (rects.engine, rects.turn, rects.passes) == ("exact", True, (0b111, 0b111))
     assert everything.fixed.basis == scene.camera.basis
     assert (0, 0) in zip(everything.fixed.column("axis"), everything.fixed.column("position"), strict=True)
-    # The same from a camera that looks the other way.
+    # Without a camera that turns, primary rays never meet it.
     path.write_text(dump_scene(scene.model_copy(update={"camera": Camera(position=(200, 250, 100))})))
     assert fix(path, {"screen": "tiny"}, "rects").design.configuration.passes == (0b110, 0b111)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_what_is_seen_is_enough(engine):
-    """Without the others the picture is the same; without any of these it is not."""
+def test_needed_rectangles_suffice(engine):
+    """Removing the unneeded rectangles leaves the picture unchanged; removing any needed one changes it."""
     config = configure(engine=engine, screen="tiny", allow_underrun=True)
     scene = load_scene(BOXES)
     met = set().union(*needed(config, scene, 1)[0])
@@ -116,7 +116,7 @@ def test_what_is_seen_is_enough(engine):
 
 
 def test_random_cameras_need_nothing_that_was_left_out():
-    """For `rects`: random scenes with rectangles in one plane, and some at x = 0, from random cameras."""
+    """This holds for `rects` in random scenes with coplanar rectangles, some at x = 0, and with random cameras."""
     random = np.random.default_rng(seed())
     left_out = 0
     for _ in range(30):
@@ -137,7 +137,7 @@ def test_random_cameras_need_nothing_that_was_left_out():
 
 
 def test_shadows_need_no_more():
-    """Random lights: without what is neither seen nor shades, and from the light without the edge, nothing changes."""
+    """With random lights, rectangles that are neither seen nor shade are unneeded; those at the edge never shade."""
     random = np.random.default_rng(seed())
     config = configure(engine="exact", screen="tiny", reflections=1, materials=True, light=True, allow_underrun=True)
     shading, at_edge = 0, 0
@@ -156,7 +156,7 @@ def test_shadows_need_no_more():
     assert min(shading, at_edge) > 5, repeat()
 
 
-# What is built --------------------------------------------------------------------------------------------------------
+# Fixed designs --------------------------------------------------------------------------------------------------------
 
 
 def test_fixed_rectangles_are_in_order():
@@ -173,16 +173,16 @@ def test_varying_bits():
     assert varying_bits((0b1100, 0b1010, 0b1000)) == 0b0110
 
 
-def test_units_are_as_few_as_do():
+def test_units_are_as_few_as_possible():
     general, fixed = design_for(BOXES, {}), fix(BOXES, {}, "all").design
     assert (general.configuration.units, general.configuration.divider_bits) == (32, 1)
     config = fixed.configuration
     assert config.group_cycles <= config.group_budget
     assert (config.units, config.divider_bits) == (10, 3)
-    # What is given is taken.
+    # Given options are kept.
     assert fix(BOXES, {"units": "40"}, "all").design.configuration.units == 40
     assert fix(BOXES, {"divider_bits": "1"}, "rects").design.configuration.divider_bits == 1
-    # Too few for any scene may be enough for this one; what is left out is still of as many rectangles.
+    # Too few units for an arbitrary scene may suffice for this one; the general design keeps all rectangles.
     fewer = fix(ROOT / "scenes" / "corners.toml", {"units": "20", "divider_bits": "1"}, "all")
     assert (fewer.design.configuration.units, fewer.general.configuration.rectangles) == (20, 12)
 
@@ -201,17 +201,17 @@ def test_names_differ_where_scenes_do(tmp_path):
     moved = tmp_path / "boxes.toml"
     moved.write_text(BOXES.read_text().replace("[5, 251, 113]", "[6, 251, 113]"))
     names |= {fix(moved, {}, scope).design.configuration.name for scope in SCOPES}
-    assert len(names) == 3  # the camera is no part of what `rects` fixes
+    assert len(names) == 3  # `rects` does not fix the camera
 
 
-def test_registers_of_what_is_fixed_are_gone():
+def test_fixed_words_have_no_registers():
     assert not any(name.startswith("rectangle") for name in register_map(0))
     assert address_bits(0) == 4
 
 
 def test_omissions_say_why():
     omissions = dict(dataclasses.astuple(one) for one in fix(BOXES, {"screen": "tiny"}, "all").omissions)
-    assert omissions["rectangle memory: 36 words, each three times"] == "rectangles are constants"
+    assert omissions["rectangle memory: 36 words, three copies each"] == "rectangles are constants"
     assert omissions["ceiling"] == "no ray of the picture meets it first"
     matte = dict(dataclasses.astuple(one) for one in fix(ROOT / "scenes" / "matte.toml", {}, "rects").omissions)
     assert "memory of camera and background" not in matte
@@ -222,10 +222,10 @@ def test_omissions_say_why():
 @pytest.mark.parametrize(
     ("path", "options", "scope", "complaint"),
     [
-        (BOXES, {}, "some", "fix: rects or all, not some"),
+        (BOXES, {}, "some", "fix: expected rects or all, got some"),
         (BOXES, {"rectangles": "12"}, "all", "leave RECTANGLES out"),
         (None, {}, "all", "needs a scene"),
-        (BOXES, {}, None, "say FIX=rects or FIX=all"),
+        (BOXES, {}, None, "give FIX=rects or FIX=all"),
         (Path("nowhere.toml"), {}, "all", "nowhere.toml"),
     ],
 )
@@ -240,7 +240,7 @@ def test_without_a_scope_a_design_is_general():
 
 
 def test_a_scene_of_one_rectangle_that_nobody_sees(tmp_path):
-    """An engine has at least one rectangle."""
+    """The design keeps one rectangle, the least that an engine can have."""
     path = tmp_path / "nothing.toml"
     path.write_text('[camera]\nposition = [9, 9, 9]\n[[rect]]\ncorners = [[0, 0, 0], [0, 9, 9]]\ncolour = "#ffffff"\n')
     for scope, engine in itertools.product(SCOPES, ENGINES):
@@ -249,8 +249,8 @@ def test_a_scene_of_one_rectangle_that_nobody_sees(tmp_path):
 
 
 @pytest.mark.parametrize("camera", [False, True])
-def test_what_a_row_knows_of_fixed_rectangles(camera):
-    """In any row, from any camera or the fixed one, it is what the distances and their products are."""
+def test_known_values_of_fixed_rectangles(camera):
+    """Known facets and growths equal the distances and products computed for random cameras or the fixed one."""
     config = fixed_config(32, "beam", camera)
     random = np.random.default_rng(seed())
     for number, rectangle in enumerate(config.fixed.rectangles):
@@ -304,7 +304,7 @@ def test_two_reflections(bench: Bench, engine, options):
 @pytest.mark.slow_sets("beam", "exact", "seed")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_any_camera_may_look_at_fixed_rectangles(bench: Bench, engine):
-    """With the rectangles in a plane with others and at x = 0 that `rects` leaves out."""
+    """The scene has coplanar rectangles and some at x = 0 that `rects` leaves out."""
     scene = ROOT / "scenes" / "mirror_room.toml"
     design = fix(scene, {"engine": engine, "screen": "tiny"}, "rects").design
     bench("verif.benches.camera_bench", design.configuration, "verilator", scene, seeds=tuple(range(24)))
@@ -312,7 +312,7 @@ def test_any_camera_may_look_at_fixed_rectangles(bench: Bench, engine):
 
 @pytest.mark.slow_sets("all")
 @pytest.mark.parametrize("scope", SCOPES)
-def test_what_is_fixed_ignores_writes(bench: Bench, scope):
+def test_fixed_words_ignore_writes(bench: Bench, scope):
     design = fix(SMALL_SCENE, {"engine": "exact", "screen": "tiny"}, scope).design
     bench("verif.benches.fixed_bench", design.configuration, "icarus", SMALL_SCENE)
 
@@ -332,7 +332,7 @@ def test_nothing_in_sight(bench: Bench, tmp_path):
 @pytest.mark.slow_sets("exact", "seed")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_rectangle_wrongly_left_out_is_caught(bench: Bench, engine):
-    """Of one pass only, which is the least that can go wrong."""
+    """Only one pass lacks the rectangle, which is the smallest possible fault."""
     config = fix(SMALL_SCENE, {"engine": engine, "screen": "tiny"}, "all").design.configuration
     primary, reflected = config.fixed.passes
     fewer = dataclasses.replace(config.fixed, passes=(primary, reflected & reflected - 1))
@@ -345,8 +345,8 @@ def test_a_rectangle_wrongly_left_out_is_caught(bench: Bench, engine):
 @pytest.mark.slow_sets("beam-all", "beam-rects", "exact", "seed")
 @pytest.mark.parametrize("scope", SCOPES)
 @pytest.mark.parametrize("engine", ENGINES)
-def test_what_is_fixed_has_no_memory(engine, scope, tmp_path):
-    """And equal scenes give equal bytes."""
+def test_fixed_rectangles_have_no_memory(engine, scope, tmp_path):
+    """Fixed designs have no rectangle memory, and the same scene always produces identical files."""
     config = fix(BOXES, {"engine": engine}, scope).design.configuration
     files = {path.name: path.read_text() for path in write_verilog(config, tmp_path / "one")}
     assert not {"rect_mem.v", "rect_slot.v", "rect_sorter.v"} & set(files)
@@ -357,7 +357,10 @@ def test_what_is_fixed_has_no_memory(engine, scope, tmp_path):
 
 @pytest.mark.slow
 def test_two_boxes_cost_less_than_half(tmp_path):
-    """In tables, registers and multipliers. It was a quarter while the general design kept rectangles in registers."""
+    """The fixed design has less than half the tables and registers, and at most half the multipliers.
+
+    It needed only a quarter while the general design kept rectangles in registers.
+    """
     scene = ROOT / "examples" / "two_boxes.toml"
     family = FAMILIES["ecp5"]
     general = measure(configure(engine="exact"), family, tmp_path / "general")
@@ -367,11 +370,11 @@ def test_two_boxes_cost_less_than_half(tmp_path):
     assert fixed.multipliers <= general.multipliers / 2
 
 
-# The smallest ---------------------------------------------------------------------------------------------------------
+# Smallest designs -----------------------------------------------------------------------------------------------------
 
 
 def test_the_least_fraction_that_meets_an_error():
-    """Of each rounding; the engines that do not round always do."""
+    """The search finds it for each rounding; engines that do not round have no error."""
     options = {"screen": "tiny"}
     found = list(search.candidates(BOXES, options, ("all",), 0.001))
     seeds = [one for one in found if one.configuration.engine == "seed" and one.scope == "all"]
@@ -382,13 +385,13 @@ def test_the_least_fraction_that_meets_an_error():
         assert one.configuration.fraction_bits == 0 or search.error_of(design_for(BOXES, less)) > 0.001
     assert [one.error for one in found if one.configuration.engine != "seed"] == 4 * [0]
     assert [one.scope for one in found] == len(found) // 2 * ["general", "all"]
-    # As an option says so, only that engine.
+    # An engine given as an option is the only candidate.
     assert {one.configuration.engine for one in search.candidates(BOXES, {"engine": "beam"}, (), None)} == {"beam"}
 
 
 @pytest.mark.slow
 def test_more_rectangles_than_the_default_has(tmp_path):
-    """The general design is then a larger one."""
+    """The general design then has a larger table."""
     scene, text = tmp_path / "many.toml", BOXES.read_text()
     scene.write_text(f"{text}[[rect]]{text.split('[[rect]]')[1]}")
     found = list(search.candidates(scene, {"screen": "tiny"}, ("all",), None))
@@ -398,7 +401,7 @@ def test_more_rectangles_than_the_default_has(tmp_path):
 
 @pytest.mark.slow
 def test_the_smallest_is_kept_and_built(tmp_path, capfd):
-    """The whole way, on a small scene and one engine."""
+    """The complete search works on a small scene and one engine."""
     output = tmp_path / "fit"
     console = Console(width=120)
     search.search(SMALL_SCENE, {"engine": "exact", "screen": "tiny"}, "all", None, output, console)
@@ -431,14 +434,14 @@ def test_a_choice_for_another_scene_is_refused(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        (("--fps", "75"), "240 rows are shown 60 times a second, not 75"),
-        (("--fix", "some"), "fix: rects or all, not some"),
-        (("--error", "-1"), "error: per cent of the pixels, 0 to 100, not -1"),
-        (("--error", "0.0001", "--engine", "seed", "--fraction-bits", "0"), "no design of .* at most 0.0001%"),
+        (("--fps", "75"), "240 rows are shown at 60 frames per second, not 75"),
+        (("--fix", "some"), "fix: expected rects or all, got some"),
+        (("--error", "-1"), "error: expected per cent of the pixels, 0 to 100, got -1"),
+        (("--error", "0.0001", "--engine", "seed", "--fraction-bits", "0"), "no design shows .* at most 0.0001%"),
     ],
 )
-def test_what_cannot_be_found_is_one_line(arguments, complaint):
+def test_bad_searches_get_one_line(arguments, complaint):
     done = called("fit", str(BOXES), *arguments, cwd=ROOT)
     assert done.returncode == 2
-    said = done.stderr.removeprefix("fit: usually 4 min per scene, less where results are kept\n")
+    said = done.stderr.removeprefix("fit: usually 4 min per scene, less with kept results\n")
     assert re.fullmatch(f"error: .*{complaint}.*\n", said)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The proofs hold, and none of them would hold of a design that is wrong: one fault at a time in the Verilog."""
+"""The proofs hold for the design, and each fails when a fault is planted in the Verilog."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.skipif(bool(missing_tools()), reason=f"not installed: {
 
 
 def chosen(name: str, label: str) -> Property:
-    """The property of this name for this design."""
+    """Return the property with this name for the design with this label."""
     [found] = [proof for proof in PROPERTIES if (proof.name, proof.label) == (name, label)]
     return found
 
@@ -53,6 +53,7 @@ EYE = chosen("eye-exact", "exact-vga240-u1-r12-m4-c8-turn-materials-patterns")
 SLOPE = chosen("slope-exact", "exact-vga240-u4-r12-m1-c8")
 TURNED = chosen("slope-exact", "exact-vga240-u4-r12-m1-c8-turn")
 CELL = chosen("cell-products", "exact-vga240-u1-r12-m1-c8-patterns")
+SHADOW = chosen("shadow-products", "exact-vga240-u1-r12-m0-c8-light")
 ROW = chosen("row-setup", "beam-vga240-s2-u1-r12-m1-c8")
 ADDERS = chosen("row-setup", "exact-vga240-u4-r12-m1-c8-k1")
 LINE = chosen("line-start", "beam-vga240-s2-u1-r2-m1-c8-turn")
@@ -242,6 +243,16 @@ FAULTS = {
     "point-a-bit-short": (CELL, "cell_finder", "remainder <= point[16:9];", "remainder <= point[15:9];"),
     "way-not-turned": (CELL, "hit_component", "turned_way = ~way;", "turned_way = way;"),
     "a-cell-too-small": (CELL, "cell_finder", "odd_v = digits_2[size];", "odd_v = digits_1[size];"),
+    "shadow-difference-a-bit-short": (SHADOW, "shadow_ray", "wire signed [10:0] difference;",
+                                      "wire signed [9:0] difference;"),
+    "light-of-another-axis": (SHADOW, "shadow_ray", ".on_z(camera_light_z),\n    .chosen(light_q)",
+                              ".on_z(camera_light_y),\n    .chosen(light_q)"),
+    "shadow-slope-without-its-sign": (SHADOW, "shadow_ray", "if (back_2) begin", "if (1'b0) begin"),
+    "shadow-slope-one-short": (SHADOW, "shadow_ray", "negated = inverse + 1;", "negated = inverse;"),
+    "lit-edge-on": (SHADOW, "shadow_ray", "light_a < found_surface_position", "light_a <= found_surface_position"),
+    "point-shades-itself": (SHADOW, "shadow_register", "reached < denominator", "reached <= denominator"),
+    "shadow-forgotten": (SHADOW, "shadow_register", "shaded <= 1'b1;", "shaded <= !shaded;"),
+    "shadow-reach-a-bit-short": (SHADOW, "shadow_register", "wire [16:0] reached;", "wire [15:0] reached;"),
     "loaded-a-cycle-early": (ROW, "rect_setup", "load[number_2] <= 1'b1;", "load[number_1] <= 1'b1;"),
     "one-rectangle-too-few": (ROW, "rect_setup", "if (number == 11) begin", "if (number == 10) begin"),
     "bound-of-another-axis": (ROW, "rect_setup", "to_low_q_2 * slope_a_2", "to_low_q_2 * slope_q_2"),
@@ -367,11 +378,11 @@ MORE_STEPS = {
     "cells-stored-early": 18,
     "cells-of-the-last-test": 18,
 }
-"""Those that take a line, a row's groups or pixels, a frame's rows or lines, all rectangles, or a pattern's cell."""
+"""Steps of faults that take a line, a row's groups or pixels, a frame's rows or lines, all rectangles, or a cell."""
 
 
 NOT_FROM_RESET = {"control-runs-on"}
-"""The fault shows where a row is abandoned: z3 finds no run of 66 cycles in 15 minutes. Its induction step fails."""
+"""Fault seen when a row is abandoned: z3 finds no run of 66 cycles in 15 minutes, so its induction step must fail."""
 
 
 @pytest.mark.slow_sets(
@@ -402,13 +413,13 @@ NOT_FROM_RESET = {"control-runs-on"}
 @pytest.mark.parametrize(
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
-     FINDER, CELLS, DEPTH, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, ROW, ADDERS, LINE, WALK,
-     TURNED_WALK, CONTEST, WIDE_CONTEST, HALF, MIXED, SHARES, MULTIPLIED, HALVES, FOLD, UNIT, CORNER_UNIT,
+     FINDER, CELLS, DEPTH, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, SHADOW, ROW, ADDERS, LINE,
+     WALK, TURNED_WALK, CONTEST, WIDE_CONTEST, HALF, MIXED, SHARES, MULTIPLIED, HALVES, FOLD, UNIT, CORNER_UNIT,
      FOLD_PRODUCTS, SECOND_FOLD, STRAIGHT, TABLE, QUOTIENT],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):
-    """What the faults below are planted in is proved without them."""
+    """Each property that has a planted fault below is proved without the fault."""
     result = prove(proof, output / "proof", timeout=250)
     assert result.proved, f"{result.outcome}: {result.detail}; trace {result.trace}"
 
@@ -429,6 +440,7 @@ def test_holds(proof, output):
         "one-half",
         "one-too-few-at-full-width",
         "own-counts-once",
+        "point-shades-itself",
         "read-again",
         "slope-a-bit-short",
         "swept-once",
@@ -441,7 +453,7 @@ def test_holds(proof, output):
 )
 @pytest.mark.parametrize("fault", FAULTS)
 def test_fault_is_found(fault, output):
-    """A run from reset contradicts the property; a failing induction step would not say that the fault is ever seen."""
+    """A run from reset contradicts the property; a failing induction step would not show that it can happen."""
     proof, module, right, wrong = FAULTS[fault]
 
     def plant(verilog: Path) -> None:
@@ -461,7 +473,7 @@ def test_fault_is_found(fault, output):
 
 
 def test_a_state_that_no_reset_leads_to_is_no_counterexample(output):
-    """A register that reset clears and nothing sets fails an induction step, and never a run from reset."""
+    """A register that reset clears and nothing sets can fail an induction step, but never a run from reset."""
 
     def plant(verilog: Path) -> None:
         path = verilog / "avalon_host.v"
@@ -475,7 +487,7 @@ def test_a_state_that_no_reset_leads_to_is_no_counterexample(output):
 
 
 def test_a_name_peeked_at_in_too_few_bits_is_refused(output):
-    """What a wrapper then says would be of part of the signal."""
+    """Otherwise the wrapper's property would cover only part of the signal."""
     narrow = replace(ORDER, parameters={**ORDER.parameters, "REFLECTION_BITS": 2})
     with pytest.raises(UserError, match=r"Widening signal ray_order\.engine\.dut\.ray_sequencer_i\.bounce"):
         prove(narrow, output / "proof")
@@ -487,15 +499,15 @@ def test_every_property_has_a_fault():
 
 
 def test_unknown_property():
-    """The command names what there is."""
+    """The error lists the known properties."""
     command = [sys.executable, "-m", "raycaster.cli", "verify", "prove", "--property", "no-such"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 2
-    assert "no-such is none of video-timing" in done.stderr
+    assert "got no-such, expected one of video-timing" in done.stderr
 
 
-def test_what_was_proved_is_not_proved_again(output, monkeypatch, names_for_digests):
-    """Until its Verilog or its property changes, or it is asked for; what is kept says what was not proved."""
+def test_kept_proofs_are_not_repeated(output, monkeypatch, names_for_digests):
+    """A proof is repeated only on request or if its Verilog or property changes; the kept figures list failures."""
     monkeypatch.setattr("raycaster.verif.formal.prove.PROOFS", [HOST])
     kept = output / "kept.json"
 

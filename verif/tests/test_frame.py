@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Frames of the whole design, each pixel of the visible screen held against golden."""
+"""Frames of the whole design: every visible pixel is compared with the golden model."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ PLAIN = packaged_scenes(plain=True)
 @pytest.mark.slow_sets(quick=["boxes"])
 @pytest.mark.parametrize("scene", PLAIN.values(), ids=PLAIN)
 def test_full_size(bench: Bench, scene):
-    """Every scene that needs no more than the default design, as `make sim` shows it."""
+    """Every scene that the default design can draw, as `make sim` shows it."""
     check_full_size(bench, scene, "seed")
 
 
 @pytest.mark.slow_sets("beam", "seed")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_scenes_with_looks(bench: Bench, engine):
-    """Every scene that needs more than the default design, small, by one design of each engine."""
+    """Every scene that needs more than the default design, on the tiny screen, drawn by one design per engine."""
     scenes = [path for path in packaged_for({"engine": engine}) if path.stem not in PLAIN]
     assert len(scenes) >= (2 if engine == "seed" else 8)
-    # As few units as meet the row budget, which are soon compiled.
+    # The fewest units that meet the row budget compile fastest.
     size = {"units": 16} if engine == "seed" else {}
     looks = dict.fromkeys(ENGINES[engine].looks, True)
     design = configure(engine=engine, screen="tiny", reflections=2, **looks, **size)
@@ -46,7 +46,7 @@ def test_scenes_with_looks(bench: Bench, engine):
 
 @pytest.mark.slow
 def test_full_size_exact(bench: Bench):
-    """As `make sim ENGINE=exact` shows it."""
+    """The mirror room, as `make sim ENGINE=exact` shows it."""
     check_full_size(bench, ROOT / "scenes" / "mirror_room.toml", "exact")
 
 
@@ -56,7 +56,7 @@ def test_full_size_exact(bench: Bench):
     [(240, 1, 1, 640 * 480), (200, 2, 1, 640 * 400), (180, 4, 1, 1280 * 720), (180, 6, 2, 1920 * 1080)],
 )
 def test_full_size_beam(bench: Bench, rows, scale, pixels, shown):
-    """As `make sim ENGINE=beam` shows it: doubled, native, at 720 lines, and at 1080 with two pixels a clock."""
+    """The room as `make sim ENGINE=beam` shows it: doubled, native, 720 lines, and 1080 with two pixels per clock."""
     configuration = configure(engine="beam", rows=rows, scale=scale, pixels=pixels)
     scene = ROOT / "scenes" / "mirror_room.toml"
     directory = bench("sim.frame_bench", configuration, "verilator", scene)
@@ -64,7 +64,7 @@ def test_full_size_beam(bench: Bench, rows, scale, pixels, shown):
     assert (result["pixels"], result["wrong_vs_golden"]) == (shown, 0)
     assert result["worst_row_cycles"] == configuration.screen_geometry.horizontal.visible // pixels
     assert result["worst_group_cycles"] == 1
-    # The same view, sampled finer: what the coarse picture has is in it.
+    # The finer picture samples the same view, so it contains every pixel of the coarse one.
     coarse = ExactModel().render(load_scene(scene), configure(engine="beam", rows=rows, scale=1).screen_geometry)
     step = configuration.screen_geometry.horizontal.visible // 320
     assert np.array_equal(np.asarray(Image.open(directory / "frame.png"))[::step, ::step], coarse)
@@ -85,7 +85,7 @@ def check_full_size(bench: Bench, scene, engine: str) -> dict:
 @pytest.mark.slow
 @pytest.mark.parametrize("engine", ENGINES)
 def test_tiny_in_icarus(engine):
-    """On the small screen in Icarus, through the command itself: with no, one and two reflections, and at the edges."""
+    """The command draws the tiny screen in Icarus, with zero, one and two reflections and with edge cases."""
     build = BUILD / "test" / f"tiny_in_icarus_{engine}"
     scenes = [ROOT / "scenes" / f"{name}.toml" for name in ("matte", "corners", "degenerate", "facing_mirrors")]
     options = ("--engine", engine, "--screen", "tiny", "--simulator", "icarus", "--build", str(build))
@@ -138,7 +138,7 @@ def test_tiny_in_icarus(engine):
     ids=lambda options: "-".join(f"{name}={value}" for name, value in options.items()),
 )
 def test_configurations(bench: Bench, tmp_path, options):
-    """Each option at its ends, on Icarus, which builds at once."""
+    """Each option is tested at its limits in Icarus, which builds quickly."""
     scene = f"reflections = {options.get('reflections', 1)}\n{SMALL_SCENE.read_text()}"
     if options.get("rectangles") == 1:
         scene = scene[: scene.index("[[rect]]", scene.index("[[rect]]") + 1)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The game, compiled for the host: what it draws, its rules, and the recorded game."""
+"""The game, compiled for the host: its pictures, its rules and the recorded demo."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_the_demo_is_a_good_game(session):
 
 
 def test_a_step_off_the_demo_still_plays_well(session):
-    """The game counts from fire, so hardware that starts some frames sooner or later shows the same one."""
+    """The game counts frames from fire, so hardware that starts some frames later plays the same game."""
     script = load(DEMO)
     scores = set()
     for late in (0, 1, 17):
@@ -99,8 +99,8 @@ def test_equal_seeds_give_equal_frames(library):
     assert runs[0] != runs[2]
 
 
-def test_what_is_not_written_is_as_if_it_were(session):
-    """Frames of which only changes were written are those of a table that was written as a whole."""
+def test_writing_changes_equals_writing_all(session):
+    """Writing only the changes gives the same frames as writing the whole table."""
     anew = Session(session.software)
     for number, frame in enumerate(session.play(load(DEMO)[:480])):
         if number % 60 == 0:
@@ -115,7 +115,7 @@ def test_what_is_not_written_is_as_if_it_were(session):
 
 def test_only_what_changes_is_written(session):
     frames = list(session.play(load(DEMO)))
-    # Background, camera, and three words an entry.
+    # Background, camera, and three words per entry.
     assert len(frames[0].written) == 2 + 3 * 12
     assert max(len(frame.written) for frame in frames[1:]) < 2 + 3 * 12
     assert np.mean([len(frame.written) for frame in frames]) < 12
@@ -126,7 +126,7 @@ def test_only_what_changes_is_written(session):
 
 @pytest.mark.parametrize("seed", [0, 1, 7, 0xFFFFFFFF])
 def test_wild_buttons_do_no_harm(library, seed):
-    """Whatever is pressed, everything is in the world, has a plane and is drawn; see `Session.play`."""
+    """With any buttons pressed, every rectangle is in the world, has a plane and is drawn; see `Session.play`."""
     session = Session(library, seed)
     generator = random.Random(seed)
     held = 0
@@ -172,7 +172,7 @@ def test_lives_are_lost_and_the_game_ends(session):
     assert not session.game.attract
     missed = 0
     for _ in range(3000):
-        # Into a corner, where the ball does not come.
+        # Move into a corner that the ball never reaches.
         events = session.step(0b0101)
         missed += "MISSED" in events
         assert session.game.lives == LIVES - missed
@@ -211,7 +211,7 @@ def test_fire_serves(session):
 
 
 @pytest.mark.parametrize(("button", "axis", "sign"), [(0, "y", -1), (1, "y", 1), (2, "z", 1), (3, "z", -1)])
-def test_the_racket_goes_where_it_is_told(session, button, axis, sign):
+def test_buttons_move_the_racket(session, button, axis, sign):
     session.start()
     before = getattr(session.game.racket, axis)
     session.step(1 << button)
@@ -224,7 +224,7 @@ def test_the_racket_goes_where_it_is_told(session, button, axis, sign):
     assert getattr(session.game.racket, axis) == edge
 
 
-def test_bars_tell_lives_and_tiles(session):
+def test_bars_show_lives_and_tiles(session):
     *_, last = session.play(load(DEMO)[:330])
     lives, score = (ENTRIES.index(f"GAME_{name}_BAR") for name in ("LIVES", "SCORE"))
     lengths = last.live.rectangles.high[:, 0] - last.live.rectangles.low[:, 0]
@@ -232,7 +232,7 @@ def test_bars_tell_lives_and_tiles(session):
     assert (lengths[lives], lengths[score]) == (180, 135)
 
 
-def test_the_score_is_that_of_what_happened(session):
+def test_the_score_follows_from_the_events(session):
     score, level = 0, 1
     for frame in session.play(load(DEMO)):
         score += ("RETURNED" in frame.events) + 10 * level * ("TILE" in frame.events)
@@ -240,7 +240,7 @@ def test_the_score_is_that_of_what_happened(session):
         assert (session.game.score, session.game.level) == (score, level)
 
 
-def test_what_is_hit_flashes(session):
+def test_hit_rectangles_flash(session):
     entries = {"RETURNED": ENTRIES.index("GAME_RACKET"), "TILE": ENTRIES.index("GAME_TARGET")}
     white = dict.fromkeys(entries, 0)
     for frame in session.play(load(DEMO)):
@@ -267,7 +267,7 @@ def test_a_miss_turns_the_walls_red_and_the_end_hides_the_ball(session):
 
 
 def test_mirrors_show_what_the_veil_hides(session):
-    """In some frames no ray meets the ball at first, but rays from mirrors do."""
+    """In some frames only reflected rays meet the ball."""
     slopes = primary_slopes(configure(engine="exact").screen_geometry).reshape(-1, 3)
     ball = ENTRIES.index("GAME_BALL")
     direct = only_in_mirrors = 0
@@ -282,7 +282,7 @@ def test_mirrors_show_what_the_veil_hides(session):
 
 
 def test_no_ray_meets_an_edge_of_the_court(session):
-    """Wherever the racket leads the eye."""
+    """This holds for every camera position that the racket leads to."""
     slope = primary_slopes(configure(engine="exact").screen_geometry).reshape(-1, 3)
     walls = [ENTRIES.index(f"GAME_{name}") for name in ("FLOOR", "CEILING", "LEFT_WALL", "RIGHT_WALL", "BACK_WALL")]
     session.start()
@@ -301,7 +301,7 @@ def test_no_ray_meets_an_edge_of_the_court(session):
 
 
 def test_the_player_looks_after_the_ball(library):
-    """Where the camera turns: a degree a frame, towards the ball, and never past the court's front."""
+    """A camera that can turn follows the ball by one degree per frame and never sees past the court's front."""
     config = configure(engine="exact", screen="tiny", turn=True)
     session = Session(library, config=config)
     basis = {4 * register_map(config.rectangles)[name].address for name in ("forward", "right", "up")}
@@ -316,7 +316,7 @@ def test_the_player_looks_after_the_ball(library):
         front = frame.live.rectangles.low[ENTRIES.index("GAME_FLOOR")][0]
         for slope in edges @ np.array(frame.live.basis):
             assert COURT["y"][0] < camera.position[1] + slope[1] * front / slope[0] < COURT["y"][1]
-        # Where it flew to in a frame is known in the next.
+        # The camera follows the ball's position in the previous frame.
         if "STARTED" not in frame.events:
             assert turns[-1] - turns[-2] == np.sign(wanted - turns[-2])
         aside = session.game.ball.y // 256 - sum(COURT["y"]) // 2
@@ -333,7 +333,7 @@ def test_a_table_that_is_too_small(library):
     assert errors[session.draw()] == "RAYCASTER_NO_SUCH_RECTANGLE"
     written = len(session.registers.written)
     assert errors[session.draw()] == "RAYCASTER_NO_SUCH_RECTANGLE"
-    assert len(session.registers.written) == 2 * written, "after an error everything is written anew"
+    assert len(session.registers.written) == 2 * written, "after an error everything is written again"
 
 
 def test_buttons_have_the_same_bits_in_c():
@@ -352,16 +352,16 @@ def test_a_script_holds_buttons_until_the_next_line(tmp_path):
 @pytest.mark.parametrize(
     ("text", "complaint"),
     [
-        ("", "must end with the number of frames and the word end"),
-        ("1 fire\n", "must end with the number of frames and the word end"),
+        ("", "expected a last line with the number of frames and the word end"),
+        ("1 fire\n", "expected a last line with the number of frames and the word end"),
         ("1 fire\n1 end\n", "line 2: frame 1 must come after 1"),
-        ("fire\n9 end\n", "line 1: must begin with a frame's number up to 1000000, not fire"),
-        ("-1 fire\n9 end\n", "line 1: must begin with a frame's number up to 1000000, not -1"),
-        ("1000001 end\n", "line 1: must begin with a frame's number up to 1000000, not 1000001"),
-        (f"{'9' * 5000} end\n", "line 1: must begin with a frame's number up to 1000000, not 99999999999999999999"),
-        ("1 jump\n9 end\n", "line 1: the buttons are left, right, up, down, fire, not jump"),
+        ("fire\n9 end\n", "line 1: expected a frame number up to 1000000, got fire"),
+        ("-1 fire\n9 end\n", "line 1: expected a frame number up to 1000000, got -1"),
+        ("1000001 end\n", "line 1: expected a frame number up to 1000000, got 1000001"),
+        (f"{'9' * 5000} end\n", "line 1: expected a frame number up to 1000000, got 99999999999999999999"),
+        ("1 jump\n9 end\n", "line 1: expected a button (left, right, up, down, fire), got jump"),
         ("9 end\n10 fire\n", "line 2: nothing may follow the end"),
-        ("1 end fire\n", "line 1: the buttons are left, right, up, down, fire, not end"),
+        ("1 end fire\n", "line 1: expected a button (left, right, up, down, fire), got end"),
     ],
 )
 def test_wrong_scripts_get_one_line(tmp_path, text, complaint):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What holds for the golden models in every world: the definition in fractions, and what must make no difference."""
+"""Properties of the golden models in every world: they match the definition in fractions, and invariances hold."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ of_each = pytest.mark.parametrize("trace", MODELS.values(), ids=list(MODELS))
 
 
 def moved(table: Rectangles, corners: np.ndarray) -> Rectangles:
-    """The same rectangles elsewhere."""
+    """Return the rectangles with other corners."""
     return Rectangles(corners, table.colours, table.enabled)
 
 
 def assert_equal(one, other) -> None:
-    """All rays meet the same rectangles, and have the same colours."""
+    """Assert that all rays meet the same rectangles and have the same colours."""
     assert np.array_equal(np.array(one.winners), np.array(other.winners))
     assert np.array_equal(one.colours, other.colours)
 
@@ -55,7 +55,7 @@ def test_exact_traces_as_fractions_do(world, reflections):
 @of_each
 @examples(40)
 @given(worlds(100, 400), st.tuples(*3 * (st.integers(-100, 111),)), MIRRORS)
-def test_where_the_world_begins_makes_no_difference(trace, world, way, reflections):
+def test_moving_the_world_makes_no_difference(trace, world, way, reflections):
     table, camera, slopes = world
     there = trace(moved(table, table.corners + way), camera + way, BACKGROUND, slopes, reflections)
     assert_equal(trace(table, camera, BACKGROUND, slopes, reflections), there)
@@ -64,7 +64,7 @@ def test_where_the_world_begins_makes_no_difference(trace, world, way, reflectio
 @of_each
 @examples(40)
 @given(worlds(), MIRRORS)
-def test_left_is_as_right(trace, world, reflections):
+def test_mirroring_the_world_makes_no_difference(trace, world, reflections):
     table, camera, slopes = world
     other_way, last = np.array([1, -1, 1]), np.array([0, WORLD_SIZE - 1, 0])
     mirrored = World(moved(table, table.corners * other_way + last), camera * other_way + last, slopes * other_way)
@@ -76,7 +76,7 @@ def test_left_is_as_right(trace, world, reflections):
 @examples(10)
 @given(worlds(), st.data(), MIRRORS)
 def test_a_finer_picture_has_the_coarse_one_in_it(place, world, data, reflections):
-    """The pixel (s row, s column) at scale s is the pixel (row, column) at scale 1."""
+    """Pixel (s * row, s * column) at scale s equals pixel (row, column) at scale 1."""
     screen = BEAM_SCREENS[place]
     scales = [scale for scale in range(1, screen.doubling + 1) if screen.doubling % scale == 0]
     row = data.draw(st.integers(0, screen.rows - 1), label="row")

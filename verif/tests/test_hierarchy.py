@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The contract of the conversion with its hierarchy kept, which rests on MyHDL's internals."""
+"""Contract of the hierarchical conversion, which relies on MyHDL's internals."""
 
 import ast
 import filecmp
@@ -45,7 +45,7 @@ class Pair(Interface):
 
 @block
 def swap(pair, swapped):
-    """The nibbles the other way round."""
+    """Swap the nibbles."""
 
     @always_comb
     def cross():
@@ -57,13 +57,13 @@ def swap(pair, swapped):
 
 @block
 def step(clk, value, step_by, stepped, wrapped, gain=1):
-    """stepped = value + gain * step_by, a cycle and, for step_by, two late; wrapped: what did not fit."""
+    """stepped = value + gain * step_by, one cycle after value and two after step_by; wrapped is the carry."""
     width = len(stepped)
     limit = 1 << width
     product = unsigned(width)
     total = unsigned(width + 1)
 
-    # The step, in a register: what is constant triggers no combinational process.
+    # The step is registered, since a constant never triggers a combinational process.
     @always(clk.posedge)
     def multiply():
         product.next = (step_by * gain) % limit
@@ -84,7 +84,7 @@ def step(clk, value, step_by, stepped, wrapped, gain=1):
 
 @block
 def everything(clk, word, pair, joined, swapped, count):
-    """Each way to connect a block: by slices, lists, interfaces, constants and not at all."""
+    """Connect blocks in every way: by slices, lists, interfaces and constants, and not at all."""
     halves = [unsigned(4) for _ in range(2)]
     carries = [unconnected(1), unconnected(1)]
     lower, upper = word(4, 0), word(8, 4)
@@ -104,7 +104,7 @@ def everything(clk, word, pair, joined, swapped, count):
     def join():
         joined.next = both
 
-    # What a process reads of an instance.
+    # A process reads an output of an instance.
     @always_comb
     def choose():
         if carry:
@@ -137,14 +137,14 @@ def test_every_kind_of_connection_works(tmp_path):
         assert outputs[cycle]["joined"] == joined, repeat()
         assert outputs[cycle]["swapped_high"] == pair["pair_low"], repeat()
         assert outputs[cycle]["swapped_low"] == pair["pair_high"], repeat()
-        # The carry of the cycle before clears what is counted from.
+        # The previous cycle's carry clears the counter's input.
         carried = outputs[cycle - 1]["count"] == 0
         assert outputs[cycle]["count"] == (1 if carried else (word % 16 + 1) % 16), repeat()
 
 
 def test_modules_ports_and_instances(tmp_path):
     modules = converted(everything(**everything_arguments()), tmp_path)
-    assert list(modules) == ["step", "swap", "everything"], "each after those that it instantiates, equal ones once"
+    assert list(modules) == ["step", "swap", "everything"], "each follows those that it instantiates, equal ones once"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["everything.v", "step.v", "swap.v"]
     assert modules["everything"].instances == {"step_0": "step", "step_1": "step", "step_2": "step", "swap": "swap"}
     assert modules["step"].instances == {}
@@ -165,13 +165,13 @@ def test_modules_ports_and_instances(tmp_path):
         ("step", "step_2_i"),
         ("swap", "swap_i"),
     ]
-    assert text.count(".wrapped()") == 2, "nobody reads two of the carries"
+    assert text.count(".wrapped()") == 2, "two of the carries are not read"
     assert "// A register.\nalways @(posedge clk) begin" in modules["step"].path.read_text()
 
 
 @block
 def few_words(clk, value, kept, both, either, stepped):
-    """Most of it explains itself."""
+    """Connect processes that are mostly self-explanatory."""
 
     @always(clk.posedge)
     def keep():
@@ -217,7 +217,7 @@ def with_documented_ports(clk, value, slope, pair, cycles: int, config=None):
 
 
 def test_ports_have_their_comments(tmp_path):
-    """Each argument's stands above its first port, with numbers, options and Verilog's names for what is in Python."""
+    """Each argument's text precedes its first port, with numbers, options and Verilog names instead of Python's."""
     config = configure(units=32)
     modules = converted(with_documented_ports(bit(), bit(), Signs(), Place(config), 3, config), tmp_path)
     head, _, body = modules["with_documented_ports"].path.read_text().partition(");\n\n")
@@ -248,7 +248,7 @@ module with_documented_ports (
     "path", [path for path in Path(rtl.__file__).parent.glob("*/*.py")], ids=lambda path: path.stem
 )
 def test_each_port_of_the_hardware_is_documented(path):
-    """Each argument of each block, in the order of its definition."""
+    """The docstring of each block lists its arguments in order."""
     for node in ast.parse(path.read_text()).body:
         if isinstance(node, ast.FunctionDef) and any(ast.unparse(one) == "block" for one in node.decorator_list):
             _, _, listed = (ast.get_docstring(node) or "").partition("Args:\n")
@@ -344,7 +344,7 @@ def test_one_block_with_two_meanings_is_two_modules(gains, widths, tmp_path):
 
 
 def another_step():
-    """A block of one's own that happens to be called, and to look, like `step`."""
+    """Return a different block with the name and ports of `step`."""
 
     @block
     def step(clk, value, step_by, stepped, wrapped, gain=1):
@@ -360,7 +360,7 @@ def another_step():
 
 @block
 def two_kinds(clk, value, by, first, second, other):
-    """Both of them."""
+    """Instantiate two different blocks named `step`."""
     ours = step(clk, value, by, first, unconnected(1))
     theirs = other(clk, value, by, second, unconnected(1))
 
@@ -382,12 +382,12 @@ def test_two_blocks_of_one_name_are_two_modules(tmp_path):
 
 
 class Mirrored(Pair):
-    """The same nibbles, but for a block that decides by the class."""
+    """Pair that a block can recognise by its class."""
 
 
 @block
 def halve(pair, half):
-    """The high nibble, or of a `Mirrored` the low one."""
+    """Select the high nibble, or the low one of a `Mirrored`."""
     chosen = pair.low if isinstance(pair, Mirrored) else pair.high
 
     @always_comb
@@ -399,14 +399,14 @@ def halve(pair, half):
 
 @block
 def halve_both(pair, mirrored, first, second):
-    """One of each class."""
+    """Halve a pair of each class."""
     one = halve(pair, first)
     other = halve(mirrored, second)
 
     return one, other
 
 
-def test_the_class_of_an_interface_tells_modules_apart(tmp_path):
+def test_interfaces_of_different_classes_make_two_modules(tmp_path):
     leaf = Leaf(
         halve_both,
         lambda: {"pair": Pair(), "mirrored": Mirrored(), "first": unsigned(4), "second": unsigned(4)},
@@ -418,7 +418,7 @@ def test_the_class_of_an_interface_tells_modules_apart(tmp_path):
 
 @block
 def mix(clk, left, right, mixed):
-    """A block whose process could take one of its ports for the other."""
+    """Mix two ports that the conversion might confuse."""
 
     @always(clk.posedge)
     def work():
@@ -429,7 +429,7 @@ def mix(clk, left, right, mixed):
 
 @block
 def mixes(clk, value, other, first, second):
-    """One signal at both ports, and then two."""
+    """Connect one signal to both ports, and then two signals."""
     alike = mix(clk, value, value, first)
     apart = mix(clk, value, other, second)
 
@@ -448,7 +448,7 @@ def test_one_signal_at_two_ports_is_no_module_for_two(tmp_path):
 
 
 class Mode:
-    """A parameter that says less of itself than it is."""
+    """Parameter whose representation hides its value."""
 
     def __init__(self, number: int):
         self.number = number
@@ -471,7 +471,7 @@ def offset(clk, value, moved, mode):
 
 @block
 def offsets(clk, value, first, second, modes):
-    """Two of them."""
+    """Apply two offsets."""
     one = offset(clk, value, first, modes[0])
     two = offset(clk, value, second, modes[1])
 
@@ -503,14 +503,14 @@ def test_one_parameter_is_one_module(tmp_path):
 
 
 class Halves(Record):
-    """A byte in two parts, wherever it is cut."""
+    """A byte in two parts of variable width."""
 
     def __init__(self, high: int):
         super().__init__({"high": high, "low": 8 - high})
 
 
 class Late(Interface):
-    """A nibble, and what is to be added to it."""
+    """A nibble and a constant to add to it."""
 
     def __init__(self, amount: int):
         self.value, self.amount = unsigned(4), amount
@@ -518,7 +518,7 @@ class Late(Interface):
 
 @block
 def upper_part(halves, late, high, sum):
-    """Of a layout, and of an attribute that is no signal."""
+    """Read a field of a layout, and an attribute that is not a signal."""
     amount = late.amount
 
     @always_comb
@@ -534,7 +534,7 @@ def upper_part(halves, late, high, sum):
 
 @block
 def upper_parts(halves, others, late, later, high, higher, sum, more):
-    """Of one shape as ports, and of other layouts and attributes."""
+    """Connect ports of the same shape with different layouts and attributes."""
     one = upper_part(halves, late, high, sum)
     two = upper_part(others, later, higher, more)
 
@@ -542,7 +542,7 @@ def upper_parts(halves, others, late, later, high, higher, sum, more):
 
 
 @pytest.mark.parametrize(("cuts", "amounts"), [((3, 5), (1, 1)), ((4, 4), (1, 2))])
-def test_a_layout_and_an_interfaces_attributes_tell_modules_apart(cuts, amounts, tmp_path):
+def test_layouts_and_attributes_of_interfaces_distinguish_modules(cuts, amounts, tmp_path):
     leaf = Leaf(
         upper_parts,
         lambda: {
@@ -559,7 +559,7 @@ def test_a_layout_and_an_interfaces_attributes_tell_modules_apart(cuts, amounts,
 
 @block
 def fields_apart(packed, first, second):
-    """Each of two instances has another field as its port."""
+    """Connect a different field to each of two instances."""
     one = inverted(packed.high, first)
     two = inverted(packed.low, second)
 
@@ -587,7 +587,7 @@ def test_the_top_keeps_its_name(tmp_path):
 
 
 def test_two_instances_of_one_name_are_refused(tmp_path):
-    """The second instance of `step` would be `step_1`; that of a block of this name is, whichever comes first."""
+    """The second instance of `step` and an instance of block `step_1` share a name, whichever comes first."""
 
     @block
     def step_1(clk, value, result):
@@ -609,7 +609,7 @@ def test_two_instances_of_one_name_are_refused(tmp_path):
 
 
 class Packed(Record):
-    """A record of one field of each kind."""
+    """Record with one field of each kind."""
 
     def __init__(self):
         super().__init__({"flag": 1, "count": 3, "offset": Signed(5)})
@@ -617,7 +617,7 @@ class Packed(Record):
 
 @block
 def records(clk, packed, index, kept, sum, negative):
-    """A memory of records, a copy, and fields of both signs read."""
+    """Store and copy records, and read signed and unsigned fields."""
     memory = [unsigned(len(packed.word)) for _ in range(4)]
 
     @always(clk.posedge)
@@ -646,7 +646,7 @@ def test_a_record_is_one_word(tmp_path):
     text = leaf.verilog[-1].read_text()
     assert re.search(r"^    input  wire \[8:0\] +packed_word,$", text, re.M)
     assert "wire signed [4:0] kept_offset = kept_word[4:0];" in text
-    assert "kept_flag" not in text, "only the fields that are read are there"
+    assert "kept_flag" not in text, "fields that are not read are left out"
     random = np.random.default_rng(seed())
     stimulus = [{"packed_flag": 1, "packed_count": index, "packed_offset": index, "index": index} for index in range(4)]
     stimulus += [
@@ -812,7 +812,7 @@ def test_two_things_of_one_verilog_name_are_refused(function, name, arguments, t
 
 @block
 def careless(clk, value, result, undriven, unread):
-    """Where asked to, it reads a signal that nobody drives, or drives one that nobody reads."""
+    """Read an undriven signal or drive an unread one, on request."""
     nothing, lost = unsigned(4), unsigned(4)
 
     @always(clk.posedge)
@@ -839,7 +839,7 @@ def careless(clk, value, result, undriven, unread):
 
 @block
 def careless_parent(clk, value, result, undriven, unread):
-    """The same, where the signal is between instances."""
+    """Connect an undriven or unread signal to an instance, on request."""
     nothing, carry = unsigned(4), bit()
     given = nothing if undriven else value
     lost = carry if unread else unconnected(1)
@@ -864,7 +864,7 @@ def test_a_signal_without_a_driver_or_reader_is_refused(function, undriven, unre
 
 @block
 def slices_in_a_list(value, result):
-    """MyHDL declares a memory of the slices, and writes nothing to it but `s[0] <= 0;` at the start."""
+    """MyHDL declares a memory for the slices and writes only `s[0] <= 0;` to it, at the start."""
     halves = [value(2, 0), value(4, 2)]
 
     @always_comb
@@ -904,13 +904,13 @@ def test_values_that_myhdl_gets_wrong_are_refused(function, line, complaint, tmp
 def test_a_connection_without_a_name_is_refused(tmp_path):
     @block
     def nameless(clk, value, result):
-        # The first one's result is known to no variable.
+        # No variable names the first instance's result.
         first = step(clk, value, value, unsigned(4), unconnected(1))
         second = step(clk, value, value, result, unconnected(1))
 
         return first, second
 
-    with pytest.raises(HierarchyError, match=r"nameless: what step\.stepped connects to has no name"):
+    with pytest.raises(HierarchyError, match=r"nameless: the signal that step\.stepped connects to has no name"):
         converted(nameless(bit(), unsigned(4), unsigned(4)), tmp_path)
 
 
@@ -934,11 +934,11 @@ def adder_of(source: Path, outputs: tuple[str, ...] = ("sum",)):
 
 @block
 def two_adders(clk, value, first, second, doubled, adder):
-    """Given Verilog beside a process; one sum goes on into the other."""
+    """Chain two instances of given Verilog and read the first sum in a process."""
     one = adder(clk, value, first, STEP=3, WIDTH=4)
     two = adder(clk, first, second, STEP=3, WIDTH=4)
 
-    # What a process reads of it.
+    # A process reads an output of given Verilog.
     @always_comb
     def double():
         doubled.next = first + first
@@ -954,7 +954,7 @@ def test_given_verilog_stands_in_the_design_as_it_is(tmp_path):
     source = tmp_path / "given.v"
     source.write_text(ADDER)
     modules = converted(two_adders_of(adder_of(source)), tmp_path / "verilog")
-    assert list(modules) == ["adder", "two_adders"], "two instances of equal parameters are one module"
+    assert list(modules) == ["adder", "two_adders"], "two instances with equal parameters share a module"
     assert modules["adder"].path.read_text() == ADDER
     assert modules["adder"].parameters == (("STEP", "3"), ("WIDTH", "4"))
     assert modules["adder"].ports == (
@@ -994,7 +994,7 @@ def hold(clk, value, held):
 
 @block
 def two_clocks(clk, awake, value, steady, resting):
-    """A register that goes on, and one that rests."""
+    """A register on the free-running clock, and one on a gated clock."""
     resting_clk = bit()
     going_on = hold(clk, value, steady)
     at_rest = hold(clk, value, resting)
@@ -1021,7 +1021,7 @@ always @(posedge dut.resting_clk) rose = $realtime;
 always @(negedge dut.resting_clk)
     if ($realtime > 0 && $realtime - rose != 5)
         $display("a pulse of %0d ns", $realtime - rose);
-// Awake for cycles 2, 3 and 5 of 8, each time from just after an edge, as a register has it.
+// Awake in cycles 2, 3 and 5 of 8, changing just after an edge, as a register does.
 initial begin
     for (cycle = 0; cycle < 8; cycle = cycle + 1) begin
         #1 value = cycle;
@@ -1104,7 +1104,7 @@ def test_given_verilog_keeps_its_name(tmp_path):
     assert modules["adders"].instances == {"adder_0": "adder", "adder_1": "adder_1"}
     assert modules["adder"].path.read_text() == ADDER
     for others in ((adder, given), (given, adder_of(source))):
-        with pytest.raises(HierarchyError, match="adder is given Verilog, whose name stays, and another block's name"):
+        with pytest.raises(HierarchyError, match="adder is the name of given Verilog, which stays, and of"):
             converted(adders_of(*others), tmp_path / "verilog")
 
 
@@ -1118,7 +1118,7 @@ def test_a_top_does_not_take_the_name_of_given_verilog(tmp_path):
         inner = given(clk, value, sum, STEP=1, WIDTH=4)
         return (inner,)
 
-    with pytest.raises(HierarchyError, match="adder is given Verilog, whose name stays"):
+    with pytest.raises(HierarchyError, match="adder is the name of given Verilog, which stays"):
         converted(adder(bit(), unsigned(4), unsigned(4)), tmp_path / "verilog")
 
 
@@ -1131,13 +1131,13 @@ def test_given_verilog_has_its_module(tmp_path):
 
 def test_an_output_of_given_verilog_must_be_an_argument(tmp_path):
     adder = adder_of(tmp_path / "given.v", ("sum", "carry"))
-    with pytest.raises(HierarchyError, match=r"adder: carry is said to be an output, and is no argument"):
+    with pytest.raises(HierarchyError, match=r"adder: carry is listed as an output, but no argument"):
         converted(two_adders_of(adder), tmp_path / "verilog")
 
 
 @block
 def word_table(clk, index, word, values, file):
-    """A memory with a file's words, which are values."""
+    """A memory whose initial words come from a file; `values` has the same words."""
     words = [Signal(intbv(value)[8:]) for value in values]
 
     loading = load_words(words, file)
@@ -1160,12 +1160,12 @@ def test_a_memory_holds_a_files_words(tmp_path):
     outputs = leaf.run_both([{"index": index} for index in (3, 0, 1, 2, 0)], settled=1)
     assert [output["word"] for output in outputs[1:]] == [99, 7, 250, 0]
     text = leaf.verilog[-1].read_text()
-    assert text.count(f'// What the memory holds from the start.\ninitial $readmemh("{file}", words);\n') == 1
+    assert text.count(f'// Initial contents of the memory.\ninitial $readmemh("{file}", words);\n') == 1
 
 
 @block
 def sliced_elsewhere(clk, pair, swapped, narrow):
-    """One instance reads a slice of what another, which has the whole interface, does not look at."""
+    """Pass a whole interface to one instance, and a slice of a signal that it does not read to another."""
     crossing = swap_low(pair, swapped)
     stepping = step(clk, pair.high(2, 0), pair.high(2, 0), narrow, unconnected(1))
 
@@ -1185,7 +1185,7 @@ def inverted(word, result):
 
 @block
 def side_by_side_elsewhere(pair, first, second):
-    """Two instances read two signals side by side as one port, and one of them looks at it from two levels down."""
+    """Connect two concatenated signals to one port of two instances; one passes it on to a submodule."""
     both = ConcatSignal(pair.high, pair.low)
     one = inverted(both, first)
     two = passed_on(both, second)
@@ -1208,7 +1208,7 @@ def test_signals_side_by_side_may_be_a_port(tmp_path):
 
 @block
 def swap_low(pair, swapped):
-    """Half of swap."""
+    """Do half of `swap`."""
 
     @always_comb
     def cross():
@@ -1229,7 +1229,7 @@ def test_elaboration_leaves_nothing_behind():
     known = len(_signals)
     with elaboration():
         assert inspect.stack is not before
-        # What MyHDL reads of a frame.
+        # MyHDL reads these parts of a frame.
         assert [(frame[0], frame[3]) for frame in inspect.stack()] == slow
         assert [(frame[0], frame[3]) for frame in inspect.getouterframes(inspect.currentframe())] == slow
         for _ in range(2):
@@ -1241,7 +1241,7 @@ def test_elaboration_leaves_nothing_behind():
 
 
 def test_two_threads_convert_as_one_after_the_other(tmp_path):
-    """Each elaborates and converts several designs at once with the other, which MyHDL by itself cannot."""
+    """Two threads elaborate and convert several designs concurrently, which MyHDL alone cannot do."""
 
     def convert_all(directory: Path) -> dict[str, str]:
         directory.mkdir(parents=True)
@@ -1304,7 +1304,7 @@ def test_a_unit_is_one_module_and_many_instances(units, tmp_path):
 
 
 def test_every_module_is_made_of_nothing_unknown(tmp_path):
-    """In the order of the file list, each module stands after those that it instantiates."""
+    """In the file list, each module follows those that it instantiates."""
     files = write_verilog(configure(screen="tiny", units=2, rectangles=2, allow_underrun=True), tmp_path / "verilog")
     known = set()
     for path in files:
@@ -1328,7 +1328,7 @@ def test_the_header_says_what_and_never_when(tmp_path):
 
 @pytest.mark.slow
 def test_any_process_writes_the_same_bytes(tmp_path):
-    # Python's sets, of which MyHDL makes use, come in another order with another hash seed.
+    # MyHDL iterates over Python sets, whose order depends on the hash seed.
     numbers = ("1", "2", "3", "4")
     for number in numbers:
         command = [sys.executable, "-m", "raycaster.cli", "verilog", "--output", str(tmp_path / number)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The IP-XACT component, read back by others' readers and held against the register map and the Verilog."""
+"""The IP-XACT component, read by third-party readers and compared with the register map and the Verilog."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ BUS_PORTS = {
     "ARADDR ARVALID ARREADY RDATA RRESP RVALID RREADY",
     "apb": "PADDR PSEL PENABLE PWRITE PREADY PSLVERR PWDATA PSTRB PRDATA",
 }
-"""From the buses' specifications, without protection types."""
+"""Ports by bus, from the specifications, without protection types."""
 
 
 def small(bus: str) -> Configuration:
@@ -54,7 +54,7 @@ def verilog_ports(directory: Path) -> dict[str, tuple[str, int]]:
 
 
 def test_registers(written):
-    """Offsets, and the bits and access of each field."""
+    """The component has every offset, and the bits and access of each field."""
     bus, directory = written
     compiler = RDLCompiler()
     IPXACTImporter(compiler).import_file(str(directory / IP_XACT))
@@ -79,7 +79,7 @@ def test_registers(written):
 
 
 def test_ports_and_interfaces(written):
-    """Each port of the Verilog is there as it is, and but for the picture belongs to one interface."""
+    """The component has each port of the Verilog, and each port except the video belongs to one interface."""
     bus, directory = written
     component, ports = read(directory), verilog_ports(directory)
     said = {}

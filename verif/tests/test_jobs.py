@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Jobs whose results are kept: what an interrupted command has computed is not computed again."""
+"""Kept job results: an interrupted command does not compute finished jobs again."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from raycaster.jobs import Kept, run_jobs
 
 @pytest.fixture
 def squares(tmp_path):
-    """Squares numbers, and returns the results and the numbers that were computed."""
+    """Return a function that squares numbers and returns the results and the numbers it computed."""
 
     def run(numbers, wrong=(), **options):
         computed = []
@@ -36,14 +36,14 @@ def squares(tmp_path):
     return run
 
 
-def test_what_is_kept_is_not_computed_again(squares, capsys):
+def test_kept_results_are_not_computed_again(squares, capsys):
     assert squares([1, 2, 3], wrong=[3]) == (None, [1, 2, 3])
     assert squares([0, 1, 2, 3]) == ([0, 1, 4, 9], [0, 3])
     assert "resumed: 2 of 4 squares are kept" in capsys.readouterr().out
     assert squares([0, 1, 2, 3], fresh=True) == ([0, 1, 4, 9], [0, 1, 2, 3])
 
 
-def test_a_failure_is_tried_again(squares):
+def test_a_failure_is_retried(squares):
     def even(result):
         return result % 2 == 0
 
@@ -59,7 +59,7 @@ def test_a_result_cut_off_is_computed_again(squares, tmp_path: Path):
         assert squares([5]) == ([25], [5])
 
 
-def test_a_digest_is_of_values_and_contents(tmp_path: Path):
+def test_a_digest_covers_values_and_contents(tmp_path: Path):
     (tmp_path / "a.v").write_text("module a;")
     before = digest("x", 1, tmp_path), digest(tmp_path / "a.v")
     assert digest("x", 2, tmp_path) != before[0]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The lemmas hold, and a word's change in any of them is found, with numbers that Python's own arithmetic confirms."""
+"""The lemmas hold, and each planted change has a counterexample that Python's arithmetic confirms."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.skipif(
 
 BY_LABEL = {lemma.label: lemma for lemma in LEMMAS}
 
-# In the conclusion, or in a hypothesis; None for the wrong text leaves the hypothesis out.
+# Right and wrong text of a hypothesis or the conclusion; None as the wrong text leaves the hypothesis out.
 FAULTS = {
     "bounds": [("D*n <= (hi", "D*n < (hi"), ("e > 0", "e != 0"), ("(lo - E)*e", "(lo + E)*e")],
     "plane-ahead": [("n*e > 0", "n*e >= 0"), ("(n > 0)", "(n < 0)"), ("e != 0", None)],
@@ -64,11 +64,16 @@ FAULTS = {
     "shares": [("(w - v)*s", "w*s"), ("(4 - m)*s", "(3 - m)*s"), ("4*v == w*m", "4*v == m")],
     "product-in-parts": [("c*(n*h)", "n*h"), ("l + c*h", "l - c*h"), ("n*l +", "l +")],
     "cell-parity": [("a != b", "a == b"), ("(c == 1)", "(c == 0)"), ("0 <= b <= 1", "0 <= b <= 2")],
+    "from-the-light": [("S*s", "S"), ("(E - L)*e", "(E + L)*e"), ("+ D*n", "- D*n"), ("s*e == 1", "s*e == 2")],
+    "before-the-point": [("n*e < d", "n*e <= d"), ("n*e < d", "n < d*e"), ("e > 0", "e != 0")],
+    "lit-side": [("L < k)", "L <= k)"), ("(L - k) > 0", "(L - k) >= 0"), ("D < 0 and k < L", "D < 0 and L < k"),
+                 ("t > 0", "t != 0")],
+    "shadow-slope-in-range": [("S <= w*e", "S < w*e"), ("-w*e <=", "0 <="), ("0 <= L <= w", "-1 <= L <= w")],
 }  # fmt: skip
 
 
 def changed(lemma: Lemma, right: str, wrong: str | None) -> Lemma:
-    """The lemma with this fault, in the one hypothesis, or conclusion, that has the right text."""
+    """Return the lemma with this fault in the one hypothesis or conclusion that has the right text."""
     texts = [*lemma.given, lemma.then]
     places = [index for index, text in enumerate(texts) if right in text]
     assert len(places) == 1, f"{lemma.label} has {len(places)} places for {right}"
@@ -80,13 +85,13 @@ def changed(lemma: Lemma, right: str, wrong: str | None) -> Lemma:
 
 
 def contradicted(lemma: Lemma, values: Mapping[str, Fraction | bool]) -> bool:
-    """Whether these values of all variables fulfil the hypotheses and not the conclusion, as Python evaluates them."""
+    """Return True if the values of all variables, in Python, satisfy the hypotheses but not the conclusion."""
     *given, then = (bool(eval(text, {}, dict(values))) for text in (*lemma.given, lemma.then))
     return all(given) and not then
 
 
 def counterexample(lemma: Lemma) -> dict[str, Fraction | bool] | None:
-    """Values that z3 finds, by its own interface to Python."""
+    """Return a counterexample from z3's Python interface, or None if there is none."""
     z3 = pytest.importorskip("z3")
     solver = z3.Solver()
     solver.set("timeout", 60_000)
@@ -105,13 +110,13 @@ def counterexample(lemma: Lemma) -> dict[str, Fraction | bool] | None:
 
 @pytest.mark.parametrize("label", BY_LABEL)
 def test_holds(label, output):
-    """Both solvers say so."""
+    """Both solvers prove each lemma."""
     assert prove_lemma(BY_LABEL[label], output / "lemma", timeout=60) == ("proved", "")
 
 
 @pytest.mark.parametrize("label", BY_LABEL)
 def test_faults_are_found(label):
-    """Some in the conclusion, so that the hypotheses do not contradict each other."""
+    """Some faults are in the conclusion, which shows that the hypotheses do not contradict each other."""
     lemma = BY_LABEL[label]
     in_conclusion = 0
     for right, wrong in FAULTS[label]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The ray tracer in a SoC of LiteX: a VexRiscv runs the C driver, and the monitor shows what golden draws."""
+"""The ray tracer in a LiteX SoC: a VexRiscv runs the C driver, and the display matches the golden model."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ from raycaster.scene import load_scene
 from raycaster.sim.simulator import build_program
 
 SCENE = load_scene(ROOT / "docs" / "three_rectangles.toml")
-"""What examples/litex_soc.c draws."""
+"""Scene drawn by examples/litex_soc.c."""
 
 VIDEO = ("video", 0, Subsignal("valid", Pins(1)), *(Subsignal(name, Pins(width)) for name, width in video_data_layout))
 
-# At the second interrupt a frame begins that has the whole scene; it is over with the next vertical sync.
+# The second interrupt begins a frame with the whole scene, which ends at the next vertical sync.
 BENCH = """
 `timescale 1ns/1ns
 module soc_bench;
@@ -83,7 +83,7 @@ def example(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
 
 
 def pixels(path: Path, shape: tuple[int, int], colour_bits: int) -> np.ndarray:
-    """Those of a frame, each a word of three channels."""
+    """Read a frame's pixels, each a word of three channels."""
     words = np.array([int(line, 16) for line in path.read_text().split()]).reshape(shape)
     channels = [words >> shift * colour_bits & (1 << colour_bits) - 1 for shift in (2, 1, 0)]
     return np.stack(channels, axis=-1) << 8 - colour_bits
@@ -95,18 +95,18 @@ def pixels(path: Path, shape: tuple[int, int], colour_bits: int) -> np.ndarray:
     ids=["wishbone", "axi4lite"],
 )
 def test_a_frame_is_golden(example, options, tmp_path):
-    """At the VGA pins and in the video stream; the driver has found the registers, and interrupts come."""
+    """VGA pins and video stream show the golden picture; the driver finds the registers and receives interrupts."""
     config = configure(screen="tiny", rectangles=3, **options)
     soc = example.make_soc(config, tmp_path, [VIDEO])
     video = soc.platform.request("video")
     source = soc.ray_caster.source
     soc.comb += [getattr(video, name).eq(getattr(source, name)) for name in ("valid", *dict(video_data_layout))]
     files = example.write(soc, tmp_path)
-    # Without LiteX's comments, which have the time, the model is found again.
+    # LiteX's comments contain the time; without them a built model is found again.
     files[-1].write_text(re.sub(r"^//.*\n", "", files[-1].read_text(), flags=re.MULTILINE))
     bench = tmp_path / "soc_bench.v"
     bench.write_text(BENCH.replace("COLOUR_BITS", str(config.colour_bits)))
-    # A processor's registers have no reset: the program may not look at what it has not written.
+    # The processor's registers have no reset; random initial values reveal reads before the first write.
     flags = ("--x-assign", "unique", "--x-initial", "unique", "-Wno-lint", "-Wno-style")
     command = build_program(f"litex-{config.name}", bench.stem, [*files, bench], build=BUILD, flags=flags)
     done = subprocess.run(
@@ -124,18 +124,18 @@ def test_a_frame_is_golden(example, options, tmp_path):
 @pytest.mark.slow_sets("wishbone")
 @pytest.mark.parametrize(("bus", "standard"), [("wishbone", "axi-lite"), ("axi4lite", "wishbone")])
 def test_the_map_is_that_of_the_driver(bus, standard, tmp_path):
-    """Of a SoC without a processor, whose bus is of another kind: each register is where C's own header has it."""
+    """A SoC without a processor and with another bus standard has each register at the C header's offset."""
     platform = GenericPlatform("none", [("clk", 0, Pins(1))])
     soc = SoCCore(platform, 50e6, bus_standard=standard, cpu_type=None, with_uart=False, with_timer=False)
     soc.crg = CRG(platform.request("clk"))
     config = configure(screen="tiny", rectangles=3, bus=bus)
     add_ray_caster(soc, config, tmp_path / "verilog", name="tracer", origin=0x8000_0000)
     soc.finalize()
-    told = json.loads(get_csr_json(soc.csr_regions, soc.constants, soc.mem_regions))
-    assert told["memories"]["tracer"] == {"base": 0x8000_0000, "size": 128, "type": "io"}
+    exported = json.loads(get_csr_json(soc.csr_regions, soc.constants, soc.mem_regions))
+    assert exported["memories"]["tracer"] == {"base": 0x8000_0000, "size": 128, "type": "io"}
     offsets = {
         name.removeprefix("tracer_").removesuffix("_offset"): value
-        for name, value in told["constants"].items()
+        for name, value in exported["constants"].items()
         if name.endswith("_offset")
     }
     assert len(offsets) == 15 + 3 * 4
@@ -154,10 +154,10 @@ def test_the_map_is_that_of_the_driver(bus, standard, tmp_path):
     [
         ({"bus": "apb"}, 50e6, "bus: LiteX takes wishbone or axi4lite, not apb"),
         ({"bus": "wishbone"}, 48e6, r"clock: seed-tiny.* needs 50 MHz, and the SoC has 48"),
-        ({"bus": "wishbone", "engine": "beam", "pixels": 2}, 12.5e6, "pixels: LiteX's video has 1 a clock, not 2"),
+        ({"bus": "wishbone", "engine": "beam", "pixels": 2}, 12.5e6, "pixels: LiteX's video has 1 per clock, not 2"),
     ],
 )
-def test_what_does_not_fit_gets_one_line(options, clock, complaint, tmp_path):
+def test_bad_options_get_one_line(options, clock, complaint, tmp_path):
     soc = SoCCore(GenericPlatform("none", []), clock, cpu_type=None, with_uart=False, with_timer=False)
     with pytest.raises(UserError, match=rf"^{complaint}$"):
         add_ray_caster(soc, configure(screen="tiny", rectangles=3, **options), tmp_path / "verilog")

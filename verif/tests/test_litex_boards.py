@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Boards' pins and clocks, held against those of LiteX-Boards, which others run on the same boards."""
+"""Compare the boards' pins and clocks with LiteX-Boards, which others use on the same boards."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PLATFORMS = {
     "de1_soc": ("terasic_de1soc", {}),
     "de10_lite": ("terasic_de10lite", {}),
 }
-"""By board, the module and its options. The DE2 and the Icepi Zero are not among its boards."""
+"""LiteX-Boards module and options by board. It lacks the DE2 and the Icepi Zero."""
 
 GPDI = ["gpdi.data0_p", "gpdi.data1_p", "gpdi.data2_p", "gpdi.clk_p"]
 VGA = {f"VGA_{colour.upper()}": f"vga.{colour}" for colour in "rgb"} | {
@@ -41,14 +41,14 @@ NAMES: dict[str, dict[str, str | list[str]]] = {
     "de1_soc": {"CLOCK_50": "clk50", "KEY": "key", "SW": "user_sw", "LEDR": "user_led"} | VGA,
     "de10_lite": {"MAX10_CLK1_50": "clk50", "KEY": "user_btn", "SW": "user_sw", "LEDR": "user_led"} | VGA,
 }  # fmt: skip
-"""By board and signal, what LiteX-Boards calls it: as many numbers, or bits, as there are pins here."""
+"""LiteX-Boards names by board and signal, with at least as many pins as the signal has here."""
 
 OTHER = {"de1_soc": {"VGA_R[7]": "F1"}}
-"""Pins that LiteX-Boards has otherwise; the board's description says why that is not believed."""
+"""Pins that differ in LiteX-Boards; the board's description says why LiteX-Boards is not followed."""
 
 
 def pins_of_litex(name: str) -> tuple[dict[str, list[str]], float]:
-    """By resource, or by resource and subsignal, its pins; and the frequency of the default clock, in MHz."""
+    """Return the pins by resource or resource.subsignal, and the default clock's frequency in MHz."""
     module, options = PLATFORMS[name]
     module = import_module(f"litex_boards.platforms.{module}")
     platform = module.Platform(**options)
@@ -68,12 +68,12 @@ def pins_of_litex(name: str) -> tuple[dict[str, list[str]], float]:
 
 
 def differences(board: Board) -> dict[str, str]:
-    """By bit, the pin that LiteX-Boards has; and the clock's frequency where that is another."""
+    """Return the LiteX-Boards pin of each bit that differs, and its clock frequency if that differs."""
     theirs, mhz = pins_of_litex(board.name)
     found = {}
     for name, known in NAMES[board.name].items():
         pins = [pin for one in ([known] if isinstance(known, str) else known) for pin in theirs[one]]
-        # A clock's others have names of their own here.
+        # LiteX-Boards may list further clock pins, which are separate signals here.
         for (bit, pin), their in zip(board.bits(name).items(), pins, strict=False):
             if pin != their:
                 found[bit] = their

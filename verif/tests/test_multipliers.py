@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""An ECP5's multipliers with the registers of their products inside, simulated, against Python's products."""
+"""Simulate ECP5 multipliers with internal product registers and compare them with Python's products."""
 
 from __future__ import annotations
 
@@ -92,28 +92,28 @@ endmodule
 
 
 Operands = tuple[int, int, int, int]
-"""enable, reset, a and b."""
+"""Values of enable, reset, a and b."""
 
 
 def signed(value: int, width: int) -> int:
-    """The low bits, as two's complement."""
+    """Interpret the low bits as two's complement."""
     return (value + (1 << width - 1)) % (1 << width) - (1 << width - 1)
 
 
 def netlist(directory: Path) -> Path:
-    """As Yosys makes it."""
+    """Synthesise the products with Yosys."""
     (directory / "products.v").write_text(PRODUCTS)
     run_yosys(directory, "make", ["read_verilog products.v", "synth_ecp5 -top products -json made.json"])
     return directory / "made.json"
 
 
 def cells_of(made: Path) -> dict[str, Any]:
-    """The netlist's cells, by name."""
+    """Return the netlist's cells by name."""
     return json.loads(made.read_text())["modules"]["products"]["cells"]
 
 
 def simulated(made: Path, stimulus: Sequence[Operands]) -> list[list[int]]:
-    """What the netlist shows in each cycle."""
+    """Return the netlist's outputs in each cycle."""
     directory = made.parent
     run_yosys(directory, "write", [f"read_json {made.name}", "write_verilog -noattr -noexpr netlist.v"])
     (directory / "cells.v").write_text(cell_models(LIBRARIES["ecp5"], find_yosys() / "ecp5"))
@@ -128,7 +128,7 @@ def simulated(made: Path, stimulus: Sequence[Operands]) -> list[list[int]]:
 
 
 def expected(stimulus: Sequence[Operands]) -> list[list[int]]:
-    """Registers start with 0."""
+    """Return the expected outputs in each cycle; registers start at 0."""
     shown, enabled, cleared, again, twice = [], 0, 0, 0, 0
     plain = narrow = added = later = 0
     for enable, reset, a, b in stimulus:
@@ -146,7 +146,7 @@ def expected(stimulus: Sequence[Operands]) -> list[list[int]]:
 
 
 def test_products_in_the_multipliers_registers(tmp_path):
-    """Those that nothing but a plain register reads, plain and narrow, move; and nothing that is seen changes."""
+    """Plain registers that alone read a product, plain and narrow, move into the multiplier; no output changes."""
     made = netlist(tmp_path)
     random = np.random.default_rng(seed())
     ranges = (0, 2), (0, 2), (-512, 512), (-256, 256)
@@ -160,7 +160,7 @@ def test_products_in_the_multipliers_registers(tmp_path):
 
 
 def test_the_model_has_registers(tmp_path):
-    """A product that is held in the multiplier and in the fabric, too, comes a cycle late."""
+    """A product registered in the multiplier and again in the fabric arrives a cycle late."""
     made = netlist(tmp_path)
     design = json.loads(made.read_text())
     module = design["modules"]["products"]

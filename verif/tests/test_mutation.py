@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Mutation testing works: faults are caught, shown equivalent or explained, and vectors that are too few are found."""
+"""Mutation testing works: faults are caught, proved equivalent or explained, and insufficient vectors are found."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ MUTANTS = 30
 
 @pytest.fixture
 def recorded(tmp_path):
-    """Records what a divider's step does, and changes what is expected."""
+    """Return a function that records a divider step, optionally with changed expectations."""
 
     def record(remainders, change=dict) -> Recording:
         ports = {"remainder": WIDTH, "digits": COUNT, "divisor": WIDTH, "next_remainder": WIDTH, "next_digits": COUNT}
@@ -99,7 +99,7 @@ def test_a_recording_that_does_not_fit_is_an_error(recorded):
 
 
 def word_recording(tmp_path, cycles: int) -> Recording:
-    """A word that is reset, and then written in each cycle."""
+    """Record a word that is reset and then written in each cycle."""
     (tmp_path / "verilog").mkdir()
     leaf = Leaf(
         scene_word,
@@ -133,8 +133,8 @@ def test_a_contract_that_does_not_hold_is_an_error(expectation, complaint, tmp_p
         word_recording(tmp_path, 2).run(MUTANTS, 1, expectation)
 
 
-# The reader hands the word on to a block that reads bit 6, reads bits 1 and 2 itself, and keeps bit 4 where nothing
-# looks at it; bit 0 reaches an output that the parent has no use for.
+# The reader passes the word to a block that reads bit 6, reads bits 1 and 2 itself, and keeps bit 4 in a register that
+# nothing reads; bit 0 reaches an output that the parent leaves unconnected.
 READERS = {
     "inner": "module inner(input wire [7:0] word, output wire seen); assign seen = word[6]; endmodule",
     "reader": """module reader(input wire clk, input wire [7:0] word, output wire [2:0] seen, output wire unused);
@@ -169,11 +169,11 @@ def test_bits_that_a_submodule_does_not_read_have_no_faults(tmp_path):
     assert [mutant.selector for mutant in result.mutants] == list(range(1, len(result.mutants) + 1))
     planted = {mutant.port for mutant in result.mutants if mutant.kind == "reader_i" and mutant.port.startswith("word")}
     assert planted == {f"word[{place}]" for place in (0, 1, 2, 6)}
-    # A fault of the parent on the way to a bit that is not read is equivalent.
+    # A fault in the parent that reaches only an unread bit is equivalent.
     fates = {(mutant.kind, mutant.port): mutant.outcome for mutant in result.mutants if mutant.mode == "inv"}
     assert [fates["ternary", f"Y[{place}]"] for place in (0, 1, 2, 6)] == ["surviving", "caught", "caught", "caught"]
     assert [fates["ternary", f"Y[{place}]"] for place in (3, 4, 5, 7)] == ["equivalent"] * 4
-    # Fewer faults than there are: as many as were asked for are found, though some had to go.
+    # If fewer faults are requested than exist, exactly that many are planted, although some were dropped.
     assert len(Recording(directory, tmp_path / "few").plant(40, 1)) == 40
 
 
@@ -183,7 +183,7 @@ def test_explanations(tmp_path):
     result = word_recording(tmp_path, 2).run(MUTANTS, 1, expectation)
     counts = outcomes(result)
     assert counts["explained"] and not counts["surviving"]
-    assert share_caught(counts) < LEAST_CAUGHT, "what is only explained was not caught"
+    assert share_caught(counts) < LEAST_CAUGHT, "explained faults do not count as caught"
     few, unneeded = complaints([result], {"scene_word": expectation})
     assert "fewer than 97%" in few and str(stale) in unneeded
 
@@ -211,15 +211,15 @@ def test_every_module_is_mutated(tmp_path):
     files += write_verilog(fix(SMALL_SCENE, {"engine": "exact"}, "rects").design.configuration, tmp_path / "fixed")
     files += write_dvi_encoder(config, tmp_path / "dvi")
     known = expectations()
-    # The system's scene is fixed when it is generated, so its leaf test cannot vary what goes over its wires. With a
-    # processor they are what a program makes of them, and PicoRV32 is given. The pixel clock is the clock itself, at
-    # whose edges a replay compares, and a gated clock has no value per cycle. Of word_of there is nothing but a wire,
-    # and by_axis is one line, whose outputs are disturbed in each block that has one.
+    # The scene system's scene is fixed at generation, so its leaf test cannot vary its bus traffic. In the system with
+    # a processor a program determines the traffic, and PicoRV32 is given Verilog. The pixel clock is the clock itself,
+    # at whose edges a replay compares, and a gated clock has no value per cycle. word_of is only a wire, and by_axis is
+    # one line, whose outputs are disturbed in each block that instantiates it.
     unmutated = {
         "scene_system", "ray_caster_system", "processor_host", "picorv32", "pixel_clock", "clock_gate", "word_of",
         "by_axis",
     }  # fmt: skip
-    # Of several sizes of one block those after the first have a number.
+    # Further sizes of a block have a numeric suffix.
     assert set(known) == {re.sub(r"_\d+$", "", path.stem) for path in files} - unmutated
     assert all(expectation.tests for expectation in known.values())
     assert all(entry.why for expectation in known.values() for entry in expectation.explained)
@@ -242,6 +242,6 @@ def test_the_command_reports(tmp_path, capsys, monkeypatch):
 
 
 @pytest.mark.parametrize("arguments", [["--module", "adder"]])
-def test_what_a_user_can_mend_is_told(arguments):
-    with pytest.raises(UserError, match="adder is none of"):
+def test_unknown_modules_are_refused(arguments):
+    with pytest.raises(UserError, match="got adder, expected one of"):
         main(arguments)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What Yosys makes of the Verilog, in a chip's cells, does the same: a ray unit on its vectors, a design in a frame."""
+"""Yosys netlists of a chip's cells behave like the Verilog: a ray unit on its vectors, and a design in a frame."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ OPTIONS = {"units": "4", "rectangles": "3", "reflections": "1"}
 
 
 def gates(*arguments: object, build: Path) -> int:
-    """`make sim GATES=1` with these arguments."""
+    """Run `make sim GATES=1` with these arguments."""
     command = ["simulate", "--gates", "--build", str(build), str(SMALL_SCENE), *map(str, arguments)]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sys, "argv", command)
@@ -35,7 +35,7 @@ def gates(*arguments: object, build: Path) -> int:
 
 @pytest.mark.slow
 def test_frame(capsys):
-    """Every pixel of a scene on the tiny screen, through the command itself; the second time all is found built."""
+    """The command draws every pixel of a scene on the tiny screen; the second run finds everything built."""
     build = BUILD / "test" / "netlist"
     options = [text for name, value in OPTIONS.items() for text in (f"--{name}", value)]
     for _ in range(2):
@@ -58,7 +58,7 @@ def test_frame(capsys):
     ("cells", "some"), [("ice40", ("SB_LUT4", "SB_MAC16", "SB_RAM40_4K")), ("gowin", ("LUT4", "ALU", "DFFRE"))]
 )
 def test_frame_of_other_cells(cells, some, capsys):
-    """The exact engine, with the multipliers of the one and without those of the other."""
+    """The exact engine runs with the multipliers of iCE40, and without those of Gowin."""
     build = BUILD / "test" / f"netlist-{cells}"
     assert gates("--cells", cells, "--engine", "exact", "--rectangles", 3, "--units", 4, build=build) == 0
     result = json.loads((build / "gates" / "small" / "result.json").read_text())
@@ -71,13 +71,13 @@ def test_frame_of_other_cells(cells, some, capsys):
 
 
 def test_cells_that_are_not_known(tmp_path):
-    with pytest.raises(UserError, match=r"^cells: ecp5 or ice40 or gowin, not xilinx$"):
+    with pytest.raises(UserError, match=r"^cells: expected ecp5 or ice40 or gowin, got xilinx$"):
         gates("--cells", "xilinx", build=tmp_path / "build")
 
 
 @pytest.fixture(scope="module")
 def unit(tmp_path_factory) -> tuple:
-    """A ray unit of the default design, and its netlist."""
+    """Return a ray unit of the default design, the design and the unit's netlist."""
     directory = tmp_path_factory.mktemp("ray_unit")
     config = configure()
     leaf = ray_unit_leaf(config, directory)
@@ -102,7 +102,7 @@ def test_ray_unit(unit, random):
     ],
 )
 def test_broken_cell_is_noticed(unit, tmp_path, random, cell, name, sound, broken):
-    """One cell of hundreds that is not what it was makes wrong pixels."""
+    """A single changed cell among hundreds makes wrong pixels."""
     leaf, config, made = unit
     *models, file = made.files
     text = file.read_text()
@@ -129,7 +129,7 @@ def synthesise_small(text: str, directory: Path) -> Netlist:
 
 
 def test_synthesised_once(tmp_path):
-    """The same files are found; changed ones are not, and going back gives the very bytes."""
+    """Unchanged files are found, changed ones are not, and reverting a change gives the same bytes."""
     first = synthesise_small(SMALL, tmp_path)
     text = first.files[-1].read_bytes()
     assert first.fresh
@@ -142,7 +142,7 @@ def test_synthesised_once(tmp_path):
 
 
 def test_cell_without_model(tmp_path):
-    """Rather than a netlist that no simulator could build."""
+    """An error is better than a netlist that no simulator can build."""
     library_cell = "EHXPLLL pll (.CLKI(clk), .CLKOP(sum[0]));"
     text = SMALL.replace("output reg [3:0] sum", "output [3:0] sum")
     text = re.sub(r"always.*;", library_cell + " assign sum[3:1] = 0;", text)
@@ -152,7 +152,7 @@ def test_cell_without_model(tmp_path):
 
 
 def test_missing_yosys(tmp_path, monkeypatch):
-    """One line, and nothing is built."""
+    """The error is one line, and nothing is built."""
     monkeypatch.setattr(netlist, "find_spec", lambda name: None)
     with pytest.raises(UserError, match=r"^Yosys is missing; it comes with the extra formal: "):
         gates(build=tmp_path / "build")
@@ -160,7 +160,7 @@ def test_missing_yosys(tmp_path, monkeypatch):
 
 
 def test_default_design():
-    """One small design shows all plain scenes in time, each with its own reflections, unless something is asked for."""
+    """By default one small design shows all plain scenes in time, each with its own number of reflections."""
     scenes = list(packaged_scenes(plain=True).values())
     runs = simulate.plan_runs(scenes, {}, simulate.GATES_OPTIONS)
     assert len(simulate.configurations(runs)) == 1

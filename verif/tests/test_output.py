@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Output of commands: nothing of a user's is removed, text is shown as it is, and errors of the system are one line."""
+"""Output of commands: user files are never removed, text is shown literally, and system errors are one line."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from raycaster.scene import Scene, load_scene
 from raycaster.sim.simulator import MODELS_VARIABLE
 
 HOSTILE = "[bold]x[/nope]\x1b[31m :smile: [link=http://x]y\x9b2J\u202e\nz"
-"""A name that is broken markup, holds control sequences, and has two lines."""
+"""A two-line name with broken markup and control sequences."""
 
 ESCAPED = r"[bold]x[/nope]\x1b[31m :smile: [link=http://x]y\x9b2J\u202e\nz"
 
@@ -36,7 +36,7 @@ def raycaster(*words: str, cwd: Path, **options: object) -> subprocess.Completed
 
 @pytest.fixture
 def hostile_scene(tmp_path: Path) -> Path:
-    """A scene whose title and first rectangle have the name `HOSTILE`."""
+    """Return a scene file whose title and first rectangle are named `HOSTILE`."""
     name = "".join(f"\\u{ord(one):04x}" for one in HOSTILE)
     title, floor = (f'{key} = "{name}"' for key in ("title", "name"))
     lines = SMALL_SCENE.read_text().splitlines()
@@ -67,13 +67,13 @@ def test_only_what_a_command_made_is_removed(tmp_path: Path):
         with pytest.raises(output.UserError):
             emptied(tmp_path / name)
         with pytest.raises(output.UserError), replaced(tmp_path / name):
-            raise AssertionError("it is refused before there is anything to lose")
+            raise AssertionError("it must be refused before anything is lost")
     assert (kept / "thesis").exists()
     assert (made / "new").exists()
 
 
 def test_nothing_else_removes_directories():
-    """Commands leave that to the helper; the one exception is a directory that its own function made."""
+    """Commands leave this to the helper, except a function that removes a directory that it created itself."""
     sources = [path for path in ROOT.rglob("*.py") if not {".venv", "build", "tests"} & {*path.parts}]
     users = {path.relative_to(ROOT).as_posix() for path in sources if "rmtree" in path.read_text()}
     assert users == {"raycaster/output.py", "fpga/tiny_tapeout.py"}
@@ -142,7 +142,7 @@ def test_names_in_tables(hostile_scene: Path, capsys):
     ids=lambda words: words[0],
 )
 def test_commands_show_text_as_it_is(hostile_scene: Path, words: tuple[str, ...]):
-    """No command that takes a name or a path ends in a traceback or sends a control character to the terminal."""
+    """No command that takes a name or a path shows a traceback or sends a control character to the terminal."""
     done = called(*words[0].split(), hostile_scene.name, *words[1:], cwd=hostile_scene.parent)
     said = done.stdout + done.stderr
     assert said
@@ -157,7 +157,7 @@ def test_commands_show_text_as_it_is(hostile_scene: Path, words: tuple[str, ...]
 
 
 def test_every_console_is_the_projects():
-    """Rich's own takes brackets for markup."""
+    """Rich's own console interprets brackets as markup."""
     for path in ROOT.rglob("*.py"):
         if {".venv", "build", "tests"} & {*path.parts} or path == ROOT / "raycaster" / "output.py":
             continue
@@ -186,7 +186,7 @@ def test_every_console_is_the_projects():
     ],
     ids=" ".join,
 )
-def test_what_the_system_refuses_is_one_line(tmp_path: Path, words: tuple[str, ...], monkeypatch):
+def test_system_errors_are_one_line(tmp_path: Path, words: tuple[str, ...], monkeypatch):
     monkeypatch.delenv(MODELS_VARIABLE)
     (tmp_path / "file").touch()
     done = called(*words, cwd=tmp_path)
@@ -197,7 +197,7 @@ def test_what_the_system_refuses_is_one_line(tmp_path: Path, words: tuple[str, .
 
 
 def test_a_full_disk(tmp_path: Path, monkeypatch, refuses):
-    """The directory stays as it was, and nothing else is left."""
+    """The directory stays unchanged, and nothing else is left."""
     kept = emptied(tmp_path / "kept")
     (kept / "old").touch()
 
@@ -251,7 +251,7 @@ def test_title_of_a_scene_is_text(capsys):
 
 @pytest.mark.parametrize("is_terminal", [False, True])
 def test_a_wait_says_how_long_it_usually_is(is_terminal: bool):
-    """In a line at the start where output is a pipe; with the seconds so far on a terminal."""
+    """A pipe gets one line at the start; a terminal also shows the elapsed time."""
     file = io.StringIO()
     console = Console(file=file, force_terminal=is_terminal, width=80)
     with console.waiting("building [x]", "usually 30 s, once"):

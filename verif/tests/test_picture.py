@@ -36,14 +36,14 @@ def test_a_pixel_counts_once():
     assert count_wrong(255 - REFERENCE, REFERENCE) == 4
 
 
-def test_diff_is_dim_grey_but_for_the_wrong_pixels():
+def test_diff_is_dim_grey_except_for_wrong_pixels():
     diff = diff_picture(with_pixel(1, 1, (9, 9, 8)), REFERENCE)
     assert diff.dtype == np.uint8
     assert diff.tolist() == [[[0, 0, 0], [85, 85, 85]], [[33, 33, 33], list(WRONG)]]
 
 
 def test_wrong_pixels_stand_out_from_any_grey():
-    """In the diff of a picture that has every grey, none of which is as bright as the mark is red."""
+    """In the diff of a picture that has every grey, the wrong pixel is by far the reddest."""
     greys = np.repeat(np.arange(256, dtype=np.uint8)[None, :, None], 3, axis=2)
     wrong = greys.copy()
     wrong[0, 100] ^= 1
@@ -60,7 +60,7 @@ def test_shapes_must_agree():
 
 
 def test_first_wrong():
-    """In the order in which a monitor shows pixels, as column and row."""
+    """The first wrong pixel in scan order is returned as column and row."""
     picture = np.zeros((4, 6, 3), dtype=np.uint8)
     other = picture.copy()
     assert first_wrong(picture, other) is None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A renderer written from the page `docs/pixel.md`, section by section, against golden."""
+"""Compare a renderer written section by section from the page `docs/pixel.md` with the golden models."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ TURNED = {"yaw": 31.0, "pitch": -17.5, "roll": 9.0}
 
 
 def screen_of_the_page(name: str) -> dict[str, int]:
-    """The numbers of a screen in the page's table."""
+    """Read a screen's numbers from the page's table."""
     [row] = re.findall(rf"^\| `{name}` \|(.*)\|$", PAGE, re.M)
     return dict(zip(("columns", "rows", "centre", "horizon", "distance"), map(int, row.split("|")), strict=True))
 
@@ -70,10 +70,10 @@ def within(rectangle: Rectangle, point: list[Fraction], axis: int) -> bool:
 
 
 class Exact:
-    """The page but for its last section."""
+    """The page except its last section."""
 
     def hit(self, rectangle, origin, slope, met):
-        """Where it is hit, and what the least of counts; None where it is not."""
+        """Return t and the hit point, or None if the rectangle is not hit."""
         axis = axis_of(rectangle)
         n, e = rectangle.corners[0][axis] - origin[axis], slope[axis]
         if e == 0 or (n == 0 and (met is None or axis in met)):
@@ -90,7 +90,7 @@ class Seed:
         self.steps, self.nearest = 1 << config.fraction_bits, config.rounding == "nearest"
 
     def hit(self, rectangle, origin, slope, met):
-        """The same of its own points."""
+        """Return the depth and the rounded hit point, or None if the rectangle is not hit."""
         axis = axis_of(rectangle)
         n, e = rectangle.corners[0][axis] - origin[axis], slope[axis]
         if e == 0 or n == 0 or (n < 0) != (e < 0):
@@ -175,8 +175,8 @@ def test_the_table_of_screens(name):
     ids=lambda options: "-".join(map(str, options.values())),
 )
 def test_the_page_says_what_golden_draws(name, options):
-    """Every seventh pixel of the tiny screen, with 0 to 4 reflections; the exact engine's camera is turned too, and has
-    the light."""
+    """Every seventh pixel of the tiny screen is compared, with 0 to 4 reflections; the exact engine also has lights and
+    a turned camera."""
     scene = load_scene(packaged_scenes()[name]).model_copy(update={"reflections": SCENES.index(name) % 5})
     if options["engine"] == "seed":
         scene = scene.model_copy(update={"camera": Camera(position=scene.camera.position), "light": None})

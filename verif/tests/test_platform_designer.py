@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The Platform Designer component, run by a real Tcl against stand-ins of its commands, held against the Verilog."""
+"""Run the Platform Designer component in a real Tcl with stand-in commands, and compare it with the Verilog."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ COMMANDS = {
     "set_interface_property": "interface property value",
     "add_interface_port": "interface port signal_type direction width",
 }
-"""Those of Platform Designer that the component may use, with the arguments that its user guide gives them."""
+"""Platform Designer commands that the component may use, with their arguments from its user guide."""
 
 PATTERNS = {
     ("set_module_property", 0): "NAME|DISPLAY_NAME|DESCRIPTION|GROUP|VERSION|EDITABLE",
@@ -68,7 +68,7 @@ PATTERNS = {
     ("set_connection_parameter_value", 2): r"0x[0-9a-fA-F]{1,8}|\d+",
     ("save_system", 0): r"\w+\.qsys",
 }
-"""By command and place, what an argument may be."""
+"""Pattern of each argument, by command and position."""
 
 VALUES = {
     "NAME": r"[a-z]\w*",
@@ -93,11 +93,11 @@ VALUES = {
     "direction": "Input|Output|InOut|Bidir",
     "width": r"[1-9]|[12]\d|3[0-2]",
 }
-"""By property or parameter of those that are set, what its value may be."""
+"""Pattern of each value that is set, by property or parameter."""
 
 
 def stand_ins(commands: dict[str, str]) -> str:
-    """Tcl procedures that write each call as a line; as the real ones they refuse arguments too few or too many."""
+    """Return Tcl procedures that print each call as a line and, like the real ones, check the number of arguments."""
     return (
         "rename package real_package\n"
         "proc package {action exact name version} { record package $action $exact $name $version }\n"
@@ -108,13 +108,13 @@ def stand_ins(commands: dict[str, str]) -> str:
 AVALON_ROLES = {
     "address", "read", "write", "writedata", "byteenable", "readdata", "readdatavalid", "waitrequest",
 }  # fmt: skip
-"""Those of an agent with pipelined reads, from the Avalon Interface Specifications."""
+"""Signal roles of an agent with pipelined reads, from the Avalon Interface Specifications."""
 
 Call = list[str]
 
 
 def calls_of(done: subprocess.CompletedProcess[str]) -> list[Call]:
-    """What a script called, in order: the command and its arguments, of which each is what it may be."""
+    """Return a script's calls in order, each a command and its arguments; assert that every argument is allowed."""
     assert (done.returncode, done.stderr) == (0, "")
     calls = [line.split("\t") for line in done.stdout.splitlines()]
     for command, *arguments in calls:
@@ -128,12 +128,12 @@ def calls_of(done: subprocess.CompletedProcess[str]) -> list[Call]:
 
 
 def tcl(directory: Path) -> list[Call]:
-    """What the component in a directory calls."""
+    """Return the calls of the component in a directory."""
     return calls_of(run_tcl(directory, stand_ins(COMMANDS) + f"source {COMPONENT}\n"))
 
 
 def declared_ports(calls: list[Call]) -> dict[str, tuple[str, int]]:
-    """Direction and width of each declared port; none is declared twice."""
+    """Return direction and width of each declared port; assert that none is declared twice."""
     found: dict[str, tuple[str, int]] = {}
     for command, *arguments in calls:
         if command == "add_interface_port":
@@ -144,7 +144,7 @@ def declared_ports(calls: list[Call]) -> dict[str, tuple[str, int]]:
 
 
 def verilog_ports(directory: Path) -> dict[str, tuple[str, int]]:
-    """Direction and width of each port of the top, as Yosys reads the files of the file list."""
+    """Return direction and width of each port of the top, as Yosys reads the files of the file list."""
     sources = " ".join((directory / FILE_LIST).read_text().split())
     script = [f"read_verilog {sources}", f"hierarchy -check -top {TOP}", "proc", "write_json ports.json"]
     run_yosys(directory, "ports", script)
@@ -188,7 +188,7 @@ def test_interfaces(written, config):
     for (name, what), value in properties.items():
         if what.startswith("associated"):
             assert list(kinds).index(value) < list(kinds).index(name), f"{name} refers to {value}, which comes later"
-    # Two clocks of a pixel of 25 MHz, or two pixels a clock.
+    # Pixels at 25 MHz, with two clocks per pixel or two pixels per clock.
     assert properties["clock", "clockRate"] == ("50000000" if config.pixels == 1 else "12500000")
     assert properties["s0", "addressUnits"] == "WORDS"
     assert int(properties["s0", "maximumPendingReadTransactions"]) == READS_IN_FLIGHT
@@ -264,7 +264,7 @@ def test_a_broken_port_is_noticed(tmp_path, file, right, wrong):
 
 
 def _partition_port(text: str, declaration: str) -> tuple[str, str, str]:
-    """Around a port's declaration, however it is padded."""
+    """Partition the text around a port's declaration, however it is padded."""
     squeezed = " ".join(declaration.split())
     for line in text.splitlines(keepends=True):
         if " ".join(line.split()) == squeezed:
@@ -289,7 +289,7 @@ SYSTEM_COMMANDS = {
     "set_interface_property": "interface property value",
     "save_system": "{file {}}",
 }
-"""The same for a system's script."""
+"""Platform Designer commands that a system's script may use, with their arguments."""
 
 AGENT, HOST, CLOCK, RESET, SENDER, RECEIVER, CONDUIT = (
     "agent", "host", "clock", "reset", "interrupt sender", "interrupt receiver", "conduit",
@@ -308,15 +308,15 @@ ENDS = {
     "altera_avalon_pio": {"clk": CLOCK, "reset": RESET, "s1": AGENT, "external_connection": CONDUIT},
     "altera_avalon_jtag_uart": {"clk": CLOCK, "reset": RESET, "avalon_jtag_slave": AGENT, "irq": SENDER},
 }  # fmt: skip
-"""By Intel's component, its interfaces as its user guides have them."""
+"""Interfaces of Intel's components, from their user guides."""
 
 SPANS = {"memory.s1": 65536, "cpu.debug_mem_slave": 2048, "cpu.dm_agent": 65536, "cpu.timer_sw_agent": 64}
 SPANS |= {"buttons.s1": 16, "serial.avalon_jtag_slave": 8}
-"""Bytes that each agent takes; the ray tracer's follow from its registers."""
+"""Bytes that each agent occupies; the ray tracer's span follows from its registers."""
 
 
 def own_ends(config: Configuration) -> dict[str, str]:
-    """The ray tracer's interfaces, by the names that its component gives them."""
+    """Return the ray tracer's interfaces by the names in its component."""
     kinds = {"clock": CLOCK, "reset": RESET, "avalon": AGENT, "interrupt": SENDER, "conduit": CONDUIT}
     return {interface.name: kinds[interface.kind.split()[0]] for interface in interfaces(config)}
 
@@ -327,7 +327,7 @@ def run_system(directory: Path, settings: str, script: str) -> subprocess.Comple
 
 
 def check_system(directory: Path, processor: str, script: str) -> None:
-    """Every end is there and connected to what it fits, and no two agents of a host have an address in common."""
+    """Check that every end exists and has a fitting connection, and that no two agents of a host share an address."""
     config = CONFIGURATIONS[0]
     calls = calls_of(run_system(directory, f"set processor {processor}\nset family {{MAX 10}}\nset device X", script))
     ends: dict[str, str] = {}
@@ -355,7 +355,7 @@ def check_system(directory: Path, processor: str, script: str) -> None:
         elif ends[source] == RECEIVER:
             number = values.pop((f"{source}/{sink}", "irqNumber"))
             assert (number == "0") == (sink == "raycaster.irq")
-    assert not values, "of no connection"
+    assert not values, "parameters of unknown connections"
     for taken in ranges.values():
         taken.sort()
         for (_, end), (start, _) in pairwise(taken):
@@ -390,7 +390,7 @@ def test_a_nios_system_that_does_not_fit_is_noticed(tmp_path, right, wrong):
     ("settings", "complaint"),
     [
         ("set processor nios2\nset family {MAX 10}", "device is not set; see the head of nios_system.tcl"),
-        ("set processor arm\nset family x\nset device x", "processor: nios2 or niosv, not arm"),
+        ("set processor arm\nset family x\nset device x", "processor: expected nios2 or niosv, got arm"),
     ],
 )
 def test_a_nios_system_says_what_it_needs(tmp_path, settings, complaint):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The program's face: its help fits a screen, shells complete it, and what it tells to run is in the user's form."""
+"""The command line: help fits a screen, shells complete it, and suggested commands have the user's form."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def test_overview_has_every_command():
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_help(name: str, monkeypatch):
-    """It begins with an example that the command takes, and fits a tall screen; the seldom options are elsewhere."""
+    """Help begins with a valid example, fits a tall screen and leaves out rarely used options."""
     monkeypatch.setenv("COLUMNS", str(COLUMNS))
     parser = importlib.import_module(COMMANDS[name].module).command_parser()
     example, blank, *lines = parser.format_help().splitlines()
@@ -70,7 +70,7 @@ def test_options_lists_the_rest(capsys):
 
 
 def test_make_help_installs_nothing(tmp_path: Path):
-    """In a clone without an environment it answers, and leaves the clone as it is."""
+    """It works in a clone without an environment and leaves the clone unchanged."""
     (tmp_path / "Makefile").write_text((ROOT / "Makefile").read_text())
     (tmp_path / "cli").symlink_to(ROOT / "cli")
     command = ["make", "help", f"PYTHON3={sys.executable} -I -S"]
@@ -80,7 +80,7 @@ def test_make_help_installs_nothing(tmp_path: Path):
 
 
 def completions(script: Path, *words: str) -> set[str]:
-    """What bash offers for the last of these words."""
+    """Return bash's completions of the last of these words."""
     ask = f"""
         source {shlex.quote(str(script))}
         COMP_WORDS=({" ".join(map(shlex.quote, words))}); COMP_CWORD={len(words) - 1}
@@ -129,7 +129,7 @@ completion.main(["bash"])
 
 
 def test_help_and_completions_without_an_extra():
-    """Each command explains itself where nothing that only an extra brings is installed."""
+    """Each command shows its help without any package that only an extra installs."""
     missing = {
         "adjustText", "cocotb_coverage", "distributed", "elftools", "litex", "matplotlib", "playwright", "pygame",
         "pygraphviz", "skimage", "sphinx", "wavedrom", "ziglang",
@@ -149,7 +149,7 @@ def test_version(capsys):
 
 
 @pytest.mark.parametrize("words", [[], ["--help"], ["--version"], ["verify"], ["smi"], ["sim", "--enigne"]])
-def test_the_module_says_what_the_program_says(words: list[str], tmp_path: Path):
+def test_the_module_and_the_program_print_the_same(words: list[str], tmp_path: Path):
     program, module = (
         subprocess.run([*start, *words], cwd=tmp_path, capture_output=True, text=True, check=False)
         for start in ([Path(sys.executable).with_name("raycaster")], [sys.executable, "-m", "raycaster.cli"])
@@ -168,7 +168,7 @@ def test_the_module_says_what_the_program_says(words: list[str], tmp_path: Path)
         ("sim --xyzzy", "unknown option: --xyzzy; see raycaster sim --help"),
         ("sim ENGIN=beam", "ENGIN: raycaster sim does not take it (did you mean ENGINE?); see raycaster sim --help"),
         ("sim SIMM=icarus", "SIMM: raycaster sim does not take it (did you mean SIM?); see raycaster sim --help"),
-        ("sim mirror_rom", "mirror_rom: no such file, and none of the packaged scenes (did you mean mirror_room?)"),
+        ("sim mirror_rom", "mirror_rom: no such file or packaged scene (did you mean mirror_room?)"),
         ("sim boxs.toml", "boxs.toml: cannot be read: No such file or directory (did you mean boxes?)"),
         ("sim --engine baem", "engine: expected seed, exact or beam, got baem (did you mean beam?)"),
         ("sim --rectangles 99", "rectangles: expected 32 or less, got 99"),
@@ -180,7 +180,7 @@ def test_the_module_says_what_the_program_says(words: list[str], tmp_path: Path)
         ),
     ],
 )  # fmt: skip
-def test_a_mistake_is_one_line_with_what_was_probably_meant(words: str, complaint: str):
+def test_a_mistake_gets_one_line_with_a_suggestion(words: str, complaint: str):
     with pytest.raises(UserError) as error:
         program.main(words.split())
     assert str(error.value) == complaint
@@ -190,7 +190,7 @@ def test_a_mistake_is_one_line_with_what_was_probably_meant(words: str, complain
     ("asked", "meant"),
     [("smi", "sim"), ("sok", "soak"), ("verify-al", "verify-all"), ("lnit", "lint"), ("tst", "test")],
 )
-def test_make_says_what_was_probably_meant(asked: str, meant: str):
+def test_make_suggests_a_target(asked: str, meant: str):
     words = ["make", asked, f"PYTHON3={sys.executable}"]
     done = subprocess.run(words, cwd=ROOT, env=outside_make(), capture_output=True, text=True, check=False)
     assert done.stderr.startswith(f"error: unknown command: {asked} (did you mean {meant}?); make help lists all\n")
@@ -210,7 +210,7 @@ GOOD = re.findall(r"```python\n(.*?)```", (ROOT / "docs/extend.md").read_text(),
     ],
 )
 def test_a_fault_in_a_block_is_one_line(right: str, wrong: str, fault: str, tmp_path: Path, capsys):
-    """File, line and what: of the block on the page that says how to write one."""
+    """The error names file, line and fault; the block is the example on the page about writing one."""
     assert right in GOOD
     path = tmp_path / "colour_dimmer.py"
     path.write_text(GOOD.replace(right, wrong))
@@ -231,12 +231,12 @@ def test_a_fault_in_a_block_is_one_line(right: str, wrong: str, fault: str, tmp_
 
 
 def test_a_long_command_says_how_long_it_usually_takes(capsys):
-    """Not in what it prints; and a model's build is a fact of its engine."""
+    """The estimate goes to stderr, and a model's build time depends on its engine."""
     assert waits.COMMANDS.keys() < COMMANDS.keys()
     for command in waits.COMMANDS:
         waits.announce(command)
         assert capsys.readouterr() == (
-            "", f"{command}: usually {waits.COMMANDS[command]}, less where results are kept\n"
+            "", f"{command}: usually {waits.COMMANDS[command]}, less with kept results\n"
         )  # fmt: skip
     assert {waits.building(engine) for engine in ENGINES} == {
         "usually 30 s, once",
@@ -259,18 +259,18 @@ def test_a_missing_extra_is_named(monkeypatch):
         program.main(["docs"])
 
 
-def test_what_to_run_next_is_in_the_users_form(monkeypatch):
+def test_suggested_commands_have_the_users_form(monkeypatch):
     monkeypatch.delenv(FROM_MAKE, raising=False)
     asked = {"pixel": "3,4", "fraction_bits": "4", "stiff": True, "sim": "icarus"}
-    told = command_line("verify soak", "my scene.toml", asked)
-    assert told == ("raycaster verify soak 'my scene.toml' --pixel 3,4 --fraction-bits 4 --stiff --simulator icarus")
+    shown = command_line("verify soak", "my scene.toml", asked)
+    assert shown == ("raycaster verify soak 'my scene.toml' --pixel 3,4 --fraction-bits 4 --stiff --simulator icarus")
     monkeypatch.setenv(FROM_MAKE, "1")
-    told = command_line("verify soak", "my scene.toml", asked)
-    assert told == "make soak SCENE='my scene.toml' PIXEL=3,4 FRACTION_BITS=4 STIFF=1 SIM=icarus"
+    shown = command_line("verify soak", "my scene.toml", asked)
+    assert shown == "make soak SCENE='my scene.toml' PIXEL=3,4 FRACTION_BITS=4 STIFF=1 SIM=icarus"
 
 
 def test_complaints_are_in_the_users_form(tmp_path: Path):
-    """Of the same wrong variable, by the program and by the Makefile's way of calling it."""
+    """A wrong variable gets an error in the form of the program or of the Makefile."""
 
     def complaint(variables: dict[str, str]) -> str:
         command = [sys.executable, "-m", "raycaster.cli", "sim", "SEEDS=3"]
@@ -289,7 +289,7 @@ def test_complaints_are_in_the_users_form(tmp_path: Path):
 
 
 def make_with(directory: Path, script: str, *words: str) -> subprocess.CompletedProcess[str]:
-    """Run make in a directory where everything is installed, and a script stands for Python."""
+    """Run make in a directory where everything is installed, with a script as Python."""
     for name in ("Makefile", "pyproject.toml", "constraints.txt"):
         shutil.copy(ROOT / name, directory)
     (directory / ".venv").mkdir(exist_ok=True)
@@ -306,8 +306,8 @@ def make_with(directory: Path, script: str, *words: str) -> subprocess.Completed
     "value",
     ["x;touch bad", "$(shell touch bad)", "`touch bad`", 'it\'s  "q"', "a|b&c*", "two\nlines", "$HOME$$(x)", "#\\ a"],
 )
-def test_make_hands_on_what_was_typed(tmp_path: Path, value: str):
-    """Neither make nor the shell expands it, in a recipe and in the recipe of a make below; nothing runs."""
+def test_make_passes_values_on_unchanged(tmp_path: Path, value: str):
+    """Neither make nor the shell expands or runs the value, in a recipe or in that of a recursive make."""
     script = f"#!{sys.executable}\nimport json, sys\nprint(json.dumps(sys.argv[4:]))\n"
     for target, more in (("sim", []), ("flash", ["FLASH=1"])):
         done = make_with(tmp_path, script, target, f"SCENE={value}")
@@ -317,6 +317,6 @@ def test_make_hands_on_what_was_typed(tmp_path: Path, value: str):
 
 
 def test_a_failing_line_of_a_recipe_ends_it(tmp_path: Path):
-    """All lines of a recipe share a shell, which must not go on after one that fails."""
+    """All lines of a recipe share a shell, which must stop at the first failure."""
     done = make_with(tmp_path, '#!/bin/sh\necho "$*"\nfalse\n', "lint")
     assert (done.returncode, done.stdout) == (2, "-m ruff check\n")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The project's own papers: its version stands in three places, and its hooks work."""
+"""Project metadata: the version agrees in three places, dependencies point one way, and hooks work."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from conftest import ROOT
 
 from raycaster.engines import ENGINES
 from raycaster.registers import register_map
+from raycaster.verif.text_lint import findings
 
 HOOKS = ROOT / ".pre-commit-config.yaml"
 
@@ -41,7 +42,7 @@ MAY_IMPORT = {
     "report": ("raycaster", "golden", "rtl", "convert", "fit", "fpga", "sim", "verif"),
     "docs": ("raycaster", "cli", "golden", "rtl", "convert", "fpga", "sim", "debug", "play", "web", "verif", "report"),
 }
-"""By folder, the folders that it may import of beside itself: no two of each other, however many between them."""
+"""Other folders that each folder may import from, without direct or indirect cycles."""
 
 MAY_IMPORT_IN_RTL = {
     "common": (),
@@ -56,11 +57,11 @@ MAY_IMPORT_IN_RTL = {
     "beam": ("common", "engine", "video"),
     "system": ("common", "dvi", "scene", "video", "bus", "engine", "cull", "seed", "exact", "beam"),
 }
-"""The same of the folders in rtl/."""
+"""Other folders of rtl/ that each folder there may import from."""
 
 
 def pre_commit(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    """Run it, with its cache and git's settings away from this user's."""
+    """Run pre-commit with a separate cache and without the user's git settings."""
     variables = {
         "PRE_COMMIT_HOME": str(cwd / "cache"),
         "GIT_CONFIG_GLOBAL": os.devnull,
@@ -71,17 +72,17 @@ def pre_commit(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
 
 
 def test_version():
-    """What the register tells, what pip installs, and what the changelog has last."""
+    """The version register, the installed package and the latest changelog entry agree."""
     version = register_map(1)["version"]
-    told = version.unpack(version.reset)
-    numbers = f"{told['major']}.{told['minor']}"
+    fields = version.unpack(version.reset)
+    numbers = f"{fields['major']}.{fields['minor']}"
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     assert importlib.metadata.version("raycaster") == project["version"] == f"{numbers}.0"
     assert re.findall(r"^## \[(\d+\.\d+)\]", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[0] == numbers
 
 
 def imported_modules(path: Path) -> set[str]:
-    """The modules of this project that a file imports of, and what it imports of them, with dots in between."""
+    """Return the dotted names that a file imports from this project's modules."""
     names = set()
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Import):
@@ -92,14 +93,14 @@ def imported_modules(path: Path) -> set[str]:
 
 
 def imported_folders(path: Path) -> set[str]:
-    """The folders of this project that a file imports of."""
+    """Return the folders of this project that a file imports from."""
     parts = [name.split(".") for name in imported_modules(path)]
     return {part[1] if len(part) > 1 and part[1] in MAY_IMPORT else "raycaster" for part in parts}
 
 
 @pytest.mark.parametrize("folder", MAY_IMPORT)
 def test_dependencies_point_one_way(folder):
-    # Tests may look at everything.
+    # Tests may import everything.
     files = [path for path in (ROOT / folder).rglob("*.py") if ROOT / "verif/tests" not in path.parents]
     assert files
     for path in files:
@@ -123,13 +124,13 @@ def test_no_two_folders_may_import_each_other(order):
 
 
 def asked_names(path: Path) -> list[str]:
-    """Lines of a file that compare something with the name of an engine, or have a table by such names."""
+    """Return the lines of a file that compare something with an engine's name, or have a table keyed by such names."""
     asked = []
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Compare):
             texts, most = [node.left, *node.comparators], 0
         elif isinstance(node, ast.Dict):
-            texts, most = node.keys, 1  # one name may be another thing, such as a seed
+            texts, most = node.keys, 1  # a single name may mean something else, such as a seed
         else:
             continue
         if sum(isinstance(text, ast.Constant) and text.value in ENGINES for text in texts) > most:
@@ -138,7 +139,7 @@ def asked_names(path: Path) -> list[str]:
 
 
 def test_nothing_outside_an_engine_asks_for_its_name():
-    """What an engine can do is a property of it. Tests may ask for names."""
+    """An engine's abilities are its properties. Tests may ask for names."""
     files = [path for folder in MAY_IMPORT for path in (ROOT / folder).rglob("*.py")]
     inside = {ROOT / "raycaster/engines", ROOT / "verif/tests"}
     outside = [path for path in files if not inside & {*path.parents}]
@@ -156,7 +157,7 @@ def test_each_folder_is_linked_into_the_package():
 
 
 def test_the_wheel_has_every_file(tmp_path: Path):
-    """What a folder's code reads from beside it is in the wheel, and so is every module; the tests are not."""
+    """The wheel has every module and every file that code reads from its folder, but no tests."""
     tracked = subprocess.run(["git", "ls-files", *MAY_IMPORT], cwd=ROOT, capture_output=True, text=True, check=True)
     names = {name for name in tracked.stdout.split() if not name.startswith("verif/tests/")}
     for name in names | {"pyproject.toml", "README.md", "LICENSE"}:
@@ -180,7 +181,7 @@ def test_hooks_of_config(tmp_path: Path):
 
 
 def test_hooks(tmp_path: Path):
-    """In a repository with one good file and a bad one for each hook, without a network."""
+    """The hooks work offline in a repository with one good file and a bad one for each hook."""
     (tmp_path / HOOKS.name).write_text(HOOKS.read_text())
     (tmp_path / "pyproject.toml").write_text((ROOT / "pyproject.toml").read_text())
     (tmp_path / ".venv").symlink_to(Path(sysconfig.get_path("scripts")).parent, target_is_directory=True)
@@ -203,3 +204,21 @@ def test_hooks(tmp_path: Path):
     assert (tmp_path / "end.md").read_text() == "no newline\n"
     assert (tmp_path / "lines.md").read_bytes() == b"carriage\nreturn\n"
     assert re.search(r"no marks of a merge\.+Passed", said)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '"""Of~a camera that turns."""', "x = 1  # Where~it is known", '""' '"What a ray hits."""', "two pixels~a~clock",
+        "a file per scene, a cycle~a~row", "cycles fore" + "told", "nothing but~for one", "this in~the~place~of that",
+        "a clock of~one's~own", "each pixel is held~against it", "the design at~hand",
+    ],
+)  # fmt: skip
+def test_odd_phrases_are_found(text):
+    """The tildes, spaces in the checked text, keep this file plain."""
+    found = findings(f"plain\n{text.replace('~', ' ')}")
+    assert [(number, bool(remedy)) for number, _, remedy in found] == [(2, True)]
+
+
+def test_plain_text_is_left_alone():
+    assert findings("Of course, two pixels per clock.\n# Return where it is. What for?\nthe scene's own\n") == []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Quartus projects without Quartus: written for every board, and taken apart by Yosys, simulators and Tcl."""
+"""Quartus projects without Quartus: written for every board and checked with Yosys, simulators and Tcl."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def settings(directory: Path) -> str:
 
 
 def run(directory: Path, *command: str) -> str:
-    """What a program says, which accepts what it is given."""
+    """Run a program, assert that it succeeds, and return its output."""
     environment = os.environ | dict(find_tool("verilator").environment)
     path = f"{sysconfig.get_path('scripts')}{os.pathsep}{environment['PATH']}"
     done = subprocess.run(
@@ -75,7 +75,7 @@ def run(directory: Path, *command: str) -> str:
 
 
 def broken(name: str, directory: Path, file: str, right: str, wrong: str) -> Path:
-    """A copy of a board's folder with something replaced in one file."""
+    """Copy a board's folder with text replaced in one file."""
     shutil.copytree(find_board(name, QuartusBoard).directory, directory / name)
     path = directory / name / file
     text = path.read_text()
@@ -88,8 +88,8 @@ def broken(name: str, directory: Path, file: str, right: str, wrong: str) -> Pat
 def test_a_board_has_what_a_project_needs(name):
     board = find_board(name, QuartusBoard)
     small(board)
-    for told in (board.title, board.family, board.device, board.quartus, board.source, board.confirmation):
-        assert told.strip()
+    for text in (board.title, board.family, board.device, board.quartus, board.source, board.confirmation):
+        assert text.strip()
     assert "AS INPUT TRI-STATED" in board.settings.values()
 
 
@@ -184,7 +184,7 @@ def qsf(tmp_path_factory) -> str:
             "KEY[0] has no I/O standard",
         ),
         ("PIN_A7 -to KEY[1]", "PIN_B8 -to KEY[1]", "B8 is both KEY[0] and KEY[1]"),
-        ("PIN_B8 -to KEY[0]", "PIN_AC9 -to KEY[0]", "KEY[0] is on AC9, which the board's table does not have"),
+        ("PIN_B8 -to KEY[0]", "PIN_AC9 -to KEY[0]", "KEY[0] is on AC9, which is not among the board's pins"),
         ("PIN_B8 -to KEY[0]", "PIN_N14 -to KEY[0]", "KEY[0] is on N14, which is the board's MAX10_CLK2_50"),
         ("PIN_B8 -to KEY[0]", "PIN_B8 -to KEY[2]", "KEY[0] has no pin; KEY[2] is not a port; "),
         ('TRIGGER" -to KEY[1]', 'TRIGGER" -to KEY1', "KEY[1] has no I/O standard; KEY1 is not a port"),
@@ -207,7 +207,7 @@ def test_a_broken_settings_file_is_noticed(right, wrong, complaint, qsf):
         ('"B8", "A7"', '"B8", "N3"', "signals: N3 is both KEY[1] and VGA_HS"),
         ('"B8", "A7"', '"B8", "PIN_A7"', 'signals.KEY.pins: must be a pin such as "N2", not "PIN_A7"'),
         ('["B8", "A7"]', "[]", 'signals.KEY.pins: must be a pin such as "N2", or a list of them'),
-        ('clock = "MAX10_CLK1_50"', 'clock = "CLOCK"', "signals: CLOCK is missing, and the board's clocks name it"),
+        ('clock = "MAX10_CLK1_50"', 'clock = "CLOCK"', "signals: CLOCK is missing, but is one of the board's clocks"),
         ("family =", "familiy =", "familiy: is unknown (did you mean family?)"),
         ("[settings]", "[settings", "is not TOML: "),
     ],
@@ -341,7 +341,7 @@ def test_the_top_connects_what_it_says(name, bits, colours, tmp_path):
     assert said.pop("colours") == colours
     assert said.pop("none") == "1 000000"
     assert said.pop("SW[2]") == "0 000000"
-    # The comment at the top is for people; each of its words is true.
+    # The comment at the top, for human readers, must match the wiring.
     comment = "".join(re.findall("^// (?:KEY|SW).*", top, re.M))
     promised = dict(re.findall(rf"((?:KEY|SW)\[\d\]) ({'|'.join(BUTTONS)})", comment))
     assert sorted(promised.values()) == sorted(BUTTONS)
@@ -398,7 +398,7 @@ Command = Callable[..., tuple[int, list[str], list[str]]]
 
 @pytest.fixture
 def command(monkeypatch, capsys, tmp_path) -> Command:
-    """Runs the command for the DE2 with a path of one folder; returns its exit code, output and complaints."""
+    """Return a function that runs the command with a minimal PATH and returns its exit code, output and errors."""
     monkeypatch.setattr("raycaster.tools._search_path", lambda: f"{tmp_path / 'bin'}:/usr/bin:/bin")
 
     def run_it(*arguments: str, name: str = "de2", scene: Path = SMALL_SCENE) -> tuple[int, list[str], list[str]]:
@@ -414,7 +414,7 @@ def command(monkeypatch, capsys, tmp_path) -> Command:
 
 
 def stand_in(directory: Path, script: str) -> None:
-    """A program that is called as Quartus is."""
+    """Write a script with the name of Quartus."""
     path = directory / "bin" / "quartus_sh"
     path.parent.mkdir()
     path.write_text(f"#!/bin/sh\n{script}\n")
@@ -466,7 +466,7 @@ def test_quartus_takes_too_long(command, tmp_path, monkeypatch):
     assert "Quartus took more than" in err[0]
 
 
-def test_mistakes_are_told_in_one_line(command, tmp_path):
+def test_mistakes_get_one_line(command, tmp_path):
     assert command(name="de0") == (
         2,
         [],
@@ -479,7 +479,7 @@ def test_mistakes_are_told_in_one_line(command, tmp_path):
     assert not (tmp_path / "quartus").exists()
 
 
-def test_the_board_chooses_what_is_not_given(command, tmp_path):
+def test_the_board_sets_the_default_options(command, tmp_path):
     qsf = tmp_path / "quartus" / "de10_lite" / f"{TOP}.qsf"
     command(name="de10_lite")
     assert "-name COLOUR_BITS 4\n" in qsf.read_text()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is made of the register map: the C header, the page, and the constants in the Verilog."""
+"""Outputs made from the register map: the C header, the page, and the constants in the Verilog."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ RECTANGLES = 12
 
 def test_the_header_has_not_drifted(tmp_path):
     write_header(RECTANGLES, tmp_path / HEADER)
-    assert (ROOT / SOFTWARE / HEADER).read_text() == (tmp_path / HEADER).read_text(), "make registers writes it anew"
+    assert (ROOT / SOFTWARE / HEADER).read_text() == (tmp_path / HEADER).read_text(), "outdated; run make registers"
 
 
 def test_drift_is_noticed(tmp_path, monkeypatch):
@@ -40,7 +40,7 @@ def test_drift_is_noticed(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("rectangles", [1, RECTANGLES, 32])
 def test_c_finds_every_register_and_field(tmp_path, rectangles):
-    """A C program that takes the header says where everything is."""
+    """A C program that includes the header prints where everything is."""
     registers = register_map(rectangles)
     write_header(rectangles, tmp_path / HEADER)
     prints = []
@@ -70,7 +70,7 @@ def test_the_header_goes_with_the_verilog(tmp_path):
 
 
 def test_the_page_knows_every_register_and_field(tmp_path):
-    """Offsets and bits as the page's own data have them, a rectangle's once for all."""
+    """The page's data have every offset and all bits, with one rectangle standing for all."""
     nodes = json.loads((write_page(RECTANGLES, tmp_path / "page").parent / "data" / "ral-data-0.json").read_text())
     found = {}
     for node in nodes:
@@ -97,7 +97,7 @@ def test_the_page_has_every_text(tmp_path):
 
 
 def test_each_register_and_field_has_a_text():
-    """Of its own: only a rectangle's two corners are one type, and have the same."""
+    """All texts differ, except those of a rectangle's two corners, which share a type."""
     registers = [node for node in compile_registers(RECTANGLES).descendants() if isinstance(node, RegNode)]
     texts = {node.get_path(): node.get_property("desc") for node in registers}
     assert all(texts.values())

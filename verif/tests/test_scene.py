@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Scene files: what is accepted, and the one line that each mistake gets."""
+"""Scene files: accepted contents, and a one-line error for each mistake."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def changed(old: str, new: str) -> str:
 
 
 def complaint(path: Path, rectangles: int | None = None) -> str:
-    """What is said about a scene file, without the file; checked to be one line that names the file."""
+    """Return the error for a scene file without its path; the error must be one line that begins with the path."""
     with pytest.raises(SceneError) as raised:
         load_scene(path, rectangles)
     message = str(raised.value)
@@ -83,7 +83,7 @@ def test_rows_that_a_file_may_ask_for(tmp_path, rows):
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        # Unknown keys; a mistyped key is told rather than that the right one is missing.
+        # Unknown keys; the error reports the mistyped key rather than the missing one.
         ("title", "titel", f"titel: is not a key of scene files; the keys here are {TOP_KEYS}"),
         ("title", '"ti\\ntle"', f'"ti\\ntle": is not a key of scene files; the keys here are {TOP_KEYS}'),
         ("[[rect]]", "[[rects]]", f"rects: is not a key of scene files; the keys here are {TOP_KEYS}"),
@@ -128,9 +128,9 @@ def test_rows_that_a_file_may_ask_for(tmp_path, rows):
         (f"corners = {CORNERS}", "", 'rect[0] ("floor") corners: is missing'),
         ("[[rect]]", "[rect]", "rect: must be one or more tables, each headed [[rect]]"),
         (RECT, "", "rect: is missing"),
-        ('"floor"', "7", "rect[0].name: must be a text in quotes, not 7"),
-        ('"A floor"', "2020-01-01", 'title: must be a text in quotes, not "2020-01-01"'),
-        # No plane; a name with a line break keeps the message on one line.
+        ('"floor"', "7", "rect[0].name: must be a string in quotes, not 7"),
+        ('"A floor"', "2020-01-01", 'title: must be a string in quotes, not "2020-01-01"'),
+        # No plane; a name with a line break still gives a one-line message.
         (
             CORNERS,
             "[[0, 0, 0], [511, 511, 1]]",
@@ -164,7 +164,7 @@ def test_rows_that_a_file_may_ask_for(tmp_path, rows):
             'b4"\npattern = "rows"\ncolour2 = "#000000"\ncell = 48',
             'rect[0] ("floor") cell: must be 8, 16, 32, 64, 128 or 256, not 48',
         ),
-        ('b4"', 'b4"\npattern = "rows"', 'rect[0] ("floor"): a pattern has a second colour; give colour2 beside rows'),
+        ('b4"', 'b4"\npattern = "rows"', 'rect[0] ("floor"): a pattern has a second colour; give colour2 with rows'),
         (
             'b4"',
             'b4"\ncolour2 = "#000000"',
@@ -229,7 +229,7 @@ def test_reads_angles_and_looks(tmp_path):
         ((0, 0, 90), ((256, 0, 0), (0, 0, 256), (0, -256, 0))),
         ((180, 0, 0), ((-256, 0, 0), (0, -256, 0), (0, 0, 256))),
         ((0, -90, 0), ((0, 0, -256), (0, 256, 0), (256, 0, 0))),
-        # Looks up a quarter turn, after it was rolled, before it is yawed.
+        # Roll comes first, then pitch, then yaw.
         ((90, 90, 0), ((0, 0, 256), (-256, 0, 0), (0, -256, 0))),
         ((30, 0, 0), ((222, 128, 0), (-128, 222, 0), (0, 0, 256))),
         ((360, -360, 360), ((256, 0, 0), (0, 256, 0), (0, 0, 256))),
@@ -282,11 +282,11 @@ def test_more_rectangles_than_any_hardware_holds(tmp_path):
     ("text", "expected"),
     [
         ("a." * 50_000 + "a = 1\n", "has too many dots in a line; a key of a scene has one part"),
-        ("#" * 1_000_000, "is larger than 1,000,000 bytes, the most of a scene file; remove some of it"),
+        ("#" * 1_000_000, "is larger than 1,000,000 bytes, the limit for scene files; remove some of it"),
     ],
     ids=["dots", "bytes"],
 )
-def test_what_would_take_minutes_is_refused_at_once(tmp_path, text, expected):
+def test_slow_files_are_refused_at_once(tmp_path, text, expected):
     assert complaint(write(tmp_path, text + GOOD)) == expected
 
 
@@ -311,7 +311,7 @@ def test_monstrous_toml_is_refused_too(tmp_path, text):
 
 
 def test_long_numbers_are_refused_too(tmp_path):
-    """Python reads hexadecimal ones of any length, but writes none of more than some thousand decimal digits."""
+    """Python reads hexadecimal numbers of any length, but prints none of more than a few thousand decimal digits."""
     path = write(tmp_path, changed("rows = 240", "rows = 0x" + "f" * 4000))
     assert complaint(path) == "rows: must be 240, 200 or 180"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Scene files in the browser: the scene that the shell reads, or the line that it says."""
+"""Scene files in the browser give the same scene, or the same error, as in the shell."""
 
 from __future__ import annotations
 
@@ -61,20 +61,20 @@ VALUES = r"""
 2020-01-01 07:32:00 07:32:00.5 2020-01-01T07:32:00 2020-01-01T07:32:00Z 2020-01-01T07:32:00-07:00
 2020-01-01T07:32:00.25+05:30 2020-01-01T07:32:00-00:00
 """
-"""Of each kind, in TOML."""
+"""TOML values of every kind."""
 
 LONG_TEXTS = [f'"{character * count}"' for character in "x\u00e9\U0001f600" for count in (58, 59)]
-"""The longest that are shown, and the shortest that are not."""
+"""The longest texts that errors show, and the shortest that they do not."""
 
 
 def _parts() -> Iterator[str]:
-    """`FULL` with 999 in place of each of its numbers and points."""
+    """Yield `FULL` with each of its numbers and points replaced by 999."""
     for part in [*re.finditer(r"\d+", FULL), *re.finditer(r"\[\d+, \d+, \d+\]", FULL)]:
         yield FULL[: part.start()] + "999" + FULL[part.end() :]
 
 
 def _variants() -> Iterator[str]:
-    """`FULL` with each of its lines left out, its key mistyped, and its value replaced by each of the above."""
+    """Yield `FULL` with each line left out, its key mistyped, or its value replaced by each of the values above."""
     lines = FULL.splitlines()
     for index, line in enumerate(lines):
         key, equals, _ = line.partition(" = ")
@@ -87,7 +87,7 @@ def _variants() -> Iterator[str]:
 
 
 def _broken(rng: random.Random) -> Iterator[str]:
-    """Scenes in which some characters or lines are left out, put in or doubled; most are not TOML any more."""
+    """Yield scenes with some characters or lines removed, inserted or doubled; most are no longer TOML."""
     texts = [FULL, *(re.sub("^#.*\n", "", path.read_text(), flags=re.M) for path in packaged_scenes().values())]
     while True:
         text = rng.choice(texts)
@@ -108,8 +108,8 @@ def _broken(rng: random.Random) -> Iterator[str]:
         yield text
 
 
-def _as_told(scene: Scene) -> dict[str, object]:
-    """A scene as `RayCasterScene.read` is to give it."""
+def _as_read(scene: Scene) -> dict[str, object]:
+    """Return a scene in the form that `RayCasterScene.read` must return."""
     camera = scene.camera
     return {
         "title": scene.title,
@@ -144,7 +144,7 @@ def page():
 
 @pytest.fixture
 def in_browser(page, tmp_path):
-    """Reads texts in the browser, as the file that `in_shell` writes."""
+    """Return a function that reads texts in the browser, under the file name that `in_shell` uses."""
 
     def read(texts: Iterable[str], rectangles: int | None = None, schema: dict | None = None) -> list[dict]:
         script = "([texts, ...rest]) => texts.map((text) => RayCasterScene.read(text, ...rest))"
@@ -156,78 +156,78 @@ def in_browser(page, tmp_path):
 
 @pytest.fixture
 def in_shell(tmp_path):
-    """Reads a text in Python."""
+    """Return a function that reads a text in Python."""
 
     def read(text: str, rectangles: int | None = None) -> dict:
         path = tmp_path / "scene.toml"
         path.write_bytes(text.encode())
         try:
-            return {"scene": _as_told(load_scene(path, rectangles)), "error": None}
+            return {"scene": _as_read(load_scene(path, rectangles)), "error": None}
         except SceneError as error:
             return {"scene": None, "error": str(error)}
 
     return read
 
 
-def _is_syntax(told: dict) -> bool:
-    return told["error"] is not None and "scene.toml: is not TOML" in told["error"]
+def _is_syntax(result: dict) -> bool:
+    return result["error"] is not None and "scene.toml: is not TOML" in result["error"]
 
 
-def _agree(told: dict, expected: dict) -> bool:
-    """Whether both are the same, but for the reason of a syntax error; smol-toml's are without brackets."""
-    if _is_syntax(told):
-        return _is_syntax(expected) and expected["error"].startswith(told["error"].rpartition(" (")[0] + " (")
-    return told == expected
+def _agree(result: dict, expected: dict) -> bool:
+    """Return True if both agree, up to the reason of a syntax error; smol-toml's reasons contain no brackets."""
+    if _is_syntax(result):
+        return _is_syntax(expected) and expected["error"].startswith(result["error"].rpartition(" (")[0] + " (")
+    return result == expected
 
 
-def _number_of_line(told: dict) -> int:
-    return int(re.search(r"is not TOML at line (\d+)", told["error"])[1])
+def _number_of_line(result: dict) -> int:
+    return int(re.search(r"is not TOML at line (\d+)", result["error"])[1])
 
 
 def test_packaged_scenes(in_browser):
     scenes = packaged_scenes()
-    told = in_browser(path.read_text(encoding="utf-8") for path in scenes.values())
-    for path, result in zip(scenes.values(), told, strict=True):
-        assert result == {"scene": _as_told(load_scene(path)), "error": None}, path
-    needs = [result["scene"]["needs"] for result in told]
+    results = in_browser(path.read_text(encoding="utf-8") for path in scenes.values())
+    for path, result in zip(scenes.values(), results, strict=True):
+        assert result == {"scene": _as_read(load_scene(path)), "error": None}, path
+    needs = [result["scene"]["needs"] for result in results]
     assert all({one[look] for one in needs} == {True, False} for look in LOOKS)
 
 
 def _mistakes() -> list[tuple[str, str]]:
-    """Of the tests of scene files in the shell: texts, and what is to be said of them."""
+    """Return the texts and expected errors of the shell's scene tests."""
     [mark] = [mark for mark in test_scene.test_mistake.pytestmark if mark.name == "parametrize"]
     return [(test_scene.changed(old, new), expected) for old, new, expected in mark.args[1]]
 
 
 def test_mistakes_of_the_shell(in_browser, tmp_path):
-    """The lines are those that the shell's tests expect."""
+    """The browser reports the lines that the shell's tests expect."""
     texts, expected = zip(*_mistakes(), strict=True)
     assert len(texts) > 50
-    for text, line, told in zip(texts, expected, in_browser(texts), strict=True):
-        assert _agree(told, {"scene": None, "error": f"{tmp_path}/scene.toml: {line}"}), text
+    for text, line, result in zip(texts, expected, in_browser(texts), strict=True):
+        assert _agree(result, {"scene": None, "error": f"{tmp_path}/scene.toml: {line}"}), text
 
 
 def test_every_value_at_every_key(in_browser, in_shell):
     texts = [*_variants(), *_parts()]
     kinds = Counter()
-    for text, told in zip(texts, in_browser(texts), strict=True):
+    for text, result in zip(texts, in_browser(texts), strict=True):
         expected = in_shell(text)
-        assert _agree(told, expected), f"{text}\n{told}\n{expected}"
-        kinds[told["error"] is None] += 1
+        assert _agree(result, expected), f"{text}\n{result}\n{expected}"
+        kinds[result["error"] is None] += 1
     assert kinds[True] > 50
     assert kinds[False] > 1000
 
 
 def _words(part: object, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str | int, ...]]:
-    """Where in the schema there are words that are said to a user."""
+    """Yield the paths of the texts in the schema that a user can see."""
     for key, value in part.items() if isinstance(part, dict) else enumerate(part) if isinstance(part, list) else ():
         if key == "expected" or path == ("complaints",):
             yield (*path, key)
         yield from _words(value, (*path, key))
 
 
-def test_no_word_of_the_schema_is_left_unsaid(in_browser):
-    """If one is changed, one of the mistakes is told in other words."""
+def test_every_text_of_the_schema_is_used(in_browser):
+    """Changing any text in the schema changes the error for one of the mistakes."""
     many = FULL + FULL[FULL.rindex("[[rect]]") :] * 40
     texts = [text for text, _ in _mistakes()] + list(_parts()) + ["rect = 999", many]
     usual = in_browser(texts, rectangles=1)
@@ -260,8 +260,8 @@ def test_no_word_of_the_schema_is_left_unsaid(in_browser):
     ids=itertools.count(),
 )
 def test_other_texts(in_browser, in_shell, text):
-    [told] = in_browser([text], rectangles=12)
-    assert told == in_shell(text, rectangles=12)
+    [result] = in_browser([text], rectangles=12)
+    assert result == in_shell(text, rectangles=12)
 
 
 @pytest.mark.parametrize("text", ["rows = " + "9" * 5000, "rows = " + "[" * 5000])
@@ -272,27 +272,27 @@ def test_monstrous_toml_is_refused_too(in_browser, in_shell, text):
 
 def test_bytes(page):
     script = """([bytes, schema]) => RayCasterScene.read(new Uint8Array(bytes).buffer, "dropped.toml", schema)"""
-    told = page.evaluate(script, [list(b"\xef\xbb\xbf" + FULL.encode()), scene_schema()])
-    assert told["scene"]["title"] == "All keys"
-    told = page.evaluate(script, [[0xFF, 0xFE], scene_schema()])
-    assert told == {"scene": None, "error": "dropped.toml: is not UTF-8 text; a scene is a TOML file"}
+    result = page.evaluate(script, [list(b"\xef\xbb\xbf" + FULL.encode()), scene_schema()])
+    assert result["scene"]["title"] == "All keys"
+    result = page.evaluate(script, [[0xFF, 0xFE], scene_schema()])
+    assert result == {"scene": None, "error": "dropped.toml: is not UTF-8 text; a scene is a TOML file"}
 
 
 def test_broken_texts(in_browser, in_shell):
-    """Both read the same ones; of those that are not TOML both tell the same line, but for what scene.js names."""
+    """Browser and shell accept the same texts and report errors at the same line, except those named in scene.js."""
     texts = list(itertools.islice(_broken(random.Random(seed())), 1000))
     kinds = Counter()
-    for text, told in zip(texts, in_browser(texts), strict=True):
+    for text, result in zip(texts, in_browser(texts), strict=True):
         expected = in_shell(text)
-        note = f"{text}\n{told['error']}\n{expected['error']}\n{repeat()}"
-        assert _is_syntax(told) == _is_syntax(expected), note
-        if _agree(told, expected):
-            kinds["same line" if _is_syntax(told) else "same"] += 1
+        note = f"{text}\n{result['error']}\n{expected['error']}\n{repeat()}"
+        assert _is_syntax(result) == _is_syntax(expected), note
+        if _agree(result, expected):
+            kinds["same line" if _is_syntax(result) else "same"] += 1
         else:
-            assert _is_syntax(told), note
+            assert _is_syntax(result), note
             kinds["other line"] += 1
-            assert re.search(r" \((unfinished|control characters|trying to redefine) .*\)$", told["error"]), note
-            assert _number_of_line(told) < _number_of_line(expected), note
+            assert re.search(r" \((unfinished|control characters|trying to redefine) .*\)$", result["error"]), note
+            assert _number_of_line(result) < _number_of_line(expected), note
     assert kinds["same"] > 200, f"{kinds} {repeat()}"
     assert kinds["same line"] > 400, f"{kinds} {repeat()}"
     assert kinds["other line"] < 20, f"{kinds} {repeat()}"
@@ -316,7 +316,7 @@ def test_basis(page):
 
 
 def test_halves_of_a_basis_are_rounded_to_even(page):
-    """At angles whose cosines are such halves, in the browser too: libraries may differ in a cosine's last bit."""
+    """Only angles whose cosine is such a half in both are tested, since libraries may differ in its last bit."""
     near = [math.degrees(math.acos((part + 0.5) / 256)) for part in range(-256, 256)]
     angles = [angle + step * math.ulp(angle) for angle in near for step in range(-50, 50)]
     cosines = page.evaluate("(angles) => angles.map((angle) => Math.cos(angle * (Math.PI / 180)))", angles)

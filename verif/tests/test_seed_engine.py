@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The seed engine against the image contract, written out in plain integers, one ray and one coordinate at a time."""
+"""Compare the seed engine's model with the image contract in plain integers, one ray and one coordinate at a time."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ CORNERS = (0, 1, 2, 255, 256, 510, 511)
 
 
 def quotient_by_definition(numerator, denominator, fraction_bits, rounding):
-    """None where it does not fit."""
+    """Return the rounded quotient, or None if it does not fit."""
     if denominator == 0:
         return None
     quotient, rest = divmod(numerator, denominator)
@@ -40,7 +40,7 @@ def quotient_by_definition(numerator, denominator, fraction_bits, rounding):
 
 
 def point_by_definition(corners, origin, slope, fraction_bits, rounding):
-    """The rectangle's axis and the point where the ray meets it, in units of 2^-F, or None."""
+    """Return the rectangle's axis and the point where the ray meets it, in units of 2^-F, or None."""
     first, second = ([c * 2**fraction_bits for c in corner] for corner in corners)
     equal = [axis for axis in range(3) if first[axis] == second[axis]]
     if not equal:
@@ -64,7 +64,7 @@ def point_by_definition(corners, origin, slope, fraction_bits, rounding):
 
 
 def follow_by_definition(rectangles, camera, slope, reflections, mode):
-    """Bounce by bounce: the points, None for no hit, and the index of the nearest, -1 for none."""
+    """Return for each bounce the points, None for no hit, and the index of the nearest, -1 for none."""
     fraction_bits, rounding = mode
     corners, enabled = rectangles.corners.tolist(), rectangles.enabled.tolist()
     origin, slope = [c * 2**fraction_bits for c in camera], list(slope)
@@ -75,7 +75,7 @@ def follow_by_definition(rectangles, camera, slope, reflections, mode):
             for pair, on in zip(corners, enabled, strict=True)
         ]
         depths = {i: abs(hit[1][0] - origin[0]) for i, hit in enumerate(met) if hit}
-        # The first of equals is the lower index.
+        # The lower index wins a tie.
         winner = min(depths, key=depths.get) if depths else -1
         path.append((met, winner))
         if winner < 0 or rectangles.mirrors[winner] == 0:
@@ -196,7 +196,7 @@ def test_divides_by_definition(mode):
         (5, 3, 0, "nearest", (2, False)),
         (1022, 2, 0, "nearest", (511, False)),
         (1023, 2, 0, "truncate", (511, False)),
-        (1023, 2, 0, "nearest", (0, True)),  # overflows by the rounding alone
+        (1023, 2, 0, "nearest", (0, True)),  # overflows only because of rounding
         (511, 1, 1, "truncate", (511, False)),
         (1023, 1, 1, "truncate", (1023, False)),
         (1024, 1, 1, "truncate", (0, True)),
@@ -255,7 +255,7 @@ def test_refuses_an_unknown_rounding():
 
 @pytest.mark.parametrize("rounding", ["truncate", "nearest"])
 def test_comes_close_to_exact_with_more_fraction_bits(rounding):
-    """The wrong pixels of a closed room by fraction bits; `pytest -s` shows them."""
+    """More fraction bits leave fewer wrong pixels in a closed room; `pytest -s` shows the counts."""
     scene = load_scene(SCENES / "mirror_room.toml")
     screen = SCREENS["vga", 240]
     reference = ExactModel().render(scene, screen)
@@ -263,7 +263,7 @@ def test_comes_close_to_exact_with_more_fraction_bits(rounding):
     wrong = {bits: count_wrong(SeedModel(bits, rounding).render(scene, screen), reference) for bits in (0, 2, 4, 8)}
     print(f"{scene.title}, {rounding}, wrong pixels of {pixels} by fraction bits: {wrong}")
     assert wrong[0] > wrong[2] > wrong[4] >= wrong[8], wrong
-    # The rates that the design was planned with: about a hundredth without fraction bits, next to none with eight.
+    # The error rates that the design was planned for: about 1 % without fraction bits, almost none with eight.
     assert 0 < wrong[0] < 0.02 * pixels, wrong
     assert wrong[4] < 0.002 * pixels, wrong
     assert wrong[8] < 0.0002 * pixels, wrong

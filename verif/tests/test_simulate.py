@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`make sim` from outside: its outputs, its exit codes, and one line for each mistake."""
+"""`make sim` from outside: its outputs, its exit codes, and a one-line error for each mistake."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ RESULT_KEYS = {
     "sim_seconds",
 }
 
-# Icarus builds at once.
+# Icarus builds quickly.
 SMALL_OPTIONS = (SMALL_SCENE, "--screen", "tiny", "--units", 8, "--rectangles", 3, "--simulator", "icarus")
 
 
@@ -46,13 +46,13 @@ def _sim(*arguments: object, build: Path, cwd: Path = ROOT) -> subprocess.Comple
 
 @pytest.fixture
 def build(tmp_path: Path) -> Path:
-    """A build directory of its own."""
+    """Return a separate build directory."""
     return tmp_path / "build"
 
 
 def test_one_scene(build, scenes, monkeypatch):
-    """Pictures, results, table and exit code; with Icarus, which builds at once."""
-    monkeypatch.delenv(MODELS_VARIABLE)  # so that nothing is found built
+    """The run writes pictures, results and a table, and its exit code is 0."""
+    monkeypatch.delenv(MODELS_VARIABLE)  # so that no built model is found
     first = _sim(*SMALL_OPTIONS, build=build)
     assert first.returncode == 0, first.stdout + first.stderr
     line = f"1 scene, 0 of 12,288 pixels wrong; picture: {build / 'sim-tiny' / 'small' / 'frame.png'}"
@@ -71,7 +71,7 @@ def test_one_scene(build, scenes, monkeypatch):
 
 @pytest.mark.slow
 def test_two_scenes(build, tmp_path):
-    """One picture has both."""
+    """One picture shows both scenes."""
     other = tmp_path / "other.toml"
     other.write_text(SMALL_SCENE.read_text().replace("#c8c8b4", "#ff0000"))
     ran = _sim(*SMALL_OPTIONS, other, build=build)
@@ -90,7 +90,7 @@ NAMES = ("checkered_hall", "facing_mirrors")
 
 @pytest.mark.parametrize(("engine", "screen"), [("seed", "vga"), ("beam", "vga")])
 def test_the_table_fits_a_terminal(engine, screen, capsys):
-    """Nothing of a number is cut off, and each line says which engine drew it."""
+    """No number is cut off, and each line names its engine."""
     config = configure(engine=engine, screen=screen)
     result = {
         "pixels": 307200, "wrong_vs_golden": 12345, "wrong_vs_exact": 12345, "frame_cycles": 1234567,
@@ -116,7 +116,7 @@ def test_pictures_of_another_screen_or_engine_are_kept_apart():
 
 
 def test_an_interrupted_run_leaves_the_pictures(tmp_path, monkeypatch):
-    """Ctrl-C ends the simulator that runs, no other scene begins, and the pictures of the last run stay."""
+    """Ctrl-C ends the running simulator, no other scene begins, and the pictures of the last run stay."""
     design = design_for(SMALL_SCENE, {"screen": "tiny", "units": 8, "rectangles": 3})
     before = tmp_path / design.name / "frame.png"
     with replaced(before.parent) as partial:
@@ -132,7 +132,7 @@ def test_an_interrupted_run_leaves_the_pictures(tmp_path, monkeypatch):
 
     def interrupted_wait(*arguments, **named):
         running.wait()
-        threading.Timer(1, ended.set).start()  # after the pool was told to begin nothing more
+        threading.Timer(1, ended.set).start()  # after the pool's pending jobs were cancelled
         raise KeyboardInterrupt
 
     monkeypatch.setattr(simulate, "run_bench", run_bench)
@@ -146,7 +146,7 @@ def test_an_interrupted_run_leaves_the_pictures(tmp_path, monkeypatch):
 
 
 def test_waves(build, scenes):
-    """Waveforms are written where the last lines say."""
+    """The last lines name the file of waveforms."""
     ran = _sim(*SMALL_OPTIONS, "--waves", build=build)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     waves = build / "sim-tiny" / "small" / "waves.fst"
@@ -155,7 +155,7 @@ def test_waves(build, scenes):
 
 
 def test_a_wrong_pixel_fails(build, scenes):
-    """Exit code 1 and a line that says where to look, when the hardware is not what golden is."""
+    """If the hardware differs from the golden model, the exit code is 1 and the output says where to look."""
     assert _sim(*SMALL_OPTIONS, build=build).returncode == 0
     (verilog,) = (build / "model").glob("*/verilog")
     (combiner,) = verilog.glob("colour_combiner*.v")
@@ -208,11 +208,11 @@ PATTERNED = SCENE + 'pattern = "rows"\ncolour2 = "#000000"'
         (SCENE + "mirror = 0", ("MATERIALS=0",), "the scene needs rectangles that mirror more or less than half"),
         (PATTERNED, ("PATTERNS=0",), "the scene needs rectangles with patterns; leave PATTERNS out"),
         (TURNED, ("FIX=all", "ENGINE=seed"), "the seed engine measures depth along x"),
-        (SCENE, ("--simulator", "questa"), "simulator: verilator or icarus, not questa"),
+        (SCENE, ("--simulator", "questa"), "simulator: expected verilator or icarus, got questa"),
     ],
 )
 def test_mistakes(build, tmp_path, text, options, complaint):
-    """Exit code 2, one line, no traceback, nothing written."""
+    """The exit code is 2, the error is one line without a traceback, and nothing is written."""
     scene = tmp_path / "mine.toml"
     if text is not None:
         scene.write_text(text)
@@ -242,7 +242,7 @@ def test_a_scene_chooses_what_it_needs(tmp_path):
 
 @pytest.mark.slow
 def test_two_scenes_of_one_name(build, scenes, tmp_path):
-    """They would overwrite each other."""
+    """They are refused, since they would overwrite each other."""
     shutil.copy(scenes / "floor.toml", tmp_path)
     ran = called("sim", str(scenes / "floor.toml"), str(tmp_path / "floor.toml"), cwd=tmp_path)
     assert ran.returncode == 2
@@ -250,7 +250,7 @@ def test_two_scenes_of_one_name(build, scenes, tmp_path):
 
 
 def test_a_packaged_scene_from_anywhere(tmp_path):
-    """By its name, from a directory without scenes, into the directory's own build/."""
+    """A packaged scene is found by name in a directory without scenes, and outputs go to its build/."""
     command = [sys.executable, "-m", "raycaster.cli", "sim", "matte", "SCREEN=tiny", "ENGINE=exact"]
     ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stdout + ran.stderr
@@ -261,7 +261,7 @@ def test_no_such_scene(tmp_path):
     ran = called("sim", "mirror_rooms", cwd=tmp_path)
     assert ran.returncode == 2
     assert re.fullmatch(
-        r"error: mirror_rooms: no such file, and none of the packaged scenes \(did you mean mirror_room\?\)\n",
+        r"error: mirror_rooms: no such file or packaged scene \(did you mean mirror_room\?\)\n",
         ran.stderr,
     )
 
@@ -276,7 +276,7 @@ def test_no_such_scene(tmp_path):
     ],
 )
 def test_missing_tools(build, scenes, tmp_path, monkeypatch, simulator, present, complaint):
-    """One line says what to install."""
+    """The error is one line that says what to install."""
     tools = tmp_path / "bin"
     tools.mkdir()
     for tool in present:

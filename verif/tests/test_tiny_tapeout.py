@@ -20,7 +20,7 @@ from raycaster.sim.simulator import SimulationError, build_model, run_bench
 from raycaster.verif.benches.tiny_tapeout_bench import PinsBench
 
 PINS = ["R1", "G1", "B1", "vsync", "R0", "G0", "B0", "hsync"]
-"""uo[0] to uo[7], as the Tiny VGA Pmod has them."""
+"""Signals on uo[0] to uo[7], as on the Tiny VGA Pmod."""
 
 
 def project(**options):
@@ -28,7 +28,7 @@ def project(**options):
 
 
 def show(design, files: list[Path], output: Path, simulator: str = "verilator") -> None:
-    """Run the bench on a project's Verilog; fails where a pixel is wrong."""
+    """Run the bench on a project's Verilog; a wrong pixel fails."""
     model = build_model(design.configuration, simulator, build=BUILD, verilog=files, bench=PinsBench())
     job = Job(design.configuration, scene=str(design.path), output=str(output), reflections=design.reflections)
     run_bench(model, "raycaster.verif.benches.tiny_tapeout_bench", job, output)
@@ -46,7 +46,7 @@ def show(design, files: list[Path], output: Path, simulator: str = "verilator") 
     ids=["exact", "beam", "icarus-tiny", "icarus-exact"],
 )
 def test_a_frame_is_golden(simulator, options, tmp_path, output):
-    """At 640x480, but for the tiny screen; in Icarus registers start unknown, as on a chip."""
+    """The size is 640x480 except on the tiny screen; in Icarus, registers start unknown, as on a chip."""
     design = project(**options)
     show(design, write_project(design, tmp_path / "project"), output, simulator)
 
@@ -76,7 +76,7 @@ def test_a_wrong_pin_is_noticed(right, wrong, tmp_path, output):
 
 @pytest.mark.slow
 def test_the_gates_show_the_same(tmp_path, output, capsys):
-    """What is counted is a netlist that draws the picture, with as many registers as were counted."""
+    """The netlist whose gates are counted draws the picture and has the counted number of registers."""
     kept = tmp_path / "kept.json"
     words = [str(SMALL_SCENE), "--output", str(tmp_path), "--keep", str(kept)]
     tiny_tapeout.main(words)
@@ -84,12 +84,12 @@ def test_the_gates_show_the_same(tmp_path, output, capsys):
     [row] = figures["designs"]
     netlist = tmp_path / "gates" / "project" / "netlist.v"
     assert len(re.findall(r"^  always @\(posedge clk\)", netlist.read_text(), re.M)) == row["registers"]
-    # Two rows of 80 rays, of two bits a colour.
+    # Two rows of 80 rays, with two bits per colour channel.
     assert row["registers"] > row["buffer_bits"] == 2 * 80 * 6
     assert row["gates"] > 3000
     assert row["products"] == 8
-    told = capsys.readouterr().out
-    assert f"{row['gates']:,}" in told
+    printed = capsys.readouterr().out
+    assert f"{row['gates']:,}" in printed
     info = yaml.safe_load((tmp_path / "project" / "info.yaml").read_text())
     tiles = row["gates"] / figures["gates_a_tile"] + row["registers"] / figures["registers_a_tile"]
     assert row["tiles"] == round(tiles, 1)
@@ -111,7 +111,7 @@ def test_the_project_is_described(tmp_path):
 
 
 def test_tiles():
-    """A half of a tile of registers, and a half of gates, make one."""
+    """Half a tile of registers and half a tile of gates make one tile."""
     gates = Gates(gates=500, registers=160, products=0, buffer_bits=0)
     assert gates.tiles == 1
     assert [shape_for(tiles) for tiles in (0.1, 1, 1.1, 6.5, 12.9, 16, 16.1)] == [
@@ -124,13 +124,13 @@ def test_tiles():
     [
         (
             ["--rows", "240"],
-            "rows: a Tiny Tapeout project shows a pixel a clock; choose ROWS=120, 96 or 60",
+            "rows: a Tiny Tapeout project shows one pixel per clock; choose ROWS=120, 96 or 60",
         ),
-        (["--colour-bits", "3"], "colour_bits: the Pmod has 2 pins a colour, not 3"),
+        (["--colour-bits", "3"], "colour_bits: the Pmod has 2 pins per colour, not 3"),
         (["--bus", "apb"], "bus: the top drives the registers itself, by Avalon-MM; leave out apb"),
     ],
 )
-def test_what_does_not_fit_gets_one_line(words, complaint, refuses, tmp_path):
+def test_bad_options_get_one_line(words, complaint, refuses, tmp_path):
     output = tmp_path / "output"
     error = refuses(tiny_tapeout.main, str(SMALL_SCENE), "--output", str(output), *words)
     assert error.startswith(f"error: {complaint}")

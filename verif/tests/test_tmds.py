@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""TMDS: the golden code."""
+"""Golden model of TMDS."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from raycaster.rtl.dvi.tmds_encoder import DISPARITY_BITS, SYMBOL_BITS
 
 
 def test_every_byte_at_every_disparity_decodes():
-    """All that can be sent, by following every byte from every disparity that is reached."""
+    """All symbols that can be sent are found by sending every byte at every disparity that is reached."""
     found, reached, todo = set(), {0: ()}, deque([0])
     while todo:
         path = reached[todo.popleft()]
@@ -23,7 +23,7 @@ def test_every_byte_at_every_disparity_decodes():
                 reached[balance] = (*path, data)
                 todo.append(balance)
     assert set(reached) == set(range(-8, 9, 2))
-    # The sum of half of it and of half a word's excess, which is at most 4.
+    # Half the disparity plus half a word's excess, which is at most 4, must fit.
     assert max(reached) // 2 + 4 < 1 << DISPARITY_BITS - 1
     assert len(found) == 460
     assert not found & set(CONTROL_SYMBOLS)
@@ -34,12 +34,12 @@ def test_every_byte_at_every_disparity_decodes():
         except ValueError:
             refused += 1
             assert symbol not in found
-    # All but each byte's word and its complement.
+    # Only each byte's word and its complement are accepted.
     assert refused == (1 << SYMBOL_BITS) - len(CONTROL_SYMBOLS) - 512
 
 
 def test_known_symbols():
-    """Zero and all ones from a balanced start: XOR keeps zeros as they are, and XNOR turns all ones into all ones."""
+    """From a balanced start, XOR keeps all zeros and XNOR keeps all ones."""
     assert list(encode([Sample(True, 0, 0)] * 3)) == [0b0100000000, 0b1111111111, 0b0100000000]
     assert list(encode([Sample(True, 255, 0)] * 3)) == [0b1000000000, 0b0011111111, 0b0011111111]
     assert [decode(symbol).control for symbol in CONTROL_SYMBOLS] == [0, 1, 2, 3]

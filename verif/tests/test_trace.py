@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The life of a pixel: the trace says nothing of a sound design, and names the module of each planted fault."""
+"""The life of a pixel: the trace finds nothing in a correct design and names the module of each planted fault."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ OPTIONS = {
 } | {"exact-light": {"engine": "exact", "light": "1", "units": "8"}}
 LIGHT = "[light]\nposition = [20, 100, 250]\n"
 PIXEL = (48, 2)
-"""Column and row: the post hides the wall there, and mirrors it."""
+"""Column and row of a pixel where the post hides the wall and mirrors it."""
 
 
 @cache
 def design(engine: str) -> Design:
-    """A small scene on a small screen; Icarus builds it at once."""
+    """Return a design for a small scene on the tiny screen, which Icarus builds quickly."""
     scene = SCENE
     if "light" in OPTIONS[engine]:
         scene = BUILD / "test" / "tall_light.toml"
@@ -52,7 +52,7 @@ def design(engine: str) -> Design:
 
 
 def recorded(engine: str, directory: Path, edit: tuple[str, str, str] | None = None) -> Waves:
-    """The pixel's row as the design computes it, or as it does with a text in one of its modules replaced."""
+    """Record the pixel's row, optionally with a text replaced in one of the design's modules."""
     sources = convert(design(engine).configuration, BUILD)
     if edit:
         module, old, new = edit
@@ -70,14 +70,14 @@ def recorded(engine: str, directory: Path, edit: tuple[str, str, str] | None = N
 
 
 def traced(waves: Waves, engine: str, column: int = PIXEL[0]) -> tuple[Ray, list[Reading]]:
-    """A pixel's life."""
+    """Return a pixel's golden ray and the readings from the hardware."""
     ray = Ray(design(engine), PIXEL[1], column)
     return ray, read(waves, description_of(design(engine).configuration, ray.unit), ray)
 
 
 @pytest.mark.parametrize("engine", OPTIONS)
 def test_a_sound_design_has_no_difference(tmp_path, engine):
-    """In no pixel of the row; the one that is looked at hits something with both of its rays."""
+    """No pixel of the row differs; both rays of the chosen pixel hit something."""
     waves = recorded(engine, tmp_path)
     for column in range(0, design(engine).configuration.screen_geometry.columns, 3):
         ray, readings = traced(waves, engine, column)
@@ -86,30 +86,30 @@ def test_a_sound_design_has_no_difference(tmp_path, engine):
     ray, readings = traced(waves, engine)
     view = View(description_of(design(engine).configuration, ray.unit).groups(ray), {}, 0, 1)
     for name in signal_names(view):
-        assert waves.width(name), "a viewer would be told of signals that are not there"
+        assert waves.width(name), "a viewer would get signals that do not exist"
     assert [ray.winner(bounce) for bounce in (0, 1)] == [2, 1]
     quantities = {reading.probe.quantity for reading in readings}
-    # A value that is never read would never be wrong.
+    # A value that is never read could never be wrong.
     missing = {probe.quantity for probe in description_of(design(engine).configuration, ray.unit).probes} - quantities
     assert not missing, f"never read: {missing}"
 
 
 def test_values_have_names_and_colours_are_colours():
-    """Of three values the one that is wrong is named; a colour is #rrggbb, alone and beside other values."""
+    """The wrong one of three values is named; a colour is #rrggbb, alone and next to other values."""
     ray = Ray(design("seed"), PIXEL[1], PIXEL[0])
     probes = {probe.quantity: probe for probe in description_of(ray.config, ray.unit).probes}
 
     def line(quantity: str, golden: tuple[int, ...], found: tuple[int, ...], rectangle: int | None = None) -> str:
         return difference_line(ray, Reading(probes[quantity], Place(0, rectangle), 0, 0, golden, found))
 
-    assert "pins, green is 9, golden has 2;" in line("pins", (1, 2, 3), (1, 9, 3))
-    assert "origin, z is 7, golden has 6;" in line("origin", (4, 5, 6), (4, 5, 7))
+    assert "pins, green is 9, expected 2;" in line("pins", (1, 2, 3), (1, 9, 3))
+    assert "origin, z is 7, expected 6;" in line("origin", (4, 5, 6), (4, 5, 7))
     of_rectangle = ((0,) * 6 + (0xC8C8B4,), (0,) * 6 + (0xA00,), 0)
-    assert "rectangle is #000a00, golden has #c8c8b4;" in line("rectangle", *of_rectangle)
-    assert "rectangle is 1, golden has 0;" in line("rectangle", (0,) * 7, (1,) + (0,) * 6, 0)
+    assert "rectangle is #000a00, expected #c8c8b4;" in line("rectangle", *of_rectangle)
+    assert "rectangle is 1, expected 0;" in line("rectangle", (0,) * 7, (1,) + (0,) * 6, 0)
     narrow = Ray(design_for(SCENE, {"screen": "tiny", "units": "8", "rectangles": "3", "colour_bits": "4"}), 2, 48)
     pixel = Reading(probes["pixel"], Place(0), 0, 0, (0x1F0,), (0,))
-    assert "pixel is #000000, golden has #10f000;" in difference_line(narrow, pixel)
+    assert "pixel is #000000, expected #10f000;" in difference_line(narrow, pixel)
     console = Console(width=160, record=True, file=io.StringIO())
     show(ray, [Reading(probes["pins"], Place(1), 0, 0, (1, 2, 3), (1, 9, 3))], console)
     assert "pins (red, green, blue)" in console.export_text()
@@ -166,7 +166,7 @@ FAULTS = {
     [pytest.param(engine, edit, id=f"{engine}-{edit[0]}") for engine, edits in FAULTS.items() for edit in edits],
 )
 def test_names_the_module_of_a_fault(tmp_path, engine, edit):
-    """One fault at a time, each in a module of its own."""
+    """Each fault is planted alone, in a different module."""
     ray, readings = traced(recorded(engine, tmp_path, edit), engine)
     first = first_difference(readings)
     assert first is not None
@@ -186,13 +186,13 @@ def _trace(*arguments: object) -> subprocess.CompletedProcess[str]:
 
 
 def test_the_command(tmp_path):
-    """Its exit code is 0 without a difference, and 1 with one."""
+    """The exit code is 0 without a difference and 1 with one."""
     options = (SCENE, "--screen", "tiny", "--units", 8, "--rectangles", 3, "--pixel", "48,2")
     sound = _trace(*options, "--build", tmp_path)
     assert sound.returncode == 0, sound.stdout + sound.stderr
-    assert "The hardware does what golden does." in sound.stdout
-    assert "golden has #" in sound.stdout
-    # What was converted before is taken as it is.
+    assert "The hardware agrees with the golden model." in sound.stdout
+    assert "expected colour #" in sound.stdout
+    # Files converted before are used as they are.
     (buffer,) = tmp_path.glob("model/*/verilog/z_buffer.v")
     buffer.write_text(buffer.read_text().replace("depth < nearest", "depth > nearest"))
     broken = _trace(*options, "--build", tmp_path)
@@ -203,23 +203,23 @@ def test_the_command(tmp_path):
 @pytest.mark.parametrize(
     ("options", "complaint"),
     [
-        ((), "pixel: say which one"),
-        (("--pixel", "48"), "pixel: a column and a row of rays, as in 160,120, not 48"),
-        (("--pixel", "64,9", "--screen", "tiny"), "pixel: column from 0 to 63 and row from 0 to 47, not 64,9"),
+        ((), "pixel: expected a ray's column and row, as in PIXEL=160,120, got none"),
+        (("--pixel", "48"), "pixel: expected a ray's column and row, as in 160,120, got 48"),
+        (("--pixel", "64,9", "--screen", "tiny"), "pixel: expected column from 0 to 63 and row from 0 to 47, got 64,9"),
         (("--pixel", "1,1", "--units", "7"), "units: 7 does not divide"),
         (("--pixel", "1,1", "no.toml"), "no.toml"),
     ],
 )
 def test_mistakes(refuses, options, complaint):
-    """One line, and no traceback."""
+    """The error is one line without a traceback."""
     assert complaint in refuses(main, *options)
 
 
 def test_names():
-    """What is read from a signal's name, and from a pixel's."""
+    """A signal's name gives its module, and a pixel's text gives its place."""
     assert module_of("bench.dut.ray_caster_renderer_i.ray_caster_i.ray_unit_12_i.z_buffer_i.found") == "z_buffer"
     assert module_of("bench.dut.ray_caster_renderer_i.line_buffer_3_i.write") == "line_buffer"
     assert module_of("bench.dut.irq") == "ray_caster_module"
     assert pixel_place("3, 4") == (3, 4)
-    with pytest.raises(UserError, match="a column and a row"):
+    with pytest.raises(UserError, match="a ray's column and row"):
         pixel_place("3,-4")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The traffic bench must notice what is wrong with the bus and with reset, and registers must start unknown."""
+"""The traffic bench notices faults in the bus and in reset, and registers start unknown."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SMALL = configure(screen="tiny", units=8, rectangles=3)
 
 
 def broken(directory: Path, module: str, right: str, wrong: str) -> list[Path]:
-    """The design's files with one module changed."""
+    """Return the design's files with one module changed."""
     files = []
     for source in convert(SMALL, BUILD):
         text = source.read_text()
@@ -57,7 +57,7 @@ def broken(directory: Path, module: str, right: str, wrong: str) -> list[Path]:
     ],
 )  # fmt: skip
 def test_is_noticed(bench: Bench, tmp_path, module, right, wrong, complaint):
-    """One fault at a time, each with the complaint that it must cause."""
+    """Each planted fault causes its complaint."""
     files = broken(tmp_path, module, right, wrong)
     with pytest.raises(SimulationError, match=rf"(seed \d+|the frame after reset): .*({complaint})"):
         bench("verif.benches.traffic_bench", SMALL, "icarus", seeds=(1, 2), verilog=files)
@@ -67,7 +67,7 @@ GATED = {"CLOCK_GATING": 1}
 
 
 def test_icarus_takes_clocks_that_rest(bench: Bench):
-    """As Verilator's models have them; see `clock_gate`."""
+    """Icarus can simulate gated clocks, as Verilator's models do; see `clock_gate`."""
     bench("verif.benches.traffic_bench", SMALL, "icarus", seeds=(1, 2), defines=GATED)
 
 
@@ -86,7 +86,7 @@ def test_icarus_takes_clocks_that_rest(bench: Bench):
     ],
 )
 def test_a_clock_that_rests_too_long_is_noticed(bench: Bench, tmp_path, module, right, wrong, complaint):
-    """Each reason to wake, left out alone."""
+    """Each reason to wake the clock is left out alone."""
     files = broken(tmp_path, module, right, wrong)
     with pytest.raises(SimulationError, match=complaint):
         bench("verif.benches.traffic_bench", SMALL, "icarus", seeds=(1, 2), verilog=files, defines=GATED)
@@ -95,17 +95,17 @@ def test_a_clock_that_rests_too_long_is_noticed(bench: Bench, tmp_path, module, 
 @pytest.mark.slow_sets("2", "3", "4")
 @pytest.mark.parametrize("start", [1, 2, 3, 4])
 def test_random_start(bench: Bench, start):
-    """Registers and memories start with random values, and nothing of them is seen after reset."""
+    """Registers and memories start with random values, which have no effect after reset."""
     bench("sim.frame_bench", SMALL, "verilator", SMALL_SCENE, plusargs=random_values(start))
 
 
 def random_values(start: int) -> tuple[str, str]:
-    """Verilator's own options, which its models take at run time."""
+    """Return Verilator options that its models take at run time."""
     return "+verilator+rand+reset+2", f"+verilator+seed+{start}"
 
 
 def test_the_start_is_random(bench: Bench, tmp_path):
-    """Without its reset a counter starts with what it happens to hold, each time something else."""
+    """Without its reset, a counter starts at a different random value each time."""
     files = broken(tmp_path, "avalon_interface", "frame <= 0;", "frame <= frame;")
     complaints = set()
     for start in (1, 2, 3):
@@ -123,7 +123,7 @@ def test_the_start_is_random(bench: Bench, tmp_path):
 
 
 def test_an_unknown_start_is_noticed(bench: Bench, tmp_path):
-    """The same without its reset in Icarus, where registers start unknown and stay so."""
+    """Without their reset, registers in Icarus start unknown and stay so."""
     files = broken(tmp_path, "video_generator", "if (reset == 1)", "if (1'b0)")
     with pytest.raises(SimulationError, match=r"no leading edge of HS|neither 0 nor 1"):
         bench("sim.frame_bench", SMALL, "icarus", SMALL_SCENE, verilog=files)

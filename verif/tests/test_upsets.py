@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Disturbances of a running design: what is flipped, that a sound design comes back, that one which hangs is told."""
+"""Upsets of a running design: registers are found, a correct design recovers, and one that hangs is reported."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ endmodule
 """
 
 
-def test_what_is_assigned_at_an_edge_is_a_register(tmp_path: Path):
+def test_signals_assigned_at_an_edge_are_registers(tmp_path: Path):
     (tmp_path / "two.v").write_text(VERILOG)
     assert registers_of([tmp_path / "two.v"]) == {"two": ("count", "rows")}
 
@@ -61,7 +61,7 @@ def read_results(directory: Path) -> list[dict]:
 
 
 def test_a_sound_design_comes_back(tmp_path: Path):
-    """Where the line counter jumps, syncs are lost, and the picture is right again soon; so after reset, and misuse."""
+    """After jumps of the line counter, which lose syncs, after resets and after misuse, the picture soon recovers."""
     results = run_cases(convert(SMALL, BUILD), tmp_path, {"video_generator": ("y",)}, range(24))
     assert {result["outcome"] for result in results} <= {"StartScreen", "commit", "unseen"}
     assert Counter(result["kind"] for result in results).keys() == set(KINDS)
@@ -71,7 +71,7 @@ def test_a_sound_design_comes_back(tmp_path: Path):
 
 
 class Word(list):
-    """A register of as many bits."""
+    """A register with one item per bit."""
 
 
 class Memory(ArrayObject):
@@ -95,14 +95,14 @@ def test_a_register_weighs_as_much_as_its_bits():
 
 
 @pytest.mark.slow
-def test_one_that_hangs_is_told(tmp_path: Path):
-    """Lines above the picture are counted no more, once the count is where it never is."""
+def test_a_design_that_hangs_is_reported(tmp_path: Path):
+    """The line counter stops once an upset makes it smaller than it ever is in normal operation."""
     files = []
     for source in convert(SMALL, BUILD):
         files.append(tmp_path / source.name)
         files[-1].write_text(source.read_text().replace("y <= y + 1;", "if (y >= -8) y <= y + 1;"))
     assert sum("if (y >= -8)" in file.read_text() for file in files) == 1
-    with pytest.raises(SimulationError, match="did not come back in cases"):
+    with pytest.raises(SimulationError, match="did not recover in cases"):
         run_cases(files, tmp_path, {"video_generator": ("y",)}, range(24))
     assert "hangs" in {result["outcome"] for result in read_results(tmp_path)}
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Compiling for a page: what is exported and imported, what is compiled again, and what is refused."""
+"""Compilation for the web page: exports and imports, reuse of compiled files, and errors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from raycaster.web.wasm import FREESTANDING, WASI, compile_wasm
 
 @pytest.fixture
 def program(tmp_path, monkeypatch):
-    """Compiles a function, `sum`, of a header's constant and its argument, in a store of the test's own."""
+    """Return a function that compiles `sum`, which adds a header's constant to its argument, in the test's folder."""
     monkeypatch.delenv(MODELS_VARIABLE)
     source, header = tmp_path / "sum.c", tmp_path / "sum.h"
 
@@ -52,8 +52,8 @@ def test_compiles_once(program):
     assert first.read_bytes() != others[0].read_bytes()
 
 
-def test_what_the_compiler_refuses(program):
-    for _ in range(2):  # what failed is not taken for compiled
+def test_compiler_errors(program):
+    for _ in range(2):  # a failure does not count as compiled
         with pytest.raises(UserError, match=r"^the compiler failed on sum; its log is \S+\.log$") as refused:
             program("one")
         assert "'one'" in Path(str(refused.value).rpartition(" ")[2]).read_text()

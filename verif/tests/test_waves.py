@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Waveforms: reading them, recording a window of a frame, and what viewers get to open them with."""
+"""Waveforms: reading them, recording a window of a frame, and the save files for viewers."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ b111 "
 
 @pytest.fixture
 def vcd(tmp_path: Path) -> Waves:
-    """A small waveform, in the simplest of the formats."""
+    """Return a small waveform in the simplest format."""
     path = tmp_path / "waves.vcd"
     path.write_text(VCD)
     return Waves(path)
@@ -95,11 +95,11 @@ def test_bits_of_a_signal(vcd):
         "bench.dut.signs_word[2:2]", "bench.dut.signs_word[0:0]:hex",
     )  # fmt: skip
     for mistake in ("[70:0]", "[0:1]"):
-        with pytest.raises(UserError, match=r"bench\.dut\.wide has 70 bits, not \[\d+:\d\]$"):
+        with pytest.raises(UserError, match=r"bench\.dut\.wide has 70 bits, which do not include \[\d+:\d\]$"):
             vcd.width(f"bench.dut.wide{mistake}")
 
 
-def test_viewers_are_told_of_bits(vcd):
+def test_viewers_get_bits_of_signals(vcd):
     files = write_files(vcd, View({"control": ["bench.clk", "bench.dut.wide[69:68]:signed"]}, {}, 5, 70))
     gtkwave, surfer = (path.read_text() for path in files)
     bits = [f"({place})bench.dut.wide[69:0]" for place in (0, 1)]
@@ -129,10 +129,10 @@ def test_names(vcd):
     assert vcd.width("bench.dut.wide") == 70
 
 
-def test_what_is_wrong_is_said_in_one_line(vcd, tmp_path):
-    with pytest.raises(UserError, match=r"has no signal bench\.dut\.stat; there are bench\.dut\.state"):
+def test_wrong_names_and_files_get_one_line(vcd, tmp_path):
+    with pytest.raises(UserError, match=r"has no signal bench\.dut\.stat; similar names: bench\.dut\.state"):
         vcd.sample(["bench.dut.stat"])
-    with pytest.raises(UserError, match=r"stands for 4 signals: bench\.clk, bench\.dut\.state \.\.\."):
+    with pytest.raises(UserError, match=r"matches 4 signals: bench\.clk, bench\.dut\.state \.\.\."):
         vcd.find("*")
     with pytest.raises(UserError, match="there is no such file"):
         Waves(tmp_path / "nothing.fst")
@@ -149,7 +149,7 @@ def test_twos_complement():
 
 SCENE = Path(__file__).with_name("tall.toml")
 
-# Not the defaults: with these, every waveform that is traced is asked for what a viewer shows.
+# Options other than the defaults, with which every traced waveform must have the signals that a viewer shows.
 OPTIONS = {
     "seed": {"units": "8", "culling": "0", "rounding": "nearest"},
     "exact": {"engine": "exact"},
@@ -160,7 +160,7 @@ PIXEL = (48, 2)
 
 @pytest.fixture(scope="module", params=OPTIONS)
 def wave(request, tmp_path_factory) -> tuple[Design, Ray, Waves, list[Path]]:
-    """A window of each engine's frame, by Icarus, which builds at once, and what viewers get."""
+    """Record a window of each engine's frame in Icarus, which builds quickly, and write the viewers' files."""
     design = design_for(SCENE, {"screen": "tiny", "rectangles": "3", **OPTIONS[request.param]})
     ray = Ray(design, PIXEL[1], PIXEL[0])
     target = tmp_path_factory.mktemp("wave") / "tall"
@@ -171,7 +171,7 @@ def wave(request, tmp_path_factory) -> tuple[Design, Ray, Waves, list[Path]]:
 
 @pytest.mark.slow_sets("beam", "seed")
 def test_window_has_its_rows_alone(wave):
-    """From when the first is computed until the last has been shown."""
+    """It runs from the start of the first row's computation until the last row has been shown."""
     design, _, waves, _ = wave
     row_ns = design.configuration.screen_geometry.row_cycles * CLOCK_NS
     begin, end = waves.span_ns()
@@ -181,9 +181,9 @@ def test_window_has_its_rows_alone(wave):
 
 
 def test_viewers_show_what_there_is(wave):
-    """Every signal of the save files stands in the waveform, with its width; the states have the design's names."""
+    """The waveform has every signal of the save files, with its width; groups are ordered and labels are unique."""
     _, _, waves, (gtkwave, surfer) = wave
-    # Bits of a word are shown as bits, or as the word.
+    # Bits of a word are shown as bits or as the whole word.
     shown = re.findall(r"^(?:\+\{.*\} |#\{.*\} (?:.*\(\d+\)|\(\d+\)))?(bench\.\S+)$", gtkwave.read_text(), re.MULTILINE)
     assert len(shown) > 30
     for name in shown:
@@ -199,7 +199,7 @@ def test_viewers_show_what_there_is(wave):
 
 
 def test_states_have_their_names(wave):
-    """In a file that both viewers are told of, from the enumeration of the hardware's source."""
+    """The viewers get a file with the names from the enumeration in the hardware's source."""
     design, _, waves, (gtkwave, surfer) = wave
     names = [f"{item._val} {name}" for name, item in ((name, getattr(RayState, name)) for name in RayState._names)]
     filters = re.findall(r"^\^\d+ (\S+)$", gtkwave.read_text(), re.MULTILINE)
@@ -215,7 +215,7 @@ def test_states_have_their_names(wave):
 
 
 def test_cursor_is_at_the_pixel(wave):
-    """The ray of the pixel starts where the cursor stands."""
+    """The pixel's ray starts at the cursor."""
     design, ray, waves, (gtkwave, surfer) = wave
     (units,) = re.findall(r"^\*-\d+\.\d+ (\d+) ", gtkwave.read_text(), re.MULTILINE)
     (ticks,) = re.findall(r"^cursor_set (\d+)$", surfer.read_text(), re.MULTILINE)
@@ -230,32 +230,32 @@ def test_cursor_is_at_the_pixel(wave):
     assert waves.value(waves.find("*.ray_sequencer_i.steps_screen_to_ray"), time_ns) == 1
 
 
-def test_a_signal_that_is_missing_is_said(wave):
-    """Instead of a file that the viewer would complain about."""
+def test_a_missing_signal_is_reported(wave):
+    """An error is better than a file that the viewer would complain about."""
     _, _, waves, _ = wave
     with pytest.raises(UserError, match=r"has no signal bench\.dut\.nothing"):
         write_files(waves, View({"control": ["bench.dut.nothing"]}, {}, 0, 1))
-    with pytest.raises(UserError, match="no such number format as octal"):
+    with pytest.raises(UserError, match="unknown number format: octal"):
         write_files(waves, View({"control": ["bench.clk:octal"]}, {}, 0, 1))
 
 
 @pytest.mark.parametrize(
     ("options", "complaint"),
     [
-        (("--pixel", "3,3", "--span", "4,5"), "span: rows 4 to 5 do not have the pixel's, which is 3"),
-        (("--pixel", "3,3", "--span", "0,48"), "span: rows from 0 to 47, the first one first, not 0,48"),
-        (("--pixel", "3,3", "--span", "few"), "span: the first row and the last one"),
-        (("--pixel", "3,48"), "pixel: column from 0 to 63 and row from 0 to 47, not 3,48"),
-        (("--simulator", "questa"), "simulator: verilator or icarus, not questa"),
+        (("--pixel", "3,3", "--span", "4,5"), "span: rows 4 to 5 do not include the pixel's row 3"),
+        (("--pixel", "3,3", "--span", "0,48"), "span: expected rows from 0 to 47 in rising order, got 0,48"),
+        (("--pixel", "3,3", "--span", "few"), "span: expected the first and the last row"),
+        (("--pixel", "3,48"), "pixel: expected column from 0 to 63 and row from 0 to 47, got 3,48"),
+        (("--simulator", "questa"), "simulator: expected verilator or icarus, got questa"),
     ],
 )
 def test_mistakes(refuses, options, complaint):
-    """One line, and no traceback."""
+    """The error is one line without a traceback."""
     assert complaint in refuses(main, "--screen", "tiny", *options)
 
 
 def test_the_viewer_that_is_there_is_opened(tmp_path, monkeypatch):
-    """GTKWave or Surfer, where there is a screen."""
+    """GTKWave or Surfer is opened if there is a display."""
     waves, files = tmp_path / "waves.fst", [tmp_path / "view.gtkw", tmp_path / "view.sucl"]
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
@@ -271,7 +271,7 @@ def test_the_viewer_that_is_there_is_opened(tmp_path, monkeypatch):
 
 @pytest.fixture
 def no_fst_headers(tmp_path, monkeypatch):
-    """A machine whose compiler finds neither of the headers that Verilator's writer of FST wants."""
+    """Emulate a machine without the headers that Verilator's FST writer needs."""
     for header in FST_HEADERS:
         (tmp_path / header).write_text("#error no such header here\n")
     compiler = tmp_path / "g++"
@@ -287,10 +287,10 @@ def test_headers_that_are_not_there_are_not_found(no_fst_headers):
 
 
 def test_a_machine_without_headers_gets_vcd(no_fst_headers, tmp_path):
-    """A model for windows, and a trace of its recording: what `make trace` does there."""
+    """There, `make trace` builds a model that records VCD, and traces the recording."""
     command = [sys.executable, "-m", "raycaster.cli", "trace", "--build", tmp_path / "build", SMALL_SCENE]
     command += ["--pixel", "48,10", "--screen", "tiny", "--engine", "exact", "--rectangles", "3"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "The hardware does what golden does." in done.stdout
+    assert "The hardware agrees with the golden model." in done.stdout
     assert [path.suffix for path in (tmp_path / "build" / "trace").rglob("waves.*")] == [".vcd"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The page in Chromium: what it draws, counts and says."""
+"""The web page in Chromium: its pictures, counts and texts."""
 
 import json
 import math
@@ -31,7 +31,7 @@ from raycaster.web.site import main as site_main
 SHOWN = "RayCaster.state.walk?.frames > 2 && RayCaster.state.walk.wrong !== null"
 TIMEOUT_MS = 60_000
 MOST_BYTES = 2_000_000
-"""Of the whole page, compressed."""
+"""Largest size of the whole page, compressed."""
 
 TOUR = """async ([model, source, cameras]) => {
     const machine = await Machine.start(model);
@@ -44,7 +44,7 @@ TOUR = """async ([model, source, cameras]) => {
 
 
 def picture_hash(picture: np.ndarray) -> str:
-    """FNV-1a of the words of red, green, blue and 255, by its definition."""
+    """Return FNV-1a of the words of red, green, blue and 255, by its definition."""
     value = 2166136261
     for red, green, blue in picture.reshape(-1, 3).tolist():
         value = (value ^ (red | green << 8 | blue << 16 | 255 << 24)) * 16777619 % (1 << 32)
@@ -52,7 +52,7 @@ def picture_hash(picture: np.ndarray) -> str:
 
 
 def golden_hash(scene, camera: Camera | None = None) -> str:
-    """Of what exact arithmetic shows on the page's screen."""
+    """Return the hash of the exact picture on the page's screen."""
     screen = configure(engine="beam", screen="play").screen_geometry
     camera = camera or scene.camera
     return picture_hash(
@@ -63,7 +63,7 @@ def golden_hash(scene, camera: Camera | None = None) -> str:
 
 
 def cameras_around(camera: Camera, count: int) -> list[Camera]:
-    """A walk from a scene's camera, turning all the way."""
+    """Return cameras on a walk from a scene's camera, which makes a full turn."""
     x, y, z = camera.position
     return [
         Camera(
@@ -75,7 +75,7 @@ def cameras_around(camera: Camera, count: int) -> list[Camera]:
 
 
 def tour_of(page, model: str, name: str, cameras: Sequence[Camera]) -> list[str]:
-    """The hashes of a scene's own frame and of those from other cameras, drawn by a model in the browser."""
+    """Return the hashes of a scene's frame and of frames from other cameras, drawn by a model in the browser."""
     source = packaged_scenes()[name].read_text()
     views = [{"position": camera.position, "basis": camera.basis} for camera in cameras]
     return page.evaluate(TOUR, [model, source, views])
@@ -83,7 +83,7 @@ def tour_of(page, model: str, name: str, cameras: Sequence[Camera]) -> list[str]
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory) -> Path:
-    """A page with the walk's fastest model alone."""
+    """Write a page with only the walk's fastest model."""
     output = tmp_path_factory.mktemp("site") / "web"
     write_site(output, BUILD, Console(quiet=True), models=MODELS[:1], test=True)
     return output
@@ -91,14 +91,14 @@ def site(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def whole_site(tmp_path_factory) -> tuple[Path, int]:
-    """The page with all models, and its size."""
+    """Write the page with all models; return its folder and size."""
     output = tmp_path_factory.mktemp("site") / "web"
     return output, write_site(output, BUILD, Console(quiet=True), test=True)
 
 
 @pytest.fixture(scope="module")
 def browser():
-    """One for all tests; what its pages write on the console is kept."""
+    """Share one browser page among all tests, and keep what it writes on the console."""
     with browser_page() as page:
         page.set_default_timeout(TIMEOUT_MS)
         page.said = []
@@ -108,7 +108,7 @@ def browser():
 
 @pytest.fixture
 def page(browser):
-    """Which must not have complained."""
+    """Return the browser's page, which must write nothing on the console."""
     browser.said.clear()
     browser.goto("about:blank")
     yield browser
@@ -116,7 +116,7 @@ def page(browser):
 
 
 def opened(page, site: Path, place: str = "") -> dict:
-    """The state of the walk once it shows frames."""
+    """Open the page and return the walk's state once it shows frames."""
     page.goto(f"{(site / 'index.html').as_uri()}{place}")
     page.wait_for_function(SHOWN)
     return page.evaluate("RayCaster.state.walk")
@@ -190,7 +190,7 @@ def test_a_planted_pixel_is_counted_and_marked(page, site):
 
 
 def test_hashes_equal_golden(page, site):
-    """Frames of turning cameras."""
+    """Frames from turning cameras have the golden model's hashes."""
     opened(page, site)
     name = "boxes"
     scene = load_scene(packaged_scenes()[name])
@@ -202,7 +202,7 @@ def test_hashes_equal_golden(page, site):
 
 @pytest.mark.slow
 def test_a_hundred_hashes_equal_golden(page, whole_site):
-    """Over five scenes that need all that a design can have."""
+    """Five scenes together need every look that the design can have."""
     site, _ = whole_site
     opened(page, site)
     for name in ("checkered_hall", "kaleidoscope", "periscope", "pool", "rooftops"):
@@ -227,7 +227,7 @@ def test_the_game_is_the_native_one(page, whole_site):
     program = build_firmware((BUILD / "firmware").absolute()).words
     config = next(model.configuration for model in MODELS if model.processor)
     with Machine(build_machine(config, processor=True), config, program) as machine:
-        # Its first frame is over when it is there.
+        # The machine has already completed its first frame.
         expected = [picture_hash(machine.frame(buttons).picture) for buttons in held]
     page.goto((site / "index.html").as_uri() + "#game")
     page.wait_for_function("RayCaster.state.game?.frames > 2 && RayCaster.state.game.wrong === 0")
@@ -267,7 +267,7 @@ def test_the_engines_side_by_side(page, whole_site, fraction_bits):
 
 @pytest.mark.slow
 def test_frames_are_timed(page, whole_site, monkeypatch):
-    """In the browser and natively, as a positive number of milliseconds; and the page shows some."""
+    """Frame times in the browser and natively are positive numbers of milliseconds, and the table has them."""
     monkeypatch.setattr(speed, "SCENES", ("boxes",))
     monkeypatch.setattr(speed, "FRAMES", 2)
     site, _ = whole_site
@@ -278,7 +278,7 @@ def test_frames_are_timed(page, whole_site, monkeypatch):
 
 
 def test_settings_are_json(site):
-    """What the page is told is one assignment."""
+    """The page's settings are one assignment."""
     text = (site / "settings.js").read_text()
     settings = json.loads(text.removeprefix("Object.assign(RayCaster, ").removesuffix(");\n"))
     lit = {name for name, path in packaged_scenes().items() if load_scene(path).light}

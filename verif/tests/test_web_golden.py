@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The page's own golden check against the golden models, compiled for this machine and as WebAssembly."""
+"""Compare the page's own check, compiled for this machine and as WebAssembly, with the golden models."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from raycaster.web.wasm import DRIVER_HEADERS, GOLDEN, GOLDEN_FLAGS, golden_wasm
 
 WORDS = 1024
 BOUNCE = 8
-"""Numbers that tell of one."""
+"""Numbers per bounce."""
 
 LOOKS = ("turn", "materials", "patterns")
 QUOTIENTS = [(bits, rounding) for bits in (0, 3, 8) for rounding in ("truncate", "nearest")]
@@ -44,23 +44,23 @@ ENGINES = [
     ),
 ]
 WORLDS = 30
-"""Random ones for each engine."""
+"""Random worlds per engine."""
 
 _VGA = SCREENS["vga", 240]
 WIDE, TALL = replace(_VGA, rows=24, horizon_row=12), replace(_VGA, columns=32)
-"""With the full screen's steepest rays to the sides, and up and down."""
+"""Screens with the full screen's steepest rays to the sides, and up and down."""
 
 of_each_engine = pytest.mark.parametrize("options", ENGINES, ids=lambda options: "-".join(map(str, options.values())))
 
 
 def design(rectangles: int = 12, **options: object) -> Configuration:
-    """What is drawn need not be fast enough for its screen."""
+    """Return a design that need not be fast enough for its screen."""
     small = configure(screen="tiny", rectangles=1, reflections=0, allow_underrun=True, **options)
     return replace(small, rectangles=rectangles, reflections=2)
 
 
 class Golden:
-    """The check as a page calls it; `call`, `read` and `write` are those of what runs it."""
+    """The check as a page calls it; subclasses provide `call`, `read` and `write`."""
 
     def load(self, words: Iterable[tuple[int, int]]) -> None:
         table = np.zeros(WORDS, dtype="<u4")
@@ -69,7 +69,7 @@ class Golden:
         self.write(self.call("golden_words"), table.tobytes())
 
     def draw(self, config: Configuration, screen: Screen | None = None) -> np.ndarray:
-        """The picture of a design, or of one like it with another screen."""
+        """Draw the picture of a design, optionally on another screen."""
         screen = screen or config.screen_geometry
         self.call(
             "golden_draw", config.facts.code, config.rectangles, config.materials, config.patterns, config.turn,
@@ -130,7 +130,7 @@ def golden() -> Golden:
 def world_words(
     table: Rectangles, camera: Sequence[int], basis, background: Sequence[int], reflections: int
 ) -> list[tuple[int, int]]:
-    """What a scene file cannot say too: entries without a plane, or disabled with all else in place."""
+    """Return a world's register writes; unlike a scene file, they allow disabled entries and ones without a plane."""
     registers = register_map(len(table))
     fields = [
         ("background", dict(zip(("red", "green", "blue"), background, strict=True))),
@@ -155,7 +155,7 @@ def world_words(
 
 
 def random_words(rng: np.random.Generator, config: Configuration) -> list[tuple[int, int]]:
-    """A world of any kind with all looks, whether the design has them or not."""
+    """Return the writes of a world of any kind with all looks, whether the design has them or not."""
     count, basis = config.rectangles, random_basis(rng)
     if rng.random() < 0.3 and count >= 7:
         corners, camera = random_grid(rng, count)
@@ -164,14 +164,14 @@ def random_words(rng: np.random.Generator, config: Configuration) -> list[tuple[
         slopes = primary_slopes(config.screen_geometry, basis if config.turn else UNTURNED)
         camera, table = scene_of(rng, slopes.reshape(-1, 3), count)
     table = random_looks(rng, table)
-    # More than 4 counts as 4.
+    # A mirror value above 4 counts as 4.
     table = replace(table, mirrors=np.where((table.mirrors == 4) & (rng.random(count) < 0.5), 7, table.mirrors))
     background = rng.integers(256, size=3).tolist()
     return world_words(table, camera, basis, background, int(rng.integers(3)))
 
 
 def live(config: Configuration, words: Iterable[tuple[int, int]]) -> LiveScene:
-    """What the design's registers make of them."""
+    """Return the live scene in the design's registers after these writes."""
     follower = SceneFollower(config)
     for address, word in words:
         follower.write(0, address, word, 0b1111)
@@ -180,7 +180,7 @@ def live(config: Configuration, words: Iterable[tuple[int, int]]) -> LiveScene:
 
 
 def expected(config: Configuration, screen: Screen, scene: LiveScene) -> np.ndarray:
-    """The picture at the pins, a pixel a ray."""
+    """Return the expected picture at the pins, with one pixel per ray."""
     picture = scene.picture(model_of(config), screen)
     doubling = config.screen_geometry.doubling
     return shown(picture, config)[::doubling, ::doubling]
@@ -189,7 +189,7 @@ def expected(config: Configuration, screen: Screen, scene: LiveScene) -> np.ndar
 def assert_drawn(
     golden: Golden, config: Configuration, words: list[tuple[int, int]], context: str, screen: Screen | None = None
 ) -> np.ndarray:
-    """What is drawn of these words, which must be what the golden models draw."""
+    """Return the picture drawn from these words; assert that it matches the golden model."""
     golden.load(words)
     drawn = golden.draw(config, screen)
     wrong = np.argwhere((drawn != expected(config, screen or config.screen_geometry, live(config, words))).any(axis=-1))
@@ -225,7 +225,7 @@ def test_random_worlds(golden, options):
     rng = np.random.default_rng([seed(), ENGINES.index(options)])
     colourful = 0
     for number in range(WORLDS):
-        # Without what it may lack, too: it then ignores what the words say of that.
+        # Some looks are left out; the design then ignores their fields in the words.
         looks = {name: has and rng.random() < 0.7 for name, has in options.items() if name in LOOKS}
         rectangles, colour_bits = int(rng.integers(1, 33)), int(rng.integers(1, 9))
         config = design(rectangles=rectangles, colour_bits=colour_bits, **{**options, **looks})
@@ -236,7 +236,7 @@ def test_random_worlds(golden, options):
 
 @pytest.mark.parametrize("rows", [240, 200, 180])
 def test_every_screen(golden, rows):
-    """At its finest."""
+    """Every screen is drawn at its finest scale."""
     rng = np.random.default_rng(seed())
     config = configure(engine="beam", rows=rows, turn=True, materials=True, patterns=True, reflections=2)
     if rows == 180:
@@ -245,7 +245,7 @@ def test_every_screen(golden, rows):
 
 
 def test_does_not_run(golden, scenes):
-    """Black; the ray of a pixel has no bounces."""
+    """The picture is black, and a pixel's ray has no bounces."""
     config = design(engine="exact")
     words = dict(scene_words(load_scene(scenes / "floor.toml"), config))
     control = register_map(config.rectangles)["control"]
@@ -273,7 +273,7 @@ def test_explains_a_pixel(golden, options):
         pixels = rng.integers((screen.rows, screen.columns), size=(20, 2))
         slopes = primary_slopes(screen)[tuple(pixels.T)]
         if config.turn:
-            # Times the basis even where that is not turned, as t is for these very slopes.
+            # The basis is a factor even if it is not turned, since t is relative to these slopes.
             slopes = slopes @ np.array(scene.basis)
         trace = model_of(config).trace(table, scene.camera, scene.background, slopes, scene.reflections)
         for ray, (row, column) in enumerate(pixels.tolist()):

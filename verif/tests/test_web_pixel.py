@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A pixel's life as the page records it: the hardware's signals against golden, and what the page makes of them."""
+"""A pixel's life on the page: the recorded signals and the page's account of them match the golden model."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ LOOKS = {"materials": True, "patterns": True}
 OPTIONS = {"exact": {"engine": "exact", "turn": True}, "seed": {"engine": "seed"}}
 DESIGNS = {name: configure(screen="tiny", reflections=2, **LOOKS, **options) for name, options in OPTIONS.items()}
 SCENES = {"exact": ("kaleidoscope", "staircase"), "seed": ("facing_mirrors", "stage")}
-"""With mirrors of several kinds, patterns, rays that miss, and for the exact engine a camera that is turned."""
+"""Scenes with several kinds of mirrors, patterns, rays that miss, and for the exact engine a turned camera."""
 
 PIXELS = 12
-"""Of each scene."""
+"""Pixels per scene."""
 
 PAGE = ROOT / "web" / "page"
 TIMEOUT_MS = 120_000
@@ -44,7 +44,7 @@ of_each = pytest.mark.parametrize("engine", DESIGNS)
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory) -> Path:
-    """A page whose designs have a small screen."""
+    """Write a page whose designs have the tiny screen."""
     output = tmp_path_factory.mktemp("site") / "web"
     models = [
         Model(name, {"screen": "tiny", "reflections": 2, **LOOKS, **OPTIONS[engine]}, taps=True)
@@ -105,7 +105,7 @@ class Hardware:
         assert not any(errors), errors
 
     def watch(self, column: int, row: int) -> np.ndarray:
-        """A row of taps for each clock."""
+        """Return a row of taps for each clock cycle."""
         units = self.config.units
         self.call("watch", column % units, row, column // units)
         self.call("frame", 0)
@@ -113,7 +113,7 @@ class Hardware:
         return self.words(self.call("samples"), self.call("sample_count")).reshape(-1, count)
 
     def shown(self, column: int, row: int) -> int:
-        """A pixel of the last frame."""
+        """Return a pixel of the last frame."""
         screen = self.config.screen_geometry
         picture = self.words(self.call("pixels"), self.call("pixel_count"))
         picture = picture.reshape(screen.vertical.visible, screen.horizontal.visible)
@@ -121,7 +121,7 @@ class Hardware:
 
 
 class Recorded:
-    """The taps of a unit in place of a waveform."""
+    """The taps of a unit, read like a waveform."""
 
     path = Path("taps")
 
@@ -144,7 +144,7 @@ def hardware(engine: str) -> Hardware:
 
 
 def scene_of(name: str, scenes: Path) -> tuple[Path, Scene]:
-    """With as many reflections as the design has."""
+    """Load a scene with as many reflections as the design has."""
     path = scenes / f"{name}.toml"
     return path, load_scene(path).model_copy(update={"reflections": 2})
 
@@ -157,7 +157,7 @@ def random_pixels(config: Configuration, number: int) -> list[tuple[int, int]]:
 
 @pytest.mark.slow_sets("seed")
 @of_each
-def test_taps_have_what_golden_has(engine, scenes):
+def test_taps_match_golden(engine, scenes):
     config, machine = DESIGNS[engine], hardware(engine)
     held, missed, reflected = 0, 0, 0
     for number, name in enumerate(SCENES[engine]):
@@ -172,7 +172,7 @@ def test_taps_have_what_golden_has(engine, scenes):
             tapped = SimpleNamespace(
                 probes=tapped_probes(config, ray.unit), events=whole.events, controls=whole.controls,
                 expected=lambda of, whole=whole: [event for event in whole.expected(of) if event[0] != "shown"],
-                tells=whole.tells, named=whole.named,
+                event_names=whole.event_names, named=whole.named,
             )  # fmt: skip
             readings = read(Recorded(samples, config, ray.unit), tapped, ray)
             wrong = [reading for reading in readings if reading.wrong is not None]
@@ -186,8 +186,8 @@ def test_taps_have_what_golden_has(engine, scenes):
     assert reflected, repeat()
 
 
-def assert_told(bounce: dict, ray: Ray, number: int, context: str) -> int:
-    """That what the page makes of a ray is what golden has of it; returns how many rectangles it was tried against."""
+def assert_bounce(bounce: dict, ray: Ray, number: int, context: str) -> int:
+    """Assert that the page's account of a ray matches the golden model; return the number of rectangles tested."""
     config = ray.config
     assert bounce["slope"] == list(ray.of_ray(number, "slopes")), context
     assert bounce["winner"] == ray.winner(number), context
@@ -228,11 +228,11 @@ def assert_told(bounce: dict, ray: Ray, number: int, context: str) -> int:
 
 @pytest.mark.slow_sets("seed")
 @of_each
-def test_a_life_is_what_golden_has(engine, scenes, page):
+def test_a_life_matches_golden(engine, scenes, page):
     config, machine, facts = DESIGNS[engine], hardware(engine), tap_facts(DESIGNS[engine])
     page.goto("about:blank")
     page.add_script_tag(path=PAGE / "life.js")
-    told, misses, lost = 0, 0, 0
+    tested, misses, lost = 0, 0, 0
     for number, name in enumerate(SCENES[engine]):
         path, scene = scene_of(name, scenes)
         machine.load(scene)
@@ -247,22 +247,22 @@ def test_a_life_is_what_golden_has(engine, scenes, page):
             assert len(life["bounces"]) == len(alive), context
             assert life["values"]["pixel"] == [ray.pixel], context
             for bounce in alive:
-                told += assert_told(life["bounces"][bounce], ray, bounce, context)
+                tested += assert_bounce(life["bounces"][bounce], ray, bounce, context)
                 misses += ray.winner(bounce) < 0
             lost += len(alive) <= scene.reflections
-    assert told > 2 * PIXELS * 10
+    assert tested > 2 * PIXELS * 10
     assert misses and lost, repeat()
 
 
 def opened(page, site: Path, question: str = "") -> dict:
-    """The tab's first state."""
+    """Open the tab and return its first state."""
     page.goto("about:blank")
     page.goto(f"{(site / 'index.html').as_uri()}{question}#pixel")
     return computed(page)
 
 
 def computed(page) -> dict:
-    """The tab's state, once it has what was asked for."""
+    """Return the tab's state once it has a result."""
     page.wait_for_function("RayCaster.state.pixel?.done || RayCaster.state.pixel?.error")
     return page.evaluate("RayCaster.state.pixel")
 
@@ -304,7 +304,7 @@ def test_the_tab(page, site, scenes):
                 context
             )
             assert page.locator("#pixel-life h3").count() == len(winners) + 1, context
-            # The pixel that the test planted.
+            # The wrong pixel planted by this test.
             assert ask(page, column=9, row=7)["wrong"], context
             assert page.locator("#pixel-life .wrong").count() == 1, context
 
@@ -319,9 +319,9 @@ def test_a_click_chooses_the_pixel(page, site):
     assert (state["column"], state["row"]) == (40, 30)
 
 
-def test_what_the_tab_refuses(page, site):
+def test_the_tab_refuses_bad_choices(page, site):
     opened(page, site)
-    assert ask(page, column=64)["error"] == "There are columns from 0 to 63 and rows from 0 to 47."
+    assert ask(page, column=64)["error"] == "Choose a column from 0 to 63 and a row from 0 to 47."
     assert "error" not in ask(page, column=63)
     ask(page, engine="seed")
     ask(page, scene="kaleidoscope")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The window on the simulated hardware, on a display that nobody sees."""
+"""The window on the simulated hardware, on a dummy display."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ pygame = pytest.importorskip("pygame", reason="the extra play is not installed")
 
 @pytest.fixture
 def unseen(monkeypatch):
-    """A display that SDL only pretends to have."""
+    """Use SDL's dummy display."""
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
 
 
@@ -37,19 +37,19 @@ def test_the_game_is_played(unseen, tmp_path, capsys):
     said = capsys.readouterr().out
     assert "fire: space or return" in said and "RayCaster 0." in said
     assert re.search(
-        r"^12 frames, .* in [1-9]\d* of them, held against exact arithmetic, 0 pixels are wrong$", said, re.M
+        r"^12 frames, .* in [1-9]\d* of them, compared with exact arithmetic, 0 pixels are wrong$", said, re.M
     )
     picture = np.array(Image.open(shot).convert("RGB"))
     assert picture.shape[0] > 96 and len(np.unique(picture.reshape(-1, 3), axis=0)) > 5
 
 
-# Two clocks a pixel, and one; with a camera that does not turn, and one that does.
+# Two clocks per pixel, and one, with and without a camera that turns.
 @pytest.mark.slow_sets("beam-False", "exact")
 @pytest.mark.parametrize(("engine", "turn"), [("exact", True), ("beam", False), ("beam", True)])
 def test_a_walk_is_judged(engine, turn):
-    """What is shown while the camera moves is held against the scene that its registers hold."""
+    """Frames shown while the camera moves are compared with the scene in the registers."""
     scene = load_scene(MIRROR_ROOM)
-    # Lost bits of a colour are no wrong pixels.
+    # Dropped colour bits do not count as wrong pixels.
     config = configure(engine=engine, screen="tiny", colour_bits=5, turn=turn)
     judge = window.Judge(config)
     walker = Walker(scene, config)
@@ -63,7 +63,7 @@ def test_a_walk_is_judged(engine, turn):
             assert 0 < frame.busy < frame.clocks
             judge.look(frame)
             judge.finish()
-            # What is written in the vertical sync is shown at once.
+            # Writes during vertical sync show in the frame that follows.
             assert frame.scene.camera == walker.camera.position
             assert frame.scene.basis == (walker.camera.basis if turn else UNTURNED)
     assert (judge.pictures, judge.all_wrong) == (len(path), 0)
@@ -77,14 +77,29 @@ def test_a_walk_is_judged(engine, turn):
 @pytest.mark.slow_sets("2")
 @pytest.mark.parametrize("pixels", [1, 2])
 def test_a_camera_looks_around(tmp_path, capsys, pixels):
-    """To the right, ahead, to the left and ahead again, by the design that the walk has."""
+    """The walk's design looks right, ahead, left and ahead again."""
     output = tmp_path / "look"
     design = ["--engine", "beam", "--screen", "tiny", "--colour-bits", "5", "--pixels", str(pixels)]
     assert game.main(["mirror_room", "--frames", "4", *design, "--build", str(BUILD), "--output", str(output)]) == 0
-    assert "4 frames, 0 pixels unlike exact arithmetic" in capsys.readouterr().out
+    assert "4 frames, 0 pixels differ from exact arithmetic" in capsys.readouterr().out
     right, ahead, left, again = ((output / f"frame_{number:04}.png").read_bytes() for number in range(4))
     assert ahead == again and len({right, ahead, left}) == 3
     assert (output / "game.webp").exists()
+
+
+def test_a_light_goes_around_the_room(tmp_path, capsys):
+    """A quarter of the circle per frame, with the engine that draws shadows and a camera that stands still."""
+    output = tmp_path / "film"
+    arguments = ["evening", "--frames", "4", "--screen", "tiny", "--build", str(BUILD), "--output", str(output)]
+    assert game.main(arguments) == 0
+    assert "4 frames, 0 pixels differ from exact arithmetic" in capsys.readouterr().out
+    assert len({(output / f"frame_{number:04}.png").read_bytes() for number in range(4)}) == 4
+    light = load_scene(ROOT / "scenes" / "evening.toml").light
+    places = [game.circling(light, quarters / 4).position for quarters in range(5)]
+    assert places[0] == places[4] == light.position and len(set(places)) == 4
+    assert all(0 <= value < 512 for place in places for value in place)
+    with pytest.raises(UserError, match="beam engine"):
+        game.main([*arguments, "--engine", "beam"])
 
 
 def test_a_walk_goes_where_it_looks():
@@ -97,7 +112,7 @@ def test_a_walk_goes_where_it_looks():
     assert (turning.camera.yaw, turning.camera.pitch, turning.camera.roll) == (70.0, -10.0, 5.0)
     turning.move([], (80, -400))
     assert (turning.camera.yaw, turning.camera.pitch) == (90.0, 89.0)
-    # Level, however steep it looks.
+    # The walk stays level, however steeply the camera looks.
     turning.move(["forward"])
     turning.move(["forward", "right"])
     assert turning.camera.position == (97, 206, 300)
@@ -132,7 +147,7 @@ def test_keys_are_buttons(unseen):
         shown.close()
 
 
-def test_where_there_is_no_display(monkeypatch):
+def test_without_a_display(monkeypatch):
     for name in window.DISPLAYS:
         monkeypatch.delenv(name, raising=False)
     with pytest.raises(UserError, match=r"^there is no display to open a window on; raycaster game writes"):

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Disturbances of a running design, and how soon its picture is right again."""
+"""Disturb a running design, and see how soon its picture is right again."""

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""cocotb: a design is disturbed while it draws, once a case, and must come back.
+"""cocotb: a design is disturbed while it draws, once per case, and must recover.
 
-A case is one of three: a bit of a register or memory flips; reset comes for some clocks; or a host does as it likes on
-the bus for some clocks. All that is chosen at random follows from the case's number.
+There are three kinds of case: a bit of a register or memory flips; reset is asserted for some clocks; or a host drives
+the bus at random for some clocks. All random choices follow from the number of the case.
 """
 
 from __future__ import annotations
@@ -25,24 +25,24 @@ from raycaster.sim.monitor import CLOCK_NS, VideoError
 from raycaster.verif.random_scenes import random_scene
 
 Register = LogicObject | LogicArrayObject | PackedObject | ArrayObject
-"""A register, or a memory."""
+"""A register or a memory."""
 
 KINDS = (*8 * ("upset",), "reset", "bus")
-"""One of ten cases each for reset and for the bus."""
+"""Kinds of case: one in ten is a reset, and one in ten is on the bus."""
 
 FRAMES = 3
-"""That a design gets to be right in: the disturbed one, the next, and one more where a sync came early or late."""
+"""Frames in which a design may recover: the disturbed one, the next, and one more if a sync came early or late."""
 
 MOST_CLOCKS = 40
-"""That reset or a wild host takes."""
+"""Longest reset or random drive of the bus, in clocks."""
 
 PATIENCE = 1000
-"""Clocks that an access of the bus may take; the slowest needs some ten."""
+"""Clocks that a bus access may take; the slowest needs about ten."""
 
 
 @cocotb.test()
 async def disturb(bench: HierarchyObject) -> None:
-    """Disturb the design once a case; write a line of JSON for each, and fail where it did not come back."""
+    """Disturb the design once per case; write a line of JSON for each, and fail if it did not recover."""
     harness = Harness(bench)
     registers = list(
         find_registers(harness.bench.dut, {name: set(found) for name, found in harness.job.registers.items()})
@@ -56,11 +56,11 @@ async def disturb(bench: HierarchyObject) -> None:
                 lost.append(number)
             results.write(json.dumps(result) + "\n")
             results.flush()
-    assert not lost, f"did not come back in cases {lost}"
+    assert not lost, f"did not recover in cases {lost}"
 
 
 def find_registers(scope: HierarchyObject, names: Mapping[str, set[str]]) -> Iterator[Register]:
-    """The registers and memories within an instance, by the names that each module has."""
+    """Yield the registers and memories within an instance, whose names are given by module."""
     for child in scope:
         if isinstance(child, HierarchyObject):
             yield from find_registers(child, names)
@@ -69,14 +69,14 @@ def find_registers(scope: HierarchyObject, names: Mapping[str, set[str]]) -> Ite
 
 
 def bits_of(register: Register) -> int:
-    """The number of bits of a register, or of all words of a memory."""
+    """Return the number of bits of a register, or of all words of a memory."""
     if isinstance(register, ArrayObject):
         return len(register) * len(register[register.range.left])
     return len(register)
 
 
 async def _case(harness: Harness, registers: list[Register], number: int) -> dict[str, object]:
-    """What was done, what became of it, and the frames from then on that were not right."""
+    """Run a case; return the disturbance, its outcome, and the number of wrong frames after it."""
     random = Random(number)
     configuration, screen = harness.configuration, harness.screen
     scene, other = (
@@ -90,14 +90,14 @@ async def _case(harness: Harness, registers: list[Register], number: int) -> dic
     await ClockCycles(harness.bench.clk, random.randrange(1, screen.vertical.total * screen.line_cycles))
     await FallingEdge(harness.bench.clk)
     kind = random.choice(KINDS)
-    told = await {"upset": _flip, "reset": _reset, "bus": _misuse}[kind](harness, registers, random)
+    disturbance = await {"upset": _flip, "reset": _reset, "bus": _misuse}[kind](harness, registers, random)
     at = get_sim_time("ns") // CLOCK_NS
-    result = {"kind": kind, "clock": at} | told
+    result = {"kind": kind, "clock": at} | disturbance
 
     seen = []
     if kind == "upset":
         seen = await _look_until_right(harness, scene)
-    # Then, or where software has to load its scene again, the next commit mends what is left.
+    # Next, or at once after a reset or misuse, software loads another scene; its commit repairs the rest.
     mended = "unseen" if seen == ["right", "right"] else "StartScreen" if seen[-1:] == ["right"] else "commit"
     came_back = await _answers(harness) and await _shows(harness, other)
     wrong = [each for each in seen if each != "right"]
@@ -105,7 +105,7 @@ async def _case(harness: Harness, registers: list[Register], number: int) -> dic
 
 
 async def _look_until_right(harness: Harness, scene: Scene) -> list[str]:
-    """Look at the disturbed frame, and on until one is right after it."""
+    """Check the disturbed frame, and then further frames until one is right."""
     picture, seen = harness.golden(scene, scene.reflections), []
     while len(seen) < FRAMES and not (len(seen) > 1 and seen[-1] == "right"):
         seen.append(await _look(harness, picture))
@@ -113,7 +113,7 @@ async def _look_until_right(harness: Harness, scene: Scene) -> list[str]:
 
 
 async def _look(harness: Harness, picture: np.ndarray) -> str:
-    """How the next frame is: right, wrong, or sync where that was not as it should be."""
+    """Return the state of the next frame: right, wrong, or sync if its sync was wrong."""
     try:
         frame = await harness.monitor.frame()
     except VideoError:
@@ -128,7 +128,7 @@ async def _program(harness: Harness, scene: Scene) -> None:
 
 
 async def _answers(harness: Harness) -> bool:
-    """Whether the bus still says what the design is."""
+    """True if the identification can still be read on the bus."""
     expected = harness.bus.registers["id"].reset
     word = harness.bus.read_word(harness.bus.registers["id"].address)
     try:
@@ -138,9 +138,9 @@ async def _answers(harness: Harness) -> bool:
 
 
 async def _shows(harness: Harness, scene: Scene) -> bool:
-    """Whether a scene is shown, in one of the next frames."""
+    """True if a scene is shown in one of the next frames."""
     try:
-        # A word takes less than a tenth of that.
+        # A word takes less than a tenth of `PATIENCE`.
         writes = PATIENCE * CLOCK_NS * (4 * harness.configuration.rectangles + 8)
         await with_timeout(_program(harness, scene), writes, "ns")
     except SimTimeoutError:
@@ -150,7 +150,7 @@ async def _shows(harness: Harness, scene: Scene) -> bool:
 
 
 async def _flip(harness: Harness, registers: list[Register], random: Random) -> dict[str, object]:
-    """Flip a bit; each one of all registers and memories is as likely as any other."""
+    """Flip a bit; all bits of all registers and memories are equally likely."""
     [register] = random.choices(registers, [bits_of(register) for register in registers])
     if isinstance(register, ArrayObject):
         register = register[random.choice(list(register.range))]
@@ -161,7 +161,7 @@ async def _flip(harness: Harness, registers: list[Register], random: Random) -> 
 
 
 async def _reset(harness: Harness, registers: list[Register], random: Random) -> dict[str, object]:
-    """Reset for some clocks, at any time."""
+    """Assert reset for some clocks."""
     clocks = random.randint(1, MOST_CLOCKS)
     harness.bench.reset.value = 1
     await ClockCycles(harness.bench.clk, clocks)
@@ -173,7 +173,7 @@ async def _reset(harness: Harness, registers: list[Register], random: Random) ->
 
 
 async def _misuse(harness: Harness, registers: list[Register], random: Random) -> dict[str, object]:
-    """Anything on the bus: both at once, let go or changed while it waits, addresses where nothing is."""
+    """Misuse the bus: read and write at once, requests dropped or changed while they wait, unmapped addresses."""
     bench, clocks = harness.bench, random.randint(1, MOST_CLOCKS)
     pins = [getattr(bench, f"avs_s0_{name}") for name in ("address", "byteenable", "read", "write", "writedata")]
     for _ in range(clocks):
@@ -181,6 +181,6 @@ async def _misuse(harness: Harness, registers: list[Register], random: Random) -
             pin.value = random.getrandbits(len(pin))
         await FallingEdge(bench.clk)
     bench.avs_s0_read.value = bench.avs_s0_write.value = 0
-    for _ in range(MOST_CLOCKS):  # until what was asked for is answered
+    for _ in range(MOST_CLOCKS):  # until all requests are answered
         await FallingEdge(bench.clk)
     return {"where": f"{clocks} clocks"}

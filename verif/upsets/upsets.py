@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Disturb a running design: flip a bit, reset it, misuse its bus; and see when its picture is right again."""
+"""Flip bits of a running design, reset it or misuse its bus, and see when its picture is right again."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ from raycaster.verif.campaign import Campaign, run_campaign
 from raycaster.verif.upsets.bench import KINDS
 
 FLAGS = tuple(flag for flag in VERILATOR_FLAGS if flag != "--no-public-flat-rw")
-"""Each register can be written from outside."""
+"""Flags that let a bench write every register."""
 
 SHARE = 50
-"""Cases of a simulation."""
+"""Number of cases per simulation."""
 
 OUTCOMES = ("unseen", "StartScreen", "commit", "hangs")
-"""What mended the picture, the next StartScreen or the next commit; or nothing to see, or nothing that mends."""
+"""Outcomes: never visible, repaired by the next StartScreen, repaired by the next commit, or never repaired."""
 
 
 def registers_of(files: Sequence[Path]) -> dict[str, tuple[str, ...]]:
-    """By module, what is assigned at an edge of the clock: its registers and memories.
+    """Return the registers and memories of each module: the names that are assigned at a clock edge.
 
     Args:
-        files: converted Verilog, a module a file, in which such an assignment has a line of its own.
+        files: converted Verilog, one module per file, with each such assignment on a separate line.
     """
     found = {}
     for file in files:
@@ -54,13 +54,13 @@ def registers_of(files: Sequence[Path]) -> dict[str, tuple[str, ...]]:
 
 
 def show(results: Sequence[Mapping], seconds: float, configuration: Configuration, console: Console) -> None:
-    """Print what became of the cases, by kind."""
+    """Print the outcomes of the cases, by kind."""
     table = Table(title=f"{configuration.name}, {len(results)} cases in {seconds:.0f} s")
-    table.add_column("what happened, mended by")
+    table.add_column("disturbance")
     for heading in (
         "cases",
         "unseen",
-        "mended by StartScreen",
+        "repaired by StartScreen",
         "by a commit",
         "never",
         "frames wrong, at most",
@@ -77,10 +77,10 @@ def show(results: Sequence[Mapping], seconds: float, configuration: Configuratio
 
 
 def command_parser() -> CommandParser:
-    """What the command takes."""
+    """Build the parser of the command line."""
     parser = CommandParser("verify upsets", __doc__, "--engine exact --cases 200")
-    parser.add_argument("--cases", type=int, default=500, metavar="N", help="how many (default: %(default)s)")
-    parser.add_argument("--first", type=int, default=0, metavar="CASE", help="the first one's number (%(default)s)")
+    parser.add_argument("--cases", type=int, default=500, metavar="N", help="number of cases (default: %(default)s)")
+    parser.add_argument("--first", type=int, default=0, metavar="CASE", help="number of the first case (%(default)s)")
     add_job_options(parser)
     add_fresh_option(parser)
     add_build_option(parser)
@@ -94,7 +94,7 @@ def _configuration(arguments: argparse.Namespace) -> Configuration:
 
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
-    """Digest what decides the command's figures."""
+    """Digest everything that decides the figures of the command."""
     return Provenance([_configuration(arguments)], ["golden", "verif/upsets"])
 
 
@@ -105,9 +105,9 @@ def _found(*kept: Kept) -> str:
     flips = sum((Counter(one["upset"]) for one in figures), Counter())
     most = max(one["most_wrong"] for one in figures)
     return (
-        f"{cases:,} cases, {hung} never came back. Of {flips.total():,} flipped bits "
-        f"{flips['unseen']:,} did not show, the next StartScreen mended {flips['StartScreen']:,}, a commit "
-        f"{flips['commit']:,}; at most {most} frames were wrong"
+        f"{cases:,} cases, {hung} never recovered; {flips.total():,} flipped bits: "
+        f"{flips['unseen']:,} did not show, {flips['StartScreen']:,} were repaired by the next StartScreen, "
+        f"{flips['commit']:,} by a commit; at most {most} frames were wrong"
     )
 
 
@@ -120,7 +120,7 @@ CHECKS = (
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """The command; returns its exit code."""
+    """Run the command and return its exit code."""
     arguments = command_parser().parse_args(argv)
     if arguments.cases < 1 or arguments.first < 0:
         raise UserError("cases: must be 1 or more, first: 0 or more")
@@ -143,7 +143,7 @@ def main(argv: Sequence[str] | None = None) -> int:
                 "verify upsets", options={"cases": 1, "first": result["case"]} | given_options(arguments)
             )
             what = f"case {result['case']}: {result['kind']}, {result['where']}, clock {result['clock']:.0f}"
-            console.print(f"{what}: did not come back; repeat with: {repeat}", style="red", soft_wrap=True)
+            console.print(f"{what}: did not recover; repeat with: {repeat}", style="red", soft_wrap=True)
     figures = {"cases": len(results), "not_run": outcome.missing} | {
         kind: dict(Counter(result["outcome"] for result in results if result["kind"] == kind))
         for kind in dict.fromkeys(KINDS)

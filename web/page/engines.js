@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The tab with the seed engine beside the exact one.
+// The tab that compares the seed engine with the exact engine.
 "use strict";
 
 tabs.engines = {
@@ -31,12 +31,12 @@ tabs.engines = {
       drawn[side] = await machine.frame();
     };
 
-    const tell = async (side, more) => {
+    const report = async (side, more) => {
       const { design } = machines[side];
       const { count } = await judge.look(drawn[side], design);
       const frame = drawn[side];
       const parts = [
-        `${side} engine`, `${counted(frame.busy, "clock")} computing`, ...more, counted(count, "wrong pixel"),
+        `${side} engine`, `computed in ${counted(frame.busy, "clock")}`, ...more, counted(count, "wrong pixel"),
       ];
       statuses[side].textContent = parts.join(", ");
       return { hash: pictureHash(frame.pixels), wrong: count };
@@ -46,18 +46,20 @@ tabs.engines = {
       RayCaster.state.engines = {};
       differs = null;
       await Promise.all([compute("exact", "exact"), compute("seed", `seed-${selects.fraction.value}`)]);
-      const exact = await tell("exact", []);
-      // What the exact engine must show of these registers, against what the seed engine did.
+      const exact = await report("exact", []);
+      // Compare the seed engine's picture with the correct picture for the exact engine's registers.
       differs = await judge.call("judge", drawn.exact.words, drawn.seed.pixels, machines.exact.design);
       const share = ((100 * differs.count) / differs.wrong.length).toFixed(2);
-      const seed = await tell("seed", [`${counted(differs.count, "pixel")} (${share}%) unlike the exact engine`]);
+      const seed = await report("seed", [
+        `${counted(differs.count, "pixel")} (${share}%) different from the exact engine`,
+      ]);
       paint();
       RayCaster.state.engines = { done: true, fraction: selects.fraction.value, exact, seed, differs: differs.count };
     };
 
-    // One after the other, however fast someone chooses.
+    // One comparison at a time, however fast the choices change.
     let queue = Promise.resolve();
-    const ask = () => (queue = queue.then(all).catch((error) => tellFailure("engines", error)));
+    const ask = () => (queue = queue.then(all).catch((error) => showFailure("engines", error)));
     selects.scene.addEventListener("change", ask);
     selects.fraction.addEventListener("change", ask);
     box.addEventListener("change", paint);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The hardware as the page sees it: machines in workers, and the check of what they show.
+// The hardware as seen by the page: machines in workers, and the check of their pictures.
 "use strict";
 
 const RayCaster = {
@@ -13,7 +13,7 @@ const RayCaster = {
     return new Uint8Array(await new Response(stream).arrayBuffer());
   },
 
-  // A model's file is loaded when it is first asked for, by a script, as pages opened from a disk may not fetch.
+  // A model's file is loaded on first use, by a script element, because a page opened from disk may not use fetch.
   async model(name) {
     if (!RayCaster.models[name]) {
       await new Promise((resolve, reject) => {
@@ -57,7 +57,7 @@ class Remote {
   }
 }
 
-// A design that runs.
+// A running design.
 class Machine extends Remote {
   static async start(name) {
     const machine = new Machine();
@@ -68,12 +68,12 @@ class Machine extends Remote {
     return machine;
   }
 
-  // A design's picture of a scene, pixel by pixel of its rays.
+  // Compute a frame; its picture has one pixel per ray.
   async frame(input) {
     return this.ofRays(await this.call("frame", input));
   }
 
-  // The same, and what the hardware did for a pixel; of designs with taps.
+  // Compute a frame and record the taps for one pixel; only for designs with taps.
   async watch(column, row) {
     return this.ofRays(await this.call("watch", column, row));
   }
@@ -95,7 +95,7 @@ class Machine extends Remote {
   }
 }
 
-// Looks at as many pictures as there is time for.
+// Checks as many pictures as time allows.
 class Judge extends Remote {
   static async start() {
     const judge = new Judge();
@@ -104,7 +104,7 @@ class Judge extends Remote {
     return judge;
   }
 
-  // The differences, or null where the one before is still looked at, or nothing is shown yet.
+  // Return the differences; null while the previous picture is still being checked, or if there is no picture yet.
   async look(frame, design) {
     if (this.busy || !frame.pixels) return null;
     this.busy = true;
@@ -116,7 +116,7 @@ class Judge extends Remote {
   }
 }
 
-// A number by which pictures can be told apart: FNV-1a of the words of red, green, blue and 255.
+// A hash of a picture: FNV-1a of the words of red, green, blue and 255.
 function pictureHash(pixels) {
   let hash = 2166136261;
   for (const word of new Uint32Array(pixels.buffer, pixels.byteOffset, pixels.length / 4)) {
@@ -135,7 +135,7 @@ function draw(canvas, pixels, design) {
   canvas.getContext("2d").putImageData(image, 0, 0);
 }
 
-// Colours the pixels that are marked.
+// Colour the pixels that are marked as wrong.
 function mark(canvas, wrong, colour) {
   const context = canvas.getContext("2d");
   context.fillStyle = colour;

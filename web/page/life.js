@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A pixel's life, from what its ray unit's signals were in each clock.
+// A pixel's life, reconstructed from its ray unit's signals in each clock.
 //
-// Signals and moments are those of the project's debugger (debug/probes), which the taps of a design name: a probe says
-// at which event of the control, and how many clocks late, which taps hold a quantity.
+// Signals and events are those of the project's debugger (debug/probes). A probe says which taps of the design hold a
+// quantity, at which event of the control, and how many clocks after it.
 "use strict";
 
 const RayCasterLife = (() => {
@@ -18,7 +18,7 @@ const RayCasterLife = (() => {
       return this.samples[clock * this.taps.count + this.taps.controls[name]];
     }
 
-    // The values of a probe a number of clocks after an event's; null where nothing was recorded any more.
+    // Values of a probe at a clock; null after the end of the recording.
     values(probe, clock) {
       if (clock >= this.clocks) return null;
       return probe.taps.map((tap) => {
@@ -32,7 +32,7 @@ const RayCasterLife = (() => {
     }
   }
 
-  // What became of rectangles, {clock, rectangle} each, that a ray was tried against before its end.
+  // Events of the rectangles, {clock, rectangle} each, that a ray was tested against before its end.
   function followed(recording, tried, bounce, end) {
     const events = [];
     const note = (kind, clock, rectangle) => events.push({ kind, clock, bounce, rectangle });
@@ -46,7 +46,7 @@ const RayCasterLife = (() => {
         note(kind, clock, one.rectangle);
         to?.push(one);
       };
-      // What is written has been found before: a rectangle may wait in the divider while another one is loaded.
+      // Handle later stages first: a rectangle may wait in the divider while another one is loaded.
       if (divides) {
         if (strobe("steps_write_z_buf")) move("write", waiting.store);
         if (strobe("steps_store_quotient")) move("store", waiting.load, waiting.store);
@@ -77,7 +77,7 @@ const RayCasterLife = (() => {
     return events;
   }
 
-  // Whether what is offered at a clock is kept, as it is the nearest so far; and whether anything is.
+  // Return whether the rectangle offered at a clock is kept as the nearest so far, and whether there is any nearest.
   function verdict(recording, clock) {
     const found = recording.probe("found"), nearest = recording.probe("nearest t") ?? recording.probe("nearest");
     const kept = (at) => [recording.values(found, at), recording.values(nearest, at)];
@@ -86,21 +86,22 @@ const RayCasterLife = (() => {
     return { kept: isFound && String(before) !== String(after), found: isFound };
   }
 
-  // Where a ray of the exact engine hits: the eye E, and D n / e from there; over e.
+  // Hit point of a ray of the exact engine, E + D n / e with the eye E and the slope D, as numerators over e.
   function pointOnRay(bounce, magnitudes, [n, e]) {
     const { eye, signs } = bounce.values;
     return eye.map((start, axis) => start * e + (signs[axis] ? -1 : 1) * magnitudes[axis] * n);
   }
 
   /**
-   * @param {object} taps of the design, as tap_facts in taps.py has it
+   * Reconstructs a pixel's life from recorded samples.
+   * @param {object} taps the design's taps, from tap_facts in taps.py
    * @param {Uint32Array} samples taps.count numbers for each clock in which the pixel was computed
-   * @param {number} fractionBits of the seed engine; 0 of the exact one
-   * @returns {{clocks, bounces, values}} values: by quantity, of the pixel. bounces: {slope, values, tried, winner,
-   *   distance, point, denominator, colour} of the camera's ray and of each reflection that there was: tried is a list of
-   *   {rectangle, values, kept, found} (kept: as the nearest so far; found: there is a nearest by then), winner the
-   *   rectangle seen or -1, distance what it was chosen by (t as [n, e], or [depth]), point its coordinates over the
-   *   denominator, colour a number
+   * @param {number} fractionBits fraction bits of the seed engine; 0 for the exact engine
+   * @returns {{clocks, bounces, values}} values: values of the pixel, by quantity. bounces: {slope, values, tried,
+   *   winner, distance, point, denominator, colour} of the camera's ray and of each reflection: tried is a list of
+   *   {rectangle, values, kept, found} (kept: as the nearest so far; found: a nearest exists by then), winner the
+   *   rectangle seen or -1, distance the quantity that decided (t as [n, e], or [depth]), point the coordinates over
+   *   the denominator, colour a number
    */
   function read(taps, samples, fractionBits = 0) {
     const recording = new Recording(taps, samples);
@@ -119,7 +120,7 @@ const RayCasterLife = (() => {
         if (probe.event === kind) values[probe.quantity] = recording.values(probe, clock + probe.late);
       }
     }
-    // What the unit goes on to find when its ray has ended is of no use to anyone.
+    // Don't care what the unit finds after its ray has ended.
     life.bounces = life.bounces.filter((bounce) => bounce.values["ended before"]?.[0] === 0);
     const magnitudes = life.bounces[0]?.values["slope, magnitudes"];
     for (const bounce of life.bounces) {

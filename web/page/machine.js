@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A worker: the hardware, or the golden check, in WebAssembly. The page calls one function at a time, by message:
-// {id, call, arguments} is answered by {id, result} or {id, error}.
+// A worker: the hardware, or the golden check, in WebAssembly. The page calls functions by message: it sends
+// {id, call, parameters}, and gets {id, result} or {id, error}.
 "use strict";
 
 let exported, design;
 
-// Of the system that the C++ library expects there is only where it writes its errors.
+// System calls of the C++ library: error output and exit; all others do nothing.
 function system(module) {
   const imports = {};
   const functions = {
@@ -22,7 +22,7 @@ function system(module) {
       return 0;
     },
     proc_exit(code) {
-      throw new Error(`the simulation ended with ${code}`);
+      throw new Error(`the simulation ended with exit code ${code}`);
     },
   };
   for (const { module: from, name } of WebAssembly.Module.imports(module)) {
@@ -41,7 +41,7 @@ function textAt(start) {
   return new TextDecoder().decode(all.subarray(start, all.indexOf(0, start)));
 }
 
-// What the driver says to a call.
+// Turn a driver's error into an exception.
 function check(error) {
   if (error) throw new Error(textAt(exported.error_text(error)));
 }
@@ -77,7 +77,7 @@ const calls = {
     if (design.turn) check(exported.set_basis(...basis.flat()));
   },
 
-  // Runs to the next vertical sync; a camera is committed first.
+  // Run to the next vertical sync; if a camera is given, commit it first.
   frame({ buttons = 0, camera = null } = {}) {
     const began = performance.now();
     if (camera) {
@@ -92,7 +92,7 @@ const calls = {
     return { pixels, words, clocks, busy: exported.busy(), milliseconds, text };
   },
 
-  // A frame, and what the unit that has a pixel does for it: design.taps.count numbers for each of its clocks.
+  // Run a frame and record the ray unit of a pixel: design.taps.count numbers for each of its clocks.
   watch(column, row) {
     const { units } = design.taps;
     exported.watch(column % units, row, Math.floor(column / units));
@@ -101,7 +101,7 @@ const calls = {
     return { ...frame, samples: new Uint32Array(samples.buffer) };
   },
 
-  // How many pixels of a picture are not those of the scene in these register words, and a byte for each, 1 if so.
+  // Compare a picture with the scene in these register words: number of wrong pixels, and a byte per pixel, 1 if wrong.
   judge(words, pixels, of) {
     bytes(exported.golden_words(), words.length).set(words);
     const { columns, rows, scale } = of;
@@ -122,7 +122,7 @@ const calls = {
     return { count, wrong };
   },
 
-  // What is right for a pixel of the picture that was judged last.
+  // Return the correct bounces and colour of a pixel in the last picture that was judged.
   explain(column, row, columns) {
     const count = exported.golden_ray(column, row);
     const numbers = Array.from(new BigInt64Array(exported.memory.buffer, exported.golden_bounces(), 8 * count), Number);

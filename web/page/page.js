@@ -4,7 +4,7 @@
 
 const find = (id) => document.getElementById(id);
 
-// What a test, or a curious reader, can ask the page in the console: the last frame of each tab.
+// Facts about the last frame of each tab, for tests and for curious readers at the console.
 RayCaster.state = {};
 
 function fill(select, names, chosen) {
@@ -13,16 +13,16 @@ function fill(select, names, chosen) {
 
 const counted = (count, noun) => `${count.toLocaleString("en")} ${noun}${count === 1 ? "" : "s"}`;
 
-// The scene of a file's text, as the hardware of a design takes it.
+// Read a scene file's text into the form that the hardware loads.
 function readScene(text, name, rectangles) {
   const { scene, error } = RayCasterScene.read(text, name, RayCaster.schema, rectangles);
   if (error) throw new Error(error);
-  if (scene.needs.light) throw new Error(`${name}: light: no design of this page has one; remove the table [light]`);
+  if (scene.needs.light) throw new Error(`${name}: light: no design on this page has one; remove the table [light]`);
   const { yaw, pitch, roll } = scene.camera;
   return { ...scene, basis: RayCasterScene.basis(yaw, pitch, roll) };
 }
 
-// Keys and buttons of the page that are held.
+// Keys and on-screen buttons that are held down.
 class Held {
   constructor(names, keys, canvas, pad) {
     this.names = new Set();
@@ -54,7 +54,7 @@ class Held {
   }
 }
 
-// Frame after frame of a machine while its tab is shown, with what the check says of them.
+// Shows a machine's frames, with the result of the check, while its tab is shown.
 class Show {
   constructor(id, canvas, status) {
     Object.assign(this, { id, canvas, status, rate: 0, frames: 0, verdict: null, running: false });
@@ -64,7 +64,7 @@ class Show {
     return !this.canvas.closest("section").hidden && !document.hidden;
   }
 
-  // Has frames made by `next`, a function that returns a promise of one, until the tab is left.
+  // Show frames until the tab is left; `next` returns a promise of the next frame.
   async run(machine, judge, next) {
     if (this.running) return;
     this.running = true;
@@ -87,27 +87,27 @@ class Show {
   }
 
   say(design, frame) {
-    const parts = [`${this.rate.toFixed(1)} frames a second`, counted(frame.clocks, "clock") + " a frame"];
+    const parts = [`${this.rate.toFixed(1)} frames per second`, counted(frame.clocks, "clock") + " per frame"];
     this.status.textContent = parts.join(", ");
     const wrong = this.verdict?.count ?? null;
     if (wrong !== null) {
-      const told = document.createElement("span");
-      if (wrong) told.className = "wrong";
-      told.textContent = `, ${counted(wrong, "wrong pixel")} of ${(design.columns * design.rows).toLocaleString("en")}`;
-      this.status.append(told);
+      const note = document.createElement("span");
+      if (wrong) note.className = "wrong";
+      note.textContent = `, ${counted(wrong, "wrong pixel")} of ${(design.columns * design.rows).toLocaleString("en")}`;
+      this.status.append(note);
     }
     RayCaster.state[this.id] = { ...this.last, frames: this.frames, rate: this.rate, wrong };
   }
 }
 
-function tellFailure(id, error) {
+function showFailure(id, error) {
   const status = find(`${id}-status`) ?? find(`${id}-exact-status`);
   status.textContent = error.message;
   status.className = "error";
   RayCaster.state[id] = { error: error.message };
 }
 
-// The camera of a walk: the same steps and turns as in the window on a desk.
+// The camera of a walk, with the same steps and turns as in the desktop window.
 class Walker {
   constructor(scene) {
     this.place = [...scene.camera.position];
@@ -176,7 +176,7 @@ const tabs = {
       fill(select, Object.keys(RayCaster.scenes), RayCaster.walk.first);
       choose();
 
-      // The smallest design that has what the scene needs is the fastest.
+      // The smallest design with the features that the scene needs is the fastest.
       const frame = async () => {
         if (next) {
           scene = next;
@@ -236,7 +236,7 @@ async function open(id) {
     opened[id] ??= tabs[id].open();
     await (await opened[id]).run?.();
   } catch (error) {
-    tellFailure(id, error);
+    showFailure(id, error);
   }
 }
 

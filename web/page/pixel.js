@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The tab with a pixel's life: what the ray unit that computes it does, from the unit's own signals.
+// The tab with a pixel's life: the steps of its ray unit, from the unit's own signals.
 "use strict";
 
-const PIXEL_ENGINES = { exact: "exact", seed: "seed-0" }; // and the models of these
-const MARK_REACH = 4; // pixels from the one that is marked to the mark
-const FAR = 2000; // world units that a ray which hits nothing is drawn
+const PIXEL_ENGINES = { exact: "exact", seed: "seed-0" }; // models by engine
+const MARK_REACH = 4; // distance of the mark from its pixel, in pixels
+const FAR = 2000; // drawn length of a ray that misses, in world units
 const DASH = "\u2013";
 const SVG = "http://www.w3.org/2000/svg";
 
@@ -45,7 +45,7 @@ function table(caption, headings, rows) {
   ]), { className: "scroll" });
 }
 
-// The room from above: x upwards, y to the right.
+// Map world coordinates to the plan: x upwards, y to the right.
 const above = ([x, y]) => [y, 511 - x];
 
 function drawRectangle({ corners: [first, second], colour }, label) {
@@ -88,7 +88,7 @@ function drawPlan(plan, scene, life, label) {
 const fractionText = ([numerator, denominator]) =>
   `${numerator}/${denominator} = ${Number((numerator / denominator).toPrecision(4))}`;
 
-// A quantity of a rectangle that was tried; a dash where it means nothing.
+// Format a quantity of a tested rectangle; a dash if it is meaningless.
 function quantityText({ quantity, scale }, { values, found }, unit) {
   const of = values[quantity];
   if (!of) return "";
@@ -102,7 +102,7 @@ function quantityText({ quantity, scale }, { values, found }, unit) {
   return texts.map((text, axis) => (isByAxis && !values.valid[axis] ? DASH : text)).join(", ");
 }
 
-// What a ray sees, and which parts of it golden has not: the rectangle, t or the depth, the point, the colour.
+// Compare the parts of a hit with the golden model: rectangle, t or depth, point, colour.
 function compare(bounce, golden, isExact) {
   const parts = ({ winner, distance, point, denominator, colour }) =>
     winner < 0 ? [-1, null, null, colour] : [winner, distance, [point, denominator], colour];
@@ -112,7 +112,7 @@ function compare(bounce, golden, isExact) {
   return { mine, right, wrong: mine.map((value, part) => JSON.stringify(value) !== JSON.stringify(right[part])) };
 }
 
-// How much of the pixel each ray's colour is.
+// Share of each ray's colour in the pixel.
 function shares(bounces, scene) {
   let rest = 1;
   return bounces.map(({ winner }, number) => {
@@ -125,7 +125,7 @@ function shares(bounces, scene) {
 
 const rayName = (number) => (number === 0 ? "The camera's ray" : `Reflection ${number}`);
 
-// What is shown of a pixel: explained is what golden has, monitor the colour on the screen.
+// The page's account of a pixel: explained is the golden model's result, monitor the colour on the screen.
 class PixelStory {
   constructor(scene, design, life, explained, monitor) {
     Object.assign(this, { scene, design, life, explained, monitor });
@@ -155,9 +155,9 @@ class PixelStory {
     ];
     const cells = (values) => values.map((value, part) => (value === null ? "" : texts[part](value)));
     const marked = cells(mine).map((content, part) => ({ content, className: wrong[part] ? "wrong" : "" }));
-    return table("", ["", "sees", this.isExact ? "at t" : "at depth", "in the point", "of the colour"], [
+    return table("", ["", "sees", this.isExact ? "at t" : "at depth", "at point", "colour"], [
       { cells: ["hardware", ...marked] },
-      { cells: ["golden", ...cells(right)] },
+      { cells: ["golden model", ...cells(right)] },
     ]);
   }
 
@@ -167,21 +167,21 @@ class PixelStory {
     );
     const rows = tried.map((one) => {
       const cells = probes.map((probe) => ({ content: quantityText(probe, one, this.unit), className: "number" }));
-      const none = { content: "no ray of the group runs towards it", colSpan: probes.length };
+      const none = { content: "no ray of the group points towards it", colSpan: probes.length };
       return {
         className: one.rectangle === winner ? "seen" : "",
         cells: [this.label(one.rectangle), ...("inside" in one.values ? cells : [none])],
       };
     });
     const headings = probes.map(({ quantity }) => ({ content: quantity, className: "number" }));
-    return rows.length ? [table("Rectangles tried", ["rectangle", ...headings], rows)] : [];
+    return rows.length ? [table("Rectangles tested", ["rectangle", ...headings], rows)] : [];
   }
 
   leftOut({ tried }) {
     const names = this.scene.rect.map((_, index) => index)
       .filter((index) => !tried.some(({ rectangle }) => rectangle === index))
       .map((index) => this.label(index));
-    return names.length ? [element("p", `Left out by culling: ${names.join(", ")}.`, { className: "help" })] : [];
+    return names.length ? [element("p", `Skipped by culling: ${names.join(", ")}.`, { className: "help" })] : [];
   }
 
   bounce(bounce, number) {
@@ -202,7 +202,8 @@ class PixelStory {
       cells: [rayName(number), { content: digits(share), className: "number" }, swatch(bounces[number].colour)],
     }));
     return [element("h3", "The pixel"), table("", ["", "share", "colour"], [
-      ...parts, held("hardware", this.pixel), held("monitor", this.monitor), held("golden", this.explained.colour),
+      ...parts,
+      held("hardware", this.pixel), held("monitor", this.monitor), held("golden model", this.explained.colour),
     ])];
   }
 
@@ -236,7 +237,7 @@ tabs.pixel = {
       machine = await Machine.start(name);
       for (const [input, count] of [[inputs.column, machine.design.columns], [inputs.row, machine.design.rows]]) {
         input.max = count - 1;
-        // Before anyone chooses, it is the pixel in the middle.
+        // Start with the pixel in the middle.
         if (!chosen) input.value = count / 2;
       }
       chosen = true;
@@ -254,7 +255,7 @@ tabs.pixel = {
       find("pixel-life").replaceChildren(...story.elements);
       status.className = story.isWrong ? "error" : "";
       status.textContent = `Column ${column}, row ${row}: ray unit ${column % units} of ${units} took ` +
-        `${counted(life.clocks, "clock")}, and ${story.isWrong ? "differs from golden" : "did what golden does"}.`;
+        `${counted(life.clocks, "clock")}, and ${story.isWrong ? "differs from" : "matches"} the golden model.`;
       const { isWrong: wrong, monitor } = story;
       RayCaster.state.pixel = { done: true, column, row, wrong, life, golden: explained, monitor };
     };
@@ -264,14 +265,14 @@ tabs.pixel = {
       RayCaster.state.pixel = { done: false };
       status.className = "";
       status.textContent = "simulating a frame, clock by clock";
-      // The seed engine takes no camera that is turned.
+      // The seed engine has no turning camera.
       const { turn } = readScene(text, name).needs;
       [...selects.engine.options].find(({ value }) => value === "seed").disabled = turn;
       if (turn) selects.engine.value = "exact";
       await start(PIXEL_ENGINES[selects.engine.value]);
       const { design } = machine;
       if (!inputs.column.validity.valid || !inputs.row.validity.valid) {
-        throw new Error(`There are columns from 0 to ${design.columns - 1} and rows from 0 to ${design.rows - 1}.`);
+        throw new Error(`Choose a column from 0 to ${design.columns - 1} and a row from 0 to ${design.rows - 1}.`);
       }
       const column = inputs.column.valueAsNumber, row = inputs.row.valueAsNumber;
       const scene = readScene(text, name, design.rectangles);
@@ -282,7 +283,7 @@ tabs.pixel = {
       show(scene, column, row, frame, await judge.call("explain", column, row, design.columns));
     };
 
-    // One after the other, and of all that is asked meanwhile only the last.
+    // One computation at a time; of the requests made meanwhile, only the last counts.
     let runs = false, asked = false;
     const ask = async () => {
       asked = true;
@@ -290,7 +291,7 @@ tabs.pixel = {
       runs = true;
       while (asked) {
         asked = false;
-        await compute().catch((error) => tellFailure("pixel", error));
+        await compute().catch((error) => showFailure("pixel", error));
       }
       runs = false;
     };

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: MIT
-// Scene files in the browser: RayCasterScene.read gives the scene, or the line with which `load_scene` of
-// raycaster/scene.py refuses it. Rules and words come from there by web/scene_schema.py; here is what each kind of rule
-// means. Needs vendor/smol-toml.js.
+// Scene files in the browser: RayCasterScene.read returns the scene, or the same error line as `load_scene` in
+// raycaster/scene.py. Rules and messages come from there, through web/scene_schema.py; this file implements each kind
+// of rule. Needs vendor/smol-toml.js.
 //
-// Differences, as smol-toml is not Python's tomllib:
-// - The reason in brackets of a syntax error is in its words. It tells what is never closed, and a key that is given
-//   twice with a value of several lines, where they begin; Python where they end.
-// - It reads TOML 1.1: \e and \x in texts, times without seconds, line breaks and a last comma in inline tables.
-// - Keys that are whole numbers come first in their table. Fractions of a second end with the millisecond.
+// Differences, because smol-toml is not Python's tomllib:
+// - The reason in brackets in a syntax error has smol-toml's wording. It reports unclosed strings and brackets, and
+//   repeated keys with a value of several lines, at their beginning; Python reports them at their end.
+// - It reads TOML 1.1: \e and \x in strings, times without seconds, line breaks and a trailing comma in inline tables.
+// - Keys that are whole numbers come first in their table. Fractions of a second are cut to milliseconds.
 "use strict";
 
 const RayCasterScene = (() => {
-  const BASIS_SCALE = 256; // A whole vector of a camera's basis.
+  const BASIS_SCALE = 256; // Length of a vector in a camera's basis.
   const UNTURNED = [[BASIS_SCALE, 0, 0], [0, BASIS_SCALE, 0], [0, 0, BASIS_SCALE]];
 
-  // What TOML has as an integer is a BigInt, until the scene is known to be right; what it has as a float is a Number.
+  // TOML integers are BigInts until the scene has been checked; TOML floats are Numbers.
   const isNumber = (value) => typeof value === "bigint" || typeof value === "number";
   const isTable = (value) => typeof value === "object" && !Array.isArray(value) && !(value instanceof Date);
 
-  // By the kind of a rule, whether a value keeps it: the functions of these names in raycaster/scene.py.
+  // Tests of a value, by kind of rule; same names as the functions in raycaster/scene.py.
   const HOLDS = {
     whole: (value, { lowest, highest }) => typeof value === "bigint" && value >= lowest && value <= highest,
     items: (value, { count }) => Array.isArray(value) && (count === null ? value.length > 0 : value.length === count),
@@ -32,13 +32,13 @@ const RayCasterScene = (() => {
   const length = (text) => [...text].length; // In characters, as Python counts them.
   const fill = (template, values) => template.replace(/\{(\w+)\}/g, (_, name) => values[name]);
 
-  // A part of the model's JSON schema: what it refers to, and of a value or null the value.
+  // Resolve a part of the model's JSON schema: follow references, and take the value of "value or null".
   function resolve(part, schema) {
     const rule = part.anyOf?.[0] ?? part;
     return rule.$ref ? schema.model.$defs[rule.$ref.split("/").pop()] : rule;
   }
 
-  // As Python writes it: 2.0, 1e-05, 1e+16.
+  // Format a float like Python: 2.0, 1e-05, 1e+16.
   function floatText(value) {
     const [digits, exponent] = value.toExponential().split("e");
     if (Object.is(value, -0)) return "-0.0";
@@ -46,11 +46,11 @@ const RayCasterScene = (() => {
     return Number.isInteger(value) ? `${value}.0` : `${value}`;
   }
 
-  // As Python's str: 2020-01-01 07:32:00+00:00.
+  // Format a date like Python's str: 2020-01-01 07:32:00+00:00.
   const dateText = (date) =>
     date.toISOString().replace("T", " ").replace(/Z$|-00:00$/, "+00:00").replace(".000", "").replace(/\.\d+/, "$&000");
 
-  // As Python's json.dumps writes it.
+  // Format a value like Python's json.dumps.
   function jsonText(value) {
     if (typeof value === "number") return floatText(value);
     if (value instanceof Date) return JSON.stringify(dateText(value));
@@ -59,7 +59,7 @@ const RayCasterScene = (() => {
     return `{${Object.entries(value).map(([key, item]) => `${JSON.stringify(key)}: ${jsonText(item)}`).join(", ")}}`;
   }
 
-  // What stood there, for the end of a complaint.
+  // The given value, for the end of an error message.
   function given(value, schema) {
     try {
       const text = jsonText(value);
@@ -69,7 +69,7 @@ const RayCasterScene = (() => {
     }
   }
 
-  // Keys and indices that lead to the mistake, with the rectangle's name: rect[0] ("floor") corners[1].
+  // The keys and indices of a mistake, with the rectangle's name: rect[0] ("floor") corners[1].
   function placeText(place, contents) {
     let text = "";
     let separator = "";
@@ -87,8 +87,8 @@ const RayCasterScene = (() => {
     return text;
   }
 
-  // All that is wrong in a value, in pydantic's order: a list of {place, expected, isKey}, where isKey says that the
-  // mistake is the key.
+  // All mistakes in a value, in pydantic's order: a list of {place, expected, isKey}; isKey is true if the key itself
+  // is the mistake.
   function mistakes(value, part, place, schema) {
     const rule = resolve(part, schema);
     const wrong = (expected) => [{ place, expected: expected + given(value, schema) }];
@@ -132,7 +132,7 @@ const RayCasterScene = (() => {
     const number = Math.min(error.line, lines.length);
     const line = lines[number - 1].replace(/^[ \t]+|[ \t]+$/g, "");
     const isShown = length(line) <= schema.longest_shown && !/(?! )[\p{C}\p{Z}]/u.test(line);
-    // With [rect] in some places a table is declared twice, or is no list.
+    // With [rect] in some places, a table is declared twice or is not a list.
     const reason = /^\[+rect\]+/.test(line) ? schema.complaints.heading : said;
     return fill(schema.complaints.syntax, { number, line: isShown ? `: ${line}` : "", reason });
   }
@@ -140,13 +140,13 @@ const RayCasterScene = (() => {
   const channels = (colour) =>
     typeof colour === "string" ? [1, 3, 5].map((digit) => parseInt(colour.slice(digit, digit + 2), 16)) : colour;
 
-  // Python's round: halves go to the even neighbour; + 0 makes 0 of -0.
+  // Round like Python: halves to the even neighbour; + 0 turns -0 into 0.
   const rounded = (value) => (Math.abs(value % 1) === 0.5 ? 2 * Math.round(value / 2) : Math.round(value)) + 0;
 
   /**
-   * The camera's forward, right and up as the registers have them: integers, a whole vector being 256. As Camera.basis,
-   * unless the browser's cosine differs from Python's in its last bit, and that decides how a part is rounded.
-   * @param {number} yaw in degrees, as pitch and roll
+   * Computes the camera's forward, right and up as in the registers: integers, with vectors of length 256. Equal to
+   * Camera.basis, unless the last bit of the browser's cosine is not that of Python and this changes a rounding.
+   * @param {number} yaw yaw in degrees; pitch and roll too
    * @returns {number[][]} three vectors of x, y, z
    */
   function basis(yaw, pitch, roll) {
@@ -160,7 +160,7 @@ const RayCasterScene = (() => {
     return vectors.map((vector) => vector.map((part) => rounded(part * BASIS_SCALE)));
   }
 
-  // A value without mistakes: each key of its tables, given or by default, and Numbers in place of BigInts.
+  // Complete a correct value: with the defaults of its tables' keys, and Numbers instead of BigInts.
   function filled(value, part, schema) {
     const rule = resolve(part, schema);
     if (typeof value === "bigint") return Number(value);
@@ -199,13 +199,14 @@ const RayCasterScene = (() => {
 
   /**
    * Reads a scene file.
-   * @param {string|ArrayBuffer} source its text, or its bytes
-   * @param {string} name of the file, for the error
-   * @param {object} schema what web/scene_schema.py makes
-   * @param {number} [rectangles] how many the hardware holds
-   * @returns {{scene: ?object, error: ?string}} one of both is null. The scene: title, rows, reflections, background,
+   * @param {string|ArrayBuffer} source text or bytes of the file
+   * @param {string} name name of the file, for the error
+   * @param {object} schema schema from web/scene_schema.py
+   * @param {number} [rectangles] number of rectangles that the hardware holds
+   * @returns {{scene: ?object, error: ?string}} one of the two is null. Scene: title, rows, reflections, background,
    *   camera {position, yaw, pitch, roll}, light {position, quarters} or null, rect [{name, corners, colour, quarters,
-   *   kind, cell, colour2}] and needs {turn, materials, patterns, light}; colours are [r, g, b], quarters the mirror's 0..4, kind the registers' code.
+   *   kind, cell, colour2}] and needs {turn, materials, patterns, light}; colours are [r, g, b], quarters are 0..4 (a
+   *   mirror's reflectivity, a light's shade), kind is the register code.
    */
   function read(source, name, schema, rectangles = Infinity) {
     const refuse = (complaint) => ({ scene: null, error: `${name}: ${complaint}` });
@@ -223,7 +224,7 @@ const RayCasterScene = (() => {
       return refuse(syntaxComplaint(error, text, schema));
     }
     const found = mistakes(contents, schema.model, [], schema);
-    // A mistyped key leaves the right one missing; the mistake itself is the better thing to tell.
+    // A mistyped key also leaves the right one missing; report the mistyped one.
     const first = found.find((mistake) => mistake.isKey) ?? found[0];
     if (first) return refuse(`${placeText(first.place, contents)}: ${first.expected}`);
     const count = contents.rect.length;

@@ -29,7 +29,7 @@ def position_corners(config: Configuration) -> list[int]:
 
 
 def factors(random: np.random.Generator, width: int) -> list[int]:
-    """All of them if they are few, else those at which digits and signs change, and some at random."""
+    """Return all factors if they are few, otherwise those where digits or signs change and some at random."""
     least, most = -(1 << width - 1), (1 << width - 1) - 1
     if width < 6:
         return list(range(least, most + 1))

@@ -32,7 +32,7 @@ from raycaster.rtl.common.widths import (
 from raycaster.verif.leaf import Leaf
 
 P, Q = (1, 0, 1), (2, 2, 0)
-"""By the axis of a plane: p is y unless the plane is on y, q is z unless it is on z."""
+"""The axes p and q, indexed by a plane's axis: p is y unless the plane is on y, q is z unless it is on z."""
 
 WALK = ("way_p", "low_p", "high_p", "low_q", "high_q")
 
@@ -40,17 +40,17 @@ CANDIDATE = ("valid", "at_mirror", "numerator", "denominator", "index")
 
 
 def beam_config(*, reflections: int = 1, **options) -> Configuration:
-    """A design; for a leaf test also one that has too many reflections to set up a line in its blanking."""
+    """Make a design; its reflections may take longer to set up than a line's blanking, as leaf tests need."""
     return replace(configure(engine="beam", reflections=0, **options), reflections=reflections)
 
 
 def word(value: int, bits: int) -> int:
-    """A number as its port has it."""
+    """Encode a number for a port of this width."""
     return int(value) % (1 << bits)
 
 
 def number(value: int, bits: int) -> int:
-    """What a port of two's complement says."""
+    """Decode a port's two's complement value."""
     return value - (1 << bits) if value >> (bits - 1) else value
 
 
@@ -78,14 +78,14 @@ def direction_ports(name: str, config: Configuration, slope) -> dict[str, int]:
 
 
 def pixels_of(config: Configuration, channels: list[int]) -> list[int]:
-    """The pixels of a clock, the left one first, as words of what their red, green and blue ports have."""
+    """Return the pixels of one clock, left one first, as words made of the red, green and blue ports."""
     bits = config.colour_bits
     lanes = [[channel >> bits * lane & (1 << bits) - 1 for channel in channels] for lane in range(config.pixels)]
     return [(red << bits | green) << bits | blue for red, green, blue in lanes]
 
 
 def products(table: Rectangles, index: int, camera, slope) -> dict[str, int]:
-    """What cross-multiplication compares, and the distance and way_q."""
+    """Compute the products that cross-multiplication compares, the distance and way_q."""
     axis = int(table.axes[index])
     low, high = (bound[index].astype(object) - camera for bound in (table.low, table.high))
     n, e = int(low[axis]), int(slope[axis])
@@ -102,7 +102,7 @@ def products(table: Rectangles, index: int, camera, slope) -> dict[str, int]:
 
 
 def flat_tables(random: np.random.Generator, count: int) -> Rectangles:
-    """Rectangles that all have a plane; corners of the world are common."""
+    """Make a table whose rectangles all have a plane; corners of the world are common."""
     corners = np.array([[[any_place(random) for _ in AXES] for _ in range(2)] for _ in range(count)])
     axis = random.integers(3, size=count)
     corners[np.arange(count), 1, axis] = corners[np.arange(count), 0, axis]
@@ -110,7 +110,7 @@ def flat_tables(random: np.random.Generator, count: int) -> Rectangles:
 
 
 def row_slopes(random: np.random.Generator, config: Configuration, columns: int) -> tuple[np.ndarray, np.ndarray]:
-    """The slope of a column that a lane takes so many steps from, and what a step adds."""
+    """Return the slope of a column from which a lane takes this many steps, and a step's increment."""
     screen = config.screen_geometry
     row, column = int(random.integers(screen.rows)), int(random.integers(screen.columns - columns * config.pixels + 1))
     basis = np.array(random_basis(random) if config.turn else np.eye(3), dtype=np.int64)
@@ -119,9 +119,10 @@ def row_slopes(random: np.random.Generator, config: Configuration, columns: int)
 
 
 def beam_rays(random: np.random.Generator, config: Configuration, count: int, most: int | None = None):
-    """Tables, rectangles of them to look at, cameras, slopes and mirrors (axis and plane, as the ray meets them).
+    """Yield tables, indices of rectangles to test, cameras, slopes and mirrors (axis and plane, as the ray meets them).
 
-    As the engine meets them, and as extreme as its widths allow. most: mirrors, if not as many as there can be.
+    They are as the engine meets them, and as extreme as its widths allow. most: the most mirrors; by default, as many
+    as the design has reflections.
     """
     most = config.reflections if most is None else most
     steepest, view = steepest_slope(config), config.screen_geometry.view_distance
@@ -129,7 +130,7 @@ def beam_rays(random: np.random.Generator, config: Configuration, count: int, mo
     for _ in range(count):
         table = random_rectangles(random, count=8, closed=True)
         camera = random_camera(random, table).astype(np.int64)
-        # Of a power of two its one bit counts, and of ways that a small one divides the lowest bits.
+        # With a power of two a single bit decides; with a small slope, the lowest bits of the ways do.
         extremes = [0, view, steepest, random.choice(powers), *random.integers([4, 16, 16, steepest])]
         slope = random.choice(extremes, 3) * random.choice([-1, 1], 3)
         if not config.turn:
@@ -143,17 +144,17 @@ def beam_rays(random: np.random.Generator, config: Configuration, count: int, mo
             axis, plane = int(random.integers(3)), any_place(random)
             eye, turned = seen_from(camera, slope, mirrors)
             if mirrors and random.random() < 0.3:
-                # From corner to corner the image runs as far away as it can.
+                # Mirrors on opposite sides of the world move the image as far away as possible.
                 axis, plane = mirrors[-1][0], LAST - mirrors[-1][1]
             elif mirrors and random.random() < 0.6:
-                # Where the last one was met, if that is on a whole coordinate of this axis too.
+                # Through the point where the last mirror was met, if its coordinate on this axis is whole too.
                 plane = coordinate(eye, turned, met, axis)
             elif turned[axis] and random.random() < 0.6:
                 plane = coordinate(eye, turned, time_ahead(random, eye, turned, met, axis), axis)
             if not turned[axis]:
                 continue
             t = Fraction(int(plane - eye[axis]), int(turned[axis]))
-            # A corner has a mirror on each of its axes.
+            # Mirrors in one point, a corner, are on different axes.
             if t > met or (t == met and mirrors and axis not in met_last(camera, slope, mirrors)):
                 met = t
                 mirrors.append((axis, plane))
@@ -162,7 +163,7 @@ def beam_rays(random: np.random.Generator, config: Configuration, count: int, mo
         for index in chosen:
             axis, corners = int(table.axes[index]), table.corners.copy()
             if turned[axis] and random.random() < 0.8:
-                # A third plane may be in the mirrors' corner.
+                # A third plane may go through the mirrors' corner.
                 t = met if random.random() < 0.4 else time_ahead(random, eye, turned, met, axis)
                 corners[index, :, axis] = coordinate(eye, turned, t, axis)
                 table = Rectangles(corners, table.colours, table.enabled)
@@ -171,7 +172,7 @@ def beam_rays(random: np.random.Generator, config: Configuration, count: int, mo
 
 
 def time_ahead(random: np.random.Generator, eye, turned, met: Fraction, axis: int) -> Fraction:
-    """When a ray is on its way from a mirror out of the world; often at a whole coordinate of two axes at once."""
+    """Pick a time between a ray's last mirror and its exit from the world; often with whole coordinates on two axes."""
     exits = ((LAST * (slope > 0) - place, slope) for place, slope in zip(eye.tolist(), turned.tolist(), strict=True))
     left = min(Fraction(way, slope) for way, slope in exits if slope)
     t = met + max(left - met, 0) * Fraction(int(random.integers(1, 65)), 64)
@@ -182,12 +183,12 @@ def time_ahead(random: np.random.Generator, eye, turned, met: Fraction, axis: in
 
 
 def coordinate(eye, turned, t: Fraction, axis: int) -> int:
-    """Where a ray is then; the world's last one where it has left."""
+    """Return a ray's coordinate at time t, clipped to the world."""
     return int(np.clip(int(eye[axis] + int(turned[axis]) * t), 0, LAST))
 
 
 def seen_from(camera, slope, mirrors) -> tuple[np.ndarray, np.ndarray]:
-    """The camera and the slope, mirrored."""
+    """Return the camera and the slope, mirrored."""
     eye, turned = np.array(camera), np.array(slope)
     for axis, plane in mirrors:
         eye[axis], turned[axis] = 2 * plane - eye[axis], -turned[axis]
@@ -195,7 +196,7 @@ def seen_from(camera, slope, mirrors) -> tuple[np.ndarray, np.ndarray]:
 
 
 def met_last(camera, slope, mirrors) -> list[int]:
-    """The axes of the mirrors that a ray met in the point that it left last."""
+    """Return the axes of the mirrors in the point that a ray left last."""
     times = []
     for number, (axis, plane) in enumerate(mirrors):
         eye, turned = seen_from(camera, slope, mirrors[:number])
@@ -204,7 +205,7 @@ def met_last(camera, slope, mirrors) -> list[int]:
 
 
 def image_of(config: Configuration, camera, slope, mirrors) -> dict[str, int]:
-    """The image of the room, by its definition: x - E = +-(X - E) + T, where the room's x is the mirrored camera's."""
+    """Return the room's image by its definition: x - E = +-(X - E) + T, with x on the ray from the mirrored camera."""
     eye, _ = seen_from(camera, slope, mirrors)
     met = met_last(camera, slope, mirrors)
     fields = {f"met_{name}": int(axis in met) for axis, name in enumerate(AXES)}
@@ -214,7 +215,7 @@ def image_of(config: Configuration, camera, slope, mirrors) -> dict[str, int]:
 
 
 def folded(config: Configuration, camera, slope, mirrors) -> dict[str, int]:
-    """The fold of a ray in that image."""
+    """Return the fold of a ray in the image of the room."""
     eye, turned = seen_from(camera, slope, mirrors)
     turn = [int(value) for value in eye - camera]
     fields = image_of(config, camera, slope, mirrors)
@@ -233,7 +234,7 @@ def folded(config: Configuration, camera, slope, mirrors) -> dict[str, int]:
 
 
 def check_tester(block, fields, config: Configuration, tmp_path, random: np.random.Generator) -> None:
-    """Rays with mirrors where there is a port for their fold, and otherwise rays from the camera."""
+    """Test mirrored rays if the block has a port for their fold, otherwise rays from the camera."""
     slope_bits, lead = exact_slope_bits(config), fold_lead(config) if fields else 0
     strobes = ("step_way", "step_bounds", "step_slope")
     leaf = Leaf(block, lambda: ports(
@@ -242,7 +243,7 @@ def check_tester(block, fields, config: Configuration, tmp_path, random: np.rand
         index=unsigned(index_bits(config)), hit=candidate_of(config), staged=is_staged(config)
     ), tmp_path)  # fmt: skip
     stimulus, expected, seen = [], {}, set()
-    # Of more mirrors fewer are in one point.
+    # The more mirrors, the fewer of them meet in one point.
     count, most = (3600 * max(1, config.reflections - 1), None) if fields else (1500, 0)
     for table, chosen, camera, slope, mirrors in beam_rays(random, config, count, most):
         if bool(mirrors) != bool(fields):
@@ -261,17 +262,17 @@ def check_tester(block, fields, config: Configuration, tmp_path, random: np.rand
             if config.patterns:
                 facet["facet_cell"] = int(random.integers(8))
             ways = {"walk_way_p": word(now["way_p"], walk_bits(config)), **way_q}
-            # Between its strobes a stage keeps what it has.
+            # Between its strobes a stage keeps its values.
             case_stimulus: list[dict[str, int]] = [dict.fromkeys(strobes, 0) for _ in range(lead + 3)]
             case_stimulus[0] |= facet | (fold if fields else {})
             case_stimulus[lead] |= {f"signs_d{axis}": int(part < 0) for axis, part in zip(AXES, slope, strict=True)}
             case_stimulus[lead if fields else 1] |= ways
             case_stimulus[lead + 1] |= bounds
             case_stimulus[lead + slope_at(config)] |= {f"slope_d{AXES[c]}": abs(int(slope[c])) for c in range(3)}
-            # Any of the design's rectangles, of which the table has fewer.
+            # Any index in the design; the table has fewer rectangles.
             number = int(random.integers(config.rectangles))
             case_stimulus[lead + 2] |= {"index": number}
-            # What comes without its strobe is another ray's.
+            # Inputs without their strobe belong to another ray.
             case_stimulus[lead + 1] |= {f"signs_d{axis}": int(random.integers(2)) for axis in AXES}
             case_stimulus[lead + 2] |= {name: int(random.integers(1 << walk_bits(config))) for name in bounds}
             for cycle, strobe in enumerate(strobes, lead):
@@ -285,7 +286,7 @@ def check_tester(block, fields, config: Configuration, tmp_path, random: np.rand
             case = table.corners[index].tolist(), camera, slope, mirrors
             expected[start + TESTER_LATENCY] = facet, hit and bool(facet["facet_usable"]), at_mirror, n, e, number, case
     outputs = leaf.run_both([*stimulus, dict.fromkeys(strobes, 0)], settled=lead + TESTER_LATENCY)
-    # With no mirror; with one, and two in one point, where a third plane may be too. Three in one point hide the rest.
+    # No mirror: miss or hit. One, or two in one point: also a hit in that point. Three in one point hide the rest.
     assert len([case for case in seen if case[0] < 3]) == (3 * min(config.reflections, 2) if fields else 2)
     assert ((3, False, False) in seen) == (config.reflections > 2 and bool(fields))
     for cycle, (facet, hit, at_mirror, n, e, number, case) in expected.items():
@@ -301,13 +302,13 @@ def check_tester(block, fields, config: Configuration, tmp_path, random: np.rand
 
 @cache
 def candidate_limits(config: Configuration) -> tuple[int, int]:
-    """The greatest numerator and denominator."""
+    """Return the greatest numerator and denominator."""
     candidate = candidate_of(config)
     return tuple((1 << len(signal)) - 1 for signal in (candidate.numerator, candidate.denominator))
 
 
 def any_candidate(random: np.random.Generator, config: Configuration) -> tuple[int, int, int, int, int]:
-    """valid, at_mirror, numerator, denominator, index; equal fractions in other terms are common."""
+    """Return valid, at_mirror, numerator, denominator and index; equal fractions in other terms are common."""
     most = candidate_limits(config)
     if random.random() < 0.4:
         n, e, times = int(random.integers(1, 4)), int(random.integers(1, 4)), int(random.integers(1, 60))
@@ -318,9 +319,9 @@ def any_candidate(random: np.random.Generator, config: Configuration) -> tuple[i
 
 
 def close_candidates(random: np.random.Generator, config: Configuration) -> tuple:
-    """Two whose products with the other's denominator are large, and differ by two at most."""
+    """Return two candidates whose cross products are large and differ by at most two."""
     most, most_below = candidate_limits(config)
-    # Of denominators far wider than numerators few have such a pair, and are long to find.
+    # With denominators far wider than numerators, such pairs are rare and take long to find.
     if random.random() < 0.9:
         most_below = min(most, most_below)
     while True:
@@ -349,7 +350,7 @@ def fraction_of(candidate) -> Fraction:
 
 
 def any_facets(random: np.random.Generator, config: Configuration) -> tuple[list[dict[str, int]], int]:
-    """Fields of facets, and all of them side by side."""
+    """Return the fields of random facets, and all facets packed side by side."""
     record = facet_of(config)
     facets = [
         {name: int(random.integers(1 << bits)) for name, bits in record.layout.items()}
@@ -359,7 +360,7 @@ def any_facets(random: np.random.Generator, config: Configuration) -> tuple[list
 
 
 def opened(random: np.random.Generator, corners: np.ndarray, axis: int, plane: int, eye, turned) -> Fraction:
-    """Make a rectangle one that a ray hits near two of its edges, and say when."""
+    """Change a rectangle so that a ray hits it near two of its edges; return the time of the hit."""
     corners[:, axis] = plane
     t = Fraction(int(plane - eye[axis]), int(turned[axis]))
     for u in OTHER_AXES[axis]:
@@ -371,18 +372,20 @@ def opened(random: np.random.Generator, corners: np.ndarray, axis: int, plane: i
 
 
 def race(random: np.random.Generator, config: Configuration, slopes) -> tuple[np.ndarray, Rectangles, int]:
-    """A camera, a table, and a ray that meets mirrors near their edges, and at its end two rectangles almost at once,
-    or one that stands by the last mirror."""
+    """Return a camera, a table, and the column of a ray that meets mirrors near their edges.
+
+    After the mirrors, the ray meets two rectangles almost at once, or one next to the last mirror.
+    """
     count, before_centre = config.rectangles, config.screen_geometry.centre_column - 1
     ends = int(random.integers(min(config.reflections + 1, count), size=2).max())
     by_mirror = ends > 0 and random.random() < 0.25
-    # A camera that turns looks at more places from which a second mirror is out of reach.
+    # A camera that can turn more often looks where no second mirror is in reach.
     for _ in range(5000):
         camera, table = random.integers(WORLD_SIZE, size=3), flat_tables(random, count)
         corners, order = table.corners.copy(), random.permutation(count)
-        # The last column whose rays run down along y is the one that tells its sign from the next one's.
+        # The last column with a negative slope along y is the only one whose right neighbour has another sign.
         column = before_centre if random.random() < 0.1 else int(random.integers(len(slopes), size=2).min())
-        # After two mirrors and more the lowest bits count where a small odd slope reaches an edge exactly.
+        # After two or more mirrors, the lowest bits decide where a small odd slope reaches an edge exactly.
         if ends >= 2 and random.random() < 0.5:
             column = before_centre + 1 + int(random.choice([-3, -1, 1, 3]))
         mirrors: list[tuple[int, int]] = []
@@ -394,7 +397,7 @@ def race(random: np.random.Generator, config: Configuration, slopes) -> tuple[np
             if bounce >= 2 and by_mirror:
                 t = times[-1]
             elif bounce >= 2:
-                # It may meet the one before the last again, which then is the other of the two.
+                # The ray may meet the mirror before the last again, which then is the other of the two rectangles.
                 again, first = mirrors[-2]
                 t = max(times[-1], Fraction(int(first - eye[again]), int(turned[again])))
             plane = coordinate(eye, turned, t, axis)
@@ -410,11 +413,11 @@ def race(random: np.random.Generator, config: Configuration, slopes) -> tuple[np
         traced = ExactModel().trace(table, camera, (0, 0, 0), slopes[column : column + 1], ends, keep=True)
         if traced.bounces[-1].hits.sum() >= min(1 if by_mirror else 2, count):
             return camera, table, column
-    raise AssertionError(f"no ray has two rectangles, or one by a mirror, after {ends} reflections")
+    raise AssertionError(f"no ray meets two rectangles, or one next to a mirror, after {ends} reflections")
 
 
 def row_signals(config: Configuration) -> dict[str, object]:
-    """Through which a lane, and each of its passes, get a row that was set up."""
+    """Return the signals that carry a row's set-up to a lane and to each of its passes."""
     return {
         "start_line": bit(),
         "load": unsigned(config.rectangles),
@@ -426,9 +429,9 @@ def row_signals(config: Configuration) -> dict[str, object]:
 
 
 def row_ports(config: Configuration, table: Rectangles, camera, slopes) -> tuple[dict[str, int], list[dict[str, int]]]:
-    """What their ports hold in a row, and what else the cycles get in which it begins.
+    """Return the values held on a lane's ports during a row, and the extra inputs of the row's first cycles.
 
-    slopes: of the lane's first column, and of the next one to the right.
+    slopes: of the lane's first column, and of the lane's next column to the right.
     """
     facet, growth = facet_of(config), stride_of(config)
     begin: list[dict[str, int]] = [{"start_line": 1}]

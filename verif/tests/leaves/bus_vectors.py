@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""An Avalon-MM agent, and what leaf tests of bridges share."""
+"""An Avalon-MM agent, and helpers for leaf tests of bridges."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ ADDRESS_BITS = 6
 CYCLES = 1500
 
 agents = pytest.mark.parametrize(("patience", "latency"), [(0.0, 2), (0.3, 4), (0.8, 7)])
-"""How often the agent makes wait, and how many cycles it takes for an answer at most."""
+"""The agent's chance of a wait state, and the most cycles that it takes to answer."""
 
 
 class Agent:
-    """An Avalon-MM agent that makes wait and answers at random."""
+    """An Avalon-MM agent that inserts wait states and answers at random times."""
 
     def __init__(self, random: np.random.Generator, patience: float, latency: int):
         self._random, self._patience, self._latency = random, patience, latency
-        self._due = None  # cycles until a read that was taken is answered
+        self._due = None  # cycles until the accepted read is answered
         self.word = self.waits = self.answers = 0
 
     def drive(self) -> dict[str, int]:
-        """What it drives in this cycle; readdata changes with an answer only."""
+        """Return the agent's outputs in this cycle; readdata changes only with an answer."""
         self.answers = int(self._due == 0)
         self._due = None if self._due in (None, 0) else self._due - 1
         self.waits = int(self._random.random() < self._patience)
@@ -41,7 +41,7 @@ class Agent:
         return {"avm_m0_readdata": self.word, "avm_m0_readdatavalid": self.answers, "avm_m0_waitrequest": self.waits}
 
     def take(self) -> None:
-        """It takes a read in this cycle; the answer comes two cycles later at the earliest."""
+        """Accept a read in this cycle; the answer comes two cycles later at the earliest."""
         self._due = int(self._random.integers(1, self._latency))
 
 
@@ -50,7 +50,7 @@ def any_lanes(random: np.random.Generator) -> int:
 
 
 def any_byte_address(random: np.random.Generator) -> int:
-    """Whichever of a word's bytes it says, it is the word's."""
+    """Return the address of any byte; it selects the word that the byte is in."""
     return int(random.integers(4 << ADDRESS_BITS))
 
 
@@ -69,7 +69,7 @@ def bridge_leaf(name: str, directory: Path) -> Leaf:
 
 
 def check(leaf: Leaf, stimulus: list[dict[str, int]], expected: list[dict[str, int]]) -> None:
-    """Whatever a model expects, and in no cycle anything unknown after the reset."""
+    """Compare the outputs with those of a model; after the reset, no output is unknown."""
     for cycle, (output, wanted) in enumerate(zip(leaf.run_both(stimulus, settled=1), expected, strict=True)):
         for name, value in wanted.items():
             assert output[name] == value, f"{name} is {output[name]}, expected {value}, cycle {cycle}"

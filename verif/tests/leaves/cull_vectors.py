@@ -19,14 +19,14 @@ def culling_config(**options) -> Configuration:
 
 
 def hit_mask(config: Configuration, table: Rectangles, camera, row: int, offset: int) -> int:
-    """What golden's primary rays of the group hit."""
+    """Return a mask of the rectangles that the group's primary rays hit in the golden model."""
     slopes = primary_slopes(config.screen_geometry)[row, offset * config.units : (offset + 1) * config.units]
     traced = model_of(config).trace(table, camera, (0, 0, 0), slopes, 0, keep=True)
     return sum(int(hit) << index for index, hit in enumerate(traced.bounces[0].hits.any(axis=1)))
 
 
 def scenes(random: np.random.Generator, config: Configuration):
-    """Camera and table, of which all rectangles are enabled and have a plane; some touch the rays at a group's ends."""
+    """Yield a camera and a table; all rectangles are enabled and have a plane."""
     while True:
         table = random_rectangles(random, config.rectangles, closed=None if config.rectangles >= 7 else False)
         camera = np.asarray(random_camera(random, table))
@@ -40,9 +40,9 @@ def scenes(random: np.random.Generator, config: Configuration):
 def with_edges_on_rays(
     random: np.random.Generator, config: Configuration, table: Rectangles, camera, places: Sequence[tuple[int, int]]
 ) -> Rectangles:
-    """Many of the rectangles get an edge where a ray at an end of one of the groups meets their plane, or next to it.
+    """Move an edge of many rectangles to, or next to, where an end ray of one of the groups meets their plane.
 
-    places: of groups, each a row and a number in it.
+    places: groups, each as a row and the group's number in the row.
     """
     slopes = primary_slopes(config.screen_geometry)
     corners = table.corners.copy()
@@ -55,7 +55,7 @@ def with_edges_on_rays(
             u, v = (int(other) for other in random.permutation(OTHER_AXES[axis]))
             met = camera[u] + end[u] * (corners[index, 0, axis] - camera[axis]) // end[axis]
             if random.random() < 0.7:
-                # So that this edge alone decides.
+                # Let this edge alone decide.
                 corners[index, :, v] = 0, WORLD_SIZE - 1
             corners[index, random.integers(2), u] = np.clip(met + random.integers(-2, 3), 0, WORLD_SIZE - 1)
     return Rectangles(corners, table.colours, table.enabled)

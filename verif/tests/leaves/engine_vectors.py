@@ -28,17 +28,17 @@ SMALL_SCREEN = Screen(
     horizontal=Span(32, 8, 24, 20, active_high=False),
     vertical=Span(8, 1, 2, 2, active_high=True),
 )
-"""Small enough that MyHDL's simulator shows a whole frame in seconds."""
+"""A screen so small that MyHDL's simulator shows a whole frame in seconds."""
 
 
 def small_config(screen: Screen = SMALL_SCREEN, **options) -> Configuration:
-    """A configuration for a screen that no name stands for."""
+    """Make a configuration for a screen that has no name."""
     beam = options.get("engine") == "beam"
     screen = replace(screen, clocks_per_pixel=1) if beam else screen
     with mock.patch.dict(BEAM_SCREENS if beam else SCREENS, {("tiny", screen.rows): screen}):
         config = configure(screen="tiny", rows=screen.rows, **options)
         shown = screen.scaled(config.scale)
-        # Looked up once, and kept from here on.
+        # The first access looks the screen up and caches it.
         assert config.screen_geometry == (shown if config.pixels == 1 else shown.paired())
     return config
 
@@ -60,7 +60,7 @@ def colour_word(colour) -> int:
 
 
 def fate_of(config: Configuration, golden, table: Rectangles) -> dict[str, Any]:
-    """What the control is told of a group that golden has traced: the keyword arguments of `trace_cycles`."""
+    """Return a traced group's fate as the control gets it: the keyword arguments of `trace_cycles`."""
     if not (config.culling or config.materials):
         return {}
     behind = {
@@ -75,7 +75,7 @@ def fate_of(config: Configuration, golden, table: Rectangles) -> dict[str, Any]:
 
 
 def rects_shown(config: Configuration, cycle, table: Rectangles) -> dict[str, int]:
-    """What the control and the memory show all units in a cycle."""
+    """Return the rectangles that the control and the memory show all units in a cycle."""
     inputs = {}
     if cycle.current is not None:
         inputs |= sorted_rect(table, cycle.current, "rect", config)
@@ -85,7 +85,7 @@ def rects_shown(config: Configuration, cycle, table: Rectangles) -> dict[str, in
 
 
 def unrelated_inputs(random: np.random.Generator, config: Configuration) -> dict[str, int]:
-    """What a unit reads in one step only, the pixel's place and the plane, as it may be in the other cycles."""
+    """Return random values for the inputs that a unit reads in a single step: the pixel's place and the plane."""
     return {
         "place_row": int(random.integers(config.screen_geometry.rows)),
         "place_column_offset": int(random.integers(config.groups)),
@@ -103,11 +103,11 @@ def ray_unit_leaf(config: Configuration, directory) -> Leaf:
 
 
 def check_ray_unit(leaf: Leaf, config: Configuration, random: np.random.Generator, rays: int = 24) -> None:
-    """Rays through a unit as its control leads them: MyHDL, Verilog and golden."""
+    """Step rays through a unit as its control does; compare MyHDL and Verilog with the golden model."""
     slopes = primary_slopes(config.screen_geometry)
     rows, columns, _ = slopes.shape
-    stimulus, results, told = [], [], []
-    # How many mirrors a ray meets: none, one, and all that it may.
+    stimulus, results, reported = [], [], []
+    # Numbers of surfaces that a ray hits; each must occur, from none to the most.
     fates, every_fate = set(), set(range(config.reflections + 2))
     while len(results) < rays or fates != every_fate:
         row = int(random.choice([0, 1, config.screen_geometry.horizon_row, rows - 1, random.integers(rows)]))
@@ -128,27 +128,27 @@ def check_ray_unit(leaf: Leaf, config: Configuration, random: np.random.Generato
         for cycle in trace_cycles(config, visible_indices(table), reflections, **fated):
             inputs = {**held, **cycle.steps, **rects_shown(config, cycle, table)}
             if config.culling or config.materials:
-                told.append((len(stimulus), cycle.towards, cycle.alive))
+                reported.append((len(stimulus), cycle.towards, cycle.alive))
             if not cycle.steps["steps_screen_to_ray"] and not cycle.steps["steps_find_intersection"]:
                 inputs |= unrelated_inputs(random, config)
             stimulus.append(inputs)
         case = f"row {row}, column {column}, camera {camera}, corners {table.corners.tolist()}"
         results.append((len(stimulus), pixel_word(config, golden.colours[0]), case))
-        # done: the pixel stands, whatever comes.
+        # After done, the pixel stays valid whatever the inputs.
         stimulus.append({**dict.fromkeys(stimulus[-1], 0), "picture_background": held["picture_background"]})
     outputs = leaf.run_both(stimulus, settled=results[0][0])
     for cycle, pixel, case in results:
         assert pixel_of(config, outputs[cycle]) == pixel, case
-    for cycle, towards, alive in told:
+    for cycle, towards, alive in reported:
         assert towards is None or outputs[cycle].get("fate_towards", towards) == towards, cycle
         assert alive is None or outputs[cycle]["fate_alive"] == alive, cycle
 
 
 def monitored(outputs: list[dict[str, int]], config: Configuration) -> list[np.ndarray]:
-    """The frames that a monitor sees, as rows of pixel words; it samples where its clock has risen.
+    """Return the frames that a monitor sees, as rows of pixel words, sampled where its clock has risen.
 
-    Of two pixels in a clock, the left one is in the low half of each colour. With a clock a pixel that is before each
-    clock, where outputs are recorded.
+    With two pixels per clock, the left one is in the low half of each colour. With one clock per pixel, the monitor
+    samples in every recorded cycle.
     """
     every_cycle = config.screen_geometry.clocks_per_pixel == 1
     horizontal, vertical = config.screen_geometry.horizontal, config.screen_geometry.vertical
@@ -188,12 +188,14 @@ TINY_SCREEN = Screen(
     horizontal=Span(16, 8, 24, 20, active_high=False),
     vertical=Span(4, 1, 2, 2, active_high=True),
 )
-"""With many frames in little time."""
+"""A screen that shows many frames in a short time."""
 
 
 def scene_in_view(random: np.random.Generator, config: Configuration, axis: int) -> tuple:
-    """Camera, table, background, reflections and the picture; most show several colours and a plane of this axis, and
-    are another picture from a camera one unit away along it."""
+    """Return a camera, a table, a background, a number of reflections, and the picture.
+
+    Most pictures show several colours and a plane on this axis, and change if the camera moves one unit along it.
+    """
     slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
     anything = random.random() < 0.2
     for _ in range(2000):
@@ -214,4 +216,4 @@ def scene_in_view(random: np.random.Generator, config: Configuration, axis: int)
             len(np.unique(words)) > 1 and axis in table.axes[table.visible] and not np.array_equal(moved, words)
         ):
             return camera, table, background, reflections, words
-    raise AssertionError(f"no scene shows where its camera is along {AXES[axis]}")
+    raise AssertionError(f"no scene depends on the camera's place along {AXES[axis]}")

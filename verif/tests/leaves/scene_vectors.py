@@ -20,7 +20,7 @@ CYCLES = 500
 
 
 def label(options) -> str:
-    """A design's options as a test's name has them."""
+    """Format a design's options for a test's name."""
     return "-".join([options["engine"], *(name for name in options if name != "engine")])
 
 
@@ -45,7 +45,7 @@ def random_bus(random: np.random.Generator, addresses: list[int], data: int | No
 
 
 def rectangle_words(random: np.random.Generator) -> tuple[Rectangles, list[tuple[int, ...]]]:
-    """Rectangles, some of them none, and their words with something in the bits that do not exist."""
+    """Return rectangles, some without a plane, and their words with random unimplemented bits."""
     registers = register_map(1)
     point, surface, pattern = (registers[f"rectangle[0].{name}"] for name in ("corner_0", "surface", "pattern"))
     table = random_looks(random, random_rectangles(random, 12))
@@ -59,7 +59,7 @@ def rectangle_words(random: np.random.Generator) -> tuple[Rectangles, list[tuple
         channels, channels_2 = (
             dict(zip(COLOURS, map(int, colours[index]), strict=True)) for colours in (table.colours, table.colours_2)
         )
-        # 4 and all that is more are the same.
+        # Values above 4 mean 4.
         mirror = int(random.integers(4, 8) if table.mirrors[index] == 4 else table.mirrors[index])
         cell = int(table.cells[index]).bit_length() - 4
         words.append(
@@ -74,7 +74,7 @@ def rectangle_words(random: np.random.Generator) -> tuple[Rectangles, list[tuple
 
 
 def fixed_config(count: int, engine: str, camera: bool, alike: bool = False, **options: bool) -> Configuration:
-    """A design of random fixed rectangles, of which the axis is the same for all where they are alike."""
+    """Make a design of random fixed rectangles; with alike, all have the same axis."""
     random = np.random.default_rng(seed())
     rectangles = tuple(
         FixedRectangle(1 if alike else int(axis), *map(int, random.integers(512, size=5)), int(colour))

@@ -14,7 +14,7 @@ def any_config(**options) -> Configuration:
 
 
 def plain_shares(hits: list[tuple[bool, int]]) -> list[Fraction]:
-    """How much what each ray saw counts: a mirror passes its quarters on, a miss and the last hit pass on nothing."""
+    """Return the weight of each ray's colour: mirrors pass their quarters on, a miss and the last hit pass nothing."""
     shares, left = [], Fraction(1)
     for number, (found, quarters) in enumerate(hits):
         passed_on = Fraction(quarters, 4) if found and number < len(hits) - 1 else Fraction(0)
@@ -24,7 +24,7 @@ def plain_shares(hits: list[tuple[bool, int]]) -> list[Fraction]:
 
 
 def cases(random: np.random.Generator, run_time: int, one_ray: list) -> list[tuple]:
-    """What each ray of a pixel may be: all that there is, or some where that is too much."""
+    """Combine outcomes of a pixel's rays: all combinations, or a random choice if they are too many."""
     if len(one_ray) ** (run_time + 1) <= 1000:
         return list(product(one_ray, repeat=run_time + 1))
     return [tuple(one_ray[i] for i in random.integers(len(one_ray), size=run_time + 1)) for _ in range(300)]

@@ -14,16 +14,16 @@ EVERY_LANE = (1 << LANES) - 1
 
 
 def any_strobe(random: np.random.Generator) -> int:
-    """A read as often as not."""
+    """Return a strobe; half of them are reads."""
     return int(random.integers(1, EVERY_LANE + 1)) if random.random() < 0.5 else 0
 
 
 STEP = 3
-"""World units that a button moves the camera by in a frame."""
+"""World units per frame by which a button moves the camera."""
 
 
 def stepped(position: int, more: int, less: int) -> int:
-    """Where a step leads; one out of the world is not made."""
+    """Return the position after a step; a step out of the world is not made."""
     target = position + STEP * (more - less)
     return target if 0 <= target < WORLD_SIZE else position
 
@@ -46,5 +46,5 @@ def any_word(random: np.random.Generator) -> int:
 
 
 def ports(bits: str, **others: object) -> dict[str, object]:
-    """Make a block's arguments: a bit for each name, of which `reset` is the reset, and the others as they are."""
+    """Make a block's arguments: a bit for each name (a reset signal for `reset`), and the others as they are."""
     return {name: reset_signal() if name == "reset" else bit() for name in bits.split()} | others

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `beam_caster`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `beam_caster`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import numpy as np
 import pytest
@@ -35,7 +35,7 @@ from raycaster.verif.leaf import Leaf, sorted_rect
     [
         (beam_config(screen="tiny", rectangles=1, reflections=0, colour_bits=4), 24),
         (beam_config(screen="tiny", rectangles=3, reflections=1, scale=1), 24),
-        # Small enough for every rectangle to matter in every pass.
+        # Few rectangles, so that each matters in every pass.
         (beam_config(screen="tiny", rectangles=3, reflections=2, scale=1), 400),
         (beam_config(screen="tiny", rectangles=8, reflections=2), 12),
         (beam_config(screen="tiny", rectangles=5, reflections=3, scale=1), 60),
@@ -63,12 +63,12 @@ def test_beam_caster(config, lines, tmp_path, random):
         picture=Picture(), rects=Rects(config), pixel=shown_of(config), config=config
     ), tmp_path)  # fmt: skip
     slopes, basis, horizon_row = primary_slopes(config.screen_geometry), UNTURNED, config.screen_geometry.horizon_row
-    # Of a camera that turns, the rectangles are set up for each lane, and once more.
+    # If the camera can turn, the rectangles are set up once per lane, and once more.
     turns = range(config.pixels + 1)
     sweeps = (
         [AIM_LATENCY - 3 + (SETUP_LATENCY + config.rectangles - 1) * turn for turn in turns] if config.turn else [0]
     )
-    # Until no column is on its way, whatever the registers started from.
+    # Run until no column is in flight, whatever the registers started with.
     stimulus, expected, fates = [{"reset": 1}] * beam_latency(config), {}, set()
     flat = [horizon_row + slope for slope in (-3, -1, 1, 3)]
     for number in range(lines):
@@ -95,7 +95,7 @@ def test_beam_caster(config, lines, tmp_path, random):
         held["picture_background"] = int.from_bytes(bytes(background.astype(np.uint8)))
         held["rects_usable"] = sum(1 << int(index) for index in np.flatnonzero(table.visible))
         if number % 16 == 4:
-            # Reset ends what a line has begun.
+            # Reset ends a line that has begun.
             begun = int(random.integers(config.rectangles + 2))
             stimulus += [{**held, "start_line": 1}, *[held] * begun, {**held, "reset": 1}]
             stimulus += [held] * beam_latency(config)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `beam_lane`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `beam_lane`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ from raycaster.verif.leaf import Leaf
 @pytest.mark.parametrize(
     ("config", "first", "lines"),
     [
-        # Small enough for every rectangle to matter in every pass.
+        # Few rectangles, so that each matters in every pass.
         (beam_config(screen="tiny", rectangles=3, reflections=2, scale=1), 0, 300),
         (beam_config(screen="tiny", rectangles=3, reflections=4, scale=1), 0, 60),
         (beam_config(screen="tiny", rectangles=3, reflections=2, pixels=2), 0, 40),
@@ -31,7 +31,7 @@ from raycaster.verif.leaf import Leaf
     ids=config_id,
 )
 def test_beam_lane(config, first, lines, tmp_path, random):
-    """Rows of which a set-up knows the products: every column, or every other one from the first or the second on."""
+    """Rows with set-up products: every column, or every other one from the first or the second on."""
     leaf = Leaf(beam_lane, lambda: ports(
         "clk next_column", enter=tied(0, 1), **row_signals(config), camera=camera_of(config), picture=Picture(),
         pixel=Pixel(config.colour_bits), config=config
@@ -42,7 +42,7 @@ def test_beam_lane(config, first, lines, tmp_path, random):
     for number in range(lines):
         view = slopes[int(random.integers(len(slopes)))].copy()
         if number % 2:
-            # Of another screen's view, for each bit of the slopes to count.
+            # The view of another screen, so that every bit of the slopes matters.
             view[:, 0] = random.integers(1, steepest + 1)
             view[:, 1] += random.integers(-spare, spare + 1)
             view[:, 2] = random.integers(-steepest, steepest + 1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `beam_pass`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `beam_pass`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ from raycaster.verif.leaf import Leaf
 @pytest.mark.slow_sets("1")
 @pytest.mark.parametrize("mirrors", [0, 1, 2])
 def test_beam_pass(mirrors, tmp_path, random):
-    """The rectangle that a ray meets after so many mirrors, in rows of which a set-up knows the products."""
+    """The rectangle that a ray meets after a number of mirrors, in rows with set-up products."""
     config = beam_config(screen="tiny", rectangles=3, reflections=2, scale=1)
     strobes = ("step", "step_way", "step_bounds", "step_slope")
     leaf = Leaf(beam_pass, lambda: ports(
@@ -32,7 +32,7 @@ def test_beam_pass(mirrors, tmp_path, random):
     spare = steepest - int(abs(slopes[..., 1]).max())
     stimulus, expected = [quiet] * winner_latency(config), {}
     for _ in range(500):
-        # Of another screen's view, from any column on, for each bit of the slopes to count.
+        # The view of another screen, from any column on, so that every bit of the slopes matters.
         view = slopes[int(random.integers(len(slopes)))].copy()
         view[:, 0] = random.integers(1, steepest + 1)
         view[:, 1] += random.integers(-spare, spare + 1)
@@ -43,7 +43,7 @@ def test_beam_pass(mirrors, tmp_path, random):
         traced = ExactModel().trace(table, camera, (0, 0, 0), line, mirrors)
         held, begin = row_ports(config, table, camera, view[first : first + 2])
         stimulus += [quiet | held | cycle for cycle in begin]
-        # A column's strobes follow it; now and then a cycle is no column's.
+        # A column's strobes follow it; some cycles have no column.
         starts = np.cumsum(random.choice([1, 2], len(line), p=[0.8, 0.2])).tolist()
         cycles = [quiet | held for _ in range(starts[-1] + winner_latency(config) + 1)]
         for number, start in enumerate(starts):

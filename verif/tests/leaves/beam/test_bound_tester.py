@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `bound_tester`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `bound_tester`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from raycaster.verif.leaf import Leaf
 
 @pytest.mark.parametrize("spare", [0, 2])
 def test_bound_tester(spare, tmp_path, random):
-    """Ways right at a bound and beside it, of rays that run either way; a way may be wider than the bounds."""
+    """Ways at and next to a bound, for rays in either direction; a way may have more bits than the bounds."""
     bits = 12
     leaf = Leaf(bound_tester, lambda: ports(
         "clk step back between", way=signed(bits + spare), low=signed(bits), high=signed(bits)

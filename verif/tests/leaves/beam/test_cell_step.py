@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `cell_step`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `cell_step`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from vectors import ports
@@ -11,7 +11,7 @@ from raycaster.verif.leaf import Leaf
 
 @pytest.mark.parametrize("place", [8, 5, 3])
 def test_cell_step(place, tmp_path, random):
-    """A quotient's bit, and what is left below it."""
+    """One bit of a quotient, and the remainder."""
     bits = 7
     leaf = Leaf(cell_step, lambda: ports(
         "clk", before=CellDivision(bits, place + 1), after=CellDivision(bits, place), place=place

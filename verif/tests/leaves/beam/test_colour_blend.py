@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `colour_blend`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `colour_blend`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from fractions import Fraction
 
@@ -31,7 +31,7 @@ from raycaster.verif.leaf import Leaf
     ids=config_id,
 )
 def test_colour_blend(config, tmp_path, random):
-    """What comes after a ray that found nothing is background, and weighs as much as the mirrors before it say."""
+    """From a miss on, every ray shows the background; the mirrors before a ray set its weight."""
     rays, record = config.reflections + 1, seen_of(config)
     leaf = Leaf(colour_blend, lambda: ports(
         "clk", seen=unsigned(rays * len(record.word)), picture=Picture(), pixel=Pixel(config.colour_bits),
@@ -62,5 +62,5 @@ def test_colour_blend(config, tmp_path, random):
         expected.append(pixel)
     outputs = leaf.run_both([*stimulus, *[{}] * latency], settled=latency)
     for number, (colour, output) in enumerate(zip(expected, outputs[latency:], strict=True)):
-        if number % 100 < 100 - latency:  # of the others the background has changed on the way
+        if number % 100 < 100 - latency:  # for the others, the background has changed on the way
             assert [output[f"pixel_{channel}"] for channel in ("red", "green", "blue")] == colour, number

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `colour_mix`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `colour_mix`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from vectors import ports
@@ -12,13 +12,13 @@ from raycaster.verif.leaf import Leaf
 
 @pytest.mark.parametrize("behind", [0, 1, 3])
 def test_colour_mix(behind, tmp_path, random):
-    """Every share of channels at their ends and between; what is behind has a fraction of its own."""
+    """Every mirror share, with channels at their limits and in between; the colour behind has fraction bits."""
     far_bits = CHANNEL_BITS + 2 * behind
     leaf = Leaf(colour_mix, lambda: ports(
         "clk", near=unsigned(CHANNEL_BITS), mirror=unsigned(MIRROR_BITS), far=unsigned(far_bits),
         mixed=unsigned(far_bits + 2)
     ), tmp_path)  # fmt: skip
-    # The most that is behind is 255, without a fraction.
+    # The colour behind is at most 255, with no fraction.
     ends = [[near, far << 2 * behind] for near in (0, 1, 254, 255) for far in (0, 1, 254, 255)]
     pairs = [*ends, *random.integers([256, (255 << 2 * behind) + 1], size=(400, 2)).tolist()]
     stimulus = [{"near": near, "mirror": mirror, "far": far} for near, far in pairs for mirror in range(5)]

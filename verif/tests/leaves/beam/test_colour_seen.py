@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `colour_seen`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `colour_seen`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from beam_vectors import beam_config
@@ -16,7 +16,7 @@ from raycaster.verif.leaf import Leaf
 @pytest.mark.parametrize("materials", [False, True])
 @pytest.mark.parametrize("number", [0, 1, 3])
 def test_colour_seen(materials, number, tmp_path, random):
-    """The background where this ray, or one before it, found nothing; a mirror where a scene goes on behind it."""
+    """The background if this ray or one before it found nothing; a mirror only where reflections follow."""
     config = beam_config(reflections=4, materials=materials)
     leaf = Leaf(colour_seen, lambda: ports(
         "clk reached found", seen=seen_of(config), picture=Picture(), shade=shade_of(config), number=number

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `fold_tester`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `fold_tester`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from beam_vectors import beam_config, by_screen, check_tester
@@ -19,12 +19,12 @@ by_depth = pytest.mark.parametrize(
     ],
     ids=config_id,
 )
-"""And with more reflections."""
+"""The designs of by_screen, and some with more reflections."""
 
 
 @pytest.mark.slow_sets(quick=["beam-tiny48-s2-u1-r12-m2-c8-turn"])
 @by_depth
 def test_fold_tester(config, tmp_path, random):
-    """A ray now and then; its bounds come a cycle later, and its slope's magnitudes then, or two cycles later."""
+    """A ray every few cycles; its bounds come a cycle after its way, its slope's magnitudes one or two cycles after."""
     if config.reflections:
         check_tester(fold_tester, {"fold": fold_of(config)}, config, tmp_path, random)

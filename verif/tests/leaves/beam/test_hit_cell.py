@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `hit_cell`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `hit_cell`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from fractions import Fraction
 
@@ -16,7 +16,7 @@ from raycaster.verif.leaf import Leaf
 
 @pytest.mark.parametrize("config", [beam_config(screen="tiny", patterns=True, turn=True, reflections=2)], ids=config_id)
 def test_hit_cell(config, tmp_path, random):
-    """The cell of a coordinate (E + T) +- D n / e within the world, many of them at a cell's edge."""
+    """Cells of coordinates (E + T) +- D n / e within the world, many of them at a cell's edge."""
     slope_bits, numerator_bits, turn_width = exact_slope_bits(config), eye_bits(config) - 1, turn_bits(config)
     leaf = Leaf(hit_cell, lambda: ports(
         "clk back odd", turn=signed(turn_width), eye=unsigned(9), slope=signed(slope_bits + 1),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `hit_cells`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `hit_cells`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from fractions import Fraction
 from math import gcd
@@ -20,9 +20,9 @@ from raycaster.verif.leaf import Leaf
 
 
 def to_edge(random: np.random.Generator, config: Configuration, axis: int, plane: int, eye, turned, slope):
-    """A slope with which the ray meets a plane at a cell's edge, or next to it by the least that its fraction can say.
+    """Return a slope with which the ray meets a plane at a cell's edge, or as close to it as the fraction allows.
 
-    The sum that is divided is then a cell's edge times the divisor, plus -1, 0 or 1: (edge - E) e + more = D n.
+    The dividend is then a cell's edge times the divisor, plus -1, 0 or 1: (edge - E) e + more = D n.
     """
     found, steepest = np.array(slope), steepest_slope(config)
     n, sign = abs(int(plane - eye[axis])), 1 if plane > eye[axis] else -1
@@ -30,14 +30,14 @@ def to_edge(random: np.random.Generator, config: Configuration, axis: int, plane
     way, more = 8 * int(random.integers(64)) - int(eye[u]), int(random.integers(-1, 2))
     if n == 0 or gcd(way, n) > 1:
         return found
-    # The least divisor, and any that is as many times the distance more; without a turn it is what it is along x.
+    # The least divisor plus any multiple of the distance; without a turn, the slope along x is fixed.
     least = -more * pow(way, -1, n) % n
     most = min(steepest, (steepest * n - 1) // max(abs(way), 1))
     if most < least or (not config.turn and 0 in (axis, u)):
         return found
     e = least + n * int(random.integers((most - least) // n + 1))
     if e > 0:
-        # The mirrors have turned around what differs from the ray's own.
+        # Undo the mirrors, which have reversed the components that differ.
         found[axis] = sign * e * (-1 if turned[axis] != slope[axis] else 1)
         found[u] = (way * e + more) // n * (-1 if turned[u] != slope[u] else 1)
     return found
@@ -55,7 +55,7 @@ def to_edge(random: np.random.Generator, config: Configuration, axis: int, plane
     ids=config_id,
 )
 def test_hit_cells(config, tmp_path, random):
-    """Points of all axes, many of them right at a cell's edge; what sees nothing is don't care."""
+    """Points on planes of all axes, many exactly at a cell's edge; without a hit the outputs are don't care."""
     slope_bits, latency = exact_slope_bits(config), CELL_LATENCY
     leaf = Leaf(hit_cells, lambda: ports(
         "clk", turn=turn_of(config), nearest=candidate_of(config), winner=winner_of(config),

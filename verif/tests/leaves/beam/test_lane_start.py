@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `lane_start`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `lane_start`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ from raycaster.verif.leaf import Leaf
 
 @pytest.mark.parametrize("config", [beam_config(screen="tiny", pixels=2), beam_config(rows=180, scale=6, pixels=2)])
 def test_lane_start(config, tmp_path, random):
-    """A rectangle's products of a row's first two columns, of those of the first and what a column adds."""
+    """A rectangle's products for a row's first two columns, from those of the first and the growth per column."""
     leaf = Leaf(lane_start, lambda: ports(
         "clk", load=unsigned(config.rectangles), start=walk_of(config), growth=growth_of(config),
         late_load=unsigned(config.rectangles), first_start=walk_of(config), second_start=walk_of(config)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `line_starter`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `line_starter`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ from raycaster.verif.leaf import Leaf
     ids=config_id,
 )
 def test_line_starter(config, tmp_path, random):
-    """The first rays' slopes from their latency on, each until its sweep's end; the last sweep's ends nothing."""
+    """The aims, from their latency on, each until its sweep ends; the end of the last sweep changes nothing."""
     slope_bits, screen, basis_names = (
         exact_slope_bits(config) + 1,
         config.screen_geometry,

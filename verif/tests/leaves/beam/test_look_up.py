@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `look_up`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `look_up`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from beam_vectors import any_facets, beam_config
@@ -13,7 +13,7 @@ from raycaster.verif.leaf import Leaf
 
 @pytest.mark.parametrize("looks", [{}, {"materials": True, "patterns": True}], ids=["plain", "looks"])
 def test_look_up(looks, tmp_path, random):
-    """Of each rectangle what it looks like, of a pattern the colour of the cell; between its steps it keeps that."""
+    """Each rectangle's look, with the cell's colour if it has a pattern; kept between steps."""
     config = beam_config(screen="tiny", rectangles=5, **looks)
     leaf = Leaf(look_up, lambda: ports(
         "clk step", facets=unsigned(config.rectangles * len(facet_of(config).word)),

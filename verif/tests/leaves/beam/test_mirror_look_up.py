@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `mirror_look_up`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `mirror_look_up`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from beam_vectors import any_facets, beam_config
 from vectors import ports

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `nearest_of_two`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `nearest_of_two`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from beam_vectors import any_candidate, by_screen, candidate_ports, close_candidates, fraction_of
 from vectors import ports
@@ -27,7 +27,7 @@ def test_nearest_of_two(config, tmp_path, random):
         valid = [candidate for candidate in (first, second) if candidate[0]]
         assert output["nearest_valid"] == bool(valid)
         if valid:
-            # min takes the first of equals.
+            # For equal fractions, min returns the first.
             assert output == candidate_ports(config, "nearest", min(valid, key=fraction_of))
             ties += len(set(map(fraction_of, valid))) < len(valid)
     assert ties > 20

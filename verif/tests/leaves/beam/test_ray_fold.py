@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `ray_fold`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `ray_fold`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from beam_vectors import beam_config, beam_rays, direction_ports, folded, image_of, met_last, word
@@ -30,7 +30,7 @@ from raycaster.verif.leaf import Leaf
     ids=config_id,
 )
 def test_ray_fold(config, tmp_path, random):
-    """A ray a cycle, at the last of its mirrors; its slope comes a cycle later."""
+    """One ray per cycle, at its last mirror; its slope comes a cycle later."""
     slope_bits = exact_slope_bits(config) + 1
     leaf = Leaf(ray_fold, lambda: ports(
         "clk", before=turn_of(config), last=Reflector(), slope=Direction(slope_bits), fold=fold_of(config)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `ray_tester`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `ray_tester`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from beam_vectors import by_screen, check_tester
@@ -16,5 +16,5 @@ from raycaster.rtl.beam.ray_tester import ray_tester
 )
 @by_screen
 def test_ray_tester(config, tmp_path, random):
-    """A ray now and then; what walks comes a cycle later, and its slope's magnitudes then, or a cycle after that."""
+    """A ray every few cycles; its walk comes a cycle later, its slope's magnitudes one or two cycles later."""
     check_tester(ray_tester, {}, config, tmp_path, random)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `rect_walker`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `rect_walker`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ from raycaster.verif.leaf import Leaf
 @pytest.mark.slow_sets("beam-vga")
 @by_screen
 def test_rect_walker(config, tmp_path, random):
-    """Whole rows, and many beginnings of rows, in which the ways and the bounds advance at different times."""
+    """Whole rows and many first columns of rows; the ways and the bounds advance at different times."""
     leaf = Leaf(rect_walker, lambda: ports(
         "clk load step_way step_bounds", start=walk_of(config), growth=stride_of(config), walk=walk_of(config)
     ), tmp_path)  # fmt: skip
@@ -33,7 +33,7 @@ def test_rect_walker(config, tmp_path, random):
         inputs |= {f"growth_{name}": word(then[name] - now[name], growth_width) for name in names}
         stimulus.append({**inputs, "load": 1})
         way = bounds = 0
-        # One step more than there are columns: the last one's end.
+        # One step more than columns, for the end of the last column.
         while min(way, bounds) < steps:
             ways, walls = (products(table, 0, camera, first + more * done) for done in (way, bounds))
             seen = [word((ways if name.startswith("way") else walls)[name], width) for name in names]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `row_register`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `row_register`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from vectors import ports
@@ -11,7 +11,7 @@ from raycaster.verif.leaf import Leaf
 
 @pytest.mark.parametrize("live", [0xFFF, 0x5C3, 0])
 def test_row_register(live, tmp_path, random):
-    """It keeps what is not known, whichever bits these are."""
+    """Any live bits are kept, and the others have their known values."""
     leaf = Leaf(row_register, lambda: ports(
         "clk load", given=unsigned(12), live=unsigned(12), known=unsigned(12), word=unsigned(12)
     ), tmp_path)  # fmt: skip

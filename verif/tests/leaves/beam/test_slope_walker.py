@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `slope_walker`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `slope_walker`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from beam_vectors import by_screen, direction_ports, row_slopes
 from vectors import AXES, ports
@@ -19,14 +19,14 @@ def test_slope_walker(config, tmp_path, random):
     lane, walked = config.screen_geometry.columns // config.pixels, AXES if config.turn else "y"
     stimulus, expected = [], []
     for line in range(100):
-        # Few steps tell of many aims.
+        # Short lines, to test many aims.
         columns = lane if line < 3 else 8
         first, more = row_slopes(random, config, columns)
         aim = direction_ports("aim", config, more if config.turn else first)
         aim = {name: value for name, value in aim.items() if name[-1] in walked}
         steps = [int(step % 3 != 2) for step in range(columns)]
         stimulus += [{"start_line": 1, "step": 1, **aim}, *({"start_line": 0, "step": step} for step in steps)]
-        # A turned camera's first step is from 0 to the row's start, which is another test's.
+        # A turned camera's first step goes from 0 to the row's start, which another test covers.
         base = 0 * first if config.turn else first
         expected += [base + more * sum(steps[:column]) for column in range(columns + 1)]
     outputs = leaf.run_both([*stimulus, {}], settled=1)

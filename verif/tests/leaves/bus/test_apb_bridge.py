@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `apb_bridge`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `apb_bridge`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from vectors import any_word
 
 @agents
 def test_apb_bridge(patience, latency, tmp_path, random):
-    """Writes are taken in their access phase, reads begin in their setup phase; some follow one another at once."""
+    """Writes are accepted in their access phase, reads begin in their setup phase; some accesses are back to back."""
     leaf = bridge_leaf("apb", tmp_path)
     agent = Agent(random, patience, latency)
     stimulus: list[dict[str, int]] = [{"reset": 1}]

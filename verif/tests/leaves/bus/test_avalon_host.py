@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `avalon_host`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `avalon_host`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from raycaster.verif.leaf import Leaf
 
 @pytest.mark.parametrize(("patience", "latency"), [(0.0, 1), (0.3, 4), (0.8, 9)])
 def test_avalon_host(patience, latency, tmp_path, random):
-    """Every access is one transfer, whatever the agent's waitrequest and however late its answers."""
+    """Every access is one transfer, for any waitrequest and any latency of the agent."""
     address_bits = 6
     leaf = Leaf(avalon_host, lambda: ports(
         "clk reset", access=Access(), strobe=unsigned(LANES), address=unsigned(address_bits),
@@ -23,7 +23,7 @@ def test_avalon_host(patience, latency, tmp_path, random):
     stimulus = [{"reset": 1}]
     expected = [{}]
     request = None  # strobe, address, data
-    answer_in = None  # cycles until a read that was taken is answered
+    answer_in = None  # cycles until the accepted read is answered
     for _ in range(1000):
         if request is None and random.random() < 0.7:
             request = any_strobe(random), int(random.integers(1 << address_bits)), any_word(random)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `avalon_interface`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `avalon_interface`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -40,18 +40,18 @@ def test_avalon_interface(config, tmp_path, random):
     row = group = 0
     committing = False
     for cycle in range(7500):
-        # Now and then what stands a little above, or below, what stood.
+        # Counts mostly stay near the previous ones, a little above or below.
         row, group = (max(0, value + int(random.integers(-9, 10))) % (1 << CYCLE_BITS) for value in (row, group))
         if random.random() < 0.05:
             row = int(random.choice([0, 1, random.integers(1 << CYCLE_BITS), (1 << CYCLE_BITS) - 1]))
             group = int(random.integers(1 << int(random.integers(1, CYCLE_BITS + 1))))
-        # Then so many frames without a reset that the counter's upper bits change.
+        # After 3000 cycles: enough frames without a reset to change the counter's upper bits.
         busy_bus = cycle < 3000
         address = int(random.choice([*registers, control.address, int(random.integers(1 << width))]))
-        # Ones and zeros in what is cleared by ones, and often a commit.
+        # Ones and zeros in the write-1-to-clear bits, and often a commit.
         data = int(random.choice([0, 1, 2, 4, 6, 0x303, 0x102, EVERY_BIT, random.integers(1 << WORD_BITS)]))
         transfer = random.choice(["read", "write", "none"], p=[0.4, 0.4, 0.2])
-        # Often while a commit is on its way.
+        # Reset often while a commit is in flight.
         reset = random.random() < (0.1 if committing else 0.003)
         committing = transfer == "write" and address == control.address
         stimulus.append(

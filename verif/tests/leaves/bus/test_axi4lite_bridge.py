@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `axi4lite_bridge`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `axi4lite_bridge`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from vectors import any_word
 @agents
 @pytest.mark.parametrize("pause", [0.0, 0.5])
 def test_axi4lite_bridge(patience, latency, pause, tmp_path, random):
-    """Channels come in any order and at any distance, and responses are taken at any time."""
+    """Channels become valid in any order and at any distance; responses are accepted at any time."""
     leaf = bridge_leaf("axi4lite", tmp_path)
     agent = Agent(random, patience, latency)
     stimulus: list[dict[str, int]] = [{"reset": 1}]
     expected: list[dict[str, int]] = [{}]
     written, read = 0, 0
-    address = word = asked = None  # what stands on the three channels of the manager
+    address = word = asked = None  # what is valid on the manager's three channels
     taken_write = taken_read = response = outstanding = answer = read_waits = False
     for _ in range(CYCLES):
         reset = int(random.random() < 0.02)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `bus_decoder`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `bus_decoder`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def test_bus_decoder(tracer_address_bits, tmp_path, random):
     ), tmp_path)  # fmt: skip
     tracer_end = RAY_TRACER + (4 << tracer_address_bits)
     edges = [0, 4 * MEMORY_WORDS, RAY_TRACER, tracer_end, BUTTONS, UART, 1 << WORD_BITS]
-    # Next to every edge, and where one bit of an address is wrong.
+    # Addresses next to every edge, and with one wrong bit.
     addresses = [(edge + 4 * step) % (1 << WORD_BITS) for edge in edges for step in (-2, -1, 0, 1, 2)]
     addresses += [edge ^ 1 << index for edge in edges[:-1] for index in range(2, WORD_BITS)]
     addresses += 30 * edges[:-1]

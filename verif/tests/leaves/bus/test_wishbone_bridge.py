@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `wishbone_bridge`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `wishbone_bridge`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from vectors import any_word
 
 @agents
 def test_wishbone_bridge(patience, latency, tmp_path, random):
-    """A master takes what it asked for, or gives up; then nobody else gets its answer."""
+    """A master waits for its answer or gives up; a later access never gets that answer."""
     leaf = bridge_leaf("wishbone", tmp_path)
     agent = Agent(random, patience, latency)
     stimulus: list[dict[str, int]] = [{"reset": 1}]
@@ -29,7 +29,7 @@ def test_wishbone_bridge(patience, latency, tmp_path, random):
                 any_word(random),
             )
         write, address, lanes, word = access or (int(random.integers(2)), 0, 0, any_word(random))
-        half = int(random.integers(3))  # cyc and stb are an access only together
+        half = int(random.integers(3))  # only cyc and stb together are an access
         stale = stale or access is None
         stimulus.append(
             {

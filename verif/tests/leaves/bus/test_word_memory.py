@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `word_memory`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `word_memory`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_word_memory(words, tmp_path, random):
     program.write_text("".join(f"{word:08x}\n" for word in model))
     leaf = memory_leaf(words, str(program), tmp_path)
     assert f'$readmemh("{program}", memory);' in leaf.verilog[-1].read_text()
-    # Reset in the first cycle of an access starts that anew; the first read makes `word` known.
+    # A reset in the first cycle of an access restarts it; the first read makes `word` known.
     stimulus = [{"reset": 1, "access_select": 1, "strobe": 0, "address": 3}, {"reset": 0}, {}]
     expected = {2: model[3]}
     for _ in range(20 * words):
@@ -52,7 +52,7 @@ def test_word_memory(words, tmp_path, random):
 
 
 def test_word_memory_without_a_program(tmp_path):
-    """It converts all the same: the file is only looked for where the Verilog runs."""
+    """Conversion needs no program file; only running the Verilog does."""
     leaf = memory_leaf(8, "nowhere.hex", tmp_path)
     assert '$readmemh("nowhere.hex", memory);' in leaf.verilog[-1].read_text()
     outputs = leaf.run_myhdl([{"reset": 1}, {"reset": 0, "access_select": 1}, {}])

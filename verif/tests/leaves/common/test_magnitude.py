@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `magnitude`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `magnitude`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from vectors import ports
@@ -11,7 +11,7 @@ from raycaster.verif.leaf import Leaf
 
 @pytest.mark.parametrize(("value_bits", "bits"), [(2, 1), (5, 4), (10, 9), (13, 9)])
 def test_magnitude(value_bits, bits, tmp_path):
-    """Of each value whose magnitude fits."""
+    """Every value whose magnitude fits."""
     leaf = Leaf(magnitude, lambda: ports("", value=signed(value_bits), result=unsigned(bits)), tmp_path)
     values = range(1 - (1 << bits), 1 << bits)
     outputs = leaf.run_both([{"value": value % (1 << value_bits)} for value in values])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `synchroniser`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `synchroniser`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 

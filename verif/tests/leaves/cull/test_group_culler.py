@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `group_culler`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `group_culler`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from collections.abc import Sequence
 
@@ -34,7 +34,7 @@ def test_which_designs_cull(options, culls, name):
     config = configure(**options)
     assert config.culling is culls
     assert config.name == name
-    # The worst case is the same, so the choice is free.
+    # The worst case is the same with and without culling.
     assert config.group_cycles == configure(**{**options, "culling": None}).group_cycles
 
 
@@ -44,12 +44,12 @@ def test_the_beam_engine_does_not_cull():
 
 
 def seen_rect(table: Rectangles, index: int) -> dict[str, int]:
-    """What the table shows of a rectangle to who listens."""
+    """Return a rectangle as it is on the table's port."""
     return sorted_rect(table, index, "rects_rect")
 
 
 def any_rect(random: np.random.Generator, table: Sequence[dict[str, int]]) -> dict[str, int]:
-    """Something on the table's port, which is no one's unless it was fetched."""
+    """Return random values for the table's port, to be ignored unless they were fetched."""
     shown, index = (int(random.integers(len(table))) for _ in range(2))
     return {**table[shown], "rects_index": index}
 
@@ -57,7 +57,7 @@ def any_rect(random: np.random.Generator, table: Sequence[dict[str, int]]) -> di
 def closest_calls(
     config: Configuration, drafts: Sequence[Rectangles], camera, places: Sequence[tuple[int, int]]
 ) -> Rectangles:
-    """Of each rectangle the draft that an error in a product's lowest bits would decide otherwise in one of the groups.
+    """Pick for each rectangle the draft whose result an error in a product's lowest bits changes most easily.
 
     All drafts have the same planes.
     """
@@ -73,7 +73,7 @@ def closest_calls(
             way = np.sign(e) * (draft.low[index, axis] - camera[axis]) * across
             above = way - (draft.low[index, u] - margin - camera[u]) * abs(e)
             below = (draft.high[index, u] + margin - camera[u]) * abs(e) - way
-            # Of each bound the end that misses it by less; of the bounds the one that decides, if no other does too.
+            # For each bound, the end that misses it by less; of the bounds, the deciding one, if it decides alone.
             least, other, *_ = np.sort(np.concatenate([above.max(axis=0), below.max(axis=0)], axis=1), axis=1).T
             distances.append(np.where(other >= 0, abs(least), WORLD_SIZE**2).min())
         corners.append(drafts[int(np.argmin(distances))].corners[index])
@@ -81,7 +81,7 @@ def closest_calls(
 
 
 def any_start(random: np.random.Generator, rows: int, groups: int) -> tuple[int, int]:
-    """A group but the frame's first: often one that differs from that in a single bit, or the end of such a row."""
+    """Pick a group other than the frame's first; often one that differs by a single bit, or at the end of a row."""
     while True:
         # The last rows are those below the horizon.
         any_row, last_row = random.integers(rows), rows - 1 - random.integers(rows // 4)
@@ -94,7 +94,7 @@ def any_start(random: np.random.Generator, rows: int, groups: int) -> tuple[int,
 @pytest.mark.slow_sets("seed-vga240-u1-", "seed-vga240-u320")
 @designs
 def test_group_culler(config, tmp_path, random):
-    """A frame's first group, then others in their order and out of it, with time enough to look ahead or too little."""
+    """A frame's first group, then others in order and out of order, with enough or too little time to look ahead."""
     leaf = Leaf(group_culler, lambda: ports(
         "clk reset_ray_caster start_group done", place=Place(config), camera=Point(), rects=Rects(config),
         may_hit=unsigned(config.rectangles), config=config
@@ -119,7 +119,7 @@ def test_group_culler(config, tmp_path, random):
             answer = may_hit_mask(config, table, camera, *place) if predicted == place else every
             assert hit_mask(config, table, camera, *place) & ~answer == 0
             fates.add((known, predicted == place, answer == every))
-            # The second cycle of reset; then the group's time, in which the answer holds to the next one's first cycle.
+            # The second cycle of reset, then the group; its answer holds until the first cycle of the next reset.
             stimulus.append({**here, "reset_ray_caster": 1})
             begun = len(stimulus)
             stimulus += [here, {**here, "start_group": 1}]
@@ -130,9 +130,9 @@ def test_group_culler(config, tmp_path, random):
             time = count + SETUP_LATENCY + int(random.integers(3))
             if random.random() < 0.05:
                 time = int(random.integers(3, count + SETUP_LATENCY))
-            # What is on the table's port and was not fetched is nobody's.
+            # Values on the table's port that were not fetched must be ignored.
             stimulus += [{**here, **any_rect(random, shown)} for _ in range(time - 1)]
-            # A frame of which not even that is done has taught nothing.
+            # A frame that is abandoned before its first group is done leaves no rectangles known.
             abandoned = random.random() < 0.05
             stimulus.append({**here, "reset_ray_caster": 1, "done": int(not abandoned)})
             expected |= dict.fromkeys(range(begun, len(stimulus)), (answer, place, camera, table))
@@ -144,7 +144,7 @@ def test_group_culler(config, tmp_path, random):
             if abandoned or place[0] == rows:
                 place = any_start(random, rows, groups) if random.random() < 0.5 else run[random.integers(len(run))]
             if number == 1:
-                # As if the frame had come to where the rectangles' edges are.
+                # Jump to just before the groups with the rectangles' edges.
                 place = start[0] if start[1] else start[0] - 1, (start[1] - 1) % groups
                 place = (1, 0) if place == (0, 0) else place
     outputs = leaf.run_both(stimulus, settled=min(expected))

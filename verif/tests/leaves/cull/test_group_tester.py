@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `group_tester`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `group_tester`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ def leaf_of_tester(config: Configuration, directory) -> Leaf:
 @pytest.mark.slow_sets("seed-vga240-u1-", "seed-vga240-u320")
 @designs
 def test_group_tester(config, tmp_path, random):
-    """Products as rect_setup makes them, of groups at the screen's borders and in its middle, and edges on the rays."""
+    """Products as `rect_setup` makes them, for groups at the screen's borders and middle, with edges on the rays."""
     slope_bits = exact_slope_bits(config) + 1
     leaf = leaf_of_tester(config, tmp_path)
     slopes = primary_slopes(config.screen_geometry)
@@ -70,11 +70,11 @@ def test_group_tester(config, tmp_path, random):
 @pytest.mark.slow_sets(quick=["exact-vga240-u64", "seed-tiny48"])
 @designs
 def test_group_tester_at_its_limits(config, tmp_path, random):
-    """Any products, at which each comparison is decided by its last bit, one bit or the sign."""
+    """Any products, with each comparison decided by its last bit, another single bit, or the sign."""
     leaf = leaf_of_tester(config, tmp_path)
     units, far = config.units, 1 << wide_walk_bits(config) - 2
     slope_limit = 1 << exact_slope_bits(config) - 1
-    # All are known from the first load on.
+    # The first load makes all registers known.
     stimulus, expected = [{"load": (1 << config.rectangles) - 1}], {}
 
     def small() -> int:
@@ -92,12 +92,12 @@ def test_group_tester_at_its_limits(config, tmp_path, random):
         slopes = {0: (1, 1), 1: (column_slope, column_slope + units), 2: (row_slope, row_slope)}[axis]
         backs = [slope < 0 for slope in slopes]
         if random.random() < 0.9:
-            # Ahead, so that the bounds decide.
+            # Put the plane ahead, so that the bounds decide.
             distance = (-1 if backs[0] else 1) * max(1, abs(distance))
         start = {"way_p": int(random.integers(-far // 4, far // 4)), "way_q": int(random.integers(-far // 4, far // 4))}
         growth = {"way_p": int(random.integers(-far // 8, far // 8)) // units % 512 - 256}
         growth["way_p"] = growth["way_p"] if abs(growth["way_p"]) * units < far // 8 else 0
-        # Bounds are far away on their side, but one that decides: at one end or both it is near.
+        # All bounds are far away on their side, except the deciding one, which is near at one end or both.
         low, high = ("high", "low") if backs[0] else ("low", "high")
         for p in "pq":
             start |= {f"{low}_{p}": -far // 2, f"{high}_{p}": far // 2}

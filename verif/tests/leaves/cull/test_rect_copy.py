@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `rect_copy`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `rect_copy`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ BOUNDS = ("u_low", "u_high", "v_low", "v_high")
 @pytest.mark.parametrize("margin", [0, 1])
 @pytest.mark.parametrize("count", [1, 12, 32])
 def test_rect_copy(count, margin, tmp_path, random):
-    """Fetches of both readers in any order; the second sees what came to the first last, and further out."""
+    """Fetches of both readers in any order; the second gets what the first got last, with the margin added."""
     config = configure(engine="exact", rectangles=count, allow_underrun=True)
     latency = config.facts.rect_latency
 
@@ -34,7 +34,7 @@ def test_rect_copy(count, margin, tmp_path, random):
     stimulus, written, asked = [], [], []
     for cycle in range(600):
         fetch, index = int(cycle < count or random.random() < 0.3), cycle if cycle < count else random.integers(count)
-        # Only what was fetched is asked for, and long enough ago.
+        # Ask only for rectangles that were fetched long enough ago.
         ask = int(cycle > count + 4 and random.random() < 0.7)
         corners = np.array([[any_place(random) for _ in AXES] for _ in range(2)])
         corners[1, random.integers(3)] = corners[0].copy()[axis := int(random.integers(3))]
@@ -50,7 +50,7 @@ def test_rect_copy(count, margin, tmp_path, random):
     outputs = leaf.run_both(stimulus, settled=count + 8)
     memory, answer = {}, None
     for cycle, output in enumerate(outputs):
-        # A rectangle that was at hand three cycles ago could be read two cycles ago.
+        # A rectangle that arrived three cycles ago could be read two cycles ago.
         at_hand, read = cycle - 3, cycle - 2
         if at_hand >= latency and written[at_hand - latency][0]:
             memory[written[at_hand - latency][1]] = written[at_hand][2]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `tmds_encoder`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `tmds_encoder`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_tmds_encoder(tmp_path):
     samples = [Sample(False, 0, 0)] * 2
     for _ in range(60):
         samples += [Sample(False, rng.randrange(256), rng.randrange(4)) for _ in range(rng.randrange(1, 4))]
-        # Runs of one byte, and of few different ones, lead far from balance.
+        # Runs of one byte, or of a few different bytes, lead far from balance.
         few = [rng.randrange(256) for _ in range(rng.choice([1, 2, 256]))]
         samples += [Sample(True, rng.choice(few), rng.randrange(4)) for _ in range(rng.randrange(60))]
     stimulus, taken = [], []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `colour_combiner`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `colour_combiner`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ from raycaster.verif.leaf import Leaf
 
 
 def mirrored(random: np.random.Generator, run_time: int) -> list[tuple[bool, int]]:
-    """What becomes of a ray and its reflections: whether it hits something, and how much that mirrors, in quarters."""
+    """Return, for a ray and its reflections, whether each hits something and how many quarters of that are mirror."""
     return [(bool(random.random() < 0.75), int(random.integers(5))) for _ in range(run_time + 1)]
 
 
@@ -37,13 +37,13 @@ def test_colour_combiner(colour_bits, reflections, materials, tmp_path, random):
         *words, background = (int.from_bytes(bytes(colour)) for colour in palette)
         held = {"picture_background": background, "steps_reset_colour": 0, "steps_add_colour": 0, "steps_store_ray": 0}
         stimulus.append({**held, "steps_reset_colour": 1})
-        # After its end a ray goes on and may find something, which must not count.
+        # After its end a ray continues and may find something, which must not count.
         hits = mirrored(random, run_time) if materials else [(found, 2) for found, _ in mirrored(random, run_time)]
         for number, ((found, quarters), word) in enumerate(zip(hits, words, strict=True)):
             ray = {**held, "found": int(found), "found_colour": word}
             if materials:
                 ray["found_mirror"] = quarters
-            # Only what is found in the cycle of the addition counts.
+            # Only the hit in the cycle of the addition counts.
             stimulus += [{**ray, "found": int(random.integers(2))}] * int(random.integers(2))
             stimulus.append({**ray, "steps_add_colour": 1, "steps_store_ray": int(number < run_time)})
             missed = any(not found or quarters == 0 for found, quarters in hits[: number + 1])

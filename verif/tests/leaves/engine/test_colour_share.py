@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `colour_share`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `colour_share`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from itertools import product
 
@@ -17,7 +17,7 @@ from raycaster.verif.leaf import Leaf
 @pytest.mark.parametrize("materials", [False, True])
 @pytest.mark.parametrize("reflections", [0, 1, 2, 4])
 def test_colour_share(reflections, materials, tmp_path, random):
-    """Of each mirror after each other one, and misses among them."""
+    """Every mirror after every other one, with misses in between."""
     config = any_config(reflections=reflections, materials=materials)
     leaf = Leaf(colour_share, lambda: ports(
         "clk found missed", steps=Steps(), found_mirror=unsigned(MIRROR_BITS) if materials else tied(0, MIRROR_BITS),
@@ -31,10 +31,10 @@ def test_colour_share(reflections, materials, tmp_path, random):
         for hits in cases(random, run_time, one_ray):
             stimulus.append({**idle, "steps_reset_colour": 1})
             missed = False
-            # Without materials the background of a miss counts as it would have with all that follows.
+            # Without materials, the background of a miss gets the weight of all that would have followed.
             weighing = hits if materials else [(True, 2)] * len(hits)
             for number, ((found, quarters), share) in enumerate(zip(hits, plain_shares(weighing), strict=True)):
-                # Only what is found in the cycle of the addition counts.
+                # Only the hit in the cycle of the addition counts.
                 other = {"found": int(random.integers(2)), "found_mirror": int(random.integers(5))}
                 stimulus += [{**idle, **other}] * int(random.integers(2))
                 results.append((len(stimulus), share * whole, missed, hits))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `colour_sum`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `colour_sum`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from unit_vectors import any_config, cases, plain_shares
@@ -17,7 +17,7 @@ from raycaster.verif.leaf import Leaf
 @pytest.mark.parametrize("reflections", [0, 1, 2, 4])
 @pytest.mark.parametrize("colour_bits", [1, 4, 8])
 def test_colour_sum(colour_bits, reflections, materials, tmp_path, random):
-    """Of all shares that a pixel may have, or some of four reflections."""
+    """All shares that a pixel's rays may have; with many reflections, a random choice."""
     config = any_config(reflections=reflections, colour_bits=colour_bits, materials=materials)
     leaf = Leaf(colour_sum, lambda: ports(
         "clk", steps=Steps(), seen=unsigned(CHANNEL_BITS), share=unsigned(share_bits(config)),

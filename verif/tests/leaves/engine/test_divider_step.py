@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `divider_step`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `divider_step`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from arithmetic_vectors import SLOPE_CORNERS

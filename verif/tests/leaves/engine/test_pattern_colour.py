@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `pattern_colour`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `pattern_colour`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from itertools import product
 
@@ -13,7 +13,7 @@ from raycaster.verif.leaf import Leaf
 
 
 def test_pattern_colour(tmp_path, random):
-    """Each pattern in each kind of cell; two colours that no bit has in common, and random ones."""
+    """Every pattern in every kind of cell, with two complementary colours and random ones."""
     leaf = Leaf(pattern_colour, lambda: ports(
         "odd_u odd_v", look=Look(materials=True, patterns=True), colour=unsigned(RGB_BITS)
     ), tmp_path)  # fmt: skip

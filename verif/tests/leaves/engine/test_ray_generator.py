@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `ray_generator`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `ray_generator`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from unit_vectors import any_config
@@ -42,10 +42,10 @@ def test_ray_generator(config, tmp_path):
             "steps_screen_to_ray": load,
         }
         for number, (row, column) in enumerate(sorted(rays))
-        # Not every ray is loaded; the one before it must then stay.
+        # Some rays are not loaded; the previous one must then stay.
         for load in ([1] if number % 8 == 0 else [0] if number % 8 == 1 else [0, 1])
     ]
-    # The counters rest one past their last value; nothing there may overflow.
+    # The counters stop one past their last value, where nothing may overflow.
     stimulus.append({"place_row": screen.rows, "place_column_offset": config.groups, "column_base": config.units - 1})
     outputs = leaf.run_both(stimulus, settled=1)
     slopes = primary_slopes(screen)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `ray_sequencer`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `ray_sequencer`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from itertools import pairwise
 
@@ -57,7 +57,7 @@ def test_controls(function, config, tmp_path, random):
         reflections = config.reflections if number < 2 else int(random.integers(config.reflections + 1))
         held = {"rects_usable": mask, "picture_reflections": reflections}
         fate = random_fate(random, usable, reflections, number)
-        # What is not usable is not visited, whatever the mask has for it.
+        # Unusable rectangles are not visited, whatever the mask says.
         held["fate_may_hit"] = mask_of(fate["may_hit"]) | int(random.integers(1 << count)) & ~mask
         for _ in range(2):
             drive({**held, "reset_ray_caster": 1, "enable": int(random.integers(2))})
@@ -66,8 +66,8 @@ def test_controls(function, config, tmp_path, random):
         drive({**held, "reset_ray_caster": 0, "enable": 1}, quiet)
         trace = trace_cycles(config, usable, reflections, **fate)
         if number == 0:
-            assert len(trace) + 3 == config.group_cycles, "with done and the reset of two cycles"
-        # A row may be abandoned at any moment; what was under way must not come out later.
+            assert len(trace) + 3 == config.group_cycles, "including done and the two cycles of reset"
+        # A row may be abandoned at any moment; results in flight must not appear later.
         abandoned = number > 4 and number % 2
         for before, cycle in pairwise([quiet_cycle, *trace][: int(random.integers(len(trace))) if abandoned else None]):
             wanted = {name: value for name, value in cycle.steps.items() if name in leaf.outputs} | {"done": 0}
@@ -80,7 +80,7 @@ def test_controls(function, config, tmp_path, random):
             drive(inputs | group_fate_in(random, cycle, leaf), wanted, cycle.current, cycle.offered)
         if not abandoned:
             for _ in range(int(random.integers(1, 4))):
-                # Nothing is rendered any more, so that reflections may change.
+                # Rendering is over, so reflections may change.
                 after = {"picture_reflections": int(random.integers(config.reflections + 1))}
                 after |= {"reset_ray_caster": 0, "enable": int(random.integers(2))}
                 drive({**held, **after}, {**quiet, "done": 1})
@@ -92,7 +92,7 @@ def test_controls(function, config, tmp_path, random):
         if wanted is not None:
             assert {name: output[name] for name in wanted} == wanted, cycle
         if current is not None:
-            assert held_by_memory == current, f"cycle {cycle}: it fetched another rectangle"
+            assert held_by_memory == current, f"cycle {cycle}: fetched another rectangle"
         if function is ray_sequencer and wanted is not None:
             # Bit i follows find_intersection by i + 1 cycles, unless a reset came between.
             started = [
@@ -100,7 +100,7 @@ def test_controls(function, config, tmp_path, random):
             ]
             resets = [stimulus[before]["reset_ray_caster"] for before in range(cycle - 1, cycle - write_at - 2, -1)]
             alive = started[: resets.index(1)] if 1 in resets else started
-            # What ended early is not in flight from the next cycle on.
+            # A test that ended early is not in flight from the next cycle on.
             for place in range(EARLY_OUT_AT, len(alive)):
                 alive[place] &= not stimulus[cycle - 1 - place + EARLY_OUT_AT].get("early_out", 0)
             assert output["in_flight"] == sum(bit << place for place, bit in enumerate(alive)), cycle
@@ -121,9 +121,9 @@ def test_controls(function, config, tmp_path, random):
     ids=lambda value: value.name if isinstance(value, Configuration) else value.__name__,
 )
 def test_fate_is_read_in_one_cycle(function, config, tmp_path, random):
-    """What the units say holds in the cycle that ray_sequencer states, and is the opposite in the cycles beside it.
+    """The units' fate is right in the cycle that `ray_sequencer` states, and inverted in the cycles before and after.
 
-    So a register more between the units and what the control does with it, or one less, is found.
+    This detects a register too many or too few between the units and the control's use of their fate.
     """
     leaf = control_leaf(function, config, tmp_path)
     usable, reflections = list(range(config.rectangles)), config.reflections
@@ -148,7 +148,7 @@ def test_fate_is_read_in_one_cycle(function, config, tmp_path, random):
 
 
 def opposite_beside(values: list[int | None]) -> list[int]:
-    """Bits, and where there is none the opposite of one that is there in the cycle before or after."""
+    """Replace each missing bit by the inverse of a neighbouring one."""
     padded = [None, *values, None]
     return [
         value if value is not None else 1 - next((one for one in (before, after) if one is not None), 1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `rect_sequencer`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `rect_sequencer`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from exact_vectors import exact_config
@@ -21,7 +21,7 @@ def test_rect_sequencer(count, slot_cycles, tmp_path, random):
     stimulus, expected = [], []
 
     def drive(reset, start, mask, current=None, first=False, early_out=0):
-        """A cycle in which `current` is at hand."""
+        """Add a cycle in which `current` is on the memory's port."""
         stimulus.append({"reset_ray_caster": reset, "start_ray": start, "wanted": mask, "early_out": early_out})
         expected.append((current, first))
 
@@ -38,11 +38,11 @@ def test_rect_sequencer(count, slot_cycles, tmp_path, random):
         slots = []
         for index in range(count):
             if mask >> index & 1:
-                # Some end early, in any cycle of their slot.
+                # Some slots end early, in any of their cycles.
                 last = int(random.integers(slot_cycles)) if random.random() < 0.3 else slot_cycles - 1
                 ends = last < slot_cycles - 1
                 slots += [(index, cycle == 0, int(ends and cycle == last)) for cycle in range(last + 1)]
-        # Only a reset comes before the end.
+        # Only a reset may come before the end.
         for current, first, early_out in slots[: int(random.integers(len(slots) + 1))] if number % 5 == 4 else slots:
             drive(0, 0, mask, current, first, early_out)
         if number % 5 != 4:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `rect_setup`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `rect_setup`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ from raycaster.verif.leaf import Leaf, sorted_rect
 
 
 def any_slope(random: np.random.Generator, config: Configuration) -> np.ndarray:
-    """One that a pixel's ray may have; where the camera turns, of any basis that the registers hold."""
+    """Pick the slope of a pixel's ray; if the camera can turn, with any basis that the registers can hold."""
     slopes = primary_slopes(config.screen_geometry)
     slope = slopes[int(random.integers(len(slopes))), int(random.integers(slopes.shape[1]))]
     if not config.turn:
@@ -28,7 +28,7 @@ def any_slope(random: np.random.Generator, config: Configuration) -> np.ndarray:
 
 @by_screen
 def test_rect_setup(config, tmp_path, random, in_adders=False):
-    """Lines at random, the last of which a reset ends."""
+    """Random lines; a reset ends the last one."""
     count = config.rectangles
     leaf = Leaf(rect_setup, lambda: ports(
         "clk reset start_line", rects=Rects(config), camera=Point(), slope=Direction(exact_slope_bits(config) + 1),
@@ -47,11 +47,11 @@ def test_rect_setup(config, tmp_path, random, in_adders=False):
         slope = any_slope(random, config)
         held |= direction_ports("slope", config, slope)
         for index in range(count):
-            # Two cycles after it was asked for.
+            # The rectangle comes two cycles after it was asked for.
             stimulus.append({**held, **sorted_rect(table, index, "rects_rect", config)})
             loads[start + SETUP_LATENCY + index] = table, index, camera, slope
         stimulus += [held] * (SETUP_LATENCY + int(random.integers(5)))
-    # Every stage of the last line has something at hand.
+    # Reset while every stage is busy with the last line.
     end = start + SETUP_LATENCY + min(1, count - 1)
     stimulus[end] = stimulus[end] | {"reset": 1}
     stimulus[end + 1] = stimulus[end + 1] | {"reset": 0}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `cell_finder`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `cell_finder`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from fractions import Fraction
 from math import gcd
@@ -19,7 +19,7 @@ from raycaster.verif.leaf import Leaf
 @by_turn
 @by_reflections
 def test_cell_finder(reflections, turn, tmp_path, random):
-    """The cells of points by fractions; of each size, and on the cells' borders."""
+    """Cells of points, computed with fractions: cells of every size, and points on cell borders."""
     config = exact_config(reflections=reflections, turn=turn, patterns=True)
     leaf = Leaf(cell_finder, lambda: ports(
         "clk odd_u odd_v", steps=Steps(), eye=Eye(eye_bits(config)), signs=Signs(),
@@ -34,7 +34,7 @@ def test_cell_finder(reflections, turn, tmp_path, random):
         e = int(random.choice([1, 2, min(n, steepest), steepest, random.integers(1, steepest + 1)]))
         eye, slope = random.integers(WORLD_SIZE, size=3), random.integers(-steepest, steepest + 1, 3)
         for q in OTHER_AXES[axis]:
-            # A whole point on the border of a cell or elsewhere, and slopes that miss it by as little as they can.
+            # A whole coordinate, at a cell border or elsewhere, and slopes that hit it or miss it by the least amount.
             place = int(random.choice([8 * random.integers(64), random.integers(WORLD_SIZE)]))
             times = int(random.integers(-4, 5))
             slope[q] = times * (e // gcd(n, e)) + int(random.choice([-1, 0, 0, 1]))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `exact_unit`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `exact_unit`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import numpy as np
 import pytest
@@ -60,7 +60,7 @@ def test_exact_unit(config, tmp_path, random):
         column = int(random.choice([0, 1, columns // 2, columns - 1, random.integers(columns)]))
         hard = random.choice(["none", "rivalled", "cornered", "facing"], p=[0.3, 0.3, 0.3, 0.1])
         if hard == "facing":
-            # A ray along x, so that it does not leave the world between the walls.
+            # A ray nearly along x stays in the world between the facing walls.
             row, column = (
                 min(max(middle + int(random.integers(-20, 21)), 0), count - 1)
                 for middle, count in ((config.screen_geometry.horizon_row, rows), (columns // 2, columns))
@@ -92,7 +92,7 @@ def test_exact_unit(config, tmp_path, random):
         ]
         lost = min(endings, default=None) if ends else None
         cycles = trace_cycles(config, usable, reflections, lost=lost)
-        # The place stands before the ray is loaded.
+        # The place is valid before the ray is loaded.
         stimulus.append({**held, **{name: 0 for name in cycles[0].steps if name in leaf.given}})
         for cycle in cycles:
             if cycle.alive is not None and ends:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `extent_tester`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `extent_tester`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from fractions import Fraction
 
@@ -15,7 +15,7 @@ from raycaster.verif.leaf import Leaf
 
 @by_reflections
 def test_extent_tester(reflections, tmp_path, random):
-    """Where the ray is when it meets the plane, as a fraction: before, at and beyond the bounds and the mirror."""
+    """Rays that meet the plane before, at and beyond the bounds and the mirror, computed with fractions."""
     config = exact_config(reflections=reflections)
     eye_width, slope_bits = eye_bits(config), exact_slope_bits(config)
     leaf = Leaf(extent_tester, lambda: ports(
@@ -33,7 +33,7 @@ def test_extent_tester(reflections, tmp_path, random):
         slope, e = (int(random.choice([1, 2, steepest, random.integers(1, steepest + 1)])) for _ in range(2))
         near, beyond = (eye - high, eye - low) if back else (low - eye, high - eye)
         mirror = max(0, int(random.choice([near, near - 1, near + 1, beyond, beyond + 1, random.integers(far + 1)])))
-        # Near one of the places that count, where a product can get there.
+        # Aim near one of the deciding places, if a product can reach it.
         goal = int(random.choice([near, beyond, mirror, random.integers(far + 1)]))
         n = goal * e // slope + int(random.integers(-1, 2))
         if goal * e % slope and random.random() < 0.5:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `eye_register`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `eye_register`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from exact_vectors import by_reflections, exact_config, two_complement
 from vectors import AXES, LAST, ports
@@ -34,7 +34,7 @@ def test_eye_register(reflections, tmp_path, random):
             for _ in range(int(random.integers(1, 3))):
                 axis, plane = int(random.integers(3)), int(random.choice([0, LAST, random.integers(WORLD_SIZE)]))
                 if mirror is not None and random.random() < 0.5:
-                    # From corner to corner the image runs as far away as it can.
+                    # Mirrors on opposite sides of the world move the image as far away as possible.
                     axis, plane = mirror[0], LAST - mirror[1]
                 surface = {"found_surface_axis": axis, "found_surface_position": plane}
                 surface |= {"found_distance": abs(plane - eye[axis])}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `hit_component`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `hit_component`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from itertools import product
 
@@ -15,7 +15,7 @@ from raycaster.verif.leaf import Leaf
     ("eye_bits", "slope_bits", "bits"), [(10, 8, 17), (12, 18, 28)], ids=["narrow", "as wide as its result"]
 )
 def test_hit_component(eye_bits, slope_bits, bits, tmp_path, random):
-    """The lowest bits of E e + D n; operands at their limits with each other, and random ones."""
+    """The lowest bits of E e + D n, for all combinations of operands at their limits, and for random ones."""
     leaf = Leaf(hit_component, lambda: ports(
         "back", eye=signed(eye_bits), slope=unsigned(slope_bits), distance=unsigned(eye_bits - 1),
         e=unsigned(slope_bits), component=unsigned(bits)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `nearest_hit`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `nearest_hit`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from fractions import Fraction
 
@@ -33,12 +33,12 @@ def test_nearest_hit(reflections, turn, tmp_path, random):
             for bits in (numerator_bits, denominator_bits)
         )
         if best is not None and random.random() < 0.6:
-            # As near as the nearest, by other numbers.
+            # As near as the nearest, with other terms.
             n, e = best.numerator * factor, best.denominator * factor
             if n >= 1 << numerator_bits or e >= 1 << denominator_bits:
                 n, e = best.numerator, best.denominator
             if random.random() < 0.5:
-                # Next to it, over another denominator.
+                # Next to it, with another denominator.
                 e = int(random.integers(1, 1 << denominator_bits))
                 n = int(best * e)
             n = min(max(n + int(random.integers(-1, 2)), 1), (1 << numerator_bits) - 1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The choice between a unit's own ray and its shadow ray."""
+"""Leaf tests of `ray_switch`: the choice between a unit's own ray and its shadow ray."""
 
 import pytest
 from vectors import ports
@@ -14,7 +14,7 @@ from raycaster.verif.leaf import Leaf
 
 @pytest.mark.parametrize("reflections", [1, 2])
 def test_ray_switch(reflections, tmp_path, random):
-    """All of one ray, or all of the other, which has left no mirror."""
+    """All fields of one ray or of the other; the shadow ray has left no mirror."""
     config = configure(engine="exact", reflections=reflections, light=True, allow_underrun=True)
     leaf = Leaf(
         ray_switch,
@@ -53,5 +53,5 @@ def test_ray_switch(reflections, tmp_path, random):
 
 
 def output_parts() -> list[str]:
-    """The outputs that both rays have under one name."""
+    """Names of the fields that both rays have."""
     return [f"{record}_d{axis}" for record in ("signs", "slope") for axis in "xyz"]

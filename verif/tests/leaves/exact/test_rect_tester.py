@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `rect_tester`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `rect_tester`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from fractions import Fraction
 
@@ -29,14 +29,16 @@ def leaf_of_tester(config: Configuration, directory) -> Leaf:
 
 
 def mirror_time(eye, slope, mirror) -> Fraction:
-    """t of the mirror that the ray left last."""
+    """Compute t of the mirror that the ray left last."""
     axis, position = mirror
     return Fraction(int(position - eye[axis]), int(slope[axis]))
 
 
 def mirrored_rays(random: np.random.Generator, config: Configuration, count: int):
-    """Tables, rectangles of them to look at, eyes, slopes and mirrors: as the engine meets them, and as extreme as its
-    widths allow."""
+    """Yield tables, indices of rectangles to test, eyes, slopes and mirrors.
+
+    They are as the engine meets them, and as extreme as its widths allow.
+    """
     reflections, steepest = config.reflections, (1 << exact_slope_bits(config)) - 1
     while count > 0:
         table = random_rectangles(random, count=8, closed=True)
@@ -50,10 +52,10 @@ def mirrored_rays(random: np.random.Generator, config: Configuration, count: int
             slope[axis] = slope[axis] or 1
             plane = int(random.choice([random.choice(EXTREMES), random.integers(WORLD_SIZE)]))
             if mirror is not None and random.random() < 0.5:
-                # From corner to corner the image runs as far away as it can.
+                # Mirrors on opposite sides of the world move the image as far away as possible.
                 axis, plane = mirror[0], LAST - mirror[1]
             if plane != eye[axis]:
-                # A mirror is ahead of the eye, whichever image it is.
+                # A mirror is always ahead of the eye, even of a mirrored one.
                 slope[axis] = abs(slope[axis]) * (1 if eye[axis] < plane else -1)
                 eye[axis], slope[axis], mirror = 2 * plane - eye[axis], -slope[axis], (axis, plane)
         chosen = random.choice(np.flatnonzero(table.visible), 4)
@@ -66,7 +68,7 @@ def mirrored_rays(random: np.random.Generator, config: Configuration, count: int
 @by_turn
 @by_reflections
 def test_rect_tester(reflections, turn, tmp_path, random):
-    """The hit and its t; after two mirrors in one point, what is hit in that point, and that it was there."""
+    """The hit and its t; after two mirrors in one point, also hits in that point and at_mirror."""
     config = exact_config(reflections=reflections, turn=turn)
     leaf = leaf_of_tester(config, tmp_path)
     stimulus, expected, distance = [], [], 0
@@ -86,7 +88,7 @@ def test_rect_tester(reflections, turn, tmp_path, random):
                     "mirror_distance": distance, "steps_find_intersection": started,
                 }
             )  # fmt: skip
-            # It is read a cycle after all else.
+            # The mirror distance is read a cycle after all other inputs.
             distance = abs(int(mirror[1] - eye[mirror[0]])) if mirror else int(random.integers(WORLD_SIZE))
             hit, n, e = verdict(table, index, eye, slope, mirror, met)
             meets = hit and mirror is not None and Fraction(n, e) == mirror_time(eye, slope, mirror)
@@ -111,7 +113,7 @@ def test_rect_tester(reflections, turn, tmp_path, random):
 @by_turn
 @by_reflections
 def test_the_widths_are_just_wide_enough(reflections, turn, tmp_path):
-    """The furthest image of a camera, its greatest products, and a bit that each of them needs."""
+    """The furthest image of a camera and its greatest products need every bit."""
     config = exact_config(reflections=reflections, turn=turn)
     far = LAST * (reflections + 1)
     assert eye_bits(config) == far.bit_length() + 1

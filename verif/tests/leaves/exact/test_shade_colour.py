@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Colours in the light and in the dark."""
+"""Leaf tests of `shade_colour`: colours in the light and in the dark."""
 
 from vectors import ports
 
@@ -10,7 +10,7 @@ from raycaster.verif.leaf import Leaf
 
 
 def test_shade_colour(tmp_path):
-    """Each value of a channel, with every shade; the three channels have different ones."""
+    """Every value of a channel with every shade; the three channels have different values."""
     leaf = Leaf(
         shade_colour,
         lambda: ports("dark", colour=Colour(), shade=unsigned(SHADE_BITS), shaded=unsigned(RGB_BITS)),

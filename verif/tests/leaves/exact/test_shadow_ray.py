@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The ray from the light, against the image contract's formulas."""
+"""Leaf tests of `shadow_ray`: the ray from the light, compared with the image contract's formulas."""
 
 import numpy as np
 import pytest
@@ -44,7 +44,7 @@ def test_shadow_ray(reflections, turn, tmp_path, random):
         steepest = 190
     stimulus, expected, sides = [], [], set()
     while len(expected) < CASES:
-        # A ray that is in the world, and close to a corner or a plane of it, at n / e.
+        # A ray that is inside the world at n / e, often close to a corner or a border of it.
         axis = int(random.integers(3))
         point = np.where(random.random(3) < 0.5, random.choice(EXTREMES, 3), random.integers(WORLD_SIZE, size=3))
         n = int(random.choice([1, 2, 8, LAST, far, random.integers(1, far + 1)]))
@@ -53,7 +53,7 @@ def test_shadow_ray(reflections, turn, tmp_path, random):
         slope[axis] = e * random.choice([-1, 1])
         eye = np.zeros(3, dtype=np.int64)
         for other in range(3):
-            # Numerators of points between whole ones come from a slope that n does not divide.
+            # The point is between whole coordinates if e does not divide slope * n.
             eye[other] = point[other] - int(slope[other]) * n // e
         numerators = eye * e + slope * n
         inside = (numerators >= 0).all() and (numerators <= LAST * e).all()

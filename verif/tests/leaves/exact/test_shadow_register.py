@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whether anything is between the light and a point, against fractions."""
+"""Leaf tests of `shadow_register`: a hit between the light and a point, compared with fractions."""
 
 from fractions import Fraction
 
@@ -18,7 +18,7 @@ CYCLES = 2000
 
 @pytest.mark.parametrize("turn", [False, True], ids=["not turned", "turned"])
 def test_shadow_register(turn, tmp_path, random):
-    """Hits before the point, in it, beyond it, and next to it by one unit of either product."""
+    """Hits before, at and beyond the point, and next to it by one unit of either product."""
     config = configure(engine="exact", turn=turn, light=True)
     leaf = Leaf(
         shadow_register,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""When the light is looked for, against the order that the contract states."""
+"""Leaf tests of `shadow_sequencer`: the order of shadow passes, compared with the contract."""
 
 from vectors import ports
 
@@ -13,7 +13,7 @@ AIM = 4
 
 
 def test_shadow_sequencer(tmp_path, random):
-    """Passes of any length with any outcome: nothing in question, decided on the way, or to the last rectangle."""
+    """Passes of any length and outcome: nothing in question, decided early, or tested to the last rectangle."""
     leaf = Leaf(
         shadow_sequencer,
         lambda: ports("clk reset_ray_caster any_in_question from_light", shadow_pass=ShadowPass(), aim=unsigned(AIM)),
@@ -58,7 +58,7 @@ def test_shadow_sequencer(tmp_path, random):
             stops = not in_question and not last
             cycle(int(last), in_question, 0, 1, 0, 0, 0, int(stops))
             if stops:
-                # Everything was dropped, so that the pass is over in the next cycle.
+                # All tests are dropped, so the pass is over in the next cycle.
                 cycle(1, 0, 0, 1, 0, 0, 0, 0)
                 outcomes.add("decided")
                 break

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `slope_component`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `slope_component`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from exact_vectors import exact_config
 from vectors import ports

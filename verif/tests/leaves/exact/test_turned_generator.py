@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `turned_generator`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `turned_generator`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ from raycaster.verif.leaf import Leaf
     ids=config_id,
 )
 def test_turned_generator(config, tmp_path, random):
-    """Place and camera come a cycle before the ray is loaded; one that is not loaded changes nothing."""
+    """Place and camera come a cycle before the ray is loaded; a ray that is not loaded changes nothing."""
     leaf = Leaf(turned_generator, lambda: ports(
         "clk", steps=Steps(), place=Place(config), column_base=unsigned(unit_bits(config)), camera=camera_of(config),
         initial_signs=Signs(), slope=Slope(exact_slope_bits(config)), config=config
@@ -40,7 +40,7 @@ def test_turned_generator(config, tmp_path, random):
         if load:
             place = [screen.view_distance, column - screen.centre_column, screen.horizon_row - row]
             slope = np.array(place) @ np.array(basis)
-    # The counters rest one past their last value; nothing there may overflow.
+    # The counters stop one past their last value, where nothing may overflow.
     stimulus.append({**held, "place_row": screen.rows, "place_column_offset": config.groups})
     expected.append(slope)
     outputs = leaf.run_both(stimulus, settled=2)

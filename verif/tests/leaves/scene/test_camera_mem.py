@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `camera_mem`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `camera_mem`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_camera_mem(turn, light, tmp_path, random):
                 expected["readback"] = word.shadow
             if turn:
                 for name, vector in zip(("forward", "right", "up"), model.basis, strict=True):
-                    # A negative component is its bits.
+                    # Negative components are in two's complement.
                     expected |= {f"camera_{name}_{axis}": part % 1024 for axis, part in zip(AXES, vector, strict=True)}
             if light:
                 live = register_map(12)["light"].unpack(model["light"].live)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `rect_mem`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `rect_mem`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def bits_of(flags) -> int:
 
 
 def almost_flat(random: np.random.Generator) -> tuple[int, ...]:
-    """The words of an enabled rectangle whose corners differ by one bit in each coordinate, or in none of an axis."""
+    """Return the words of an enabled rectangle whose corners differ by one bit or not at all on each axis."""
     first = int(random.integers(1 << WORD_BITS))
     second = first ^ int(random.integers(1 << WORD_BITS)) & ~register_map(1)["rectangle[0].corner_0"].implemented
     for field in register_map(1)["rectangle[0].corner_0"].fields.values():
@@ -32,12 +32,15 @@ def almost_flat(random: np.random.Generator) -> tuple[int, ...]:
 
 
 def table_stimulus(random: np.random.Generator, table: Table, rectangles: int) -> list[dict[str, int]]:
-    """Rectangles written one after the other, in part too, at random and to neighbouring addresses; others whole, then
-    read, and shown; others whole, again and again, with commits and frames in between."""
+    """Return a stimulus that writes rectangles in three ways.
+
+    Some are written at random, in part and to neighbouring addresses; some whole, then read and shown; some whole and
+    repeatedly, with commits and frames in between.
+    """
     stimulus = [{**random_bus(random, [0]), "reset": 1}] * 2
     last = 1 << address_bits(rectangles)
     written = list(table.words)
-    # Many rectangles take their time.
+    # With many rectangles, each cycle takes longer to simulate.
     while len(stimulus) < (CYCLES * 5 if rectangles <= 4 else CYCLES):
         _, words = rectangle_words(random)
         slot, size = int(random.integers(rectangles)), len(table.names)
@@ -45,7 +48,7 @@ def table_stimulus(random: np.random.Generator, table: Table, rectangles: int) -
         addresses = written[size * slot : size * (slot + 1)]
         idle = {"bus_write": 0, "bus_commit": 0, "bus_go_live": 0, "bus_mask": EVERY_BIT, "reset": 0}
         if random.random() < 0.25:
-            # The shadow's, the pending and the live rectangle are each in one of three places.
+            # The shadow, the pending and the live rectangle are each in one of three places.
             for _, data in zip(range(8), words, strict=False):
                 for address, word in zip(addresses, data, strict=False):
                     stimulus.append({**idle, "bus_write": 1, "bus_address": address, "bus_data": word})
@@ -69,7 +72,7 @@ def table_stimulus(random: np.random.Generator, table: Table, rectangles: int) -
 
 
 def fill_places(random: np.random.Generator, table: Table) -> list[dict[str, int]]:
-    """A reset, and writes that reach all places of all slots, so that a memory which starts unknown is known."""
+    """Return a reset and writes to all places of all slots, which make an unknown memory known."""
     idle = random_bus(random, [0]) | {"bus_write": 0, "bus_commit": 0, "bus_go_live": 0, "reset": 0}
     writes = [
         {**idle, "bus_write": 1, "bus_address": address, "bus_data": int(random.integers(1 << WORD_BITS))}
@@ -104,11 +107,11 @@ def test_rect_mem(rectangles, options, tmp_path, random):
             "rects_fetch": int(cycle < len(filling) or random.random() < 0.6),
             "rects_index": int(random.integers(rectangles)),
         }
-        # A commit is asked for by a write of another word in the cycle before it.
+        # The write that asks for a commit goes to another word, in the cycle before.
         if inputs["bus_commit"] and cycle:
             stimulus[cycle - 1]["bus_write"] = 0
     outputs = leaf.run_both(stimulus, settled=len(filling))
-    # What was asked for, and what is at the port; with a latency of two it is in between for a cycle.
+    # The rectangle on the port, and the one on its way there for a cycle with a latency of two.
     presented, on_the_way = None, None
     checked, bad = 0, False
     for cycle, (inputs, output) in enumerate(zip(stimulus, outputs, strict=True)):
@@ -131,7 +134,7 @@ def test_rect_mem(rectangles, options, tmp_path, random):
             on_the_way = sorted_rect(live, inputs["rects_index"], "rects_rect", config) if presentable else None
         if latency == 1:
             presented = on_the_way
-        # It is known a cycle after the shadow.
+        # bad_rectangle follows the shadow by a cycle.
         bad = bool(np.any(shadow.enabled & (shadow.axes < 0))) and not inputs["reset"]
         table.clock(inputs)
     assert checked > 50

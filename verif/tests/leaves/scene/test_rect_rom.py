@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `rect_rom`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `rect_rom`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -56,8 +56,8 @@ def test_rect_rom(count, alike, options, engine, latency, tmp_path):
 
 
 @pytest.mark.parametrize("engine", ["seed", "beam"])
-def test_rect_rom_has_no_registers_for_what_is_alike(engine, tmp_path):
-    """With all rectangles on one axis its two bits are no registers; a single rectangle needs none at all."""
+def test_rect_rom_needs_no_registers_for_equal_fields(engine, tmp_path):
+    """With all rectangles on one axis, its two bits need no registers; a single rectangle needs none at all."""
     for count, alike in ((12, True), (1, False)):
         config = fixed_config(count, engine, False, alike)
         directory = tmp_path / str(count)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `rect_slot`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `rect_slot`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_rect_slot(number, tmp_path, random):
         for cycle in range(2 * CYCLES)
     ]
     outputs = leaf.run_both(stimulus, settled=1)
-    # Of each copy its place, and in the bit above whether it is usable.
+    # Each copy is its place, with a bit above that says whether it is usable.
     usable_bit = 1 << PLACE_BITS
     model, bad = Word(EVERY_BIT), False
     for cycle, (inputs, output) in enumerate(zip(stimulus, outputs, strict=True)):

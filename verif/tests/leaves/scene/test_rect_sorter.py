@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `rect_sorter`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `rect_sorter`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_rect_sorter(options, tmp_path, random):
                 stimulus.append({f"written_{name}": word for name, word in zip(names, written, strict=False)})
                 expected.append(sorted_rect(table, index, "rect", config))
                 if config.patterns and random.random() < 0.2:
-                    # A cell as large as the world, and one that is larger, have no pattern.
+                    # Cells as large as the world or larger have no pattern.
                     size = int(random.integers(6, 8))
                     cell = register_map(1)["rectangle[0].pattern"].fields["cell"]
                     others = written[-1] & ~((1 << cell.width) - 1 << cell.lsb)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `scene_word`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `scene_word`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def test_scene_word(implemented, first, tmp_path, random):
     for cycle in range(CYCLES):
         inputs = random_bus(random, [0]) | {"reset": int(cycle == 0 or random.random() < 0.05)}
         del inputs["bus_address"]
-        # A module has no constants: whatever this input says when a word is written counts.
+        # In a separate module this input is no constant: its value at each write counts.
         bits = int(random.integers(1 << WORD_BITS)) if implemented == "any" else implemented
         stimulus.append(inputs | {"implemented": bits, "selected": int(random.random() < 0.8)})
     outputs = leaf.run_both(stimulus, settled=1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `cell_parity`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `cell_parity`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from unit_vectors import any_config
@@ -13,7 +13,7 @@ from raycaster.verif.leaf import Leaf
 
 @pytest.mark.parametrize("fraction_bits", [0, 1, 8])
 def test_cell_parity(fraction_bits, tmp_path):
-    """Of each coordinate at the borders of cells, and next to them."""
+    """All coordinates at the borders of cells and next to them."""
     config = any_config(fraction_bits=fraction_bits, patterns=True)
     leaf = Leaf(cell_parity, lambda: ports(
         "odd", value=signed(position_bits(config) + 2), size=unsigned(CELL_BITS), config=config

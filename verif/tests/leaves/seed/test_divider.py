@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `divider`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `divider`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ from raycaster.verif.leaf import Leaf
 
 
 def dividends_and_divisors(config: Configuration, random: np.random.Generator) -> list[tuple[int, int]]:
-    """Corners and random operands, with every quotient that rounding or overflow could get wrong made often."""
+    """Return corner cases and random operands; quotients sensitive to rounding or overflow are common."""
     limit = 1 << position_bits(config)
     operands = [(n * d, e) for n in position_corners(config) for d in SLOPE_CORNERS for e in SLOPE_CORNERS if n < limit]
     chosen = [operands[index] for index in random.permutation(len(operands))[: VECTORS // 2]]
@@ -37,7 +37,7 @@ def test_divider(config, tmp_path, random):
     steps = config.divider_steps
     stimulus = []
     for number, (dividend, divisor) in enumerate(operands):
-        # Back to back: a load comes together with the store of the division before.
+        # Back to back: each load comes with the store of the previous division.
         stimulus.append(
             {"load_divider": 1, "store_quotient": int(number > 0), "dividend": dividend, "divisor": divisor}
         )

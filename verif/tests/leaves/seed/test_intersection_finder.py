@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `intersection_finder`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `intersection_finder`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ from raycaster.verif.leaf import Leaf, sorted_rect, trace_cycles
 SLOPES = (0, 1, 2, 99, 100, 160, 190, 255, 256, 510, 511)
 
 
-# The divider's bits a cycle matter here by its steps alone, so they need not meet every F.
+# Only the divider's number of steps matters here, so not every F needs every number of bits per cycle.
 finders = pytest.mark.parametrize(
     "config",
     [
@@ -50,7 +50,7 @@ def ray_inputs(origin, slope) -> dict[str, int]:
 
 
 def finder_stimulus(config: Configuration, rays) -> tuple[list[dict[str, int]], list[tuple[int, int, int]]]:
-    """One pass a ray over its table: the cycles, and (cycle, ray, rectangle) of each result."""
+    """Make one pass per ray over its table; return the cycles, and (cycle, ray, rectangle) of each result."""
     stimulus, results = [], []
     for number, (origin, slope, table) in enumerate(rays):
         visible = [int(index) for index in np.flatnonzero(table.visible)]
@@ -69,7 +69,7 @@ def finder_stimulus(config: Configuration, rays) -> tuple[list[dict[str, int]], 
 
 
 def traced_rays(config: Configuration, random: np.random.Generator, count: int) -> list:
-    """Rays as the engine meets them: whole origins first, then origins with a fraction, on the mirror that was hit."""
+    """Return rays as the engine meets them: first whole origins, then fractional origins on the mirrors hit."""
     rays = []
     while len(rays) < count:
         table = random_rectangles(random, count=8, closed=True)
@@ -83,7 +83,7 @@ def traced_rays(config: Configuration, random: np.random.Generator, count: int) 
 
 
 def meet(config: Configuration, origin, slope, axis: int, plane: int) -> tuple[np.ndarray, bool]:
-    """Where a ray meets a plane of this axis, and whether it does."""
+    """Compute where a ray meets a plane on this axis, and whether it does."""
     point, valid = np.zeros(3, dtype=int), True
     point[axis] = plane << config.fraction_bits
     for other in OTHER_AXES[axis]:
@@ -95,7 +95,7 @@ def meet(config: Configuration, origin, slope, axis: int, plane: int) -> tuple[n
 
 
 def aimed_ray(config: Configuration, random: np.random.Generator) -> tuple:
-    """A ray of any slope from anywhere, and rectangles whose bounds are at, or next to, the point that it meets."""
+    """Return a random ray, and rectangles whose bounds are at or near the point where the ray meets their plane."""
     fraction_bits, limit = config.fraction_bits, WORLD_SIZE - 1
     origin = np.where(
         random.random(3) < 0.4,
@@ -110,7 +110,7 @@ def aimed_ray(config: Configuration, random: np.random.Generator) -> tuple:
         low[axis] = high[axis] = random.choice([*EXTREMES, random.integers(limit), origin[axis] >> fraction_bits])
         point, _ = meet(config, origin, slope, axis, low[axis])
         for other in OTHER_AXES[axis]:
-            # A bound that has another bit is seen from near it; the lowest bits from nearest.
+            # Bounds at all distances, mostly small ones, so that an error in any bit shows.
             away = random.choice([-1, 1]) * int(random.integers(1 << int(random.integers(9))))
             near = int(np.clip((point[other] >> fraction_bits) + away, 0, limit))
             if random.random() < 0.7:
@@ -151,4 +151,4 @@ def test_intersection_finder(config, tmp_path, random):
                 odd = [int(point[axis]) // cell % 2 for axis in OTHER_AXES[table.axes[index]]]
                 assert [output["odd_u"], output["odd_v"]] == odd, case
         seen.add((int(table.axes[index]), hit))
-    assert len(seen) == 6, "each axis was to be hit and missed"
+    assert len(seen) == 6, "each axis must be hit and missed"

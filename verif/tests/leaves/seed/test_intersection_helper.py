@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `intersection_helper`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `intersection_helper`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from arithmetic_vectors import SLOPE_CORNERS, VECTORS, arithmetic, position_corners
@@ -35,7 +35,7 @@ def test_intersection_helper(config, tmp_path, random):
 
     operands = [(position(), slope(), position(), position(), slope()) for _ in range(VECTORS)]
     for number in range(VECTORS):
-        # Products whose every bit tells in the quotient, and distances with a single one.
+        # Products with every bit visible in the quotient, and distances with a single bit set.
         c, b, e = position(), int(random.choice([1, 2, 3, 5])), int(random.choice(POWERS))
         distance = int(random.choice([1 << random.integers(width), random.integers(1, 100)]))
         if number % 2:

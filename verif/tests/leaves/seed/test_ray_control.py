@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `ray_control`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `ray_control`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from engine_vectors import any_config
@@ -43,7 +43,7 @@ def test_ray_control(config, tmp_path, random):
         reflections = config.reflections if number < 2 else int(random.integers(config.reflections + 1))
         held = {"rects_usable": mask, "picture_reflections": reflections}
         fate = random_fate(random, usable, reflections, number)
-        # What is not usable is not visited, whatever the mask has for it.
+        # Unusable rectangles are not visited, whatever the mask says.
         held["fate_may_hit"] = mask_of(fate["may_hit"]) | int(random.integers(1 << count)) & ~mask
         quiet = ({f"steps_{name}": 0 for name in step_names(config) if name != "initial_ray"} | {"done": 0}, None, None)
         for _ in range(2):
@@ -53,8 +53,8 @@ def test_ray_control(config, tmp_path, random):
         drive({**held, "reset_ray_caster": 0, "enable": 1}, quiet)
         trace = trace_cycles(config, usable, reflections, **fate)
         if number == 0:
-            assert len(trace) + 3 == config.group_cycles, "with done and the reset of two cycles"
-        # A row may be abandoned at any moment; what was under way must not come out later.
+            assert len(trace) + 3 == config.group_cycles, "including done and the two cycles of reset"
+        # A row may be abandoned at any moment; results in flight must not appear later.
         abandoned = number > 4 and number % 2
         for cycle in trace[: int(random.integers(len(trace))) if abandoned else None]:
             wanted = cycle.steps | {"done": 0}
@@ -77,7 +77,7 @@ def test_ray_control(config, tmp_path, random):
             signals, current, offered = wanted
             assert {name: output[name] for name in signals} == signals, cycle
             if current is not None:
-                assert held_by_memory == current, f"cycle {cycle}: it fetched another rectangle"
+                assert held_by_memory == current, f"cycle {cycle}: fetched another rectangle"
             if offered is not None:
                 rect = sorted_rect(table, offered, "offered")
                 assert {name: output[name] for name in rect} == rect, cycle

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `ray_mem`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `ray_mem`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from unit_vectors import any_config

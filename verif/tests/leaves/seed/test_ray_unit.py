@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `ray_unit`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `ray_unit`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from engine_vectors import any_config, check_ray_unit, ray_unit_leaf

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `z_buffer`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `z_buffer`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from unit_vectors import any_config
@@ -30,7 +30,7 @@ def test_z_buffer(config, tmp_path, random):
     limit = (1 << width) - 1
     stimulus = [{"steps_reset_z_buf": 1}]
     for number in range(1500):
-        # Few depths, so that many tie; and a first hit, from which on all registers are known.
+        # Few depths, so that many tie; the first hit makes all registers known.
         depth = random.choice([0, 1, 255, 256, limit - 1, limit, random.integers(limit)])
         write = number == 0 or random.random() < 0.7
         stimulus.append(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `camera_axis`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `camera_axis`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def test_camera_axis(tmp_path, random):
         for _ in range(40):
             move, more, less = (int(random.random() < likely) for likely in (0.8, 0.5, 0.5))
             stimulus.append({"reset": 0, "start": start, "move": move, "more": more, "less": less})
-    # Across the whole world and back, and against both walls.
+    # Across the whole world and back, up to both walls.
     for more in (1, 0):
         stimulus += [{"reset": 0, "start": 0, "move": 1, "more": more, "less": 1 - more}] * (WORLD_SIZE // STEP + 3)
     position = 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `ray_caster`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `ray_caster`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from itertools import pairwise
 
@@ -23,15 +23,15 @@ from raycaster.verif.leaf import Leaf, TraceCycle, slot_length, sorted_rect, tra
 
 
 def place_after(config: Configuration, place: tuple[int, int]) -> tuple[int, int]:
-    """The row and the group that follow in a frame."""
+    """Return the row and group that follow in a frame."""
     row, offset = place
     return (row, offset + 1) if offset < config.groups - 1 else (row + 1, 0)
 
 
 def places_before(random: np.random.Generator, config: Configuration, place: tuple[int, int]) -> list[tuple[int, int]]:
-    """Groups that a frame comes by on its way to this one: its first, at times its second, mostly the one before this.
+    """Pick groups to render before this one: the frame's first, sometimes its second, mostly the group before this.
 
-    The rows between are abandoned.
+    The rows in between are abandoned.
     """
     row, offset = place
     before = (row, offset - 1) if offset else (row - 1, config.groups - 1)
@@ -40,10 +40,9 @@ def places_before(random: np.random.Generator, config: Configuration, place: tup
 
 
 def remembered(config: Configuration, cycles: list[TraceCycle], usable: list[int]) -> list[int]:
-    """The rectangle that the memory holds in each cycle of a trace, in that of done and in the next.
+    """Return the rectangle that the memory shows in each cycle of a trace, in the cycle of done, and in the next.
 
-    The control fetches one for each slot and each pass, whether anybody waits for it or not; where none is left, the
-    lowest.
+    The control fetches one for each slot and each pass, even if nobody waits for it; if none is left, the lowest.
     """
     queue = [*usable, *[0] * len(cycles)]
     held, blends, indices = 0, 0, []
@@ -56,7 +55,7 @@ def remembered(config: Configuration, cycles: list[TraceCycle], usable: list[int
             held = 0
         blends = blends + 1 if cycle.steps["steps_add_colour"] else 0
         indices.append(held)
-    # A slot of one cycle is over in that of done.
+    # A slot of one cycle is over in the cycle of done.
     return [*indices, queue[blends - 1], queue[blends - (slot_length(config) > 1)]]
 
 
@@ -87,9 +86,9 @@ def remembered(config: Configuration, cycles: list[TraceCycle], usable: list[int
     ids=config_id,
 )
 def test_ray_caster(config, tmp_path, random):
-    """Of either engine: pixels, and the cycle in which they are done.
+    """Pixels of both engines, and the cycle of done.
 
-    Where groups are culled, a group comes after others of its frame, in which its rectangles were tested or not.
+    With culling, a group follows others of its frame, during which its rectangles were tested or not.
     """
     leaf = Leaf(ray_caster, lambda: ports(
         "clk reset_ray_caster enable done", place=Place(config), camera=camera_of(config), picture=Picture(),
@@ -136,12 +135,12 @@ def test_ray_caster(config, tmp_path, random):
             for index in indices:
                 rect = rects.get(index, {})
                 stimulus.append({**held, **rect, "reset_ray_caster": 0, "enable": int(random.integers(2))})
-            # In a frame the cycle of done is the first of a reset.
+            # Within a frame, the cycle of done is the first of a reset.
             stimulus[-1]["reset_ray_caster"] = int(place != last)
             colours = [pixel_word(config, colour) for colour in golden.colours]
             case = f"group {place} of {places}, camera {camera}, corners {table.corners.tolist()}"
             results.append((len(stimulus) - 1, colours, case))
-            # In the first the rectangles are copied; the others test them if they take long enough.
+            # The first group copies the rectangles; the others test them if they take long enough.
             tests = place != (0, 0) and len(cycles) >= config.rectangles + SETUP_LATENCY
             following = place_after(config, place) if tests else None
         stimulus.append({})
@@ -156,5 +155,5 @@ def test_ray_caster(config, tmp_path, random):
         assert units == colours, case
     for cycle, index in shown.items():
         before = next(past for past in range(cycle - 1, -1, -1) if outputs[past]["rects_fetch"])
-        assert outputs[before]["rects_index"] == index, f"cycle {cycle}: it fetched another rectangle"
-    assert bool(culled) == predicts, "some groups were to be culled"
+        assert outputs[before]["rects_index"] == index, f"cycle {cycle}: fetched another rectangle"
+    assert bool(culled) == predicts, "rectangles must be culled exactly if the design predicts"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `ray_caster_module`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `ray_caster_module`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from dataclasses import replace
 
@@ -33,11 +33,11 @@ from raycaster.sim.register_model import RegisterFile, Request
 from raycaster.verif.leaf import Leaf
 
 LONG_BLANKING = replace(SMALL_SCREEN, horizontal=Span(32, 8, 24, 44, active_high=False))
-"""In which a beam engine whose camera turns sets up a line."""
+"""A screen with enough blanking for a beam engine whose camera can turn to set up a line."""
 
 
 def without_one(random: np.random.Generator, config: Configuration, scene: tuple) -> tuple:
-    """The scene without one of the rectangles that its picture shows, if it shows any."""
+    """Return the scene without one of the rectangles that its picture shows, if it shows any."""
     camera, table, background, reflections, words = scene
     slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
     for index in random.permutation(np.flatnonzero(table.visible)):
@@ -50,7 +50,7 @@ def without_one(random: np.random.Generator, config: Configuration, scene: tuple
 
 
 class Bus:
-    """Writes the stimulus of a bus master, and remembers when the answer to each read comes."""
+    """Builds the stimulus of a bus master, and records when the answer to each read comes."""
 
     def __init__(self, config: Configuration):
         self.config, self.registers = config, register_map(config.rectangles)
@@ -67,7 +67,7 @@ class Bus:
         self.stimulus.append({**self._idle, **transfer, "avs_s0_write": 1})
 
     def write_word(self, name: str, word: int, lanes: int) -> None:
-        """Any word, in some of its bytes."""
+        """Write any word to some of its byte lanes."""
         transfer = {"avs_s0_address": self.registers[name].address, "avs_s0_writedata": word}
         self.stimulus.append({**self._idle, **transfer, "avs_s0_byteenable": lanes, "avs_s0_write": 1})
 
@@ -99,7 +99,7 @@ class Bus:
 
 
 def check_bus(config: Configuration, stimulus: list[dict[str, int]], outputs: list[dict[str, int]]) -> int:
-    """Hold the bus against the registers' model in every cycle; returns how many reads were answered."""
+    """Compare the bus with the register model in every cycle; return the number of reads that were answered."""
     model, inputs, answers = RegisterFile(config), {}, 0
     for cycle, (given, output) in enumerate(zip(stimulus, outputs, strict=True)):
         inputs |= given
@@ -141,14 +141,14 @@ def check_bus(config: Configuration, stimulus: list[dict[str, int]], outputs: li
     ids=config_id,
 )
 def test_ray_caster_module(config, tmp_path, random):
-    """Two scenes over the bus, one shown after the other; each output of each cycle, and each pixel."""
+    """Two scenes over the bus, one shown after the other; every output in every cycle, and every pixel."""
     screen = config.screen_geometry
     bus = Bus(config)
     pictures = []
     bus.wait(2, reset=1)
     bus.wait(3, reset=0)
     for _ in range(2):
-        # Most of what is random cannot be told from a wall.
+        # Most random scenes look like a plain wall.
         for _ in range(1000):
             camera = random.integers(WORLD_SIZE, size=3) // [2, 1, 1]
             basis = random_basis(random) if config.turn else UNTURNED
@@ -162,7 +162,7 @@ def test_ray_caster_module(config, tmp_path, random):
             raise AssertionError(f"no scene shows more than {min(config.rectangles, 3)} colours")
         pictures.append(golden_words(config, colours))
         bus.write_scene(camera, background, config.reflections, table, basis=basis)
-        # To the cycle after the next StartScreen.
+        # Wait until the cycle after the next StartScreen.
         so_far = len(bus.stimulus) - 2 - start_screen_cycle(screen) - 1
         bus.wait(-so_far % screen.frame_cycles)
     bus.wait(screen.frame_cycles - 50)
@@ -196,9 +196,9 @@ def test_ray_caster_module(config, tmp_path, random):
     ids=config_id,
 )
 def test_ray_caster_module_scenes(config, tmp_path, random):
-    """A scene a frame over the bus, which is never idle: words are read back, and written in part.
+    """One scene per frame over a bus that is never idle: words are read back, and written in part.
 
-    Some frames are black, as the module does not run.
+    Some frames are black because the module does not run.
     """
     screen = config.screen_geometry
     bus = Bus(config)
@@ -222,7 +222,7 @@ def test_ray_caster_module_scenes(config, tmp_path, random):
         run = random.random() < 0.9
         pictures.append(words * run)
         start = 2 + start_screen_cycle(screen) + number * screen.frame_cycles
-        # Whatever is committed before the scene is never shown; whatever is written after it waits for a commit.
+        # A commit before the scene is never shown; writes after the scene wait for a commit.
         traffic(start - screen.frame_cycles + int(random.integers(10, 400)))
         bus.write("control", run=1, commit=1, reflections=0)
         bus.read("status")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `ray_caster_renderer`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `ray_caster_renderer`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -41,7 +41,7 @@ COARSE = Screen(
     clocks_per_pixel=1,
     distance=50,
 )
-"""With a clock a pixel, and half the slope ahead."""
+"""A screen with one clock per pixel and half the slope ahead."""
 
 
 def renderer_leaf(config: Configuration, directory) -> Leaf:
@@ -60,7 +60,7 @@ def renderer_leaf(config: Configuration, directory) -> Leaf:
         small_config(units=4, rectangles=1, reflections=2, divider_bits=3, colour_bits=2, culling=False),
         small_config(units=4, rectangles=1, reflections=2, colour_bits=4),
         small_config(COARSE, units=4, rectangles=1, reflections=1, culling=False),
-        # 16 groups of 27 cycles, of which a row of 336 has time for twelve.
+        # 16 groups of 27 cycles each; a row of 336 cycles has time for twelve.
         small_config(
             units=1, rectangles=1, reflections=0, fraction_bits=8, divider_bits=1, allow_underrun=True, culling=False
         ),
@@ -68,10 +68,10 @@ def renderer_leaf(config: Configuration, directory) -> Leaf:
     ids=config_id,
 )
 def test_ray_caster_renderer(config, tmp_path, random):
-    """One rectangle, so that the memory's answer never changes; the first frame shows none, the third is black."""
+    """One rectangle, so the memory's answer never changes; the first frame shows none, the third is black."""
     screen = config.screen_geometry
     camera = np.array([100, 200, 100])
-    # At twice the distance of the viewing rectangle, a column is two units wide, and a row two high.
+    # At twice the distance of the viewing rectangle, a column is two units wide and a row two units high.
     table = Rectangles(
         np.array([[(301, 511, 104), (301, 192, 100)]]),
         random.integers(1, 256, size=(1, 3)).astype(np.uint8),
@@ -88,19 +88,19 @@ def test_ray_caster_renderer(config, tmp_path, random):
     # From the cycle after each StartScreen on, the next scene.
     stimulus = [{**scene, "reset": 1}] * 2 + [{"reset": 0, "picture_run": 1, "rects_usable": 0}] * (start + 1 + frame)
     stimulus += [{"rects_usable": 1}] * frame + [{"picture_run": 0}] * (frame // 2)
-    # What the control asks the memory for is known from the first group on.
+    # The control's fetches are known from the first group on.
     outputs = renderer_leaf(config, tmp_path).run_both(stimulus, settled=2 + start + 6)[2:]
 
     slopes = primary_slopes(screen).reshape(-1, 3)
     colours = model_of(config).trace(table, camera, background, slopes, config.reflections).colours
     golden = golden_words(config, colours)
-    assert len(set(golden.flat)) > 1, "the rectangle was to have an edge in view"
+    assert len(set(golden.flat)) > 1, "the rectangle must have an edge in view"
     empty = np.full_like(golden, pixel_word(config, background))
     group = len(trace_cycles(config, [0], config.reflections)) + 3
     assert group == config.group_cycles
     groups_in_time = min(config.groups, (screen.row_cycles - 1) // group)
     shown = golden.copy()
-    # Columns that were not written in time keep what that half of the buffer held: the empty scene's.
+    # Columns that were not written in time keep their half's old content, from the empty scene.
     shown[:, groups_in_time * config.units :] = empty[:, groups_in_time * config.units :]
     frames = monitored(outputs, config)
     assert len(frames) == 2
@@ -118,7 +118,7 @@ def test_ray_caster_renderer(config, tmp_path, random):
     in_second = outputs[start + frame + 1 : start + 2 * frame]
     busy = sum(output["progress_busy"] for output in in_second)
     if config.culling:
-        # In the first two groups nothing is known yet.
+        # The first two groups are not culled, as nothing is known yet.
         assert 2 * group < busy < screen.rows * config.groups * group / 2
         return
     if not config.allow_underrun:
@@ -134,7 +134,7 @@ def test_ray_caster_renderer(config, tmp_path, random):
 
 
 LONG_LINE = replace(TINY_SCREEN, horizontal=Span(16, 8, 24, 60, active_high=False))
-"""In which two pixels a clock leave time to set up a line."""
+"""A screen whose lines are long enough to set up a line at two pixels per clock."""
 
 
 @pytest.mark.slow_sets("beam-tiny2-s2-u2", "seed")
@@ -148,7 +148,7 @@ LONG_LINE = replace(TINY_SCREEN, horizontal=Span(16, 8, 24, 60, active_high=Fals
     ids=config_id,
 )
 def test_ray_caster_renderer_scenes(config, tmp_path, random):
-    """A scene a frame, of one rectangle, wherever it may stand, and once disabled; of either renderer."""
+    """One scene per frame, with one rectangle anywhere, and once disabled; both renderers."""
     screen = config.screen_geometry
     scenes = [scene_in_view(random, config, number % 3) for number in range(50 if config.engine == "beam" else 30)]
     camera, table, background, reflections, words = next(scene for scene in scenes if len(np.unique(scene[-1])) > 1)
@@ -172,7 +172,7 @@ def test_ray_caster_renderer_scenes(config, tmp_path, random):
     stimulus += [{"picture_run": 0}] * screen.frame_cycles
     shown = len(stimulus) - 2
     if config.engine == "beam":
-        # A reset right after a row was announced, which must not begin in the blanking that follows.
+        # Reset right after a row was announced; that row must not begin in the following blanking.
         stimulus += [{"picture_run": 1}] * (screen.doubling * screen.line_cycles + 2)
         stimulus += [{"reset": 1}] * 2 + [{"reset": 0}] * 3 * screen.line_cycles
     stimulus += [{"reset": 1}] * 2

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `reset_release`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `reset_release`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from raycaster.rtl.system.reset_release import reset_release
 from raycaster.verif.leaf import Leaf
 
 HOLD_CYCLES = 16
-"""Cycles that reset lasts once its cause is over."""
+"""Cycles for which reset continues after its cause is over."""
 
 
 def test_reset_release(tmp_path, random):
@@ -20,7 +20,7 @@ def test_reset_release(tmp_path, random):
         ready += [1] * length + [0] * int(random.integers(1, 4))
     outputs = leaf.run_both([{"ready": value} for value in ready], settled=4)
     for cycle in range(4, len(ready)):
-        # Two cycles to arrive, and one to be counted.
+        # ready takes two cycles to arrive, and one to be counted.
         window = ready[max(0, cycle - HOLD_CYCLES - 2) : cycle - 2]
         expected = int(not (all(window) and len(window) == HOLD_CYCLES))
         assert outputs[cycle] == {"reset": expected}, cycle

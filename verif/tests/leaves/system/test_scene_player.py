@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `scene_player`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `scene_player`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from raycaster.verif.leaf import Leaf
 
 @pytest.mark.parametrize("rectangles", [4, 12])
 def test_scene_player(rectangles, tmp_path, random):
-    """Every write is held until it is taken; the camera goes where buttons that were held at the interrupt say."""
+    """Every write is held until it is accepted; the buttons held at the interrupt move the camera."""
     config = configure(rectangles=rectangles, screen="tiny", units=1, allow_underrun=True)
     scene = load_scene(SMALL_SCENE, rectangles)
     leaf = Leaf(scene_player, lambda: ports(
@@ -59,7 +59,7 @@ def test_scene_player(rectangles, tmp_path, random):
             enable = registers["irq_enable"]
             expected = deque([*load, (enable.address, enable.implemented)])
             position = list(scene.camera.position)
-            # What the program holds is all done once, whether or not an interrupt came.
+            # The whole program runs once, with or without an interrupt.
             expected += _frame(registers, position, commit)
         elif expected:
             if not inputs["avm_m0_waitrequest"]:

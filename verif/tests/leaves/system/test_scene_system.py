@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `scene_system`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `scene_system`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import numpy as np
 from engine_vectors import (
@@ -27,7 +27,7 @@ from raycaster.verif.leaf import Leaf
 
 
 def test_scene_system(tmp_path, random):
-    """A scene that loads itself, and the camera that buttons move from frame to frame."""
+    """The scene loads itself, and buttons move the camera from frame to frame."""
     config = small_config(TINY_SCREEN, units=2, rectangles=3, reflections=1, divider_bits=2)
     screen = config.screen_geometry
     slopes = primary_slopes(screen).reshape(-1, 3)
@@ -42,11 +42,11 @@ def test_scene_system(tmp_path, random):
             model_of(config).trace(table, position, background, slopes, config.reflections).colours
             for position in positions
         ]
-        # Most of what is random looks the same from everywhere.
+        # Most random scenes look the same from everywhere.
         if len({picture.tobytes() for picture in pictures}) > frames // 2:
             break
     else:
-        raise AssertionError("no walk shows another picture in most frames")
+        raise AssertionError("no walk changes the picture in most frames")
     scene = Scene(
         reflections=config.reflections,
         background=tuple(map(int, background)),
@@ -58,7 +58,7 @@ def test_scene_system(tmp_path, random):
     )
     stimulus = [{"ready": 0, "buttons": 0}] * ready
     for number, held in enumerate(holds):
-        # Until the cycle after StartScreen, where they count.
+        # Hold the buttons until the cycle after StartScreen, in which they count.
         until = start + start_screen_cycle(screen) + number * screen.frame_cycles + 2
         stimulus += [{"ready": 1, "buttons": int(held)}] * (until - len(stimulus))
     stimulus += [{"ready": 1, "buttons": 0}] * screen.frame_cycles
@@ -70,7 +70,7 @@ def test_scene_system(tmp_path, random):
 
 
 def walk(camera: np.ndarray, holds: np.ndarray) -> list[np.ndarray]:
-    """Where the camera is in each frame, with these buttons held at the StartScreen of each."""
+    """Return the camera's place in each frame, with these buttons held at each StartScreen."""
     position, positions = camera, []
     for held in holds:
         positions.append(position)

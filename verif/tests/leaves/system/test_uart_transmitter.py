@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `uart_transmitter`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `uart_transmitter`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from raycaster.verif.leaf import Leaf
 
 
 def test_clocks_per_bit():
-    """A receiver takes a few per cent."""
+    """Rounded rates are close enough: a receiver tolerates a few per cent."""
     assert [clocks_per_bit(hz) for hz in (50_000_000, 25_000_000, 6_000_000)] == [434, 217, 52]
 
 
@@ -25,7 +25,7 @@ def test_uart_transmitter(clocks, tmp_path, random):
     ), tmp_path)  # fmt: skip
     stimulus = [{"reset": 1}]
     line, busy, ready = [None], [None], [None]
-    request, sending = None, []  # levels of the line that are still due
+    request, sending = None, []  # levels of the line that are still to be sent
     for _ in range(400 * clocks):
         if request is None and random.random() < 0.1:
             request = any_strobe(random), int(random.integers(1 << DATA_BITS))

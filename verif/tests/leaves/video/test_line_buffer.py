@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `line_buffer`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `line_buffer`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 import pytest
 from vectors import ports
@@ -31,7 +31,7 @@ def test_line_buffer(units, colour_bits, tmp_path, random):
     ]
     for _ in range(600):
         written = int(random.choice([0, groups - 1, random.integers(groups)]))
-        # The renderer's counter rests at Max without writing.
+        # The renderer's counter stops at its maximum and does not write there.
         write = int(random.random() < 0.5)
         stimulus.append(
             {

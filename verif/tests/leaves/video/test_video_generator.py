@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leaf tests of `video_generator`: MyHDL, the converted Verilog, and what is expected, on one set of vectors."""
+"""Leaf tests of `video_generator`: MyHDL and converted Verilog match the expected values on the same vectors."""
 
 from dataclasses import replace
 
@@ -17,7 +17,7 @@ from raycaster.verif.leaf import Leaf
 def video_model(
     screen: Screen, lead: int, at_start: bool, cycle: int, colours: list[tuple[int, int, int]]
 ) -> dict[str, int]:
-    """Every output, from the number of cycles since reset alone; `colours` are those at the inputs so far."""
+    """Compute every output from the number of cycles since reset; `colours` are the inputs so far."""
     pixels = screen.pixels_per_clock
     line = [part // pixels for part in (screen.horizontal.visible, screen.horizontal.front, screen.horizontal.sync)]
     horizontal = Span(*line, screen.horizontal.back // pixels, active_high=screen.horizontal.active_high)
@@ -39,13 +39,13 @@ def video_model(
         "scan_start_row": line_start and y >= 0 and y % doubling == 0,
         "scan_visible_line": in_columns,
         "scan_next_column": in_columns and clock == clocks - 1 and announced,
-        # With a clock a pixel it is the clock inverted, and the bench looks while that is low.
+        # With one clock per pixel it is the inverted clock, and the bench samples while the clock is low.
         "vga_clk": clock == clocks - 1,
         "vga_sync_n": 0,
     }
     hs = vs = visible = False
     if pixel > 0:
-        # The outputs are a pixel behind.
+        # The outputs are one pixel late.
         x, y = position(pixel - 1)
         hs = horizontal.front <= x + horizontal.blank < horizontal.front + horizontal.sync
         # Vertical sync waits for the next horizontal sync to begin.
@@ -78,7 +78,7 @@ ONE_CLOCK = {
         True,
     ),
 }
-"""Screens, how many pixel clocks before their turn the columns are announced, and whether in their first clock."""
+"""Screens, the number of pixel clocks by which columns are announced early, and whether in their first clock."""
 
 
 @pytest.mark.parametrize("colour_bits", [1, 8])
@@ -91,7 +91,7 @@ def test_video_generator(name, colour_bits, tmp_path, random):
         "clk reset", scan=Scan(), pixel=Pixel(width), vga=Vga(width), screen=screen, lead=lead, at_start=at_start
     ), tmp_path)  # fmt: skip
     large = screen.frame_cycles > 10_000
-    # Three frames; or one that reset ended early, at a pixel's second half, and then a few lines of the second.
+    # Three frames, then one that reset ends early in a pixel's second half, then a few lines; large screens: one frame.
     lengths = [screen.frame_cycles + 500] if large else [3 * screen.frame_cycles + 7, screen.frame_cycles // 2 | 1, 60]
     stimulus, positions = [], []
     for length in lengths:
@@ -111,7 +111,7 @@ def test_video_generator(name, colour_bits, tmp_path, random):
 
 
 def standard(config: Configuration) -> tuple[tuple[int, ...], tuple[int, ...], bool, bool]:
-    """What makes a video mode: pixels of a line, lines of a frame, and whether the syncs are active high."""
+    """Return a video mode: pixels of a line, lines of a frame, and whether the syncs are active high."""
     horizontal, vertical = config.screen_geometry.horizontal, config.screen_geometry.vertical
     return (
         (horizontal.visible, horizontal.front, horizontal.sync, horizontal.back),
