@@ -209,8 +209,9 @@ def test_hooks(tmp_path: Path):
 @pytest.mark.parametrize(
     "text",
     [
-        '"""Of~a camera that turns."""', "x = 1  # Where~it is known", '""' '"What a ray hits."""', "two pixels~a~clock",
-        "a file per scene, a cycle~a~row", "cycles fore" + "told", "nothing but~for one", "this in~the~place~of that",
+        '"""Of~a camera that turns."""', "x = 1  # Where~it is known", '""' + '"What a ray hits."""',
+        "two pixels~a~clock", "a file per scene, a cycle~a~row", "cycles fore" + "told",
+        "nothing but~for one", "this in~the~place~of that",
         "a clock of~one's~own", "each pixel is held~against it", "the design at~hand",
     ],
 )  # fmt: skip
