@@ -162,7 +162,7 @@ class UnitProbes(Description):
             *(f"{self.sequencer}.{name}" for name in ("done", "rects_fetch", "rects_index")),
             *(f"{self.sequencer}.steps_{name}" for name in steps),
             f"{self.control}.steps_write_z_buf",
-            *[f"{self.control}.steps_from_light"] * self.config.light,
+            *[f"{self.control}.from_light"] * self.config.light,
             *(f"{VIDEO}.{name}" for name in ("x", "y", "pixel_end")),
         ]
 
@@ -194,7 +194,7 @@ class UnitProbes(Description):
         bounce, at_hand = 0, None
         tried: list[tuple[int, int]] = []
         # Tests of the shadow ray are not tests of the unit's own ray.
-        from_light = values.get(f"{self.control}.steps_from_light", [0] * len(samples.times_ns))
+        from_light = values.get(f"{self.control}.from_light", [0] * len(samples.times_ns))
         for cycle in range(start, len(samples.times_ns)):
             ends = values[f"{step}_add_colour"][cycle] == 1
             if values[f"{step}_find_intersection"][cycle] and at_hand is not None and not from_light[cycle]:

@@ -130,7 +130,7 @@ class Beam(Engine):
 
     name, code = "beam", 2
     colour, marker = "#009E73", "^"
-    usual_build = "25 s"
+    usual_build = "5 s"
     screens = BEAM_SCREENS
     rect_latency = 2
     line_buffered = False

@@ -27,7 +27,7 @@ class Exact(LineBufferedEngine):
 
     name, code = "exact", 1
     colour, marker = "#0072B2", "s"
-    usual_build = "15 s"
+    usual_build = "5 s"
 
     def sized(self, config: Configuration, options: Options) -> Configuration:
         """Take as few units as meet the row budget."""

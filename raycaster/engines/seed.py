@@ -31,7 +31,7 @@ class Seed(LineBufferedEngine):
 
     name, code = "seed", 0
     colour, marker = "#D55E00", "o"
-    usual_build = "30 s"
+    usual_build = "8 s"
     margin, divides = 1, True
     lacks: ClassVar = {
         "turn": "the seed engine measures depth along x, so its camera cannot turn",

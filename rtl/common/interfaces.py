@@ -187,7 +187,6 @@ class Steps(Interface):
         add_colour: add the colour that the ray saw.
         store_ray: store the reflected ray.
         aim: one-hot cycle count while shadow rays are computed; 0 otherwise.
-        from_light: level; shadow rays are tested instead of the units' own rays.
         write_shadow: set the shadow flag if the tested rectangle shades the hit point.
     """
 
@@ -196,7 +195,7 @@ class Steps(Interface):
         self.load_divider, self.store_quotient, self.reset_z_buf, self.write_z_buf = (bit() for _ in range(4))
         self.reset_colour, self.add_colour, self.store_ray = (bit() for _ in range(3))
         self.aim = unsigned(AIM_CYCLES)
-        self.from_light, self.write_shadow = bit(), bit()
+        self.write_shadow = bit()
 
 
 class ShadowPass(Interface):

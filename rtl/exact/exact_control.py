@@ -8,7 +8,7 @@ from raycaster.engines.exact import PATTERN_LATENCY, WRITE_AT
 from raycaster.rtl.common.interfaces import ShadowPass
 from raycaster.rtl.common.records import surface_of
 from raycaster.rtl.common.ties import tied, unconnected
-from raycaster.rtl.common.widths import unsigned
+from raycaster.rtl.common.widths import bit, unsigned
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
 from raycaster.rtl.exact.shadow_sequencer import shadow_sequencer
 
@@ -44,7 +44,7 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
     shadow_pass = ShadowPass()
     if not config.fixed:
         shadow_pass.comes_next = unconnected(1)  # a shadow pass wants the same rectangles as a reflection
-    from_light = steps.from_light if config.light else tied(0, 1)
+    from_light = bit() if config.light else tied(0, 1)
 
     sequencer = ray_sequencer(
         clk=clk, reset_ray_caster=reset_ray_caster, enable=enable, picture=picture, rects=rects, steps=steps,
@@ -55,7 +55,7 @@ def exact_control(clk, reset_ray_caster, enable, picture, rects, steps, fate, of
     if config.light:
         shadows = shadow_sequencer(
             clk=clk, reset_ray_caster=reset_ray_caster, shadow_pass=shadow_pass, any_in_question=fate.any_in_question,
-            aim=steps.aim, from_light=steps.from_light,
+            aim=steps.aim, from_light=from_light,
         )  # fmt: skip
 
         @always_comb

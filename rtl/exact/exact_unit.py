@@ -27,7 +27,7 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
     """Trace the pixel at (place.row, place.column_offset * `config.units` + column_base), controlled by steps.
 
     The unit has no control: one exact_control operates all units in lockstep. A hit after the ray has ended does not
-    count. With `config.light` the tester also serves the shadow ray, while steps.from_light is high.
+    count. With `config.light` the tester also serves the shadow ray, in shadow passes.
 
     Args:
         clk: the clock.
@@ -110,9 +110,9 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
                     kept_odd_v.next = odd_v
 
     if config.light:
-        lit_colour, dark, facing, shaded = Colour(), bit(), bit(), bit()
+        lit_colour, dark, facing, looking, shaded = Colour(), bit(), bit(), bit(), bit()
         switch = ray_switch(
-            from_light=steps.from_light, camera=camera, eye=eye, signs=signs, slope=slope, mirror=mirror,
+            from_light=looking, camera=camera, eye=eye, signs=signs, slope=slope, mirror=mirror,
             shadow_signs=shadow_signs, shadow_slope=shadow_slope, tested_eye=tested_eye, tested_signs=tested_signs,
             tested_slope=tested_slope, tested_mirror=tested_mirror,
         )  # fmt: skip
@@ -122,8 +122,8 @@ def exact_unit(clk, steps, place, column_base, camera, rect, offered, picture, p
             shadow_slope=shadow_slope, facing=facing,
         )  # fmt: skip
         shadow = shadow_register(
-            clk=clk, steps=steps, hit=hit, numerator=numerator, denominator=tested_denominator,
-            found_slope=found_slope, shaded=shaded,
+            clk=clk, steps=steps, in_question=fate.in_question, hit=hit, numerator=numerator,
+            denominator=tested_denominator, found_slope=found_slope, looking=looking, shaded=shaded,
         )  # fmt: skip
         dimmer = shade_colour(colour=lit_colour, dark=dark, shade=camera.light_shade, shaded=shown)
 

@@ -20,7 +20,7 @@ from raycaster.fixed import FixedScene
 from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.bus.avalon_interface import engine_word, size_word
-from raycaster.rtl.common.records import camera_of, candidate_of, look_fields, rect_of, surface_of
+from raycaster.rtl.common.records import camera_of, candidate_of, look_fields, mirror_of, rect_of, surface_of
 from raycaster.rtl.common.widths import (
     BASIS_BITS,
     COORDINATE_BITS,
@@ -694,6 +694,40 @@ def _unit_wiring(config: Configuration, small: bool) -> Property:
     )  # fmt: skip
 
 
+def _shadow_wiring(config: Configuration, small: bool) -> Property:
+    generator = "turned_generator" if config.turn else "ray_generator"
+    patterns = ("cell_finder", "divider_step", "pattern_colour") if config.patterns else ()
+    return Property(
+        "shadow-wiring",
+        "the test gets the ray or its shadow ray, which gets the nearest hit, and a pixel its colour in this light",
+        config,
+        _label(config),
+        ("exact_unit", "exact_control", "ray_sequencer", "rect_sequencer", "shadow_sequencer", "rect_tester",
+         "nearest_hit", "eye_register", "shadow_ray", "shadow_register", "ray_switch", "shade_colour", generator,
+         *patterns),
+        {
+            "PATTERNS": int(config.patterns),
+            "RECTANGLES": config.rectangles,
+            "INDEX_BITS": index_bits(config),
+            "COORDINATE_BITS": COORDINATE_BITS,
+            "LOOK_BITS": _look_bits(config),
+            "CAMERA_BITS": len(camera_of(config).word),
+            "SLOPE_BITS": exact_slope_bits(config),
+            "LIGHT_BITS": light_slope_bits(config),
+            "EYE_BITS": eye_bits(config),
+            "MIRROR_BITS": len(mirror_of(config).word),
+            "ROW_BITS": row_bits(config),
+            "OFFSET_BITS": offset_bits(config),
+            "TRAVEL": config.pass_latency - 1,
+        },
+        cut=(generator,),
+        induction=4,
+        any_product=True,
+        reach=30,
+        small=small,
+    )  # fmt: skip
+
+
 def _fold_products(config: Configuration, small: bool) -> Property:
     return Property(
         "fold-products",
@@ -942,6 +976,10 @@ PROPERTIES: list[Property] = [
     *(_cell(config, small=False) for config in EXACT if config.patterns),
     _cell(_one_unit(engine="exact", patterns=True), small=False),
     *(_shadow(config, small=config in (LIGHT[0], LIGHT[-1])) for config in LIGHT),
+    *(
+        _shadow_wiring(config, small=config is LIGHT[2])
+        for config in (LIGHT[2], LIGHT[3], LIGHT[4], LIGHT[-1])
+    ),
     _unit_wiring(_one_unit(engine="exact"), small=True),
     _unit_wiring(_one_unit(engine="exact", reflections=2), small=False),
     _unit_wiring(_one_unit(engine="exact", turn=True, materials=True, patterns=True), small=False),

@@ -3,9 +3,9 @@
 // S = (E - L) e + D n on each axis, whatever products are; facing says on which side of the plane the light is; and a
 // point is shaded from the cycle after a hit with n e < d until the next shadow ray.
 //
-// Assumptions, which the control and the lemmas justify: the cycles of aim follow each other, all inputs hold still in
-// them and in the cycle before; S is within the world's size times e (lemma shadow-slope-in-range); and a rectangle that
-// is hit is no further from the light than the world is wide.
+// Assumptions: the cycles of aim follow each other, the ray and the light are constant in them and in the cycle before,
+// and the hit is constant in them, as shadow-wiring proves; S is within the world's size times e, by the lemma
+// shadow-slope-in-range; and a rectangle that is hit is no further from the light than the world is wide.
 
 module shadow_products #(
     parameter COORDINATE_BITS = 9, parameter LOOK_BITS = 24, parameter SLOPE_BITS = 8, parameter EYE_BITS = 11,
@@ -31,21 +31,23 @@ shadow_ray dut (
     .shadow_slope_dx(shadow_dx), .shadow_slope_dy(shadow_dy), .shadow_slope_dz(shadow_dz), .facing(facing)
 );
 shadow_register kept (
-    .clk(clk), .steps_aim(aim), .steps_write_shadow(write_shadow), .hit(hit), .numerator(numerator),
-    .denominator(denominator), .found_slope(e), .shaded(shaded)
+    .clk(clk), .steps_aim(aim), .steps_reset_z_buf(1'b0), .steps_write_shadow(write_shadow), .in_question(1'b0),
+    .hit(hit), .numerator(numerator), .denominator(denominator), .found_slope(e), .shaded(shaded)
 );
 (* hierconn *) wire signed [EYE_BITS:0] \dut.difference_1 ;
 (* hierconn *) wire [SLOPE_BITS-1:0] \dut.slope_1 ;
 (* hierconn *) wire \dut.back_1 ;
 (* hierconn *) wire [LIGHT_BITS:0] \dut.sum_2 ;
 
-wire [3*COORDINATE_BITS+3*EYE_BITS+4*SLOPE_BITS+EYE_BITS+COORDINATE_BITS+3:0] still =
-    {light_x, light_y, light_z, x, y, z, signs, dx, dy, dz, n, e, axis, position};
-reg [3*COORDINATE_BITS+3*EYE_BITS+4*SLOPE_BITS+EYE_BITS+COORDINATE_BITS+3:0] last_still;
+wire [3*COORDINATE_BITS+3*EYE_BITS+3*SLOPE_BITS+2:0] ray = {light_x, light_y, light_z, x, y, z, signs, dx, dy, dz};
+wire [EYE_BITS+SLOPE_BITS+COORDINATE_BITS:0] target = {n, e, axis, position};
+reg [3*COORDINATE_BITS+3*EYE_BITS+3*SLOPE_BITS+2:0] last_ray;
+reg [EYE_BITS+SLOPE_BITS+COORDINATE_BITS:0] last_target;
 reg [3:0] last_aim = 4'b0000;
 reg begun = 1'b0;
 always @(posedge clk) begin
-    last_still <= still;
+    last_ray <= ray;
+    last_target <= target;
     last_aim <= aim;
     begun <= 1'b1;
 end
@@ -53,7 +55,8 @@ always @* begin
     assume (aim[3:1] == last_aim[2:0] && (aim[3:1] == 0 || !aim[0]) && (begun || !aim[0]));
     assume (last_aim[2:0] != 0 || aim <= 1);
     assume (axis < 3 && e != 0);
-    if (aim != 0) assume (still == last_still);
+    if (aim != 0) assume (ray == last_ray);
+    if (aim[3:1] != 0) assume (target == last_target);
     if (hit) assume (numerator < 1 << COORDINATE_BITS);
 end
 

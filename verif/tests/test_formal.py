@@ -54,6 +54,7 @@ SLOPE = chosen("slope-exact", "exact-vga240-u4-r12-m1-c8")
 TURNED = chosen("slope-exact", "exact-vga240-u4-r12-m1-c8-turn")
 CELL = chosen("cell-products", "exact-vga240-u1-r12-m1-c8-patterns")
 SHADOW = chosen("shadow-products", "exact-vga240-u1-r12-m0-c8-light")
+SHADOW_UNIT = chosen("shadow-wiring", "exact-vga240-u1-r12-m1-c8-light")
 ROW = chosen("row-setup", "beam-vga240-s2-u1-r12-m1-c8")
 ADDERS = chosen("row-setup", "exact-vga240-u4-r12-m1-c8-k1")
 LINE = chosen("line-start", "beam-vga240-s2-u1-r2-m1-c8-turn")
@@ -253,6 +254,15 @@ FAULTS = {
     "point-shades-itself": (SHADOW, "shadow_register", "reached < denominator", "reached <= denominator"),
     "shadow-forgotten": (SHADOW, "shadow_register", "shaded <= 1'b1;", "shaded <= !shaded;"),
     "shadow-reach-a-bit-short": (SHADOW, "shadow_register", "wire [16:0] reached;", "wire [15:0] reached;"),
+    "shadow-pass-keeps-a-hit": (SHADOW_UNIT, "exact_control", "write_z_buf = in_flight[2] && !from_light;",
+                                "write_z_buf = in_flight[2];"),
+    "shadow-with-a-mirror": (SHADOW_UNIT, "ray_switch", "active = mirror_active && !from_light;",
+                             "active = mirror_active;"),
+    "shadow-of-the-last-test": (SHADOW_UNIT, "exact_unit", "    .found_slope(found_slope),\n    .facing(facing)",
+                                "    .found_slope(denominator),\n    .facing(facing)"),
+    "dark-without-a-light": (SHADOW_UNIT, "exact_unit", "dark = camera_light_on && (", "dark = ("),
+    "blended-before-the-shadow": (SHADOW_UNIT, "shadow_sequencer", "shadow_pass_awaited = state != TEST;",
+                                  "shadow_pass_awaited = 1'b0;"),
     "loaded-a-cycle-early": (ROW, "rect_setup", "load[number_2] <= 1'b1;", "load[number_1] <= 1'b1;"),
     "one-rectangle-too-few": (ROW, "rect_setup", "if (number == 11) begin", "if (number == 10) begin"),
     "bound-of-another-axis": (ROW, "rect_setup", "to_low_q_2 * slope_a_2", "to_low_q_2 * slope_q_2"),
@@ -376,6 +386,8 @@ MORE_STEPS = {
     "read-too-far": 90,
     "one-rectangle-too-few": 24,
     "cells-stored-early": 18,
+    "shadow-pass-keeps-a-hit": 24,
+    "shadow-with-a-mirror": 30,
     "cells-of-the-last-test": 18,
 }
 """Steps of faults that take a line, a row's groups or pixels, a frame's rows or lines, all rectangles, or a cell."""
@@ -413,9 +425,9 @@ NOT_FROM_RESET = {"control-runs-on"}
 @pytest.mark.parametrize(
     "proof",
     [TIMING, PAIRS, AGENT, HOST, AXI4LITE, WISHBONE, APB, ORDER, EARLY_OUT, NO_EARLY_OUT, PIPELINED, SECTIONS, COUNTERS,
-     FINDER, CELLS, DEPTH, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, SHADOW, ROW, ADDERS, LINE,
-     WALK, TURNED_WALK, CONTEST, WIDE_CONTEST, HALF, MIXED, SHARES, MULTIPLIED, HALVES, FOLD, UNIT, CORNER_UNIT,
-     FOLD_PRODUCTS, SECOND_FOLD, STRAIGHT, TABLE, QUOTIENT],
+     FINDER, CELLS, DEPTH, GROUP, TESTER, CORNERS, PRODUCTS, NEAREST, EYE, TURNED, CELL, SHADOW, SHADOW_UNIT, ROW,
+     ADDERS, LINE, WALK, TURNED_WALK, CONTEST, WIDE_CONTEST, HALF, MIXED, SHARES, MULTIPLIED, HALVES, FOLD, UNIT,
+     CORNER_UNIT, FOLD_PRODUCTS, SECOND_FOLD, STRAIGHT, TABLE, QUOTIENT],
     ids=lambda proof: f"{proof.name}-{proof.label}",
 )  # fmt: skip
 def test_holds(proof, output):

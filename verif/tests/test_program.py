@@ -241,7 +241,7 @@ def test_a_long_command_says_how_long_it_usually_takes(capsys):
     assert {waits.building(engine) for engine in ENGINES} == {
         "usually 30 s, once",
         "usually 15 s, once",
-        "usually 25 s, once",
+        "usually 5 s, once",
     }
 
 

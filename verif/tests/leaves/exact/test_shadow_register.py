@@ -8,12 +8,14 @@ import pytest
 from vectors import ports
 
 from raycaster.configuration import WORLD_SIZE, configure
+from raycaster.engines.exact import AIM_CYCLES
 from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, light_slope_bits, unsigned
 from raycaster.rtl.exact.shadow_register import shadow_register
 from raycaster.verif.leaf import Leaf
 
 CYCLES = 2000
+LAST_AIM = 1 << AIM_CYCLES - 1
 
 
 @pytest.mark.parametrize("turn", [False, True], ids=["not turned", "turned"])
@@ -23,7 +25,7 @@ def test_shadow_register(turn, tmp_path, random):
     leaf = Leaf(
         shadow_register,
         lambda: ports(
-            "clk hit shaded",
+            "clk in_question hit looking shaded",
             steps=Steps(),
             numerator=unsigned(eye_bits(config) - 1),
             denominator=unsigned(light_slope_bits(config)),
@@ -32,7 +34,7 @@ def test_shadow_register(turn, tmp_path, random):
         tmp_path,
     )
     steepest, most = (1 << exact_slope_bits(config)) - 1, (1 << light_slope_bits(config)) - 1
-    stimulus, expected, shaded, kinds = [], [], None, set()
+    stimulus, expected, shaded, looking, kinds = [], [], None, None, set()
     e = 1
     for cycle in range(CYCLES):
         starts = cycle == 0 or random.random() < 0.2
@@ -42,13 +44,19 @@ def test_shadow_register(turn, tmp_path, random):
         near = n * e + int(random.integers(-1, 2))
         denominator = int(np.clip(random.choice([near, 2 * near, random.integers(1, most + 1)]), 1, most))
         hit, write = int(random.random() < 0.4), int(not starts and random.random() < 0.5)
+        aim = 1 if starts else int(random.choice([0, 0, 2, 4, LAST_AIM]))
+        over, asked = int(cycle == 0 or random.random() < 0.2), int(random.random() < 0.5)
         stimulus.append(
             {
-                "steps_aim": int(starts), "steps_write_shadow": write, "hit": hit, "numerator": n,
-                "denominator": denominator, "found_slope": e,
+                "steps_aim": aim, "steps_reset_z_buf": over, "steps_write_shadow": write, "in_question": asked,
+                "hit": hit, "numerator": n, "denominator": denominator, "found_slope": e,
             }
         )  # fmt: skip
-        expected.append(shaded)
+        expected.append((shaded, looking))
+        if over:
+            looking = 0
+        elif aim == LAST_AIM:
+            looking = asked
         if starts:
             shaded = 0
         elif write and hit:
@@ -57,6 +65,6 @@ def test_shadow_register(turn, tmp_path, random):
             shaded |= int(between)
     outputs = leaf.run_both(stimulus, settled=1)
     for cycle, wanted in enumerate(expected):
-        if wanted is not None:
-            assert outputs[cycle]["shaded"] == wanted, cycle
+        if None not in wanted:
+            assert (outputs[cycle]["shaded"], outputs[cycle]["looking"]) == wanted, cycle
     assert {(True, -1), (False, 0), (False, 1)} <= kinds

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+// A unit of the exact engine with a light, and its control: the tester gets the unit's own ray, or in a shadow pass the
+// shadow ray and no mirror. The shadow ray gets the nearest hit and the ray that found it, constant while it is
+// computed, as shadow-products assumes. The shadow is decided by the tests of its own pass alone, which change no hit,
+// and a pixel gets the colour of its hit in this light.
+//
+// Multiplication is any function, and verdicts are read at the tester's outputs. Assumed: a reset first, a slope that is constant
+// from the cycle after its step, as slope-exact proves, and a camera that is constant from there to the end. All other
+// inputs may change in every cycle.
+
+module shadow_wiring #(
+    parameter PATTERNS = 0, parameter RECTANGLES = 2, parameter INDEX_BITS = 1, parameter COORDINATE_BITS = 9,
+    parameter LOOK_BITS = 24, parameter CAMERA_BITS = 57, parameter SLOPE_BITS = 8, parameter LIGHT_BITS = 17,
+    parameter EYE_BITS = 11, parameter MIRROR_BITS = 13, parameter ROW_BITS = 8, parameter OFFSET_BITS = 9,
+    parameter TRAVEL = 3
+) (
+    input clk, input reset, input enable, input other_alive, input other_in_question, input [2:0] reflections,
+    input [RECTANGLES-1:0] usable, input [RECTANGLES-1:0] may_hit, input [2+5*COORDINATE_BITS+LOOK_BITS-1:0] rect,
+    input [CAMERA_BITS-1:0] camera, input [ROW_BITS-1:0] row, input [OFFSET_BITS-1:0] offset, input [23:0] background
+);
+localparam SURFACE_BITS = 2 + COORDINATE_BITS + LOOK_BITS, DISTANCE_BITS = EYE_BITS - 1;
+
+wire [INDEX_BITS-1:0] index;
+wire fetch, done, screen_to_ray, initial_ray, find, reset_nearest, write, reset_colour, add, reflect;
+wire write_shadow, in_question;
+wire [3:0] aim;
+wire [SURFACE_BITS-1:0] offered;
+generate
+    if (PATTERNS) begin: design
+        wire load, store, alive;
+        exact_control control (
+            .clk(clk), .reset_ray_caster(reset), .enable(enable), .done(done), .picture_reflections(reflections),
+            .rects_usable(usable), .rects_index(index), .rects_fetch(fetch), .rects_rect_word(rect),
+            .steps_screen_to_ray(screen_to_ray), .steps_initial_ray(initial_ray), .steps_find_intersection(find),
+            .steps_load_divider(load), .steps_store_quotient(store), .steps_reset_z_buf(reset_nearest),
+            .steps_write_z_buf(write), .steps_reset_colour(reset_colour), .steps_add_colour(add),
+            .steps_store_ray(reflect), .steps_aim(aim),
+            .steps_write_shadow(write_shadow), .fate_any_alive(alive || other_alive),
+            .fate_any_in_question(in_question || other_in_question), .fate_may_hit(may_hit), .offered_word(offered)
+        );
+        exact_unit unit (
+            .clk(clk), .column_base(1'b0), .steps_screen_to_ray(screen_to_ray), .steps_find_intersection(find),
+            .steps_load_divider(load), .steps_store_quotient(store), .steps_reset_z_buf(reset_nearest),
+            .steps_write_z_buf(write), .steps_reset_colour(reset_colour), .steps_add_colour(add),
+            .steps_store_ray(reflect), .steps_aim(aim), .steps_write_shadow(write_shadow), .place_row(row),
+            .place_column_offset(offset), .camera_word(camera), .rect_word(rect), .offered_word(offered), .picture_background(background), .fate_alive(alive),
+            .fate_in_question(in_question)
+        );
+    end
+    else begin: design
+        exact_control control (
+            .clk(clk), .reset_ray_caster(reset), .enable(enable), .done(done), .picture_reflections(reflections),
+            .rects_usable(usable), .rects_index(index), .rects_fetch(fetch), .rects_rect_word(rect),
+            .steps_screen_to_ray(screen_to_ray), .steps_initial_ray(initial_ray), .steps_find_intersection(find),
+            .steps_reset_z_buf(reset_nearest), .steps_write_z_buf(write), .steps_reset_colour(reset_colour),
+            .steps_add_colour(add), .steps_store_ray(reflect), .steps_aim(aim),
+            .steps_write_shadow(write_shadow), .fate_any_alive(other_alive),
+            .fate_any_in_question(in_question || other_in_question), .fate_may_hit(may_hit), .offered_word(offered)
+        );
+        exact_unit unit (
+            .clk(clk), .column_base(1'b0), .steps_screen_to_ray(screen_to_ray), .steps_find_intersection(find),
+            .steps_reset_z_buf(reset_nearest), .steps_write_z_buf(write), .steps_reset_colour(reset_colour),
+            .steps_add_colour(add), .steps_store_ray(reflect), .steps_aim(aim), .steps_write_shadow(write_shadow), .place_row(row),
+            .place_column_offset(offset), .camera_word(camera), .rect_word(rect), .offered_word(offered), .picture_background(background), .fate_in_question(in_question)
+        );
+    end
+endgenerate
+
+// The generator is cut: any slope that stays constant.
+(* hierconn *) wire [2:0] \design.unit.initial_signs_word ;
+(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.slope_dx , \design.unit.slope_dy , \design.unit.slope_dz ;
+wire [3*SLOPE_BITS+2:0] generated = {\design.unit.initial_signs_word , \design.unit.slope_dx , \design.unit.slope_dy ,
+                                     \design.unit.slope_dz };
+wire [3*SLOPE_BITS-1:0] slope = generated[3*SLOPE_BITS-1:0];
+reg known = 1'b0, last_known = 1'b0, loaded = 1'b0, settled = 1'b0;
+reg [3*SLOPE_BITS+2:0] last_generated;
+reg [CAMERA_BITS-1:0] last_camera;
+always @(posedge clk) begin
+    known <= known || reset;
+    last_known <= known;
+    loaded <= loaded || screen_to_ray;
+    settled <= loaded && !screen_to_ray;
+    last_generated <= generated;
+    last_camera <= camera;
+end
+(* hierconn *) wire [2:0] \design.control.ray_sequencer_i.state ;
+wire [2:0] state = \design.control.ray_sequencer_i.state ;  // 1 generates a slope, 2 traces, 3 blends, 4 is done
+always @* begin
+    assume (known || reset);
+    if (settled) assume (generated == last_generated);
+    if (known && loaded && state > 1) assume (camera == last_camera);
+    if (known && state > 1) assert (loaded);
+    if (known) assert (state <= 4);
+end
+
+// The order of the steps. A test is in flight for three cycles; a shadow pass that stops drops those in flight.
+reg [3:0] last_aim = 4'b0000;
+reg last_from_light = 1'b0;
+reg [TRAVEL-1:0] starts;
+(* hierconn *) wire \design.control.from_light ;
+wire from_light = \design.control.from_light ;
+(* hierconn *) wire \design.control.ray_sequencer_i.stop ;
+(* hierconn *) wire [TRAVEL-1:0] \design.control.in_flight ;
+(* hierconn *) wire \design.control.ray_sequencer_i.fetched ;
+(* hierconn *) wire [1:0] \design.control.shadow_sequencer_i.state ;  // 0 waits, 1 aims, 2 tests
+(* hierconn *) wire [3:0] \design.control.shadow_sequencer_i.cycle ;
+wire [1:0] shadow_state = \design.control.shadow_sequencer_i.state ;
+wire [3:0] cycle = \design.control.shadow_sequencer_i.cycle ;
+always @(posedge clk) begin
+    last_aim <= reset ? 0 : aim;
+    last_from_light <= from_light;
+    starts <= \design.control.ray_sequencer_i.stop ? 0 : {starts, find};
+end
+always @* if (known) begin
+    assert (shadow_state <= 2 && \design.control.in_flight == starts);
+    if (shadow_state == 1) assert (cycle == 1 || cycle == 2 || cycle == 4 || cycle == 8);
+    if (shadow_state != 0) assert (state == 2);
+    if (shadow_state == 1) assert (starts[TRAVEL-2:0] == 0 && (cycle == 1 || starts == 0) && !\design.control.ray_sequencer_i.fetched );
+    if (state != 2) assert (starts == 0);
+    if (find) assert (state == 2 && aim == 0);
+    // One cycle of aim follows the other.
+    assert (aim[3:1] == last_aim[2:0] && (aim[3:1] == 0 || !aim[0]));
+    // A verdict counts for the ray, or for the shadow of its own pass.
+    assert (write == (starts[2] && !from_light) && write_shadow == (starts[2] && from_light));
+    if (aim != 0) assert (!from_light && !write_shadow && !reset_nearest && !reflect && !screen_to_ray);
+    if (aim[3:1] != 0) assert (!write);
+    if (from_light) assert (!write && !reset_nearest && !reflect && !screen_to_ray);
+    if (from_light && !last_from_light) assert (starts == 0);
+    if (add) assert (!from_light && aim == 0);
+end
+
+// The ray that is tested.
+(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.eye_x , \design.unit.eye_y , \design.unit.eye_z ;
+(* hierconn *) wire [2:0] \design.unit.signs_word , \design.unit.shadow_signs_word ;
+(* hierconn *) wire [MIRROR_BITS-1:0] \design.unit.mirror_word ;
+(* hierconn *) wire [LIGHT_BITS-1:0] \design.unit.shadow_slope_dx , \design.unit.shadow_slope_dy ;
+(* hierconn *) wire [LIGHT_BITS-1:0] \design.unit.shadow_slope_dz ;
+(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.rect_tester_i.eye_x , \design.unit.rect_tester_i.eye_y ;
+(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.rect_tester_i.eye_z ;
+(* hierconn *) wire [2:0] \design.unit.rect_tester_i.signs_word ;
+(* hierconn *) wire [LIGHT_BITS-1:0] \design.unit.rect_tester_i.slope_dx , \design.unit.rect_tester_i.slope_dy ;
+(* hierconn *) wire [LIGHT_BITS-1:0] \design.unit.rect_tester_i.slope_dz ;
+(* hierconn *) wire [MIRROR_BITS-1:0] \design.unit.rect_tester_i.mirror_word ;
+wire [3*EYE_BITS-1:0] eye = {\design.unit.eye_x , \design.unit.eye_y , \design.unit.eye_z };
+wire [3*EYE_BITS-1:0] tested_eye = {\design.unit.rect_tester_i.eye_x , \design.unit.rect_tester_i.eye_y ,
+                                    \design.unit.rect_tester_i.eye_z };
+wire [3*LIGHT_BITS-1:0] tested_slope = {\design.unit.rect_tester_i.slope_dx , \design.unit.rect_tester_i.slope_dy ,
+                                        \design.unit.rect_tester_i.slope_dz };
+wire [LIGHT_BITS-1:0] dx = slope[3*SLOPE_BITS-1 -: SLOPE_BITS], dy = slope[2*SLOPE_BITS-1 -: SLOPE_BITS];
+wire [LIGHT_BITS-1:0] dz = slope[SLOPE_BITS-1:0];
+wire [COORDINATE_BITS-1:0] light_x = camera[3*COORDINATE_BITS+2 -: COORDINATE_BITS];
+wire [COORDINATE_BITS-1:0] light_y = camera[2*COORDINATE_BITS+2 -: COORDINATE_BITS];
+wire [COORDINATE_BITS-1:0] light_z = camera[COORDINATE_BITS+2 -: COORDINATE_BITS];
+wire [EYE_BITS-1:0] from_x = light_x, from_y = light_y, from_z = light_z;
+(* hierconn *) wire \design.unit.looking ;
+wire looking = \design.unit.looking ;
+reg asked;
+always @(posedge clk) if (aim[3]) asked <= in_question;
+always @* if (known && state == 2) assert (looking == (from_light && asked));
+always @* if (known) begin
+    if (looking) begin
+        assert (tested_eye == {from_x, from_y, from_z} && !\design.unit.rect_tester_i.mirror_word [MIRROR_BITS-1]);
+        assert (\design.unit.rect_tester_i.signs_word == \design.unit.shadow_signs_word );
+        assert (tested_slope == {\design.unit.shadow_slope_dx , \design.unit.shadow_slope_dy ,
+                                 \design.unit.shadow_slope_dz });
+    end
+    else begin
+        assert (tested_eye == eye && \design.unit.rect_tester_i.mirror_word == \design.unit.mirror_word );
+        assert (\design.unit.rect_tester_i.signs_word == \design.unit.signs_word && tested_slope == {dx, dy, dz});
+    end
+end
+
+// The shadow ray's inputs, and how long they are constant.
+(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.shadow_ray_i.eye_x , \design.unit.shadow_ray_i.eye_y ;
+(* hierconn *) wire signed [EYE_BITS-1:0] \design.unit.shadow_ray_i.eye_z ;
+(* hierconn *) wire [2:0] \design.unit.shadow_ray_i.signs_word ;
+(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.shadow_ray_i.slope_dx , \design.unit.shadow_ray_i.slope_dy ;
+(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.shadow_ray_i.slope_dz ;
+(* hierconn *) wire [CAMERA_BITS-1:0] \design.unit.shadow_ray_i.camera_word ;
+(* hierconn *) wire [DISTANCE_BITS-1:0] \design.unit.shadow_ray_i.found_distance ;
+(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.shadow_ray_i.found_slope ;
+(* hierconn *) wire [SURFACE_BITS-1:0] \design.unit.shadow_ray_i.found_surface_word ;
+(* hierconn *) wire [DISTANCE_BITS-1:0] \design.unit.nearest_hit_i.found_distance ;
+(* hierconn *) wire [SLOPE_BITS-1:0] \design.unit.nearest_hit_i.found_slope ;
+(* hierconn *) wire [SURFACE_BITS-1:0] \design.unit.nearest_hit_i.found_surface_word ;
+(* hierconn *) wire \design.unit.nearest_hit_i.found ;
+wire [3*EYE_BITS+3*SLOPE_BITS+CAMERA_BITS+2:0] ray = {
+    \design.unit.shadow_ray_i.eye_x , \design.unit.shadow_ray_i.eye_y , \design.unit.shadow_ray_i.eye_z ,
+    \design.unit.shadow_ray_i.signs_word , \design.unit.shadow_ray_i.slope_dx , \design.unit.shadow_ray_i.slope_dy ,
+    \design.unit.shadow_ray_i.slope_dz , \design.unit.shadow_ray_i.camera_word };
+wire [DISTANCE_BITS+SLOPE_BITS+SURFACE_BITS-1:0] target = {
+    \design.unit.shadow_ray_i.found_distance , \design.unit.shadow_ray_i.found_slope ,
+    \design.unit.shadow_ray_i.found_surface_word };
+reg [3*EYE_BITS+3*SLOPE_BITS+CAMERA_BITS+2:0] last_ray;
+reg [DISTANCE_BITS+SLOPE_BITS+SURFACE_BITS-1:0] last_target;
+reg last_found;
+always @(posedge clk) begin
+    last_ray <= ray;
+    last_target <= target;
+    last_found <= \design.unit.nearest_hit_i.found ;
+end
+always @* if (known) begin
+    assert (ray == {eye, \design.unit.signs_word , slope, camera});
+    assert (target == {\design.unit.nearest_hit_i.found_distance , \design.unit.nearest_hit_i.found_slope ,
+                       \design.unit.nearest_hit_i.found_surface_word });
+    if (aim != 0) assert (ray == last_ray);
+    if (last_known && (aim[3:1] != 0 || from_light || last_from_light))
+        assert (target == last_target && \design.unit.nearest_hit_i.found == last_found);
+end
+
+// The shadow: any of its pass's verdicts that comes before the point.
+(* hierconn *) wire \design.unit.rect_tester_i.hit ;
+(* hierconn *) wire [DISTANCE_BITS-1:0] \design.unit.rect_tester_i.numerator ;
+(* hierconn *) wire [LIGHT_BITS-1:0] \design.unit.rect_tester_i.denominator ;
+(* hierconn *) wire \design.unit.shadow_register_i.shaded ;
+(* hierconn *) wire \design.unit.shadow_ray_i.facing ;
+wire [COORDINATE_BITS-1:0] distance = \design.unit.rect_tester_i.numerator [COORDINATE_BITS-1:0];
+wire [COORDINATE_BITS+SLOPE_BITS-1:0] reached = distance * \design.unit.nearest_hit_i.found_slope ;
+reg dark = 1'b0, aimed = 1'b0;
+always @(posedge clk) begin
+    aimed <= aimed || aim[0];
+    dark <= !aim[0] && (dark || starts[2] && from_light && \design.unit.rect_tester_i.hit
+                        && reached < \design.unit.rect_tester_i.denominator );
+end
+always @* if (known && aimed) assert (\design.unit.shadow_register_i.shaded == dark);
+
+// A pixel's light.
+(* hierconn *) wire [23:0] \design.unit.colour_combiner_i.found_colour ;
+(* hierconn *) wire \design.unit.missed ;
+wire light_on = camera[0], lit = \design.unit.shadow_ray_i.facing && !dark;
+(* hierconn *) wire [23:0] \design.unit.lit_colour_word ;
+wire [23:0] own = \design.unit.lit_colour_word ;
+wire [9:0] red = camera[2:1] * own[23:16], green = camera[2:1] * own[15:8], blue = camera[2:1] * own[7:0];
+always @* if (known && aimed) begin
+    assert (\design.unit.colour_combiner_i.found_colour
+            == (light_on && !lit ? {red[9:2], green[9:2], blue[9:2]} : own));
+    assert (in_question == (light_on && lit && \design.unit.nearest_hit_i.found && !\design.unit.missed ));
+    if (!PATTERNS) assert (own == \design.unit.nearest_hit_i.found_surface_word [23:0]);
+end
+
+always @* cover (known && add && dark && aimed);
+always @* cover (known && add && last_from_light && !dark);
+endmodule
