@@ -154,8 +154,8 @@ int colour_at(const Rectangle &hit, const Bounce &bounce) {
     return other ? hit.colour_2 : hit.colour;
 }
 
-// Return the shadow of the point that a ray hit, as in Bounce::shadow. With the point N / e and the light L, the ray from
-// the light of slope N - e L meets the point at t = 1 / e. A rectangle at 0 < t < 1 / e is strictly between the two.
+// Return the shadow of the point that a ray hit, as in Bounce::shadow. With the point N / e and the light L, the ray
+// from the light of slope N - e L meets the point at t = 1 / e. A rectangle at 0 < t < 1 / e is strictly between them.
 int shadow_at(const Ray &ray, const Rectangle &hit, const Bounce &bounce) {
     const int64_t side = scene.light[hit.axis] - hit.low[hit.axis], point_e = bounce.denominator;
     if (side == 0 || (side < 0) == (ray.slope[hit.axis] < 0)) return DARK_SIDE;
@@ -284,9 +284,9 @@ EXPORT(golden_bounces) int64_t *golden_bounces() { return &path[0].winner; }
 //
 // engine: enum raycaster_engine. rectangles: number of table entries. materials, patterns, turn, light: 1 if the design
 // has the feature; registers of other features are ignored. columns, rows, horizon_row: size of the picture in rays,
-// and the horizon's row. scale: scale of the picture. fraction_bits, nearest: arithmetic of the seed engine. colour_bits:
-// bits per channel at the pins; the lower bits are 0. The number of reflections comes from the control register, and
-// must not exceed the number that the design computes.
+// and the horizon's row. scale: scale of the picture. fraction_bits, nearest: arithmetic of the seed engine.
+// colour_bits: bits per channel at the pins; the lower bits are 0. The number of reflections comes from the control
+// register, and must not exceed the number that the design computes.
 EXPORT(golden_draw)
 void golden_draw(
     int engine, int rectangles, int materials, int patterns, int turn, int light, int columns, int rows,

@@ -296,12 +296,14 @@ def test_the_engines_with_a_light(page, whole_site):
 def test_a_walk_with_a_light(page, whole_site):
     """The walk takes the exact engine for a scene with a light, and the beam engine again for the next scene."""
     site, _ = whole_site
-    clocks = opened(page, site)["clocks"]
+    opened(page, site)
     for name in ("evening", "boxes"):
         page.select_option("#walk-scene", name)
-        expected = golden_hash(load_scene(packaged_scenes()[name]))
+        scene = load_scene(packaged_scenes()[name])
+        expected = golden_hash(scene)
         page.wait_for_function(f"RayCaster.state.walk.hash === '{expected}' && RayCaster.state.walk.wrong === 0")
-        assert (page.evaluate("RayCaster.state.walk.clocks") == clocks) == (name == "boxes")
+        # The exact engine's screen has eight times the clocks.
+        assert (page.evaluate("RayCaster.state.walk.clocks") > 400_000) == bool(scene.light)
     scene = load_scene(packaged_scenes()["shadow_hall"])
     cameras = cameras_around(scene.camera, 4)
     expected = [golden_hash(scene, camera) for camera in (scene.camera, *cameras)]
@@ -326,6 +328,7 @@ def test_settings_are_json(site):
     text = (site / "settings.js").read_text()
     settings = json.loads(text.removeprefix("Object.assign(RayCaster, ").removesuffix(");\n"))
     assert set(settings["scenes"]) == set(packaged_scenes())
+    assert ["light" in model["looks"] for model in settings["walk"]["models"]] == [False, False, True]
 
 
 def test_nothing_to_keep_is_refused(tmp_path):

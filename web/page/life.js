@@ -61,8 +61,8 @@ const RayCasterLife = (() => {
     return [...tried.map(({ clock, rectangle }) => ({ kind: "find", clock, bounce, rectangle })), ...events];
   }
 
-  // Events of the rays, and of the rectangles that they and, in a design with a light, their shadow rays were tested
-  // against: the rectangle that shades a hit point is the one whose test sets the unit's flag.
+  // Events of the rays, and of the rectangles that they were tested against. In a design with a light, "shade" is the
+  // verdict on a shadow ray and one rectangle: if it sets the unit's flag, that rectangle shades the hit point.
   function eventsOf(recording) {
     const events = [{ kind: "start", clock: 0, bounce: 0 }, { kind: "ray", clock: 0, bounce: 0 }];
     const hasLight = "steps_write_shadow" in recording.taps.controls;
@@ -151,7 +151,7 @@ const RayCasterLife = (() => {
       const isExact = "nearest t" in seen.values;
       bounce.denominator = isExact ? bounce.distance[1] : 1 << fractionBits;
       const { light } = bounce.values;
-      if (light) bounce.shadow = !light[0] ? DARK_SIDE : light[1] ? bounce.shades : LIT;
+      if (light) bounce.shadow = !light[0] ? DARK_SIDE : light[1] ? (bounce.shades ?? null) : LIT;
       bounce.point = isExact ? pointOnRay(bounce, magnitudes, bounce.distance) : seen.values["nearest point"];
     }
     return life;

@@ -110,11 +110,11 @@ function quantityText({ quantity, scale }, { values, found }, unit) {
   return texts.map((text, axis) => (isByAxis && !values.valid[axis] ? DASH : text)).join(", ");
 }
 
-// Compare the parts of a hit with the golden model: rectangle, t or depth, point, colour; with a light also the
-// magnitudes of the shadow ray's slope, and the shadow.
+// Compare the parts of a hit with the golden model: rectangle, t or depth, point, colour; with a light also the shadow
+// and the magnitudes of the shadow ray's slope.
 function compare(bounce, golden, isExact, light) {
   const parts = ({ winner, distance, point, denominator, colour, fromLight, shadow }) => {
-    const lighting = light ? [fromLight, shadow] : [];
+    const lighting = light ? [shadow, fromLight] : [];
     return winner < 0
       ? [-1, null, null, colour, ...lighting.map(() => null)]
       : [winner, distance, [point, denominator], colour, ...lighting];
@@ -149,7 +149,9 @@ class PixelStory {
     Object.assign(this, { scene, design, life, explained, monitor });
     this.unit = 1 << design.fraction_bits;
     this.isExact = life.bounces.some(({ values }) => "eye" in values);
-    this.compared = life.bounces.map((bounce, number) => compare(bounce, explained.bounces[number], this.isExact, scene.light));
+    this.compared = life.bounces.map(
+      (bounce, number) => compare(bounce, explained.bounces[number], this.isExact, scene.light),
+    );
     [this.pixel] = life.values.pixel ?? [null];
   }
 
@@ -176,8 +178,8 @@ class PixelStory {
       (distance) => (this.isExact ? fractionText(distance) : digits(distance[0] / distance[1])),
       ([point, denominator]) => place(point, denominator),
       swatch,
-      (slope) => slope.join(", "),
       (shadow) => this.lighting(shadow),
+      (slope) => slope.join(", "),
     ];
     const cells = (values) => values.map((value, part) => (value === null ? "" : texts[part](value)));
     const marked = cells(mine).map((content, part) => ({ content, className: wrong[part] ? "wrong" : "" }));
@@ -187,8 +189,8 @@ class PixelStory {
     ]);
     const tables = [compared("", ["sees", this.isExact ? "at t" : "at depth", "at point", "colour"], 0, 4)];
     if (light && (mine[0] >= 0 || right[0] >= 0)) {
-      const caption = `The shadow ray, from the light at ${place(light.position, 1)}`;
-      tables.push(compared(caption, ["slope, magnitudes", "the point is"], 4));
+      const caption = `Shadow ray, from ${place(light.position, 1)}`;
+      tables.push(compared(caption, ["the point is", "slope, magnitudes"], 4));
     }
     return tables;
   }
@@ -297,10 +299,10 @@ tabs.pixel = {
       RayCaster.state.pixel = { done: false };
       status.className = "";
       status.textContent = "simulating a frame, clock by clock";
-      const reasons = refusal(readScene(text, name));
-      [...selects.engine.options].find(({ value }) => value === "seed").disabled = reasons !== "";
-      if (reasons) selects.engine.value = "exact";
-      find("pixel-refusal").textContent = reasons;
+      const refused = refusal(readScene(text, name));
+      [...selects.engine.options].find(({ value }) => value === "seed").disabled = refused !== "";
+      if (refused) selects.engine.value = "exact";
+      find("pixel-refusal").textContent = refused;
       await start(PIXEL_ENGINES[selects.engine.value]);
       const { design } = machine;
       if (!inputs.column.validity.valid || !inputs.row.validity.valid) {
