@@ -5,7 +5,7 @@
 // The caller writes the live words to golden_words(), each at its register's word address, and calls golden_draw;
 // golden_picture() then holds red, green and blue of each pixel. golden_compare counts the differences from the picture
 // in golden_shown(), which the caller writes in the same layout. golden_ray explains one pixel of the last drawing in
-// golden_bounces(): a struct Bounce, eight 64-bit numbers, for the camera's ray and for each reflection.
+// golden_bounces(): a struct Bounce, nine 64-bit numbers, for the camera's ray and for each reflection.
 
 #include <stddef.h>
 #include <stdint.h>
@@ -30,6 +30,7 @@ namespace {
 constexpr int MOST_PIXELS = 1280 * 960;
 constexpr int MOST_RECTANGLES = 32;
 constexpr int MOST_BOUNCES = 1 << RAY_CASTER__CONTROL__REFLECTIONS_bw;
+constexpr int LIT = -1, DARK_SIDE = -2; // values of Bounce::shadow
 constexpr int VIEW_DISTANCE = 100; // slope along x of a primary ray at scale 1
 constexpr int OTHER_AXES[3][2] = {{1, 2}, {0, 2}, {0, 1}}; // u and v of a rectangle, by the axis of its plane
 
@@ -51,8 +52,9 @@ struct Bounce {
     int64_t winner; // index of the rectangle hit; -1 for none, then only the colour (background) is valid
     int64_t numerator, denominator;
     Vector point;
-    int64_t colour; // red above green above blue
+    int64_t colour; // as seen, in the light or in the dark; red above green above blue
     int64_t quarters;
+    int64_t shadow; // LIT, DARK_SIDE, or the first rectangle between the point and the light
 };
 
 // Starts at the camera, mirrored in all mirrors so far (exact), or at the hit point on the last mirror (seed).
@@ -67,6 +69,9 @@ struct Scene {
     int fraction_bits, reflections, background;
     Vector camera;
     Vector corner, right, up; // slope in row 0 and column 0, its step per column, and its step per row
+    bool light_on;
+    Vector light;
+    int shade; // share of a colour that is left in the dark, in quarters, 0 to 3
     int visible;
     Rectangle rectangles[MOST_RECTANGLES];
 };
@@ -78,24 +83,35 @@ Bounce path[MOST_BOUNCES];
 
 int64_t magnitude(int64_t value) { return value < 0 ? -value : value; }
 
+// Compute t = n / e at which a ray crosses a rectangle's plane; e is 0 for a parallel ray.
+void cross(const Rectangle &r, const Vector &start, const Vector &slope, int64_t &n, int64_t &e) {
+    const int64_t along = slope[r.axis], way = r.low[r.axis] - start[r.axis];
+    e = magnitude(along), n = along < 0 ? -way : way;
+}
+
+// Return whether the point of the ray at t = n / e is within the rectangle's bounds.
+bool is_within(const Rectangle &r, const Vector &start, const Vector &slope, int64_t n, int64_t e) {
+    for (int u : OTHER_AXES[r.axis]) {
+        const int64_t way = slope[u] * n;
+        if (way < (r.low[u] - start[u]) * e || way > (r.high[u] - start[u]) * e) return false;
+    }
+    return true;
+}
+
 // No division and no rounding: bounds and parameters t = n / e are compared by cross-multiplication. A reflected ray is
 // the straight ray from the mirrored eye, and t continues along it.
 const Rectangle *meet_exactly(const Ray &ray, Bounce &bounce) {
     const Rectangle *winner = nullptr;
     int64_t best_n = 1, best_e = 0; // 1 / 0 is beyond every t
     for (const Rectangle *r = scene.rectangles; r != scene.rectangles + scene.visible; r++) {
-        const int axis = r->axis, u = OTHER_AXES[axis][0], v = OTHER_AXES[axis][1];
-        const int64_t slope = ray.slope[axis], way = r->low[axis] - ray.start[axis];
-        const int64_t e = magnitude(slope), n = slope < 0 ? -way : way;
+        int64_t n, e;
+        cross(*r, ray.start, ray.slope, n, e);
         // On a tie the lower index wins.
         if (e == 0 || n * best_e >= best_n * e) continue;
         const int64_t beyond = n * ray.mirror_e - ray.mirror_n * e;
         // A ray that hits two planes in one point reflects off both; otherwise closed rooms would have holes.
-        if (beyond < 0 || (beyond == 0 && ray.met >> axis & 1)) continue;
-        const int64_t way_u = ray.slope[u] * n, way_v = ray.slope[v] * n;
-        if (way_u < (r->low[u] - ray.start[u]) * e || way_u > (r->high[u] - ray.start[u]) * e) continue;
-        if (way_v < (r->low[v] - ray.start[v]) * e || way_v > (r->high[v] - ray.start[v]) * e) continue;
-        winner = r, best_n = n, best_e = e;
+        if (beyond < 0 || (beyond == 0 && ray.met >> r->axis & 1)) continue;
+        if (is_within(*r, ray.start, ray.slope, n, e)) winner = r, best_n = n, best_e = e;
     }
     bounce.numerator = best_n, bounce.denominator = best_e;
     for (int axis = 0; axis < 3; axis++) bounce.point[axis] = ray.start[axis] * best_e + ray.slope[axis] * best_n;
@@ -138,6 +154,28 @@ int colour_at(const Rectangle &hit, const Bounce &bounce) {
     return other ? hit.colour_2 : hit.colour;
 }
 
+// Return the shadow of the point that a ray hit, as in Bounce::shadow. With the point N / e and the light L, the ray
+// from the light of slope N - e L meets the point at t = 1 / e. A rectangle at 0 < t < 1 / e is strictly between them.
+int shadow_at(const Ray &ray, const Rectangle &hit, const Bounce &bounce) {
+    const int64_t side = scene.light[hit.axis] - hit.low[hit.axis], point_e = bounce.denominator;
+    if (side == 0 || (side < 0) == (ray.slope[hit.axis] < 0)) return DARK_SIDE;
+    // The point is in the world, so each component is at most 511 e, below 2^29.
+    Vector slope;
+    for (int axis = 0; axis < 3; axis++) slope[axis] = bounce.point[axis] - point_e * scene.light[axis];
+    for (const Rectangle *r = scene.rectangles; r != scene.rectangles + scene.visible; r++) {
+        int64_t n, e;
+        cross(*r, scene.light, slope, n, e);
+        if (n > 0 && n * point_e < e && is_within(*r, scene.light, slope, n, e)) return r->index;
+    }
+    return LIT;
+}
+
+int dimmed(int colour) {
+    int dark = 0;
+    for (int shift = 0; shift <= 16; shift += 8) dark |= (scene.shade * (colour >> shift & 0xff) >> 2) << shift;
+    return dark;
+}
+
 void reflect(Ray &ray, const Rectangle &hit, const Bounce &bounce) {
     const int axis = hit.axis;
     ray.slope[axis] = -ray.slope[axis];
@@ -167,6 +205,8 @@ int follow(int column, int row) {
         bounce.winner = hit ? hit->index : -1;
         bounce.colour = hit ? colour_at(*hit, bounce) : scene.background;
         bounce.quarters = hit ? hit->quarters : 0;
+        bounce.shadow = hit && scene.light_on ? shadow_at(ray, *hit, bounce) : LIT;
+        if (bounce.shadow != LIT) bounce.colour = dimmed(bounce.colour);
         if (bounce.quarters == 0 || count > scene.reflections) return count;
         reflect(ray, *hit, bounce);
     }
@@ -226,6 +266,13 @@ void read_camera(bool turn, int columns, int horizon_row, int scale) {
     }
 }
 
+void read_light(bool has_light) {
+    const int position[] = VECTOR(WORD(light), LIGHT);
+    for (int axis = 0; axis < 3; axis++) scene.light[axis] = position[axis];
+    scene.light_on = has_light && FIELD(WORD(light), LIGHT__ON);
+    scene.shade = FIELD(WORD(light), LIGHT__SHADE);
+}
+
 } // namespace
 
 EXPORT(golden_words) uint32_t *golden_words() { return words; }
@@ -235,15 +282,15 @@ EXPORT(golden_bounces) int64_t *golden_bounces() { return &path[0].winner; }
 
 // Draw the picture that a design must show.
 //
-// engine: enum raycaster_engine. rectangles: number of table entries. materials, patterns, turn: 1 if the design has
-// the feature; registers of other features are ignored. columns, rows, horizon_row: size of the picture in rays, and
-// the horizon's row. scale: scale of the picture. fraction_bits, nearest: arithmetic of the seed engine. colour_bits:
-// bits per channel at the pins; the lower bits are 0. The number of reflections comes from the control register, and
-// must not exceed the number that the design computes.
+// engine: enum raycaster_engine. rectangles: number of table entries. materials, patterns, turn, light: 1 if the design
+// has the feature; registers of other features are ignored. columns, rows, horizon_row: size of the picture in rays,
+// and the horizon's row. scale: scale of the picture. fraction_bits, nearest: arithmetic of the seed engine.
+// colour_bits: bits per channel at the pins; the lower bits are 0. The number of reflections comes from the control
+// register, and must not exceed the number that the design computes.
 EXPORT(golden_draw)
 void golden_draw(
-    int engine, int rectangles, int materials, int patterns, int turn, int columns, int rows, int horizon_row,
-    int scale, int fraction_bits, int nearest, int colour_bits) {
+    int engine, int rectangles, int materials, int patterns, int turn, int light, int columns, int rows,
+    int horizon_row, int scale, int fraction_bits, int nearest, int colour_bits) {
     if (columns * rows > MOST_PIXELS || rectangles > MOST_RECTANGLES) __builtin_trap();
     scene.run = FIELD(WORD(control), CONTROL__RUN);
     scene.reflections = FIELD(WORD(control), CONTROL__REFLECTIONS);
@@ -253,6 +300,7 @@ void golden_draw(
     scene.nearest = nearest;
     read_rectangles(rectangles, materials, patterns);
     read_camera(turn, columns, horizon_row, scale);
+    read_light(light);
     const int kept = 0xff00 >> colour_bits & 0xff;
     uint8_t *channel = picture;
     for (int row = 0; row < rows; row++)

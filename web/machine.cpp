@@ -144,6 +144,12 @@ EXPORT(set_basis) int set_basis(int fx, int fy, int fz, int rx, int ry, int rz, 
     return raycaster_set_basis(&device, &basis);
 }
 
+EXPORT(set_light) int set_light(int x, int y, int z, int quarters) {
+    return raycaster_set_light(&device, point(x, y, z), quarters);
+}
+
+EXPORT(clear_light) int clear_light() { return raycaster_clear_light(&device); }
+
 EXPORT(set_background) int set_background(uint32_t rgb) { return raycaster_set_background(&device, colour(rgb)); }
 
 EXPORT(set_reflections) int set_reflections(int count) { return raycaster_set_reflections(&device, count); }

@@ -15,8 +15,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from raycaster.configuration import WORLD_SIZE, Configuration, configure
+from raycaster.configuration import LOOKS, WORLD_SIZE, Configuration, configure
 from raycaster.convert.provenance import Provenance
+from raycaster.engines import SEED
 from raycaster.errors import UserError
 from raycaster.jobs import run_jobs
 from raycaster.memory_map import BUTTON_NAMES
@@ -25,7 +26,7 @@ from raycaster.outcomes import Outcome, Published, add_keep_option, keep, scope_
 from raycaster.output import Console, replaced
 from raycaster.play.walk import DRAG, STEEPEST, STEP, TURN, TURNS, WALKS
 from raycaster.play.window import GAME_KEYS, TURN_KEYS, WALK_KEYS
-from raycaster.scene import load_scene, packaged_scenes
+from raycaster.scene import packaged_scenes
 from raycaster.sim.simulator import SimulationError
 from raycaster.sw.firmware import build_firmware
 from raycaster.web.browser import browser_page
@@ -76,13 +77,13 @@ _LOOKS = {"materials": True, "patterns": True, "reflections": 2}
 WALKS_MODELS = (
     Model("walk", {**_BEAM, "turn": True}),
     Model("walk-looks", {**_BEAM, "turn": True, **_LOOKS}),
+    Model("exact", {"engine": "exact", "turn": True, **_LOOKS, "light": True}, taps=True),
 )
 """Models for the walk, fastest first."""
 
 MODELS = (
     *WALKS_MODELS,
     Model("game", _BEAM, processor=True),
-    Model("exact", {"engine": "exact", "turn": True, **_LOOKS}, taps=True),
     *(Model(f"seed-{bits}", {"engine": "seed", "fraction_bits": bits, **_LOOKS}, taps=bits == 0) for bits in FRACTIONS),
 )
 
@@ -92,7 +93,7 @@ def described(config: Configuration) -> dict[str, int]:
     screen = config.screen_geometry
     return {
         "engine": config.facts.code,
-        **{name: int(getattr(config, name)) for name in ("materials", "patterns", "turn")},
+        **{name: int(getattr(config, name)) for name in LOOKS},
         **{name: getattr(config, name) for name in ("rectangles", "reflections", "fraction_bits")},
         **{name: getattr(screen, name) for name in ("columns", "rows", "horizon_row", "scale", "doubling")},
     }
@@ -112,23 +113,19 @@ def _build(model: Model, build: Path) -> tuple[bytes, dict[str, Any]]:
 
 def _settings(*, test: bool) -> dict[str, Any]:
     """Return the parts of the project that the page uses, such as scenes, keys and step sizes."""
-    shown = {name: load_scene(path) for name, path in packaged_scenes().items()}
-    # No design on the page has a light.
-    scenes = {name: packaged_scenes()[name].read_text() for name, scene in shown.items() if not scene.light}
-    plain = [name for name in scenes if not shown[name].camera.turned]
     keys = {name: [BROWSER_KEYS.get(key, key) for key in held] for name, held in (WALK_KEYS | TURN_KEYS).items()}
     return {
         "test": test,
         "worker": (PAGE / "machine.js").read_text(),
         "schema": scene_schema(),
-        "scenes": scenes,
+        "scenes": {name: path.read_text() for name, path in packaged_scenes().items()},
         "walk": {
             "step": STEP, "turn": TURN, "drag": DRAG, "steepest": STEEPEST, "world_size": WORLD_SIZE,
             "buttons": [*WALKS, *TURNS], "keys": keys, "first": FIRST_SCENE,
             "rectangles": WALKS_MODELS[0].configuration.rectangles,
             "models": [
                 {
-                    "name": model.name, "looks": model.configuration.materials,
+                    "name": model.name, "looks": list(model.configuration.looks),
                     "reflections": model.configuration.reflections,
                 }
                 for model in WALKS_MODELS
@@ -138,7 +135,7 @@ def _settings(*, test: bool) -> dict[str, Any]:
             "buttons": list(BUTTON_NAMES),
             "keys": {name: [BROWSER_KEYS.get(key, key) for key in held] for name, held in GAME_KEYS.items()},
         },
-        "engines": {"scenes": plain, "fractions": list(FRACTIONS)},
+        "seed": {"fractions": list(FRACTIONS), "lacks": dict(SEED.lacks)},
     }  # fmt: skip
 
 

@@ -20,6 +20,9 @@ FIRST = ("place_row", "place_column_offset", "steps_screen_to_ray", "done")
 UNPRINTED = ("valid", "nearest point", "ended before")
 """Quantities outside the table, which say which of its entries are meaningful, or where the ray goes on."""
 
+DECODED = ("light",)
+"""Quantities that the page itself derives from their signals."""
+
 _TEXT = """\
 // SPDX-License-Identifier: MIT
 // Signals of one ray unit and of the control, {bits} bits each; all 0 if unit selects none.
@@ -51,7 +54,18 @@ def tapped_probes(config: Configuration, unit: int) -> list[Probe]:
     return [
         probe
         for probe in description_of(config, unit).probes
-        if (probe.shown or probe.quantity in UNPRINTED) and probe.event != "shown" and not probe.decode
+        if (probe.shown or probe.quantity in UNPRINTED)
+        and probe.event != "shown"
+        and (not probe.decode or probe.quantity in DECODED)
+    ]
+
+
+def _controls(config: Configuration, unit: int) -> list[str]:
+    """List the control's signals that events come from, including those of shadow passes."""
+    description = description_of(config, unit)
+    controls = [name for name in description.controls() if not name.startswith(description.video)]
+    return controls + [
+        name.replace("from_light", "steps_write_shadow") for name in controls if name.endswith("from_light")
     ]
 
 
@@ -60,8 +74,7 @@ def tapped_signals(config: Configuration, unit: int) -> list[str]:
 
     All units have the same number of them, with corresponding signals at the same place.
     """
-    description = description_of(config, unit)
-    controls = [name for name in description.controls() if not name.startswith(description.video)]
+    controls = _controls(config, unit)
     first = [next(name for name in controls if name.endswith(f".{end}")) for end in FIRST]
     values = [name for probe in tapped_probes(config, unit) for name in probe.signals]
     return list(dict.fromkeys([*first, *controls, *values]))
@@ -77,11 +90,10 @@ def tap_facts(config: Configuration) -> dict:
     """
     signals = tapped_signals(config, 0)
     place = {name: number for number, name in enumerate(signals)}
-    controls = [name for name in description_of(config, 0).controls() if name in place]
     return {
         "units": config.units,
         "count": len(signals),
-        "controls": {name.rpartition(".")[2]: place[name] for name in controls},
+        "controls": {name.rpartition(".")[2]: place[name] for name in _controls(config, 0)},
         "probes": [
             {
                 "quantity": probe.quantity,

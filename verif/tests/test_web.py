@@ -14,6 +14,7 @@ import pytest
 from rich.console import Console
 
 from raycaster.configuration import configure
+from raycaster.engines import SEED
 from raycaster.errors import UserError
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.seed_engine import SeedModel
@@ -57,7 +58,13 @@ def golden_hash(scene, camera: Camera | None = None) -> str:
     camera = camera or scene.camera
     return picture_hash(
         ExactModel().picture(
-            screen, Rectangles.of_scene(scene), camera.position, scene.background, scene.reflections, basis=camera.basis
+            screen,
+            Rectangles.of_scene(scene),
+            camera.position,
+            scene.background,
+            scene.reflections,
+            basis=camera.basis,
+            light=scene.light,
         )
     )
 
@@ -266,6 +273,45 @@ def test_the_engines_side_by_side(page, whole_site, fraction_bits):
 
 
 @pytest.mark.slow
+def test_the_engines_with_a_light(page, whole_site):
+    """The exact engine draws the shadows, and afterwards a scene without a light; the seed engine refuses the first."""
+    site, _ = whole_site
+    page.goto((site / "index.html").as_uri() + "#engines")
+    page.wait_for_function("RayCaster.state.engines?.done")
+    first = page.evaluate("RayCaster.state.engines")
+    reason = SEED.lacks["light"].replace("the seed engine", "it")
+    refusal = f"The seed engine refuses this scene: {reason}."
+    for name, seed in (("evening", {"error": refusal}), ("mirror_room", first["seed"])):
+        page.evaluate("delete RayCaster.state.engines")
+        page.select_option("#engines-scene", name)
+        page.wait_for_function("RayCaster.state.engines?.done")
+        state = page.evaluate("RayCaster.state.engines")
+        assert state["exact"] == {"hash": golden_hash(load_scene(packaged_scenes()[name])), "wrong": 0}
+        assert state["seed"] == seed
+        assert page.locator("#engines-seed").is_hidden() == ("error" in seed)
+    assert state == first
+
+
+@pytest.mark.slow
+def test_a_walk_with_a_light(page, whole_site):
+    """The walk takes the exact engine for a scene with a light, and the beam engine again for the next scene."""
+    site, _ = whole_site
+    opened(page, site)
+    for name in ("evening", "boxes"):
+        page.select_option("#walk-scene", name)
+        scene = load_scene(packaged_scenes()[name])
+        expected = golden_hash(scene)
+        page.wait_for_function(f"RayCaster.state.walk.hash === '{expected}' && RayCaster.state.walk.wrong === 0")
+        # The exact engine's screen has eight times the clocks.
+        assert (page.evaluate("RayCaster.state.walk.clocks") > 400_000) == bool(scene.light)
+    scene = load_scene(packaged_scenes()["shadow_hall"])
+    cameras = cameras_around(scene.camera, 4)
+    expected = [golden_hash(scene, camera) for camera in (scene.camera, *cameras)]
+    assert len(set(expected)) == 4
+    assert tour_of(page, "exact", "shadow_hall", cameras) == expected
+
+
+@pytest.mark.slow
 def test_frames_are_timed(page, whole_site, monkeypatch):
     """Frame times in the browser and natively are positive numbers of milliseconds, and the table has them."""
     monkeypatch.setattr(speed, "SCENES", ("boxes",))
@@ -281,9 +327,8 @@ def test_settings_are_json(site):
     """The page's settings are one assignment."""
     text = (site / "settings.js").read_text()
     settings = json.loads(text.removeprefix("Object.assign(RayCaster, ").removesuffix(");\n"))
-    lit = {name for name, path in packaged_scenes().items() if load_scene(path).light}
-    assert len(lit) >= 5, "no design of the page has a light"
-    assert set(settings["scenes"]) == set(packaged_scenes()) - lit
+    assert set(settings["scenes"]) == set(packaged_scenes())
+    assert ["light" in model["looks"] for model in settings["walk"]["models"]] == [False, False, True]
 
 
 def test_nothing_to_keep_is_refused(tmp_path):

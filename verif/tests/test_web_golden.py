@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ctypes
 import subprocess
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
@@ -14,16 +15,17 @@ from conftest import BUILD
 from hard_scenes import scene_of
 from wasmtime import Instance, Module, Store
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import LOOKS, Configuration, configure
+from raycaster.engines import BEAM, EXACT
 from raycaster.golden.catalogue import catalogue
 from raycaster.golden.engines import model_of
 from raycaster.golden.picture import shown
-from raycaster.golden.random_world import random_basis, random_grid, random_looks
+from raycaster.golden.random_world import random_basis, random_grid, random_light, random_looks
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
-from raycaster.program import basis_fields, scene_words
+from raycaster.program import basis_fields, light_fields, scene_words
 from raycaster.registers import register_map
-from raycaster.scene import UNTURNED, load_scene
+from raycaster.scene import UNTURNED, Light, load_scene
 from raycaster.screens import SCREENS, Screen
 from raycaster.sim.register_model import COMMIT_CLOCKS, LiveScene, SceneFollower
 from raycaster.sim.simulator import made, models
@@ -31,13 +33,18 @@ from raycaster.verif.seeds import repeat, seed
 from raycaster.web.wasm import DRIVER_HEADERS, GOLDEN, GOLDEN_FLAGS, golden_wasm
 
 WORDS = 1024
-BOUNCE = 8
+BOUNCE = 9
 """Numbers per bounce."""
 
-LOOKS = ("turn", "materials", "patterns")
+LIT, DARK_SIDE = -1, -2
+"""Values of `Bounce::shadow`, besides the rectangle that shades."""
+
 QUOTIENTS = [(bits, rounding) for bits in (0, 3, 8) for rounding in ("truncate", "nearest")]
 ENGINES = [
-    *({"engine": engine, **dict.fromkeys(LOOKS, True)} for engine in ("exact", "beam")),
+    *(
+        {"engine": engine.name, **{look: True for look in LOOKS if look not in engine.lacks}}
+        for engine in (EXACT, BEAM)
+    ),
     *(
         {"engine": "seed", "fraction_bits": bits, "rounding": rounding, "materials": True, "patterns": True}
         for bits, rounding in QUOTIENTS
@@ -73,7 +80,7 @@ class Golden:
         screen = screen or config.screen_geometry
         self.call(
             "golden_draw", config.facts.code, config.rectangles, config.materials, config.patterns, config.turn,
-            screen.columns, screen.rows, screen.horizon_row, screen.scale, config.fraction_bits,
+            config.light, screen.columns, screen.rows, screen.horizon_row, screen.scale, config.fraction_bits,
             config.rounding == "nearest", config.colour_bits,
         )  # fmt: skip
         data = self.read(self.call("golden_picture"), 3 * screen.columns * screen.rows)
@@ -128,7 +135,7 @@ def golden() -> Golden:
 
 
 def world_words(
-    table: Rectangles, camera: Sequence[int], basis, background: Sequence[int], reflections: int
+    table: Rectangles, camera: Sequence[int], basis, light: Light | None, background: Sequence[int], reflections: int
 ) -> list[tuple[int, int]]:
     """Return a world's register writes; unlike a scene file, they allow disabled entries and ones without a plane."""
     registers = register_map(len(table))
@@ -136,6 +143,7 @@ def world_words(
         ("background", dict(zip(("red", "green", "blue"), background, strict=True))),
         ("camera", dict(zip("xyz", map(int, camera), strict=True))),
         *basis_fields(basis),
+        *light_fields(light),
     ]
     for index in range(len(table)):
         entry = f"rectangle[{index}]"
@@ -167,7 +175,8 @@ def random_words(rng: np.random.Generator, config: Configuration) -> list[tuple[
     # A mirror value above 4 counts as 4.
     table = replace(table, mirrors=np.where((table.mirrors == 4) & (rng.random(count) < 0.5), 7, table.mirrors))
     background = rng.integers(256, size=3).tolist()
-    return world_words(table, camera, basis, background, int(rng.integers(3)))
+    light = random_light(rng, table, np.asarray(camera)) if rng.random() < 0.8 else None
+    return world_words(table, camera, basis, light, background, int(rng.integers(3)))
 
 
 def live(config: Configuration, words: Iterable[tuple[int, int]]) -> LiveScene:
@@ -200,14 +209,16 @@ def assert_drawn(
 @of_each_engine
 def test_packaged_scenes(golden, scenes, options):
     config = design(rectangles=16, **options)
-    drawn = 0
+    drawn, lit = 0, 0
     for path in sorted(scenes.glob("*.toml")):
         scene = load_scene(path)
         if not scene.lacks(config.looks):
             picture = assert_drawn(golden, config, scene_words(scene, config), path.name)
             assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 1, path.name
             drawn += 1
+            lit += scene.light is not None
     assert drawn > 10
+    assert lit >= 5 or not config.light
 
 
 @of_each_engine
@@ -264,6 +275,7 @@ def test_explains_a_pixel(golden, options):
     config = design(**options)
     screen = config.screen_geometry
     longest, misses = 0, 0
+    shadows: Counter[str] = Counter()
     for number in range(WORLDS):
         words = random_words(rng, config)
         golden.load(words)
@@ -275,7 +287,9 @@ def test_explains_a_pixel(golden, options):
         if config.turn:
             # The basis is a factor even if it is not turned, since t is relative to these slopes.
             slopes = slopes @ np.array(scene.basis)
-        trace = model_of(config).trace(table, scene.camera, scene.background, slopes, scene.reflections)
+        trace = model_of(config).trace(
+            table, scene.camera, scene.background, slopes, scene.reflections, light=scene.light
+        )
         for ray, (row, column) in enumerate(pixels.tolist()):
             context = f"world {number}, row {row}, column {column}; {repeat()}"
             bounces = golden.bounces(column, row)
@@ -284,8 +298,15 @@ def test_explains_a_pixel(golden, options):
             assert set(winners[len(bounces) :]) <= {-1}, context
             longest = max(longest, len(bounces))
             eye, slope = np.array(scene.camera), slopes[ray].copy()
-            for depth, (winner, numerator, denominator, *point, colour, quarters) in enumerate(bounces.tolist()):
+            for depth, bounce in enumerate(bounces.tolist()):
+                winner, numerator, denominator, *point, colour, quarters, shadow = bounce
                 assert colour == int.from_bytes(trace.seen[depth][ray].tobytes(), "big"), context
+                if winner < 0 or not scene.light:
+                    assert shadow == LIT, context
+                else:
+                    shading = trace.shadings[depth]
+                    assert shadow == (shading.shades[ray] if shading.facing[ray] else DARK_SIDE), context
+                    shadows[{LIT: "lit", DARK_SIDE: "dark"}.get(shadow, "shaded")] += 1
                 if winner < 0:
                     misses += 1
                     continue
@@ -302,6 +323,7 @@ def test_explains_a_pixel(golden, options):
                     slope[axis] *= -1
     assert longest == 3, repeat()
     assert misses, repeat()
+    assert len(shadows) == (3 if config.light else 0), repeat()
 
 
 def test_counts_pixels_that_differ(golden, scenes):

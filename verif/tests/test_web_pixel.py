@@ -16,9 +16,11 @@ from wasmtime import Linker, Module, Store, WasiConfig
 
 from raycaster.configuration import Configuration, configure
 from raycaster.debug.probes.engines import description_of
+from raycaster.debug.probes.exact import lighting, shadow_slope
 from raycaster.debug.probes.ray import Place, Ray, read
 from raycaster.debug.waves import Samples
 from raycaster.design import Design
+from raycaster.engines import SEED
 from raycaster.golden.world import OTHER_AXES
 from raycaster.scene import Scene, load_scene
 from raycaster.verif.seeds import repeat, seed
@@ -28,10 +30,11 @@ from raycaster.web.taps import TAP_BITS, tap_facts, tapped_probes, tapped_signal
 from raycaster.web.wasm import machine_wasm
 
 LOOKS = {"materials": True, "patterns": True}
-OPTIONS = {"exact": {"engine": "exact", "turn": True}, "seed": {"engine": "seed"}}
+OPTIONS = {"exact": {"engine": "exact", "turn": True, "light": True}, "seed": {"engine": "seed"}}
 DESIGNS = {name: configure(screen="tiny", reflections=2, **LOOKS, **options) for name, options in OPTIONS.items()}
-SCENES = {"exact": ("kaleidoscope", "staircase"), "seed": ("facing_mirrors", "stage")}
-"""Scenes with several kinds of mirrors, patterns, rays that miss, and for the exact engine a turned camera."""
+SCENES = {"exact": ("evening", "shadow_hall", "kaleidoscope", "staircase"), "seed": ("facing_mirrors", "stage")}
+"""Scenes with several kinds of mirrors, patterns, rays that miss, and for the exact engine a turned camera and a light.
+"""
 
 PIXELS = 12
 """Pixels per scene."""
@@ -98,6 +101,11 @@ class Hardware:
                 errors.append(self.call("set_pattern", index, rect.kind, rect.cell, code(rect.colour2)))
             else:
                 errors.append(self.call("set_pattern", index, 0, 8, 0))
+        if self.config.light:
+            light = scene.light
+            errors.append(
+                self.call("set_light", *light.position, light.quarters) if light else self.call("clear_light")
+            )
         errors += [self.call("disable_rectangle", n) for n in range(len(scene.rect), self.config.rectangles)]
         errors.append(self.call("set_reflections", scene.reflections))
         self.call("set_run", 1)
@@ -149,10 +157,10 @@ def scene_of(name: str, scenes: Path) -> tuple[Path, Scene]:
     return path, load_scene(path).model_copy(update={"reflections": 2})
 
 
-def random_pixels(config: Configuration, number: int) -> list[tuple[int, int]]:
+def random_pixels(config: Configuration, number: int, count: int = PIXELS) -> list[tuple[int, int]]:
     screen = config.screen_geometry
     rng = np.random.default_rng([seed(), number])
-    return rng.integers((screen.columns, screen.rows), size=(PIXELS, 2)).tolist()
+    return rng.integers((screen.columns, screen.rows), size=(count, 2)).tolist()
 
 
 @pytest.mark.slow_sets("seed")
@@ -184,6 +192,12 @@ def test_taps_match_golden(engine, scenes):
             reflected += ray.alive(2)
     assert held > 2 * PIXELS * 50
     assert reflected, repeat()
+
+
+def shadow_of(ray: Ray, number: int) -> int:
+    """Return the rectangle that shades a hit point; -1 if it is lit, -2 on the dark side."""
+    shading = ray.golden.shadings[number]
+    return int(shading.shades[0]) if shading.facing[0] else -2
 
 
 def assert_bounce(bounce: dict, ray: Ray, number: int, context: str) -> int:
@@ -223,6 +237,9 @@ def assert_bounce(bounce: dict, ray: Ray, number: int, context: str) -> int:
     if ray.winner(number) >= 0:
         assert bounce["point"] == ray.golden.points[number][0].tolist(), context
         assert bounce["denominator"] == ray.golden.denominators[number][0], context
+        if ray.scene.light:
+            assert bounce["values"]["slope from the light"] == shadow_slope(ray, Place(number)), context
+            assert bounce["shadow"] == shadow_of(ray, number), context
     return len(tried)
 
 
@@ -232,7 +249,7 @@ def test_a_life_matches_golden(engine, scenes, page):
     config, machine, facts = DESIGNS[engine], hardware(engine), tap_facts(DESIGNS[engine])
     page.goto("about:blank")
     page.add_script_tag(path=PAGE / "life.js")
-    tested, misses, lost = 0, 0, 0
+    tested, misses, lost, shadows = 0, 0, 0, set()
     for number, name in enumerate(SCENES[engine]):
         path, scene = scene_of(name, scenes)
         machine.load(scene)
@@ -249,9 +266,12 @@ def test_a_life_matches_golden(engine, scenes, page):
             for bounce in alive:
                 tested += assert_bounce(life["bounces"][bounce], ray, bounce, context)
                 misses += ray.winner(bounce) < 0
+                if scene.light and ray.winner(bounce) >= 0:
+                    shadows.add(shadow_of(ray, bounce))
             lost += len(alive) <= scene.reflections
     assert tested > 2 * PIXELS * 10
     assert misses and lost, repeat()
+    assert not config.light or ({-1, -2} < shadows), repeat()
 
 
 def opened(page, site: Path, question: str = "") -> dict:
@@ -289,7 +309,7 @@ def test_the_tab(page, site, scenes):
             scene = load_scene(scenes / f"{name}.toml")
             column, row = rng.integers((64, 48)).tolist()
             state = ask(page, scene=name)
-            if not scene.camera.turned:
+            if not scene.lacks(DESIGNS["seed"].looks):
                 state = ask(page, engine=engine)
             state = ask(page, column=column, row=row)
             context = f"{name}, column {column}, row {row}; {repeat()}"
@@ -304,6 +324,8 @@ def test_the_tab(page, site, scenes):
                 context
             )
             assert page.locator("#pixel-life h3").count() == len(winners) + 1, context
+            shadows = [page.locator("#pixel-plan .light"), page.locator("#pixel-life caption", has_text="Shadow ray")]
+            assert [one.count() for one in shadows] == ([1, hits] if scene.light else [0, 0]), context
             # The wrong pixel planted by this test.
             assert ask(page, column=9, row=7)["wrong"], context
             assert page.locator("#pixel-life .wrong").count() == 1, context
@@ -327,6 +349,35 @@ def test_the_tab_refuses_bad_choices(page, site):
     ask(page, scene="kaleidoscope")
     assert page.locator("#pixel-engine").input_value() == "exact"
     assert page.locator("#pixel-engine option[value=seed]").is_disabled()
+    refusal = page.locator("#pixel-refusal")
+    for scene, look in (("kaleidoscope", "turn"), ("evening", "light")):
+        ask(page, scene=scene)
+        reason = SEED.lacks[look].replace("the seed engine", "it")
+        assert refusal.text_content() == f"The seed engine refuses this scene: {reason}."
+    ask(page, scene="boxes")
+    assert refusal.is_hidden()
+
+
+def test_the_tab_shows_shadows(page, site, scenes):
+    """The page says what a pixel's light meets, on the hardware and in the golden model."""
+    opened(page, site)
+    path = scenes / "shadow_hall.toml"
+    scene = load_scene(path)
+    ask(page, scene="shadow_hall")
+    missing = {"lit", "on the dark side", "shaded by"}
+    for column, row in random_pixels(DESIGNS["exact"], 30, 40):
+        ray = Ray(Design(path, scene, DESIGNS["exact"], scene.reflections), row, column)
+        golden = [lighting(ray, Place(bounce)) for bounce in range(3) if ray.winner(bounce) >= 0]
+        kinds = {kind for kind in missing for text in golden if text and str(text[0]).startswith(kind)}
+        if not kinds:
+            continue
+        missing -= kinds
+        ask(page, column=column)
+        ask(page, row=row)
+        tables = page.locator("#pixel-life .scroll", has_text="Shadow ray, from")
+        cells = tables.locator("td:nth-child(2)").all_text_contents()
+        assert cells == [text[0] for text in golden if text for _ in ("hardware", "golden model")], f"{column}, {row}"
+    assert not missing, repeat()
 
 
 def test_facts_name_each_tap():

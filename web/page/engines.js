@@ -4,10 +4,9 @@
 
 tabs.engines = {
   async open() {
-    const { scenes, fractions } = RayCaster.engines;
     const selects = { scene: find("engines-scene"), fraction: find("engines-fraction") };
-    fill(selects.scene, scenes, RayCaster.walk.first);
-    fill(selects.fraction, fractions.map(String), "0");
+    fill(selects.scene, Object.keys(RayCaster.scenes), RayCaster.walk.first);
+    fill(selects.fraction, RayCaster.seed.fractions.map(String), "0");
     const box = find("engines-mark");
     const canvases = { seed: find("engines-seed"), exact: find("engines-exact") };
     const statuses = { seed: find("engines-seed-status"), exact: find("engines-exact-status") };
@@ -20,11 +19,11 @@ tabs.engines = {
       if (differs && box.checked) mark(canvases.seed, differs.wrong, "#ff00ff");
     };
 
-    const compute = async (side, name) => {
+    const compute = async (side, model) => {
       statuses[side].textContent = "computing";
-      if (machines[side]?.name !== name) {
+      if (machines[side]?.name !== model) {
         machines[side]?.end();
-        machines[side] = await Machine.start(name);
+        machines[side] = await Machine.start(model);
       }
       const machine = machines[side];
       await machine.call("load", readScene(RayCaster.scenes[selects.scene.value], "", machine.design.rectangles));
@@ -45,8 +44,21 @@ tabs.engines = {
     const all = async () => {
       RayCaster.state.engines = {};
       differs = null;
-      await Promise.all([compute("exact", "exact"), compute("seed", `seed-${selects.fraction.value}`)]);
+      const fraction = selects.fraction.value, error = refusal(readScene(RayCaster.scenes[selects.scene.value], ""));
+      canvases.seed.hidden = error !== "";
+      if (error) {
+        delete drawn.seed;
+        statuses.seed.textContent = error;
+        await compute("exact", "exact");
+      } else {
+        await Promise.all([compute("exact", "exact"), compute("seed", `seed-${fraction}`)]);
+      }
       const exact = await report("exact", []);
+      if (error) {
+        paint();
+        RayCaster.state.engines = { done: true, fraction, exact, seed: { error } };
+        return;
+      }
       // Compare the seed engine's picture with the correct picture for the exact engine's registers.
       differs = await judge.call("judge", drawn.exact.words, drawn.seed.pixels, machines.exact.design);
       const share = ((100 * differs.count) / differs.wrong.length).toFixed(2);
@@ -54,7 +66,7 @@ tabs.engines = {
         `${counted(differs.count, "pixel")} (${share}%) different from the exact engine`,
       ]);
       paint();
-      RayCaster.state.engines = { done: true, fraction: selects.fraction.value, exact, seed, differs: differs.count };
+      RayCaster.state.engines = { done: true, fraction, exact, seed, differs: differs.count };
     };
 
     // One comparison at a time, however fast the choices change.

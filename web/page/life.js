@@ -6,6 +6,8 @@
 "use strict";
 
 const RayCasterLife = (() => {
+  const LIT = -1, DARK_SIDE = -2;
+
   // The taps of a design (see tap_facts), and their values.
   class Recording {
     constructor(taps, samples) {
@@ -59,18 +61,28 @@ const RayCasterLife = (() => {
     return [...tried.map(({ clock, rectangle }) => ({ kind: "find", clock, bounce, rectangle })), ...events];
   }
 
+  // Events of the rays, and of the rectangles that they were tested against. In a design with a light, "shade" is the
+  // verdict on a shadow ray and one rectangle: if it sets the unit's flag, that rectangle shades the hit point.
   function eventsOf(recording) {
     const events = [{ kind: "start", clock: 0, bounce: 0 }, { kind: "ray", clock: 0, bounce: 0 }];
-    let bounce = 0, atHand = null, tried = [];
+    const hasLight = "steps_write_shadow" in recording.taps.controls;
+    let bounce = 0, atHand = null, tried = [], shadows = [];
     for (let clock = 0; clock < recording.clocks; clock++) {
       const strobe = (name) => recording.control(name, clock) === 1;
-      if (strobe("steps_find_intersection") && atHand !== null) tried.push({ clock, rectangle: atHand });
+      if (strobe("steps_find_intersection") && atHand !== null) {
+        if (hasLight && strobe("from_light")) shadows.push(atHand);
+        else tried.push({ clock, rectangle: atHand });
+      }
+      if (hasLight && strobe("steps_write_shadow")) {
+        events.push({ kind: "shade", clock, bounce, shades: shadows.shift() });
+      }
       if (strobe("rects_fetch")) atHand = recording.control("rects_index", clock);
       if (strobe("steps_add_colour")) {
         events.push(...followed(recording, tried, bounce, clock), { kind: "blend", clock, bounce });
         if (strobe("steps_store_ray")) events.push({ kind: "ray", clock, bounce: bounce + 1 });
         bounce++;
         tried = [];
+        shadows = [];
       }
       if (strobe("done")) events.push({ kind: "done", clock, bounce: Math.max(0, bounce - 1) });
     }
@@ -98,17 +110,22 @@ const RayCasterLife = (() => {
    * @param {Uint32Array} samples taps.count numbers for each clock in which the pixel was computed
    * @param {number} fractionBits fraction bits of the seed engine; 0 for the exact engine
    * @returns {{clocks, bounces, values}} values: values of the pixel, by quantity. bounces: {slope, values, tried,
-   *   winner, distance, point, denominator, colour} of the camera's ray and of each reflection: tried is a list of
-   *   {rectangle, values, kept, found} (kept: as the nearest so far; found: a nearest exists by then), winner the
+   *   winner, distance, point, denominator, colour, shadow} of the camera's ray and of each reflection: tried is a list
+   *   of {rectangle, values, kept, found} (kept: as the nearest so far; found: a nearest exists by then), winner the
    *   rectangle seen or -1, distance the quantity that decided (t as [n, e], or [depth]), point the coordinates over
-   *   the denominator, colour a number
+   *   the denominator, colour a number. In a design with a light, shadow is as in golden.cpp: the rectangle that shades
+   *   the point, or LIT or DARK_SIDE
    */
   function read(taps, samples, fractionBits = 0) {
     const recording = new Recording(taps, samples);
     const life = { clocks: recording.clocks, bounces: [], values: {} };
     if (!recording.clocks) return life;
-    for (const { kind, clock, bounce, rectangle } of eventsOf(recording)) {
+    for (const { kind, clock, bounce, rectangle, shades } of eventsOf(recording)) {
       const ray = (life.bounces[bounce] ??= { values: {}, tried: [] });
+      if (kind === "shade") {
+        const [before, after] = [clock, clock + 1].map((at) => recording.values(recording.probe("light"), at)?.[1]);
+        if (!before && after) ray.shades = shades;
+      }
       let values = kind === "done" ? life.values : ray.values;
       if (rectangle !== undefined) {
         let one = ray.tried.find((other) => other.rectangle === rectangle);
@@ -133,10 +150,12 @@ const RayCasterLife = (() => {
       bounce.distance = seen.values["nearest t"] ?? seen.values.nearest;
       const isExact = "nearest t" in seen.values;
       bounce.denominator = isExact ? bounce.distance[1] : 1 << fractionBits;
+      const { light } = bounce.values;
+      if (light) bounce.shadow = !light[0] ? DARK_SIDE : light[1] ? (bounce.shades ?? null) : LIT;
       bounce.point = isExact ? pointOnRay(bounce, magnitudes, bounce.distance) : seen.values["nearest point"];
     }
     return life;
   }
 
-  return { read };
+  return { read, LIT, DARK_SIDE };
 })();

@@ -66,6 +66,9 @@ const calls = {
       if (design.materials) check(exported.set_mirror(index, rect.quarters));
       if (design.patterns && rect.kind) check(exported.set_pattern(index, rect.kind, rect.cell, rgb(rect.colour2)));
     });
+    if (design.light) {
+      check(scene.light ? exported.set_light(...scene.light.position, scene.light.quarters) : exported.clear_light());
+    }
     for (let index = scene.rect.length; index < design.rectangles; index++) check(exported.disable_rectangle(index));
     check(exported.set_reflections(scene.reflections));
     exported.set_run(1);
@@ -106,8 +109,8 @@ const calls = {
     bytes(exported.golden_words(), words.length).set(words);
     const { columns, rows, scale } = of;
     exported.golden_draw(
-      of.engine, of.rectangles, of.materials, of.patterns, of.turn, columns, rows, of.horizon_row, scale,
-      of.fraction_bits, 0, 8,
+      of.engine, of.rectangles, of.materials, of.patterns, of.turn, of.light, columns, rows, of.horizon_row,
+      scale, of.fraction_bits, 0, 8,
     );
     const golden = bytes(exported.golden_picture(), 3 * columns * rows);
     const wrong = new Uint8Array(columns * rows);
@@ -125,10 +128,10 @@ const calls = {
   // Return the correct bounces and colour of a pixel in the last picture that was judged.
   explain(column, row, columns) {
     const count = exported.golden_ray(column, row);
-    const numbers = Array.from(new BigInt64Array(exported.memory.buffer, exported.golden_bounces(), 8 * count), Number);
+    const numbers = Array.from(new BigInt64Array(exported.memory.buffer, exported.golden_bounces(), 9 * count), Number);
     const bounces = Array.from({ length: count }, (_, bounce) => {
-      const [winner, numerator, denominator, x, y, z, colour, quarters] = numbers.slice(8 * bounce);
-      return { winner, numerator, denominator, point: [x, y, z], colour, quarters };
+      const [winner, numerator, denominator, x, y, z, colour, quarters, shadow] = numbers.slice(9 * bounce);
+      return { winner, numerator, denominator, point: [x, y, z], colour, quarters, shadow };
     });
     const channels = bytes(exported.golden_picture() + 3 * (row * columns + column), 3);
     return { bounces, colour: rgb(channels) };

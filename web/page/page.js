@@ -13,11 +13,16 @@ function fill(select, names, chosen) {
 
 const counted = (count, noun) => `${count.toLocaleString("en")} ${noun}${count === 1 ? "" : "s"}`;
 
+// Say in one line why the seed engine refuses a scene; "" if it does not.
+function refusal(scene) {
+  const reason = Object.entries(RayCaster.seed.lacks).findLast(([look]) => scene.needs[look])?.[1];
+  return reason ? `The seed engine refuses this scene: ${reason.replace("the seed engine", "it")}.` : "";
+}
+
 // Read a scene file's text into the form that the hardware loads.
 function readScene(text, name, rectangles) {
   const { scene, error } = RayCasterScene.read(text, name, RayCaster.schema, rectangles);
   if (error) throw new Error(error);
-  if (scene.needs.light) throw new Error(`${name}: light: no design on this page has one; remove the table [light]`);
   const { yaw, pitch, roll } = scene.camera;
   return { ...scene, basis: RayCasterScene.basis(yaw, pitch, roll) };
 }
@@ -72,6 +77,8 @@ class Show {
     while (this.shows()) {
       const frame = await next();
       if (!frame.pixels) continue;
+      if (machine.design !== this.design) this.rate = 0;
+      this.design = machine.design;
       draw(this.canvas, frame.pixels, machine.design);
       if (this.verdict?.count) mark(this.canvas, this.verdict.wrong, "#ff00ff");
       this.frames++;
@@ -176,14 +183,14 @@ const tabs = {
       fill(select, Object.keys(RayCaster.scenes), RayCaster.walk.first);
       choose();
 
-      // The smallest design with the features that the scene needs is the fastest.
+      // The first design with the features that the scene needs is the fastest.
       const frame = async () => {
         if (next) {
           scene = next;
           next = null;
           const name = RayCaster.walk.models.find(
-            ({ looks, reflections }) => (looks || !(scene.needs.materials || scene.needs.patterns)) &&
-              reflections >= scene.reflections,
+            ({ looks, reflections }) => reflections >= scene.reflections &&
+              Object.entries(scene.needs).every(([look, isNeeded]) => !isNeeded || looks.includes(look)),
           ).name;
           if (machine?.name !== name) {
             machine?.end();

@@ -73,6 +73,12 @@ function drawPlan(plan, scene, life, label) {
       : point.map((coordinate) => coordinate / denominator));
   }
   const hits = life.bounces.flatMap(({ winner }, bounce) => (winner < 0 ? [] : [points[bounce + 1]]));
+  const light = scene.light?.position;
+  const shadowRays = life.bounces.flatMap(({ winner, shadow }, bounce) => {
+    if (!light || winner < 0 || shadow === RayCasterLife.DARK_SIDE) return [];
+    const [[x1, y1], [x2, y2]] = [light, points[bounce + 1]].map(above);
+    return [drawn("line", { x1, y1, x2, y2, class: "shadow" }, `from the light to hit ${bounce + 1}`)];
+  });
   const circle = (point, attributes, title) => {
     const [cx, cy] = above(point);
     return drawn("circle", { cx, cy, ...attributes }, title);
@@ -80,8 +86,10 @@ function drawPlan(plan, scene, life, label) {
   plan.replaceChildren(
     ...order.map(({ rect, index }) => drawRectangle(rect, label(index))),
     drawn("polyline", { class: "ray", points: points.map((point) => above(point).join()).join(" ") }),
+    ...shadowRays,
     ...hits.map((point, number) => circle(point, { class: "hit", r: 6 }, `hit ${number + 1}`)),
     circle(scene.camera.position, { class: "camera", r: 9 }, "the camera"),
+    ...(light ? [circle(light, { class: "light", r: 9 }, "the light")] : []),
   );
 }
 
@@ -102,13 +110,23 @@ function quantityText({ quantity, scale }, { values, found }, unit) {
   return texts.map((text, axis) => (isByAxis && !values.valid[axis] ? DASH : text)).join(", ");
 }
 
-// Compare the parts of a hit with the golden model: rectangle, t or depth, point, colour.
-function compare(bounce, golden, isExact) {
-  const parts = ({ winner, distance, point, denominator, colour }) =>
-    winner < 0 ? [-1, null, null, colour] : [winner, distance, [point, denominator], colour];
-  const { distance, denominator } = bounce;
-  const mine = parts({ ...bounce, distance: isExact ? distance : [distance?.[0], denominator] });
-  const right = golden ? parts({ ...golden, distance: [golden.numerator, golden.denominator] }) : mine.map(() => null);
+// Compare the parts of a hit with the golden model: rectangle, t or depth, point, colour; with a light also the shadow
+// and the magnitudes of the shadow ray's slope.
+function compare(bounce, golden, isExact, light) {
+  const parts = ({ winner, distance, point, denominator, colour, fromLight, shadow }) => {
+    const lighting = light ? [shadow, fromLight] : [];
+    return winner < 0
+      ? [-1, null, null, colour, ...lighting.map(() => null)]
+      : [winner, distance, [point, denominator], colour, ...lighting];
+  };
+  const { distance, denominator, values } = bounce;
+  const mine = parts({
+    ...bounce, distance: isExact ? distance : [distance?.[0], denominator], fromLight: values["slope from the light"],
+  });
+  const right = golden ? parts({
+    ...golden, distance: [golden.numerator, golden.denominator],
+    fromLight: light?.position.map((place, axis) => Math.abs(golden.point[axis] - golden.denominator * place)),
+  }) : mine.map(() => null);
   return { mine, right, wrong: mine.map((value, part) => JSON.stringify(value) !== JSON.stringify(right[part])) };
 }
 
@@ -131,7 +149,9 @@ class PixelStory {
     Object.assign(this, { scene, design, life, explained, monitor });
     this.unit = 1 << design.fraction_bits;
     this.isExact = life.bounces.some(({ values }) => "eye" in values);
-    this.compared = life.bounces.map((bounce, number) => compare(bounce, explained.bounces[number], this.isExact));
+    this.compared = life.bounces.map(
+      (bounce, number) => compare(bounce, explained.bounces[number], this.isExact, scene.light),
+    );
     [this.pixel] = life.values.pixel ?? [null];
   }
 
@@ -145,20 +165,34 @@ class PixelStory {
     return index < 0 ? "nothing" : `${index} ${this.scene.rect[index].name ?? ""}`.trim();
   }
 
+  lighting(shadow) {
+    if (shadow === RayCasterLife.LIT) return "lit";
+    return shadow === RayCasterLife.DARK_SIDE ? "on the dark side" : `shaded by ${this.label(shadow)}`;
+  }
+
   seen(number) {
     const { mine, right, wrong } = this.compared[number];
+    const { light } = this.scene;
     const texts = [
       (winner) => this.label(winner),
       (distance) => (this.isExact ? fractionText(distance) : digits(distance[0] / distance[1])),
       ([point, denominator]) => place(point, denominator),
       swatch,
+      (shadow) => this.lighting(shadow),
+      (slope) => slope.join(", "),
     ];
     const cells = (values) => values.map((value, part) => (value === null ? "" : texts[part](value)));
     const marked = cells(mine).map((content, part) => ({ content, className: wrong[part] ? "wrong" : "" }));
-    return table("", ["", "sees", this.isExact ? "at t" : "at depth", "at point", "colour"], [
-      { cells: ["hardware", ...marked] },
-      { cells: ["golden model", ...cells(right)] },
+    const compared = (caption, headings, from, to) => table(caption, ["", ...headings], [
+      { cells: ["hardware", ...marked.slice(from, to)] },
+      { cells: ["golden model", ...cells(right).slice(from, to)] },
     ]);
+    const tables = [compared("", ["sees", this.isExact ? "at t" : "at depth", "at point", "colour"], 0, 4)];
+    if (light && (mine[0] >= 0 || right[0] >= 0)) {
+      const caption = `Shadow ray, from ${place(light.position, 1)}`;
+      tables.push(compared(caption, ["the point is", "slope, magnitudes"], 4));
+    }
+    return tables;
   }
 
   tried({ tried, winner }) {
@@ -189,7 +223,7 @@ class PixelStory {
     const from = eye ? place(eye, 1) : place(origin, this.unit);
     const start = eye && number ? `the mirrored eye ${from}` : from;
     const title = `${rayName(number)}, from ${start} along ${place(bounce.slope, 1)}`;
-    return [element("h3", title), this.seen(number), ...this.tried(bounce), ...this.leftOut(bounce)];
+    return [element("h3", title), ...this.seen(number), ...this.tried(bounce), ...this.leftOut(bounce)];
   }
 
   blended() {
@@ -265,10 +299,10 @@ tabs.pixel = {
       RayCaster.state.pixel = { done: false };
       status.className = "";
       status.textContent = "simulating a frame, clock by clock";
-      // The seed engine has no turning camera.
-      const { turn } = readScene(text, name).needs;
-      [...selects.engine.options].find(({ value }) => value === "seed").disabled = turn;
-      if (turn) selects.engine.value = "exact";
+      const refused = refusal(readScene(text, name));
+      [...selects.engine.options].find(({ value }) => value === "seed").disabled = refused !== "";
+      if (refused) selects.engine.value = "exact";
+      find("pixel-refusal").textContent = refused;
       await start(PIXEL_ENGINES[selects.engine.value]);
       const { design } = machine;
       if (!inputs.column.validity.valid || !inputs.row.validity.valid) {
