@@ -8,6 +8,7 @@ import cocotb
 import numpy as np
 from cocotb.handle import HierarchyObject
 
+from raycaster.configuration import Configuration
 from raycaster.scene import Scene
 from raycaster.sim.harness import Harness
 
@@ -20,14 +21,20 @@ def _light() -> Scene:
     return Scene.model_validate({"background": "#402010", "camera": _CAMERA, "rect": [floor]})
 
 
-def _heavy(rectangles: int) -> Scene:
-    """Return two mirrors that a ray bounces between, under ceilings that it rises towards, so culling skips few."""
+def _heavy(configuration: Configuration) -> Scene:
+    """Return two mirrors that a ray bounces between, under ceilings that it rises towards, so culling skips few.
+
+    A light is at the camera, so nothing ends its shadow passes early.
+    """
     mirrors = [{"corners": [[x, 0, 0], [x, 511, 511]], "colour": "#50a0ff"} for x in (10, 30)]
     ceilings = [
         {"corners": [[0, 0, 120 + n], [511, 511, 120 + n]], "colour": _COLOURS[n % len(_COLOURS)]}
-        for n in range(rectangles - len(mirrors))
+        for n in range(configuration.rectangles - len(mirrors))
     ]
-    return Scene.model_validate({"background": "#104020", "camera": _CAMERA, "rect": mirrors + ceilings})
+    light = _CAMERA if configuration.light else None
+    return Scene.model_validate(
+        {"background": "#104020", "camera": _CAMERA, "light": light, "rect": mirrors + ceilings}
+    )
 
 
 @cocotb.test()
@@ -36,7 +43,7 @@ async def underrun(bench: HierarchyObject) -> None:
     harness = Harness(bench)
     bus, monitor, configuration = harness.bus, harness.monitor, harness.configuration
     assert configuration.allow_underrun == configuration.facts.line_buffered, "the beam engine must never underrun"
-    light, heavy = _light(), _heavy(configuration.rectangles)
+    light, heavy = _light(), _heavy(configuration)
     reflections = configuration.reflections
     light_picture, heavy_picture = harness.golden(light, reflections), harness.golden(heavy, reflections)
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Counts the kinds of intersection that the beam engine's passes find, for rays of a camera that does not turn. Within
-// a pass, rectangles with lower indices count as found earlier. All counts are written at the end, in the format that
-// intersection_counter.v uses for a frame.
+// a pass, rectangles with lower indices count as found earlier. The counts are written like those of
+// intersection_counter.v.
 
 `timescale 1ns / 1ns
 

@@ -9,8 +9,12 @@ import cocotb
 from cocotb.handle import HierarchyObject
 
 from raycaster.configuration import CHANNEL_BITS, WORLD_SIZE
-from raycaster.scene import Camera, Rectangle, Scene
+from raycaster.scene import Camera, Light, Rectangle, Scene
 from raycaster.sim.harness import Harness
+from raycaster.verif.random_scenes import random_scene
+
+LIT_SCENES, LIT_RECTANGLES = 12, 6
+"""Number of random scenes with a light, with few enough rectangles for the row budget."""
 
 
 @cocotb.test()
@@ -21,9 +25,11 @@ async def every_bit_of_the_live_scene(bench: HierarchyObject) -> None:
     for high in (True, False):
         place, channel = (WORLD_SIZE - 1, (1 << CHANNEL_BITS) - 1) if high else (0, 0)
         point, colour = (place, place, place), (channel, channel, channel)
+        lit = high and harness.configuration.light
         scene = Scene(
             background=colour,
             camera=Camera(position=point),
+            light=Light(position=point, shade=0.75) if lit else None,
             rect=(Rectangle(corners=(point, point), colour=colour),) * harness.configuration.rectangles,
         )
         # No reflections: with this many rectangles, they need not meet the row budget.
@@ -90,3 +96,17 @@ async def three_copies_of_every_entry(bench: HierarchyObject) -> None:
         await harness.bus.commit(reflections=0)
         await harness.bus.load_scene(following)
         harness.expect_picture(await harness.monitor.frame(), harness.golden(shown, 0), f"table {number}")
+
+
+@cocotb.test()
+async def random_lights(bench: HierarchyObject) -> None:
+    """Random scenes with a light, a frame each, if the design has one."""
+    harness = Harness(bench)
+    configuration = harness.configuration
+    await harness.reset()
+    for seed in range(LIT_SCENES if configuration.light else 0):
+        scene = random_scene(seed, LIT_RECTANGLES, configuration.reflections, configuration.looks)
+        await harness.bus.load_scene(scene)
+        await harness.bus.commit(reflections=scene.reflections)
+        golden = harness.golden(scene, scene.reflections)
+        harness.expect_picture(await harness.monitor.frame(), golden, f"seed {seed}")

@@ -9,7 +9,6 @@ module intersection_probe #(
     parameter PRODUCT_BITS = EYE_BITS + SLOPE_BITS
 ) (
     input wire clk,
-    input wire first_group,         // of a frame
     input wire start_group,
     input wire find_intersection,
     input wire write_z_buf,
@@ -44,7 +43,6 @@ module intersection_probe #(
 
     intersection_counter #(.DEPTH_BITS(PRODUCT_BITS)) counter (
         .clk(clk),
-        .first_group(first_group),
         .start_group(start_group),
         .offer(write_z_buf),
         .axis(compared[6:5]),
@@ -64,7 +62,6 @@ bind exact_unit intersection_probe #(
     .SLOPE_BITS($bits(denominator))
 ) intersection_probe_i (
     .clk(clk),
-    .first_group(place_row == 0 && place_column_offset == 0),
     .start_group(steps_screen_to_ray),
     .find_intersection(steps_find_intersection),
     .write_z_buf(steps_write_z_buf),

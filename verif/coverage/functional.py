@@ -9,7 +9,8 @@ for rays that exist.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -26,8 +27,39 @@ PROBES = {
 
 PROBE_MODULES = "intersection_counter", "intersection_probe", "pass_probe", "tester_probe"
 
-POINTS = {
-    name: {
+RAYS = "primary", "first", "second"
+HITS = "edge", "hit"
+Bin = tuple[str, ...]
+Pattern = tuple[str | None, ...]
+"""A bin in which None matches every value."""
+
+
+@dataclass(frozen=True)
+class Cross:
+    """Points that are crossed."""
+
+    name: str
+    """Plural of the things that are counted, with underscores."""
+
+    points: Mapping[str, Sequence[str]]
+    """Bins of each point. The last three are a kind, its details, none at first, and the ray."""
+
+    impossible: Mapping[str, Sequence[Pattern]]
+    """Bins that nothing can hit, by reason."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of bins of each point."""
+        return tuple(map(len, self.points.values()))
+
+    def bins_at(self, place: Iterable[int]) -> Bin:
+        """Return the bins at a place in an array of this shape."""
+        return tuple(values[index] for values, index in zip(self.points.values(), place, strict=True))
+
+
+def _points_of(engine: Engine) -> dict[str, tuple[str, ...]]:
+    """Return the axis of a rectangle's plane, the slope of the ray on it, ..."""
+    return {
         "axis": ("x", "y", "z"),
         "slope": ("negative", "zero", "positive"),
         # In order of precedence: parallel to the plane; from a point on it; running away from it; in the seed engine,
@@ -39,23 +71,13 @@ POINTS = {
         ),
         # How a hit ranks.
         "rank": ("none", "first", "nearer", "tie", "farther"),
-        "ray": ("primary", "first", "second"),
-    }
-    for name, engine in ENGINES.items()
-}  # fmt: skip
-"""By engine, the points that are crossed, and their bins: axis of the rectangle's plane, slope of the ray on it, ..."""
-
-SHAPE = tuple(map(len, POINTS[SEED.name].values()))
-CROSS = "raycaster.intersection"
-HITS = ("edge", "hit")
-Bin = tuple[str, str, str, str, str]
-Pattern = tuple[str | None, str | None, str | None, str | None, str | None]
-"""A bin in which None matches every value."""
+        "ray": RAYS,
+    }  # fmt: skip
 
 
 def _impossible_in(engine: Engine) -> dict[str, tuple[Pattern, ...]]:
-    """Return the bins that no ray can hit, by reason."""
-    results, ranks = POINTS[engine.name]["result"], POINTS[engine.name]["rank"]
+    points = _points_of(engine)
+    results, ranks = points["result"], points["rank"]
     return {
         "a ray without a slope along the axis of a plane never reaches it": tuple(
             (None, "zero", result, None, None) for result in results if result != "parallel"
@@ -91,31 +113,34 @@ _GIVEN_UP: dict[str, tuple[Pattern, ...]] = {
 _WITHOUT_MIRROR: dict[str, tuple[Pattern, ...]] = {
     "primary rays have left no mirror": ((None, None, "before mirror", None, "primary"),),
 }
-IMPOSSIBLE = {name: _impossible_in(engine) for name, engine in ENGINES.items()}
-"""By engine, bins that no ray can hit with culling, by reason."""
+INTERSECTIONS = {
+    name: Cross("intersections", _points_of(engine), _impossible_in(engine)) for name, engine in ENGINES.items()
+}
+"""By engine, the intersections of a ray with a rectangle. With culling, no ray can hit the impossible bins."""
+
+SHAPE = INTERSECTIONS[SEED.name].shape
 
 
 class FunctionalCoverage:
     """Bins, empty at first. cocotb-coverage keeps one set per process, so a new object replaces the last one."""
 
-    def __init__(self, engine: str = SEED.name):
-        """Declare the bins.
-
-        Args:
-            engine: one of `POINTS`.
-        """
-        self.points, self._impossible = POINTS[engine], IMPOSSIBLE[engine]
+    def __init__(self, cross: Cross = INTERSECTIONS[SEED.name]):
+        """Declare the bins."""
+        self.cross = cross
         coverage_db.clear()
-        names = list(self.points)
-        points = [CoverPoint(f"raycaster.{name}", vname=name, bins=list(self.points[name])) for name in names]
-        cross = CoverCross(
-            CROSS,
+        names = list(cross.points)
+        points = [
+            CoverPoint(f"raycaster.{name}", xf=lambda bins, place=place: bins[place], bins=list(cross.points[name]))
+            for place, name in enumerate(names)
+        ]
+        crossed = CoverCross(
+            self._name,
             items=[f"raycaster.{name}" for name in names],
-            ign_bins=[pattern for patterns in self._impossible.values() for pattern in patterns],
+            ign_bins=[pattern for patterns in cross.impossible.values() for pattern in patterns],
         )
 
-        @coverage_section(*points, cross)
-        def sample(axis: str, slope: str, result: str, rank: str, ray: str) -> None:
+        @coverage_section(*points, crossed)
+        def sample(bins: Bin) -> None:
             pass
 
         self._sample: Callable[..., None] = sample
@@ -124,26 +149,30 @@ class FunctionalCoverage:
         """Add to the bins.
 
         Args:
-            counts: as `read_bins` returns them.
+            counts: int64, with one axis per point, in order.
 
         Raises:
-            ValueError: an intersection is in a bin that was declared impossible.
+            ValueError: something is in a bin that was declared impossible.
         """
         for place in np.argwhere(counts):
             times = int(counts[tuple(place)])
-            bins = tuple(values[index] for values, index in zip(self.points.values(), place, strict=True))
+            bins = self.cross.bins_at(place)
             if bins not in self.bins:
                 raise ValueError(f"{', '.join(bins)}: declared impossible, but found {times} times")
             # cocotb-coverage counts one at a time; add the rest to its count.
-            self._sample(*bins)
+            self._sample(bins)
             self.bins[bins] += times - 1
-            for name, value in zip(self.points, bins, strict=True):
+            for name, value in zip(self.cross.points, bins, strict=True):
                 coverage_db[f"raycaster.{name}"].detailed_coverage[value] += times - 1
+
+    @property
+    def _name(self) -> str:
+        return f"raycaster.{self.cross.name}"
 
     @property
     def bins(self) -> dict[Bin, int]:
         """Number of hits of each possible bin of the cross."""
-        return coverage_db[CROSS].detailed_coverage
+        return coverage_db[self._name].detailed_coverage
 
     @property
     def holes(self) -> list[Bin]:
@@ -153,10 +182,10 @@ class FunctionalCoverage:
     @property
     def ignored(self) -> dict[str, int]:
         """Number of impossible bins of the cross, by reason; a bin with several reasons counts for the first."""
-        found = dict.fromkeys(self._impossible, 0)
-        for place in np.ndindex(SHAPE):
-            bins = [values[index] for values, index in zip(self.points.values(), place, strict=True)]
-            for reason, patterns in self._impossible.items():
+        found = dict.fromkeys(self.cross.impossible, 0)
+        for place in np.ndindex(self.cross.shape):
+            bins = self.cross.bins_at(place)
+            for reason, patterns in self.cross.impossible.items():
                 if any(all(want in (None, has) for want, has in zip(p, bins, strict=True)) for p in patterns):
                     found[reason] += 1
                     break
@@ -165,9 +194,9 @@ class FunctionalCoverage:
     def export(self, path: Path) -> None:
         """Write `path` with the suffixes .xml, in the format of cocotb-coverage, and .json."""
         coverage_db.export_to_xml(str(path.with_suffix(".xml")))
-        cross = coverage_db[CROSS]
+        cross = coverage_db[self._name]
         result = {
-            "points": list(self.points),
+            "points": list(self.cross.points),
             "covered": cross.coverage,
             "bins": cross.size,
             "ignored": self.ignored,

@@ -2,7 +2,8 @@
 """Measure what the regression exercises in an engine: `make coverage`.
 
 Code: lines, conditions and toggles of the converted Verilog, in the benches of the whole design. Function: kinds of
-intersection of a ray with a rectangle, in all scenes and in random ones. Every hole must be closed or explained.
+intersection of a ray with a rectangle and of hit points in a light, in all scenes and in random ones. Every hole must
+be closed or explained.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
+from itertools import product
 from pathlib import Path
 
 from rich.box import SIMPLE_HEAD
@@ -29,7 +31,7 @@ from raycaster.jobs import Kept, add_fresh_option, run_jobs
 from raycaster.options import CommandParser
 from raycaster.outcomes import Check, Outcome, add_keep_option, keep, scope_of
 from raycaster.output import Console, emptied
-from raycaster.scene import find_scene, packaged_scenes
+from raycaster.scene import find_scene, load_scene, packaged_scenes
 from raycaster.sim.job import Job
 from raycaster.sim.scenes import LOG_COLUMNS
 from raycaster.sim.simulator import (
@@ -44,19 +46,21 @@ from raycaster.sim.simulator import (
 )
 from raycaster.verif.campaign import Campaign, bench_digest, run_campaign
 from raycaster.verif.coverage.code import KINDS, Judgement, Point, describe, judge, load_explanations, read_counts
-from raycaster.verif.coverage.functional import PROBE_MODULES, PROBES, FunctionalCoverage, read_bins
+from raycaster.verif.coverage.functional import INTERSECTIONS, PROBE_MODULES, PROBES, FunctionalCoverage, read_bins
+from raycaster.verif.coverage.lighting import HIT_POINTS, count_hit_points
+from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.soak.soak import BENCH as SOAK
 from raycaster.waits import building
 
 # One design per engine that every bench can run, so that nothing must be merged; at full size, so that the counters run
 # through their range. The seed engine has 16 units, not 32, and so a budget of 159 cycles per group. All 12 rectangles
 # with two reflections take 202 cycles; with culling, more than 159 remain only where the underrun bench needs them.
-# Likewise for the exact engine with four units: 52 cycles, and a budget of 39.
+# Likewise for the exact engine with eight units: 112 cycles with shadow passes, and a budget of 79.
 DESIGNS = {
     config.engine: config
     for config in (
         configure(units=16, reflections=2, divider_bits=2, allow_underrun=True),
-        configure(engine="exact", units=4, reflections=2, culling=True, allow_underrun=True),
+        configure(engine="exact", units=8, reflections=2, culling=True, light=True, allow_underrun=True),
         configure(engine="beam", scale=1, reflections=2),
     )
 }
@@ -64,7 +68,7 @@ SOAK_DESIGNS = {
     config.engine: config
     for config in (
         configure(reflections=2),
-        configure(engine="exact", units=8, reflections=2, culling=True),
+        configure(engine="exact", reflections=2, culling=True, light=True),
         configure(engine="beam", reflections=2),
     )
 }
@@ -107,9 +111,8 @@ BENCHES = (
 )
 """Runs in addition to a frame of every scene, longest first."""
 
-EXTRA_SCENE = Path(__file__).with_name("extra_scene.toml")
-EXTRA_ROOMS = tuple(sorted(Path(__file__).parent.glob("extra_rooms_*.toml")))
-"""Scenes for intersections that random scenes rarely have."""
+EXTRA_SCENES = tuple(sorted(Path(__file__).parent.glob("extra_*.toml")))
+"""Scenes for intersections and shadows that random scenes rarely have."""
 
 
 def run_all(
@@ -201,28 +204,25 @@ def export_code(counts: Counter[Point], judgement: Judgement, path: Path) -> Non
 
 def show_functional(functional: FunctionalCoverage, scenes: int, console: Console) -> None:
     """Print the counts of the cross, with blanks for impossible bins, and the bins that were not hit."""
-    bins, points = functional.bins, functional.points
-    directions = [(axis, slope) for axis in points["axis"] for slope in points["slope"]]
-    kinds = [
-        (result, rank)
-        for result in points["result"]
-        for rank in points["rank"]
-        if any((*direction, result, rank, "first") in bins for direction in directions)
-    ]
+    bins, name = functional.bins, functional.cross.name.replace("_", " ")
+    *where, results, details, rays = functional.cross.points.values()
+    columns = list(product(*where))
+    rows = [row for row in product(results, details) if any((*column, *row, "first") in bins for column in columns)]
     signs = {"negative": "-", "zero": "0", "positive": "+"}
-    for ray in points["ray"]:
-        table = Table(title=f"{ray} ray", title_justify="left", box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+    for ray in rays:
+        title = f"{name}, {ray} ray"
+        table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
         table.add_column("result", no_wrap=True)
-        for axis, slope in directions:
-            table.add_column(f"{axis} {signs[slope]}", justify="right", no_wrap=True)
-        for result, rank in kinds:
-            times = [bins.get((*direction, result, rank, ray)) for direction in directions]
+        for column in columns:
+            table.add_column(" ".join(signs.get(part, part) for part in column), justify="right", no_wrap=True)
+        for result, detail in rows:
+            times = [bins.get((*column, result, detail, ray)) for column in columns]
             cells = [Text("" if n is None else f"{n:,}", "red" if n == 0 else "") for n in times]
-            table.add_row(result if rank == "none" else f"{result}, {rank}", *cells)
+            table.add_row(result if detail == "none" else f"{result}, {detail}", *cells)
         console.print(table)
     console.print(
         f"{len(bins) - len(functional.holes)} of {len(bins)} bins hit in {scenes} scenes, {sum(bins.values()):,} "
-        "intersections; left out as impossible:",
+        f"{name}; left out as impossible:",
     )
     for reason, number in functional.ignored.items():
         console.print(f"  {number}: {reason}")
@@ -252,14 +252,17 @@ def provenance(arguments: argparse.Namespace) -> Provenance:
 
 def _found(kept: Outcome) -> str:
     figures = kept.figures
-    (hit, there), rays, shown = figures["bins"], figures["intersections"], figures["scenes"]
+    (hit, there), shown = figures["bins"], figures["scenes"]
     code = ", ".join(f"{kind} {figures[kind][0]:,} of {figures[kind][1]:,}" for kind in KINDS)
-    return f"{code}; {hit} of {there} kinds of intersection, {rays:,} intersections in {shown} scenes"
+    names = [name for name in ("intersections", HIT_POINTS.name) if name in figures]
+    kinds = " and ".join(name.removesuffix("s").replace("_", " ") for name in names)
+    counted = " and ".join(f"{figures[name]:,} {name.replace('_', ' ')}" for name in names)
+    return f"{code}; {hit} of {there} kinds of {kinds}, {counted} in {shown} scenes"
 
 
 CHECKS = (
     Check("code and functional coverage", "seed, culling", ["coverage"], _found),
-    Check("code and functional coverage", "exact, culling", ["coverage-exact"], _found),
+    Check("code and functional coverage", "exact, culling, light", ["coverage-exact"], _found),
     Check("code and functional coverage", "beam", ["coverage-beam"], _found),
 )
 
@@ -278,7 +281,8 @@ def main(argv: list[str] | None = None) -> int:
         raise UserError("--seeds and --jobs must be at least 1")
     design, probes = DESIGNS[arguments.engine], PROBES[arguments.engine]
     explanations = load_explanations(arguments.engine)
-    scenes = [*packaged_scenes(plain=True).values(), EXTRA_SCENE, *EXTRA_ROOMS]
+    extra = [path for path in EXTRA_SCENES if not load_scene(path).lacks(design.looks)]
+    scenes = [*packaged_scenes(plain=True).values(), *extra]
     # For a file or a pipe rich would assume 80 columns, too few for the tables.
     console = Console(width=None if sys.stdout.isatty() else LOG_COLUMNS)
     output = arguments.build / "coverage"
@@ -296,30 +300,41 @@ def main(argv: list[str] | None = None) -> int:
 
     export_code(counts, judgement, output / "code.json")
     show_code(counts, judgement, console)
+    soaked_design = SOAK_DESIGNS[arguments.engine]
     whole = Campaign(
-        SOAK, SOAK_DESIGNS[arguments.engine], range(arguments.seeds), output / "soak", arguments.build, probes=probes,
+        SOAK, soaked_design, range(arguments.seeds), output / "soak", arguments.build, probes=probes,
         fresh=arguments.fresh,
     )  # fmt: skip
     soaked = run_campaign(whole, console, partial(ProcessPoolExecutor, arguments.jobs))
     failures += soaked.failures
-    functional = FunctionalCoverage(arguments.engine)
-    for directory in [*directories, *soaked.directories]:
-        functional.add(read_bins(directory))
     shown = len(scenes) + len(soaked.results)
     figures: dict[str, object] = {"scenes": shown}
     figures |= {name: _hits(counts, None, types) for name, types in KINDS.items()}
-    figures["bins"] = (len(functional.bins) - len(functional.holes), len(functional.bins))
-    figures["intersections"] = sum(functional.bins.values())
+    found = [(INTERSECTIONS[arguments.engine], [read_bins(one) for one in [*directories, *soaked.directories]])]
+    if design.light:
+        room, most = soaked_design.rectangles, soaked_design.reflections
+        drawn = [load_scene(path) for path in scenes]
+        drawn += [random_scene(result["seed"], room, most, design.looks) for result in soaked.results]
+        count, executor = partial(count_hit_points, config=design), partial(ProcessPoolExecutor, arguments.jobs)
+        found.append((HIT_POINTS, run_jobs("golden pictures", count, drawn, executor, console)))
+    holes, bins = 0, 0
+    for cross, parts in found:
+        functional = FunctionalCoverage(cross)
+        for part in parts:
+            functional.add(part)
+        functional.export(output / cross.name)
+        show_functional(functional, shown, console)
+        figures[cross.name] = sum(functional.bins.values())
+        holes, bins = holes + len(functional.holes), bins + len(functional.bins)
+    figures["bins"] = bins - holes, bins
     left_out = "the other engines, a camera that turns, materials and patterns"
     keep(arguments, figures, scope_of(design), provenance, left_out)
-    functional.export(output / "functional")
-    show_functional(functional, shown, console)
     for failure in failures:
         console.print(failure, style="red", soft_wrap=True)
     console.print(f"{time.perf_counter() - started:.0f} s; figures and holes are in {output}/")
-    return verdict(judgement, functional, failures)
+    return verdict(judgement, holes, failures)
 
 
-def verdict(judgement: Judgement, functional: FunctionalCoverage, failures: Sequence[str]) -> int:
-    """Return the exit code."""
-    return int(bool(judgement.unexplained or judgement.stale or functional.holes or failures))
+def verdict(judgement: Judgement, holes: int, failures: Sequence[str]) -> int:
+    """Return the exit code; holes are those of functional coverage."""
+    return int(bool(judgement.unexplained or judgement.stale or holes or failures))

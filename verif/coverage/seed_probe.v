@@ -7,7 +7,6 @@ module intersection_probe #(
     parameter POSITION_BITS = 9
 ) (
     input wire clk,
-    input wire first_group,         // of a frame
     input wire start_group,
     input wire find_intersection,
     input wire load_divider,
@@ -39,7 +38,6 @@ module intersection_probe #(
 
     intersection_counter #(.DEPTH_BITS(POSITION_BITS)) counter (
         .clk(clk),
-        .first_group(first_group),
         .start_group(start_group),
         .offer(write_z_buf),
         .axis(axis),
@@ -58,7 +56,6 @@ bind ray_unit intersection_probe #(
     .POSITION_BITS($bits(depth))
 ) intersection_probe_i (
     .clk(clk),
-    .first_group(place_row == 0 && place_column_offset == 0),
     .start_group(steps_screen_to_ray),
     .find_intersection(steps_find_intersection),
     .load_divider(steps_load_divider),

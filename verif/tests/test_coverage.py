@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import json
 import re
+from collections import Counter
+from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 from xml.etree import ElementTree
@@ -12,6 +14,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from conftest import BUILD, SMALL_SCENE
+from definition import Vector, follow, is_lit, plane_of
 from rich.console import Console
 
 from raycaster.configuration import Configuration, configure
@@ -25,16 +28,18 @@ from raycaster.sim.simulator import build_model, convert, run_bench
 from raycaster.verif.coverage.code import Explanation, Judgement, describe, judge, load_explanations, read_counts
 from raycaster.verif.coverage.functional import (
     HITS,
-    IMPOSSIBLE,
-    POINTS,
+    INTERSECTIONS,
     PROBES,
+    RAYS,
     SHAPE,
+    Cross,
     FunctionalCoverage,
     read_bins,
 )
+from raycaster.verif.coverage.lighting import HIT_POINTS, count_hit_points
 from raycaster.verif.coverage.measure import (
     DESIGNS,
-    EXTRA_SCENE,
+    EXTRA_SCENES,
     FLAGS,
     Run,
     export_code,
@@ -51,6 +56,7 @@ always @(posedge clk) begin
         value <= value + 1;
 """
 NOTHING = Judgement({}, [], [])
+(EXTRA_SCENE,) = (path for path in EXTRA_SCENES if path.stem == "extra_scene")
 
 
 def record(directory: Path, count: int, **fields: object) -> str:
@@ -119,7 +125,7 @@ def test_an_unexplained_hole_fails(counts, capsys):
         "counter.v:3: else: if (on) begin",
     ]
     assert len(judgement.explained) == 1 and not judgement.stale
-    assert judge_code(judgement) == 1
+    assert verdict(judgement, 0, []) == 1
     show_code(alone, judgement, Console(width=120))
     shown = capsys.readouterr().out
     assert "not covered: counter.v:1: value: [0] 1->0, [15] 0->1" in shown
@@ -134,7 +140,7 @@ def test_a_stale_explanation_fails(counts):
     judgement = judge(alone, EXPLAINED)
     assert not judgement.unexplained
     assert judgement.stale == ["count.*: value[0, 14-15] (because): bits 14"]
-    assert judge_code(judgement) == 1
+    assert verdict(judgement, 0, []) == 1
 
 
 def test_runs_add_up(counts, tmp_path):
@@ -143,23 +149,11 @@ def test_runs_add_up(counts, tmp_path):
     together.update(dict.fromkeys(counts[1], 0))
     judgement = judge(together, [*EXPLAINED[:2], explanation(signal="value", bits="15"), EXPLAINED[3]])
     assert judgement.unexplained == [] and judgement.stale == []
-    assert judge_code(judgement) == 0
+    assert verdict(judgement, 0, []) == 0
     export_code(together, judgement, tmp_path / "code.json")
     written = json.loads((tmp_path / "code.json").read_text())
     assert written["modules"] == {"counter": {"lines": [1, 2], "conditions": [0, 1], "toggles": [2, 4]}}
     assert [hole["reason"] for hole in written["holes"]] == ["because"] * 4
-
-
-def judge_code(judgement: Judgement) -> int:
-    """Return the exit code of a command whose bins are all hit."""
-    functional = FunctionalCoverage()
-    functional.add(np.array([reachable(functional, place) for place in np.ndindex(SHAPE)]).reshape(SHAPE))
-    return verdict(judgement, functional, [])
-
-
-def reachable(functional: FunctionalCoverage, place: tuple[int, ...]) -> int:
-    bins = tuple(values[index] for values, index in zip(functional.points.values(), place, strict=True))
-    return bins in functional.bins
 
 
 @pytest.mark.parametrize(
@@ -264,7 +258,7 @@ def counted(scene: Scene, config: Configuration) -> np.ndarray:
         pytest.param({"divider_bits": 2, "culling": False}, marks=pytest.mark.slow),
         pytest.param({"divider_bits": 2, "culling": False, "fraction_bits": 3}, marks=pytest.mark.slow),
         {"engine": "exact", "culling": True},
-        {"engine": "exact", "culling": False},
+        {"engine": "exact", "culling": False, "light": True},
         {"engine": "beam", "units": None, "rectangles": 12, "scale": 1, "allow_underrun": False},
     ],
 )
@@ -272,12 +266,14 @@ def test_the_hardware_counts_its_intersections(output, options):
     """Without culling, counts are the golden model's own; with it, all hits, fewer misses, and no impossible bin."""
     config = configure(**SMALL | options)
     model = build_model(config, build=BUILD, verilog=[*convert(config, BUILD), *PROBES[config.engine]])
-    results = POINTS[config.engine]["result"]
-    hits, total = [results.index(name) for name in HITS], 0
+    cross = INTERSECTIONS[config.engine]
+    hits, total = [cross.points["result"].index(name) for name in HITS], 0
     # Without a line buffer, a row is recomputed for each of its lines.
     lines = 1 if config.facts.line_buffered else config.screen_geometry.doubling
     # No random scene has two rectangles at equal depth, which would expose a wrong comparison, so add one that has.
-    scenes = {f"seed {seed}": random_scene(seed, config.rectangles, config.reflections) for seed in range(4)}
+    scenes = {
+        f"seed {seed}": random_scene(seed, config.rectangles, config.reflections, config.looks) for seed in range(4)
+    }
     for name, scene in (scenes | {"extra": load_scene(EXTRA_SCENE)}).items():
         directory = output / f"{config.name}-{name}"
         directory.mkdir(parents=True)
@@ -288,11 +284,15 @@ def test_the_hardware_counts_its_intersections(output, options):
         if config.culling:
             assert np.array_equal(found[:, :, hits], expected[:, :, hits]), name
             assert (found <= expected).all() and found.sum() < expected.sum(), name
-            FunctionalCoverage(config.engine).add(found)
+            FunctionalCoverage(cross).add(found)
         else:
             assert np.array_equal(found, expected), name
         total += found[:, :, hits].sum()
     assert total > 1000
+
+
+def place_of(bins: Sequence[str], cross: Cross = INTERSECTIONS["seed"]) -> tuple[int, ...]:
+    return tuple(values.index(name) for values, name in zip(cross.points.values(), bins, strict=True))
 
 
 def test_bins_that_were_not_hit_are_reported(tmp_path, capsys):
@@ -300,21 +300,21 @@ def test_bins_that_were_not_hit_are_reported(tmp_path, capsys):
     functional = FunctionalCoverage()
     counts = np.zeros(SHAPE, np.int64)
     bins = "z", "negative", "hit", "first", "primary"
-    counts[tuple(values.index(name) for values, name in zip(POINTS["seed"].values(), bins, strict=True))] = 7
+    counts[place_of(bins)] = 7
     functional.add(counts)
     functional.add(counts)
     holes = set(functional.holes)
     assert bins not in holes
     assert ("z", "negative", "hit", "first", "second") in holes
-    assert verdict(NOTHING, functional, []) == 1
+    assert verdict(NOTHING, len(holes), []) == 1
     show_functional(functional, 1, Console(width=120))
     assert "not hit: z, negative, hit, first, second" in capsys.readouterr().out
     functional.export(tmp_path / "functional")
     written = json.loads((tmp_path / "functional.json").read_text())
     assert written["bins"] - written["covered"] == len(holes)
     assert written["bins"] + sum(written["ignored"].values()) == np.prod(SHAPE)
-    assert all(written["ignored"][reason] > 0 for reason in IMPOSSIBLE["seed"])
-    cross = ElementTree.parse(tmp_path / "functional.xml").find("raycaster/intersection")
+    assert all(written["ignored"][reason] > 0 for reason in INTERSECTIONS["seed"].impossible)
+    cross = ElementTree.parse(tmp_path / "functional.xml").find("raycaster/intersections")
     assert cross.get("coverage") == str(written["covered"]) == "1"
     points = ElementTree.parse(tmp_path / "functional.xml").find("raycaster/axis")
     assert sum(int(found.get("hits")) for found in points) == sum(hits[-1] for hits in written["hits"]) == 14
@@ -322,15 +322,64 @@ def test_bins_that_were_not_hit_are_reported(tmp_path, capsys):
 
 def test_an_impossible_bin_must_not_be_hit():
     """A hit in such a bin means that the list is wrong."""
-    counts = np.zeros(SHAPE, np.int64)
-    counts[0, 1, 0, 0, 0] = 3
-    with pytest.raises(ValueError, match="x, zero, parallel, none, primary: declared impossible, but found 3"):
-        FunctionalCoverage().add(counts)
+    for cross, bins in (
+        (INTERSECTIONS["seed"], ("x", "zero", "parallel", "none", "primary")),
+        (HIT_POINTS, ("x", "lit", "inside", "primary")),
+        (HIT_POINTS, ("y", "shaded", "beyond point", "first")),
+        (HIT_POINTS, ("z", "facing away", "edge", "second")),
+    ):
+        counts = np.zeros(cross.shape, np.int64)
+        counts[place_of(bins, cross)] = 3
+        with pytest.raises(ValueError, match=f"{', '.join(bins)}: declared impossible, but found 3"):
+            FunctionalCoverage(cross).add(counts)
 
 
 def test_the_extra_scene_hits_its_bin():
     """The scene has ties on an edge in a second reflection along negative x."""
     scene = load_scene(EXTRA_SCENE)
     bins = "x", "negative", "edge", "tie", "second"
-    place = tuple(values.index(name) for values, name in zip(POINTS["seed"].values(), bins, strict=True))
-    assert counted(scene, configure(reflections=scene.reflections))[place] >= 10
+    assert counted(scene, configure(reflections=scene.reflections))[place_of(bins)] >= 10
+
+
+def kind_of(table: Rectangles, light: Vector, index: int, point: Vector, slope: Vector) -> tuple[str, str]:
+    """Return the bins of a hit point for `light` and `passes`, by the definition."""
+    plane = plane_of(table, index)
+    if light[plane] == point[plane]:
+        return "in plane", "none"
+    if (light[plane] - point[plane]) * slope[plane] > 0:
+        return "facing away", "none"
+    passed = ["none"]
+    for other in set(range(len(table))) - {index}:
+        across = plane_of(table, other)
+        if across is None or point[across] == light[across]:
+            continue
+        low, high = table.low[other].tolist(), table.high[other].tolist()
+        t = Fraction(low[across] - light[across]) / (point[across] - light[across])
+        sides = [(low[i], light[i] + (point[i] - light[i]) * t, high[i]) for i in range(3) if i != across]
+        if all(first <= at <= last for first, at, last in sides):
+            edge = any(at in (first, last) for first, at, last in sides)
+            where = {t < 0: "behind light", t == 0: "at light", t == 1: "at point", t > 1: "beyond point"}
+            passed.append(where.get(True, "edge" if edge else "inside"))
+    kinds = HIT_POINTS.points["passes"]
+    return "lit" if is_lit(table, light, index, point, slope) else "shaded", max(passed, key=kinds.index)
+
+
+def test_hit_points_are_counted_by_the_definition():
+    """Counts in the golden model are those of fractions; the scenes have hit points of every kind."""
+    config, kinds = configure(screen="tiny", engine="exact", light=True, reflections=2), set()
+    for seed in (5, 16, 179):
+        scene = random_scene(seed, 7, 2, ["light"])
+        table, expected = Rectangles.of_scene(scene), Counter()
+        for slope in primary_slopes(config.screen_geometry).reshape(-1, 3).tolist():
+            path = follow(table, scene.background, scene.camera.position, slope, scene.reflections, scene.light)
+            for ray, stop in zip(RAYS, path, strict=False):
+                if stop.winner >= 0:
+                    axis, point = plane_of(table, stop.winner), stop.points[stop.winner]
+                    kind = kind_of(table, scene.light.position, stop.winner, point, slope)
+                    expected["xyz"[axis], *kind, ray] += 1
+                    slope[axis] *= -1
+        counts = count_hit_points(scene, config)
+        found = {HIT_POINTS.bins_at(place): int(counts[tuple(place)]) for place in np.argwhere(counts)}
+        assert found == expected, scene.title
+        kinds |= {bins[1:3] for bins in expected}
+    assert kinds == {bins[1:3] for bins in FunctionalCoverage(HIT_POINTS).bins}
