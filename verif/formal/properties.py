@@ -976,10 +976,7 @@ PROPERTIES: list[Property] = [
     *(_cell(config, small=False) for config in EXACT if config.patterns),
     _cell(_one_unit(engine="exact", patterns=True), small=False),
     *(_shadow(config, small=config in (LIGHT[0], LIGHT[-1])) for config in LIGHT),
-    *(
-        _shadow_wiring(config, small=config is LIGHT[2])
-        for config in (LIGHT[2], LIGHT[3], LIGHT[4], LIGHT[-1])
-    ),
+    *(_shadow_wiring(config, small=config is LIGHT[2]) for config in (LIGHT[2], LIGHT[3], LIGHT[4], LIGHT[-1])),
     _unit_wiring(_one_unit(engine="exact"), small=True),
     _unit_wiring(_one_unit(engine="exact", reflections=2), small=False),
     _unit_wiring(_one_unit(engine="exact", turn=True, materials=True, patterns=True), small=False),
