@@ -314,7 +314,7 @@ def test_the_table_of_proved_blocks():
     """Proofs are in the right columns, and the exact engine's rows are exactly its blocks."""
     rows = [line.split(" | ") for line in proofs.proved_blocks().splitlines()]
     blocks = {row[1]: row for row in rows}
-    full = "`tester-products` and lemmas, `unit-wiring` and lemmas"
+    full = "`tester-products` and lemmas, `shadow-wiring` and lemmas, `unit-wiring` and lemmas"
     assert blocks["`rect_tester`"][2:4] == [full, "`tester-exact` (1 to 4 bits)"]
     assert blocks["`processor_host`"][2:] == ["", "", "", "", "in frames |"]
     assert {path.stem for path in (ROOT / "rtl" / "exact").glob("[!_]*.py")} == {

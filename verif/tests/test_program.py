@@ -239,8 +239,7 @@ def test_a_long_command_says_how_long_it_usually_takes(capsys):
             "", f"{command}: usually {waits.COMMANDS[command]}, less with kept results\n"
         )  # fmt: skip
     assert {waits.building(engine) for engine in ENGINES} == {
-        "usually 30 s, once",
-        "usually 15 s, once",
+        "usually 8 s, once",
         "usually 5 s, once",
     }
 
