@@ -48,6 +48,7 @@ class SceneError(UserError):
     """A refused scene file; the text names the file, the place in it, and what was expected."""
 
 
+# Error messages, except those of the rules for values; the first four are listed by pydantic's error types.
 COMPLAINTS = {
     "missing": "is missing",
     "extra_forbidden": "is not a key of scene files; the keys here are {keys}",
@@ -63,7 +64,6 @@ COMPLAINTS = {
     "heading": "head each rectangle with [[rect]]",
     "syntax": "is not TOML at line {number}{line} ({reason})",
 }
-"""Error messages, except those of the rules for values; the first four are listed by pydantic's error types."""
 
 MOST_BYTES = 1_000_000
 """Size in bytes of the largest scene file that is read."""
