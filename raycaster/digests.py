@@ -9,7 +9,7 @@ import hashlib
 import importlib.metadata
 import re
 import tokenize
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from io import StringIO
 from pathlib import Path
 
@@ -53,7 +53,7 @@ def digest(*parts: object) -> str:
 def code_digest(place: Path, root: Path) -> str:
     """Compute a digest of a file, or of the files in a folder, that does not depend on comments.
 
-    Comments, docstrings and empty lines of Python and Verilog files do not count.
+    Comments, docstrings and empty lines do not count, as far as `STRIPPED` knows them.
 
     Args:
         place: a file or a folder.
@@ -61,7 +61,7 @@ def code_digest(place: Path, root: Path) -> str:
     """
     digest = hashlib.sha256()
     for path in sorted(_files(place)) if place.is_dir() else [place]:
-        strip = {".py": _code, ".v": uncommented}.get(path.suffix)
+        strip = STRIPPED.get(path.suffix)
         content = strip(path.read_text()).encode() if strip else path.read_bytes()
         digest.update(f"{path.relative_to(root).as_posix()}\0".encode() + content + b"\0")
     return digest.hexdigest()[:DIGITS]
@@ -86,9 +86,21 @@ def _code(text: str) -> str:
     return _filled(lines)
 
 
+def _without_lines(mark: str) -> Callable[[str], str]:
+    """Return what removes lines that begin with a mark, and empty lines."""
+    return lambda text: _filled(line for line in text.splitlines() if not line.lstrip().startswith(mark))
+
+
 def _filled(lines: Iterable[str]) -> str:
     """Join the lines that are not empty."""
     return "\n".join(line for line in map(str.rstrip, lines) if line)
+
+
+STRIPPED: Mapping[str, Callable[[str], str]] = {
+    ".py": _code, ".v": uncommented, ".toml": _without_lines("#"),
+    **dict.fromkeys((".c", ".h", ".cpp", ".js"), _without_lines("//")),
+}  # fmt: skip
+"""By the ending of a file, what leaves its code without comments: all of them, or those on lines of their own."""
 
 
 def _files(folder: Path) -> Iterator[Path]:

@@ -420,6 +420,23 @@ def test_comments_make_no_figure_stale(tmp_path: Path):
     assert not set(changed) & set(plain)
 
 
+@pytest.mark.parametrize(
+    ("ending", "plain", "dressed", "changed"),
+    [
+        (".toml", 'a = "#1"\n', '# One.\n\na = "#1"\n', 'a = "#2"\n'),
+        (".c", "int a = 1;\n", "// One.\n\nint a = 1;\n", "int a = 2;\n"),
+    ],
+)
+def test_comment_lines_of_other_files_count_for_nothing(tmp_path: Path, ending, plain, dressed, changed):
+    path = tmp_path / f"file{ending}"
+
+    def digest(text: str) -> str:
+        path.write_text(text)
+        return code_digest(path, tmp_path)
+
+    assert digest(plain) == digest(dressed) != digest(changed)
+
+
 def test_only_what_decides_a_figure_makes_it_stale(monkeypatch):
     """A change to a block of the exact engine changes no digest of the other engines."""
     designs = [configure(engine=name, screen="tiny", rectangles=3) for name in ENGINES]
