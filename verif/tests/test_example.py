@@ -133,6 +133,8 @@ def test_apb_background(colour, alike, tmp_path):
 def test_cocotb_picture(simulator, fault, tmp_path):
     """The documented cocotb test runs outside the project and writes waveforms; a wrong picture fails it."""
     [example] = (ROOT / "examples" / "cocotb_picture").glob("*.py")
+    # In the project, cocotb finds the modules of verif/tests first.
+    assert not list((ROOT / "verif" / "tests").rglob(example.name))
     text = example.read_text()
     assert text.count("golden = shown(") == 1
     (tmp_path / example.name).write_text(text.replace("golden = shown(", f"golden = {fault}shown("))
