@@ -87,6 +87,10 @@ CHECKS = (
         "exact, no culling", ["soak-exact", "soak-exact-stiff"], _wrong_pixels,
     ),
     Check(
+        "random scenes with lights, turned cameras and surfaces of all kinds, 64x48", "exact", ["soak-exact-light"],
+        _wrong_pixels,
+    ),
+    Check(
         "random and stiff scenes, turned cameras and surfaces of all kinds, 640x480",
         "beam", ["soak-beam", "soak-beam-stiff"], _wrong_pixels,
     ),
