@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from raycaster.configuration import LOOKS
 from raycaster.golden.colour import blend, hit_colours
 from raycaster.golden.rays import primary_slopes
-from raycaster.golden.shadows import Shading, shade
+from raycaster.golden.shadows import Shading, dim, shade
 from raycaster.golden.world import Rectangles
 from raycaster.scene import UNTURNED, Basis, Light, Scene
 from raycaster.screens import Screen
@@ -164,7 +164,7 @@ class Model(ABC):
                 # The slope is still that of the ray that hit, as `meetings` changes it only for the next one.
                 shading = shade(rectangles, light, *meeting[:3], slope.T)
                 dark = (meeting[0] >= 0) & ~shading.lit
-                colours[dark] = light.quarters * colours[dark].astype(np.int64) >> 2
+                dim(colours, dark, light)
                 shadings.append(shading)
             met.append(meeting)
             seen.append(colours)

@@ -36,6 +36,11 @@ class Shading:
         return self.facing & (self.shades < 0)
 
 
+def dim(colours: np.ndarray, dark: np.ndarray, light: Light) -> None:
+    """Leave the light's shade of the colours, uint8 (rays, 3), of dark points, in place; rounded down."""
+    colours[dark] = light.quarters * colours[dark].astype(np.int64) >> 2
+
+
 def shade(
     rectangles: Rectangles,
     light: Light,

@@ -10,16 +10,15 @@ from pathlib import Path
 
 import numpy as np
 
-from raycaster.golden.exact import ExactModel
+from raycaster.golden.colour import hit_colours
 from raycaster.golden.model import Trace
-from raycaster.golden.rays import primary_slopes
+from raycaster.golden.shadows import dim
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.report import plots
 from raycaster.report.extent import Extent
 from raycaster.report.page import Plot, Section, Table, write_csv
-from raycaster.report.points import CASE, View
+from raycaster.report.points import CASE, View, exact_trace
 from raycaster.scene import Light
-from raycaster.screens import SCREENS
 
 EPSILONS = 0.0, 1e-5, 1e-3, 0.1, 1.0
 """World units next to the hit point in which a shadow ray hits nothing."""
@@ -39,21 +38,19 @@ class Shadows:
     view: View
     light: Light
 
-    @property
-    def _camera(self) -> tuple[Sequence[int], np.ndarray]:
-        scene = self.view.scene
-        return scene.camera.position, primary_slopes(SCREENS["vga", 240], scene.camera.basis).reshape(-1, 3)
+    @cached_property
+    def _traced(self) -> tuple[np.ndarray, Trace]:
+        return exact_trace(self.view.scene, "vga", 0)  # pyright: ignore[reportArgumentType]
 
     @cached_property
     def rectangles(self) -> Rectangles:
         """The scene's table."""
         return Rectangles.of_scene(self.view.scene)
 
-    @cached_property
+    @property
     def exact(self) -> Trace:
         """Hits and shadows over the rationals."""
-        position, slopes = self._camera
-        return ExactModel().trace(self.rectangles, position, self.view.scene.background, slopes, 0, light=self.light)
+        return self._traced[1]
 
     @property
     def lit(self) -> np.ndarray:
@@ -71,7 +68,7 @@ class Shadows:
         Returns:
             bool (rays,).
         """
-        position, slopes = self._camera
+        position, slopes = self.view.scene.camera.position, self._traced[0].reshape(-1, 3)
         [winner], rays = self.exact.winners, np.arange(len(slopes))
         low, high, axes = self.rectangles.low.astype(np.float32), self.rectangles.high, self.rectangles.axes
         eye, slope = np.array(position, np.float32), slopes.astype(np.float32)
@@ -98,13 +95,11 @@ class Shadows:
 
     def picture(self, lit: np.ndarray) -> np.ndarray:
         """Draw the scene with primary rays alone, lit at these points: uint8 (rows, columns, 3)."""
-        position, slopes = self._camera
-        trace = ExactModel().trace(self.rectangles, position, self.view.scene.background, slopes, 0)
-        colours = trace.seen[0].copy()
-        dark = (trace.winners[0] >= 0) & ~lit
-        colours[dark] = self.light.quarters * colours[dark].astype(np.int64) >> 2
-        screen = SCREENS["vga", 240]
-        return colours.reshape(screen.rows, screen.columns, 3)
+        exact, background = self.exact, self.view.scene.background
+        [winner], [points], [denominators] = exact.winners, exact.points, exact.denominators
+        colours = hit_colours(self.rectangles, background, winner, points, denominators)
+        dim(colours, (winner >= 0) & ~lit, self.light)
+        return colours.reshape(self._traced[0].shape)
 
 
 def shadow_sections(what: Extent, scenes: Sequence[View], directory: Path) -> list[Section]:

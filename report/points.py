@@ -168,7 +168,7 @@ class PicturePoint:
             errors by depth of reflection, as in `raycaster.golden.errors.DepthErrors`.
         """
         # Frozen models are hashable, but pydantic's types do not show it.
-        slopes, perfect = _perfect(self.scene, self.screen, self.reflections)  # pyright: ignore[reportArgumentType]
+        slopes, perfect = exact_trace(self.scene, self.screen, self.reflections)  # pyright: ignore[reportArgumentType]
         rectangles = Rectangles.of_scene(self.scene)
         rays = slopes.reshape(-1, 3)
         rounded = SeedModel(self.fraction_bits, self.rounding).trace(
@@ -194,7 +194,7 @@ class PicturePoint:
 
 
 @lru_cache(maxsize=2)
-def _perfect(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
+def exact_trace(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
     """Return the slopes of a picture, int64 (rows, columns, 3), and its exact trace; cached for successive points."""
     slopes = primary_slopes(_screen(screen, scene.rows), scene.camera.basis)
     perfect = ExactModel().trace(
@@ -236,7 +236,7 @@ class ConditionPoint:
         """Compute the median and maximum over the hits of all depths, in world units per pixel; None without hits."""
         camera = self.scene.camera
         # Frozen models are hashable, but pydantic's types do not show it.
-        slopes, perfect = _perfect(self.scene, self.screen, self.reflections)  # pyright: ignore[reportArgumentType]
+        slopes, perfect = exact_trace(self.scene, self.screen, self.reflections)  # pyright: ignore[reportArgumentType]
         rays = slopes.reshape(-1, 3)
         found = conditions(Rectangles.of_scene(self.scene), camera.position, rays, perfect)
         # Slopes of a turned camera are in fractions of a pixel.

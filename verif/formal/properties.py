@@ -663,29 +663,35 @@ def _fold(coordinate_bits: int, slope_bits: int, view_distance: int, mirrors: in
     )
 
 
-def _unit_wiring(config: Configuration, small: bool) -> Property:
+def _exact_unit(config: Configuration) -> tuple[str, tuple[str, ...], dict[str, int]]:
+    """Return a unit's slope generator, its modules that depend on the design, and the parameters of its wrappers."""
     generator = "turned_generator" if config.turn else "ray_generator"
     patterns = ("cell_finder", "divider_step", "pattern_colour") if config.patterns else ()
+    parameters = {
+        "PATTERNS": int(config.patterns),
+        "RECTANGLES": config.rectangles,
+        "INDEX_BITS": index_bits(config),
+        "COORDINATE_BITS": COORDINATE_BITS,
+        "LOOK_BITS": _look_bits(config),
+        "CAMERA_BITS": len(camera_of(config).word),
+        "SLOPE_BITS": exact_slope_bits(config),
+        "EYE_BITS": eye_bits(config),
+        "ROW_BITS": row_bits(config),
+        "OFFSET_BITS": offset_bits(config),
+    }
+    return generator, (generator, *patterns), parameters
+
+
+def _unit_wiring(config: Configuration, small: bool) -> Property:
+    generator, parts, parameters = _exact_unit(config)
     return Property(
         "unit-wiring",
         "each block of a unit gets the inputs that its own proof assumes, and the nearest hit, at full width",
         config,
         _label(config),
         ("exact_unit", "exact_control", "ray_sequencer", "rect_sequencer", "rect_tester", "nearest_hit", "eye_register",
-         "colour_combiner", "colour_share", "colour_sum", generator, *patterns),
-        {
-            "PATTERNS": int(config.patterns),
-            "REFLECTIONS": config.reflections,
-            "RECTANGLES": config.rectangles,
-            "INDEX_BITS": index_bits(config),
-            "COORDINATE_BITS": COORDINATE_BITS,
-            "LOOK_BITS": _look_bits(config),
-            "CAMERA_BITS": len(camera_of(config).word),
-            "SLOPE_BITS": exact_slope_bits(config),
-            "EYE_BITS": eye_bits(config),
-            "ROW_BITS": row_bits(config),
-            "OFFSET_BITS": offset_bits(config),
-        },
+         "colour_combiner", "colour_share", "colour_sum", *parts),
+        parameters | {"REFLECTIONS": config.reflections},
         cut=(generator,),
         induction=config.pass_latency,
         any_product=True,
@@ -695,29 +701,18 @@ def _unit_wiring(config: Configuration, small: bool) -> Property:
 
 
 def _shadow_wiring(config: Configuration, small: bool) -> Property:
-    generator = "turned_generator" if config.turn else "ray_generator"
-    patterns = ("cell_finder", "divider_step", "pattern_colour") if config.patterns else ()
+    generator, parts, parameters = _exact_unit(config)
     return Property(
         "shadow-wiring",
         "the test gets the ray or its shadow ray, which gets the nearest hit, and a pixel its colour in this light",
         config,
         _label(config),
         ("exact_unit", "exact_control", "ray_sequencer", "rect_sequencer", "shadow_sequencer", "rect_tester",
-         "nearest_hit", "eye_register", "shadow_ray", "shadow_register", "ray_switch", "shade_colour", generator,
-         *patterns),
-        {
-            "PATTERNS": int(config.patterns),
-            "RECTANGLES": config.rectangles,
-            "INDEX_BITS": index_bits(config),
-            "COORDINATE_BITS": COORDINATE_BITS,
-            "LOOK_BITS": _look_bits(config),
-            "CAMERA_BITS": len(camera_of(config).word),
-            "SLOPE_BITS": exact_slope_bits(config),
+         "nearest_hit", "eye_register", "shadow_ray", "shadow_register", "ray_switch", "shade_colour", *parts),
+        parameters
+        | {
             "LIGHT_BITS": light_slope_bits(config),
-            "EYE_BITS": eye_bits(config),
             "MIRROR_BITS": len(mirror_of(config).word),
-            "ROW_BITS": row_bits(config),
-            "OFFSET_BITS": offset_bits(config),
             "TRAVEL": config.pass_latency - 1,
         },
         cut=(generator,),
