@@ -15,6 +15,7 @@ from raycaster.engines.beam import (
     mixes,
 )
 from raycaster.engines.engine import SETUP_LATENCY
+from raycaster.engines.exact import AIM_CYCLES
 from raycaster.fit.fixing import fixed_rectangle
 from raycaster.fixed import FixedScene
 from raycaster.program import scene_words
@@ -180,6 +181,29 @@ def _order(config: Configuration, small: bool) -> Property:
         reach=bound + 2 if config.rectangles == 2 and config.reflections == 1 and config.slot_cycles < 5 else 0,
         small=small,
     )
+
+
+def _shadow_order(config: Configuration, small: bool) -> Property:
+    bound = config.group_cycles - 2  # done comes two cycles before the next group may start
+    return Property(
+        "shadow-order",
+        "a pass of rays and a shadow pass each test every rectangle that they may hit once and in order; a shadow pass "
+        "follows if a hit point is in question, ends early only if none is, and none of its tests reaches a z buffer",
+        config,
+        _label(config),
+        ("exact_control", "ray_sequencer", "rect_sequencer", "shadow_sequencer"),
+        {
+            "RECTANGLES": config.rectangles,
+            "INDEX_BITS": index_bits(config),
+            "REFLECTIONS": config.reflections,
+            "REFLECTION_BITS": REFLECTION_BITS,
+            "AIM_CYCLES": AIM_CYCLES,
+            "RUN_BOUND": bound,
+        },
+        induction=1,
+        reach=bound + 2 if config.rectangles == 2 and config.reflections == 1 else 0,
+        small=small,
+    )  # fmt: skip
 
 
 def _sections(config: Configuration, small: bool) -> Property:
@@ -924,6 +948,18 @@ PROPERTIES: list[Property] = [
     ),
     _order(_one_unit(engine="exact"), small=False),
     _order(_one_unit(engine="exact", reflections=MOST_REFLECTIONS), small=False),
+    *(
+        _shadow_order(
+            _tiny(engine="exact", rectangles=rectangles, reflections=reflections, light=True),
+            small=(rectangles, reflections) == (2, 1),
+        )
+        for rectangles in (2, 3, 4)
+        for reflections in range(MOST_REFLECTIONS + 1)
+    ),
+    *(
+        _shadow_order(_one_unit(engine="exact", light=True, reflections=reflections), small=False)
+        for reflections in (1, MOST_REFLECTIONS)
+    ),
     _sections(DEFAULT, small=True),
     _sections(configure(reflections=2), small=False),
     _sections(_tiny(rectangles=2), small=True),

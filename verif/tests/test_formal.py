@@ -37,6 +37,7 @@ ORDER = chosen("ray-order", "tiny48-u2-r2-m1-f0t-d3-c8")
 EARLY_OUT = chosen("ray-order", "tiny48-u2-r2-m1-f3t-d3-c8")
 NO_EARLY_OUT = chosen("ray-order", "tiny48-u2-r2-m1-f3t-d3-c8-k0")
 PIPELINED = chosen("ray-order", "exact-tiny48-u2-r2-m1-c8-k1")
+LIT = chosen("shadow-order", "exact-tiny48-u2-r2-m1-c8-light")
 SECTIONS = chosen("line-sections", "tiny48-u2-r2-m1-f0t-d3-c8")
 COUNTERS = chosen("render-counters", "vga60-u16-r2-m0-f0t-d1-c8")
 FINDER = chosen("finder-quotients", "vga240-u1-r12-m1-f0t-d3-c8")
@@ -261,6 +262,17 @@ FAULTS = {
     "shadow-of-the-last-test": (SHADOW_UNIT, "exact_unit", "    .found_slope(found_slope),\n    .facing(facing)",
                                 "    .found_slope(denominator),\n    .facing(facing)"),
     "dark-without-a-light": (SHADOW_UNIT, "exact_unit", "dark = camera_light_on && (", "dark = ("),
+    "shadow-pass-left-out": (LIT, "shadow_sequencer", "shadow_pass_awaited = state != TEST;",
+                             "shadow_pass_awaited = 1'b0;"),
+    "shadow-pass-of-no-use": (LIT, "shadow_sequencer", "if (any_in_question) begin", "if (1'b1) begin"),
+    "shadow-pass-never-stopped": (LIT, "shadow_sequencer", "shadow_pass_stop = decided && !shadow_pass_traced;",
+                                  "shadow_pass_stop = shadow_pass_traced;"),
+    "aimed-a-cycle-late": (LIT, "shadow_sequencer", "cycle <= 1;", "cycle <= 0;"),
+    "shadow-without-a-test": (LIT, "ray_sequencer", "start_ray || shadow_pass_start;", "start_ray;"),
+    "tests-outlive-the-shadow-pass": (LIT, "ray_sequencer", "stop = reset_ray_caster || shadow_pass_stop;",
+                                      "stop = reset_ray_caster;"),
+    "shadow-into-the-z-buffer": (LIT, "exact_control", "write_z_buf = in_flight[2] && !from_light;",
+                                 "write_z_buf = in_flight[2];"),
     "blended-before-the-shadow": (SHADOW_UNIT, "shadow_sequencer", "shadow_pass_awaited = state != TEST;",
                                   "shadow_pass_awaited = 1'b0;"),
     "loaded-a-cycle-early": (ROW, "rect_setup", "load[number_2] <= 1'b1;", "load[number_1] <= 1'b1;"),
@@ -413,6 +425,7 @@ NOT_FROM_RESET = {"control-runs-on"}
         "ray-order",
         "render-counters",
         "row-setup",
+        "shadow-order",
         "shares-exact",
         "slope-exact",
         "turned-walks",
