@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element, QName, SubElement, indent, register_n
 from systemrdl.node import FieldNode, RegNode
 
 from raycaster.configuration import Configuration
-from raycaster.convert.hierarchy import Port
+from raycaster.hdl.hierarchy import Port
 from raycaster.registers import address_bits, compile_registers
 
 IP_XACT = "component.xml"

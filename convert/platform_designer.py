@@ -9,7 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from raycaster.configuration import OPTIONS, Configuration
-from raycaster.convert.hierarchy import Port
+from raycaster.hdl.hierarchy import Port
 from raycaster.registers import compile_registers
 
 COMPONENT = "raycaster_hw.tcl"

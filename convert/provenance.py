@@ -10,9 +10,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from raycaster.configuration import Configuration
-from raycaster.convert.elaboration import elaborated, elaboration
-from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.digests import DIGITS, code_digest, tool_versions, uncommented
+from raycaster.hdl.elaboration import elaborated, elaboration
+from raycaster.hdl.hierarchy import convert_hierarchy
 from raycaster.outcomes import Digests
 from raycaster.rtl.system.ports import module_ports
 from raycaster.rtl.system.ray_caster_module import ray_caster_module

@@ -14,8 +14,8 @@ from pathlib import Path
 
 from raycaster.configuration import OPTIONS, Configuration
 from raycaster.convert import ip_xact
-from raycaster.convert.hierarchy import Module, prefixed
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM, component
+from raycaster.hdl.hierarchy import Module, prefixed
 from raycaster.register_views import HEADER, write_header
 from raycaster.registers import address_bits
 from raycaster.rtl.bus.avalon_interface import size_word

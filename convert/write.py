@@ -11,11 +11,12 @@ from pathlib import Path
 from myhdl._block import _Block
 
 from raycaster.configuration import Configuration, need_avalon
-from raycaster.convert.elaboration import elaborated, elaboration
-from raycaster.convert.hierarchy import Module, convert_hierarchy
-from raycaster.convert.inside import state_names
 from raycaster.convert.take_home import PREFIX, write_take_home
+from raycaster.convert.vocabulary import VOCABULARY
 from raycaster.errors import UserError
+from raycaster.hdl.elaboration import elaborated, elaboration
+from raycaster.hdl.hierarchy import Module, convert_hierarchy
+from raycaster.hdl.inside import state_names
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.output import replaced
 from raycaster.rtl.dvi.dvi_encoder import dvi_encoder
@@ -96,7 +97,7 @@ def write_dvi_encoder(config: Configuration, directory: Path) -> list[Path]:
 
 
 def design_states(config: Configuration) -> dict[tuple[str, str], dict[int, str]]:
-    """Return the enumerated signals of `ray_caster_module`; see `raycaster.convert.inside.state_names`."""
+    """Return the enumerated signals of `ray_caster_module`; see `raycaster.hdl.inside.state_names`."""
     with elaboration():
         return state_names(elaborated(ray_caster_module, **module_ports(config), config=config))
 
@@ -110,7 +111,7 @@ def _write(
 ) -> list[Path]:
     with replaced(directory) as written:
         with elaboration():
-            modules = convert_hierarchy(elaborate(), written, _header(config), prefix)
+            modules = convert_hierarchy(elaborate(), written, _header(config), prefix, VOCABULARY)
         if complete:
             complete(modules, written)
     return [directory / module.path.name for module in modules]

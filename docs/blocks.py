@@ -14,8 +14,8 @@ import pygraphviz
 from myhdl._block import _Block
 
 from raycaster.configuration import Configuration, configure
-from raycaster.convert.elaboration import elaborated, elaboration
-from raycaster.convert.inside import Inside, Part, find_block, look_inside
+from raycaster.hdl.elaboration import elaborated, elaboration
+from raycaster.hdl.inside import Inside, Part, find_block, look_inside
 from raycaster.memory_map import PROGRAM_FILE
 from raycaster.rtl.system.ports import module_ports, system_ports
 from raycaster.rtl.system.ray_caster_module import ray_caster_module

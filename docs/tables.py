@@ -45,7 +45,7 @@ from raycaster.verif.upsets import upsets
 from raycaster.web import site
 
 DECIDING = (
-    "rtl", "raycaster", "convert", "golden", "fit", "fpga", "sim", "play", "web", "sw", "report", "scenes",
+    "hdl", "rtl", "raycaster", "convert", "golden", "fit", "fpga", "sim", "play", "web", "sw", "report", "scenes",
     *(f"verif/{name}" for name in ("coverage", "exhaustive", "formal", "mutation", "soak", "upsets")),
     "verif/random_scenes.py", "docs/engine_figures.py", "docs/scaling.py",
 )  # fmt: skip

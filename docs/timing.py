@@ -22,8 +22,9 @@ from raycaster.configuration import Configuration, configure
 from raycaster.debug.probes.ray import fields
 from raycaster.debug.waves import Waves, signed
 from raycaster.errors import UserError
+from raycaster.hdl.records import Record
 from raycaster.options import command_line
-from raycaster.rtl.common.records import Origin, Ray, Record
+from raycaster.rtl.common.records import Origin, Ray
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import build_model, run_bench
 

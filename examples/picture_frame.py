@@ -15,12 +15,13 @@ from typing import Any
 from myhdl import Signal, always_comb, always_seq, block, instances, intbv
 
 from raycaster.configuration import Configuration, configure
-from raycaster.convert.elaboration import elaboration
-from raycaster.convert.hierarchy import convert_hierarchy
+from raycaster.convert.vocabulary import VOCABULARY
+from raycaster.hdl.elaboration import elaboration
+from raycaster.hdl.hierarchy import convert_hierarchy
+from raycaster.hdl.signals import tied, unconnected
 from raycaster.program import scene_words
 from raycaster.registers import address_bits
 from raycaster.rtl.common.interfaces import AvalonPort
-from raycaster.rtl.common.ties import tied, unconnected
 from raycaster.rtl.system.ports import module_ports
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
 from raycaster.scene import Scene, load_scene
@@ -87,7 +88,7 @@ def convert(scene: Scene, config: Configuration, directory: Path) -> list[Path]:
     directory.mkdir(parents=True, exist_ok=True)
     with elaboration():
         top = picture_frame(**ports(config), scene=scene, config=config)
-    return [module.path for module in convert_hierarchy(top, directory, "// {module}")]
+    return [module.path for module in convert_hierarchy(top, directory, "// {module}", vocabulary=VOCABULARY)]
 
 
 if __name__ == "__main__":

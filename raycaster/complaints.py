@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Texts for one-line error messages: a likely intended word, a refused value, a fault in a block."""
+"""Texts for one-line error messages: a likely intended word, a refused value."""
 
 from __future__ import annotations
 
-import ast
 import difflib
 import re
 import reprlib
-import traceback
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
@@ -69,26 +67,3 @@ def refusal(errors: Sequence[ErrorDetails], depth: int | None = None) -> str:
     choices = re.findall("'([^']*)'", str(first.get("ctx", {}).get("expected", "")))
     given = reprlib.repr(first["input"]) if len(str(first["input"])) > LONGEST_SHOWN else first["input"]
     return f"{text}, got {'nothing' if given == '' else given}{did_you_mean(str(given), choices)}"
-
-
-def fault_in_block(error: BaseException) -> str | None:
-    """Return file, line and reason of a fault in a MyHDL block, or None if the error is unrelated to MyHDL."""
-    if found := re.fullmatch(r"in file (.+), line (\d+):\s*(.*)", str(error), re.DOTALL):
-        return f"{found[1]}:{found[2]}: {found[3]}"
-    if isinstance(error, SyntaxError):
-        return f"{error.filename}:{error.lineno}: {error.msg}"
-    frames = list(traceback.walk_tb(error.__traceback__))
-    modules = [frame.f_globals.get("__name__", "") for frame, _ in frames]
-    if not any(module.startswith("myhdl.") for module in modules):
-        return None
-    reason = f"{type(error).__name__}: {error}"
-    # While MyHDL analyses a process, the place is in the syntax tree; while code runs, it is in a frame.
-    values = [value for frame, _ in frames for value in frame.f_locals.values()]
-    processes: list[Any] = [value.ast for value in values if hasattr(getattr(value, "ast", None), "sourcefile")]
-    nodes = [value for value in values if isinstance(value, ast.stmt | ast.expr)]
-    if processes and nodes:
-        return f"{processes[-1].sourcefile}:{processes[-1].lineoffset + nodes[-1].lineno}: {reason}"
-    for (frame, line), module in zip(reversed(frames), reversed(modules), strict=True):
-        if not module.startswith(("myhdl.", "raycaster.convert.")):
-            return f"{frame.f_code.co_filename}:{line}: {reason}"
-    return None

@@ -3,9 +3,9 @@
 
 from collections.abc import Iterable
 
+from raycaster.hdl.errors import UserError
 
-class UserError(Exception):
-    """An error that the user can fix; its text is the one line that they see."""
+__all__ = ["UserError", "listed", "not_installed"]
 
 
 def not_installed(what: str, extra: str) -> str:

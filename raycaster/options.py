@@ -18,9 +18,10 @@ from typing import Any, NoReturn
 
 from pydantic.fields import FieldInfo
 
-from raycaster.complaints import did_you_mean, fault_in_block
+from raycaster.complaints import did_you_mean
 from raycaster.configuration import OPTIONS, Configuration
 from raycaster.errors import UserError
+from raycaster.hdl.errors import fault_in_block
 from raycaster.output import printable
 from raycaster.scene import find_scene
 from raycaster.tools import ToolError
@@ -255,7 +256,7 @@ def run_command(main: Callable[[], int | None]) -> NoReturn:
         print(f"error: {printable(_complaint(error))}", file=sys.stderr)
         code = 2
     except Exception as error:
-        fault = fault_in_block(error)
+        fault = fault_in_block(error, ("raycaster.convert.",))
         if fault is None:
             raise
         print(f"error: {printable(fault)}", file=sys.stderr)

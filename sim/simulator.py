@@ -29,6 +29,7 @@ from filelock import FileLock
 
 import raycaster
 import raycaster.convert
+import raycaster.hdl
 import raycaster.rtl
 from raycaster.buses import OWN
 from raycaster.configuration import Configuration
@@ -269,7 +270,7 @@ def convert(configuration: Configuration, build: Path = BUILD, *, system: bool =
         system: True to include a processor.
     """
     directory = build / "model" / configuration.name / ("system" if system else "verilog")
-    packages = (raycaster, raycaster.rtl, raycaster.convert)
+    packages = (raycaster, raycaster.hdl, raycaster.rtl, raycaster.convert)
     sources = sources_digest(*(Path(package.__path__[0]) for package in packages))
     digest = hashlib.sha256(repr((configuration, sources, tools_digest(*_CONVERTED_WITH))).encode()).hexdigest()
     with lock(directory):

@@ -26,7 +26,7 @@ from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import shown
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.rtl.common.records import Record
+from raycaster.hdl.records import Record
 from raycaster.scene import BASIS_SCALE, UNTURNED
 
 DUT = "bench.dut"

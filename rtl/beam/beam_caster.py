@@ -6,14 +6,15 @@ from collections.abc import Mapping
 from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.hdl.records import Record
+from raycaster.hdl.signals import Tied, bit, side_by_side, tied, unsigned
 from raycaster.rtl.beam.beam_lane import beam_lane
 from raycaster.rtl.beam.lane_start import lane_start
 from raycaster.rtl.beam.line_starter import line_starter
 from raycaster.rtl.beam.row_register import row_register
 from raycaster.rtl.common.interfaces import Direction
-from raycaster.rtl.common.records import Look, Pixel, Record, facet_of, growth_of, walk_of
-from raycaster.rtl.common.ties import Tied, tied
-from raycaster.rtl.common.widths import bit, exact_slope_bits, side_by_side, unsigned
+from raycaster.rtl.common.records import Look, Pixel, facet_of, growth_of, walk_of
+from raycaster.rtl.common.widths import exact_slope_bits
 from raycaster.rtl.engine.rect_setup import rect_setup
 
 

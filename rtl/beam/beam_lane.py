@@ -15,6 +15,7 @@ from raycaster.engines.beam import (
     tested,
     winner_latency,
 )
+from raycaster.hdl.signals import bit, side_by_side, unsigned
 from raycaster.rtl.beam.beam_pass import beam_pass
 from raycaster.rtl.beam.colour_blend import colour_blend
 from raycaster.rtl.beam.hit_cells import hit_cells
@@ -24,7 +25,7 @@ from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.beam.slope_walker import ray_slope, slope_walker
 from raycaster.rtl.common.delay_line import delay_line
 from raycaster.rtl.common.records import Reflector, Sight, candidate_of, fold_of, seen_of, turn_of, winner_of
-from raycaster.rtl.common.widths import bit, index_bits, side_by_side, unsigned
+from raycaster.rtl.common.widths import index_bits
 
 
 @block

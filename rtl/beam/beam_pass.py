@@ -8,6 +8,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.engines.beam import contest_latency, is_staged, rounds
+from raycaster.hdl.signals import side_by_side, tied
 from raycaster.rtl.beam.fold_tester import fold_tester
 from raycaster.rtl.beam.nearest_of import nearest_of
 from raycaster.rtl.beam.ray_tester import ray_tester
@@ -16,8 +17,7 @@ from raycaster.rtl.beam.slope_walker import ray_slope, slope_walker
 from raycaster.rtl.common.interfaces import Slope
 from raycaster.rtl.common.magnitude import magnitude
 from raycaster.rtl.common.records import Signs, candidate_of, facet_of, stride_of, walk_of
-from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import exact_slope_bits, index_bits, side_by_side
+from raycaster.rtl.common.widths import exact_slope_bits, index_bits
 
 
 @block

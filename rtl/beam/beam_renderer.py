@@ -5,10 +5,11 @@ from myhdl import always_comb, always_seq, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.engines.beam import beam_latency
+from raycaster.hdl.signals import bit, bits_for, signed, unsigned
 from raycaster.rtl.beam.beam_caster import beam_caster
 from raycaster.rtl.common.interfaces import Scan
 from raycaster.rtl.common.records import shown_of
-from raycaster.rtl.common.widths import CYCLE_BITS, bit, bits_for, factor_bits, row_bits, signed, unsigned
+from raycaster.rtl.common.widths import CYCLE_BITS, factor_bits, row_bits
 from raycaster.rtl.video.video_generator import video_generator
 
 
@@ -76,7 +77,7 @@ def beam_renderer(clk, reset, picture, camera, rects, progress, vga, config: Con
     def find_line():
         start_line.next = (vga.hs == hs_active) and (hs_before != hs_active)
 
-    # in_picture: the line shows a row; each row has `doubling` lines.
+    # in_picture: the line shows a row; each row has `config.screen_geometry.doubling` lines.
     @always_seq(clk.posedge, reset=reset)
     def count_lines():
         if scan.start_row:

@@ -4,7 +4,7 @@
 from myhdl import always, always_comb, block, concat, instances
 
 from raycaster.engines.engine import SMALLEST_CELL_BITS
-from raycaster.rtl.common.widths import bit, signed, unsigned
+from raycaster.hdl.signals import bit, signed, unsigned
 
 
 @block

@@ -3,8 +3,9 @@
 
 from myhdl import always, always_comb, block, instances
 
+from raycaster.hdl.signals import bit, unsigned
 from raycaster.rtl.common.records import Colour
-from raycaster.rtl.common.widths import MIRROR_BITS, bit, unsigned
+from raycaster.rtl.common.widths import MIRROR_BITS
 
 
 @block

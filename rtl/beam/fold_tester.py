@@ -3,12 +3,11 @@
 
 from myhdl import always, always_comb, block, instances
 
+from raycaster.hdl.records import Record
+from raycaster.hdl.signals import Signed, bit, signed, unsigned
 from raycaster.rtl.beam.bound_tester import bound_tester
 from raycaster.rtl.common.by_axis import along_a, along_p, along_q, by_axis
 from raycaster.rtl.common.magnitude import magnitude
-from raycaster.rtl.common.records import Record
-from raycaster.rtl.common.ties import Signed
-from raycaster.rtl.common.widths import bit, signed, unsigned
 
 
 @block

@@ -5,20 +5,12 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
 from raycaster.engines.beam import CELL_LATENCY
+from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.rtl.beam.hit_cell import hit_cell
 from raycaster.rtl.common.by_axis import along_u, along_v, by_axis
 from raycaster.rtl.common.delay_line import delay_line
 from raycaster.rtl.common.records import winner_of
-from raycaster.rtl.common.widths import (
-    AXIS_BITS,
-    CELL_BITS,
-    bit,
-    exact_slope_bits,
-    eye_bits,
-    signed,
-    turn_bits,
-    unsigned,
-)
+from raycaster.rtl.common.widths import AXIS_BITS, CELL_BITS, exact_slope_bits, eye_bits, turn_bits
 
 
 @block

@@ -3,7 +3,7 @@
 
 from myhdl import always, always_comb, block, instances
 
-from raycaster.rtl.common.widths import signed
+from raycaster.hdl.signals import signed
 
 
 @block

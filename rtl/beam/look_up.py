@@ -4,9 +4,10 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.hdl.signals import bit, unsigned
 from raycaster.rtl.beam.word_of import word_of
 from raycaster.rtl.common.records import Look, facet_of
-from raycaster.rtl.common.widths import RGB_BITS, bit, unsigned
+from raycaster.rtl.common.widths import RGB_BITS
 from raycaster.rtl.engine.pattern_colour import pattern_colour
 
 

@@ -4,9 +4,9 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.beam.word_of import word_of
 from raycaster.rtl.common.records import facet_of
-from raycaster.rtl.common.widths import unsigned
 
 
 @block

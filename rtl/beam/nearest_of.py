@@ -3,9 +3,9 @@
 
 from myhdl import block, instances
 
+from raycaster.hdl.signals import side_by_side
 from raycaster.rtl.beam.nearest_of_two import nearest_of_two
 from raycaster.rtl.common.delay_line import delay_line
-from raycaster.rtl.common.widths import side_by_side
 
 
 @block

@@ -3,7 +3,7 @@
 
 from myhdl import always, always_comb, block, concat, instances, intbv
 
-from raycaster.rtl.common.widths import bit, unsigned
+from raycaster.hdl.signals import bit, unsigned
 
 MULTIPLIER_BITS = 18
 """Width of a factor of one hard multiplier; the remaining bits of a wider denominator use adders."""

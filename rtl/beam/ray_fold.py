@@ -3,8 +3,9 @@
 
 from myhdl import always, always_comb, block, instances
 
+from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.rtl.common.by_axis import by_axis
-from raycaster.rtl.common.widths import AXIS_BITS, bit, signed, unsigned
+from raycaster.rtl.common.widths import AXIS_BITS
 
 
 @block

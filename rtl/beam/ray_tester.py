@@ -3,10 +3,10 @@
 
 from myhdl import always, always_comb, block, instances
 
+from raycaster.hdl.signals import bit, unsigned
 from raycaster.rtl.beam.bound_tester import bound_tester
 from raycaster.rtl.common.by_axis import by_axis
 from raycaster.rtl.common.magnitude import magnitude
-from raycaster.rtl.common.widths import bit, unsigned
 
 
 @block

@@ -3,7 +3,8 @@
 
 from myhdl import always_comb, always_seq, block, instances
 
-from raycaster.rtl.common.widths import LANES, bit
+from raycaster.hdl.signals import bit
+from raycaster.rtl.common.widths import LANES
 
 
 @block

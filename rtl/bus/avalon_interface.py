@@ -4,9 +4,9 @@
 from myhdl import Signal, always_comb, always_seq, block, instances
 
 from raycaster.configuration import LOOKS, Configuration
+from raycaster.hdl.signals import bit, tied, unsigned
 from raycaster.registers import register_map
-from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import CYCLE_BITS, RGB_BITS, WORD_BITS, bit, unsigned
+from raycaster.rtl.common.widths import CYCLE_BITS, RGB_BITS, WORD_BITS
 from raycaster.rtl.scene.scene_word import scene_word
 
 FIXED_CODES = {"rects": 1, "all": 2}

@@ -3,9 +3,9 @@
 
 from myhdl import always_comb, block, instances
 
+from raycaster.hdl.signals import bit, tied
 from raycaster.memory_map import BUTTONS, MEMORY, MEMORY_WORDS, RAY_TRACER, UART
-from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import WORD_BITS, bit
+from raycaster.rtl.common.widths import WORD_BITS
 
 
 @block

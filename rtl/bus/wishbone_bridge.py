@@ -3,8 +3,9 @@
 
 from myhdl import always, always_comb, always_seq, block, instances
 
+from raycaster.hdl.signals import bit, unsigned
 from raycaster.rtl.common.interfaces import BusPort
-from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, unsigned
+from raycaster.rtl.common.widths import LANES, WORD_BITS
 
 
 class WishbonePort(BusPort):

@@ -5,8 +5,9 @@ from pathlib import Path
 
 from myhdl import Signal, always, always_comb, always_seq, block, instances, intbv
 
-from raycaster.rtl.common.given import load_words
-from raycaster.rtl.common.widths import WORD_BITS, bit
+from raycaster.hdl.given import load_words
+from raycaster.hdl.signals import bit
+from raycaster.rtl.common.widths import WORD_BITS
 
 
 def first_words(program: str, count: int) -> list[int]:

@@ -11,7 +11,7 @@ from typing import Any
 
 from myhdl import always_comb, block, instances
 
-from raycaster.rtl.common.given import given_verilog
+from raycaster.hdl.given import given_verilog
 
 Order = Callable[[Any, Any, Any], Sequence[Any]]
 """Takes the x, y and z components; returns those along a, u, v, p or q for a plane across x, across y and across z."""

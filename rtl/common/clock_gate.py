@@ -5,7 +5,7 @@ from pathlib import Path
 
 from myhdl import block
 
-from raycaster.rtl.common.given import given_verilog
+from raycaster.hdl.given import given_verilog
 
 
 @given_verilog(lambda: Path(__file__).with_suffix(".v"), outputs=("gated_clk",))

@@ -3,7 +3,7 @@
 
 from myhdl import always, always_comb, block, concat, instances
 
-from raycaster.rtl.common.widths import unsigned
+from raycaster.hdl.signals import unsigned
 
 
 @block

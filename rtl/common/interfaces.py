@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Groups of ports. The attribute `hs` of a port `vga` becomes the Verilog port `vga_hs`.
+"""Groups of ports of the ray tracer. The attribute `hs` of a port `vga` becomes the Verilog port `vga_hs`.
 
 The text for each attribute becomes the comment above that port in Verilog.
 """
@@ -8,6 +8,8 @@ from typing import ClassVar
 
 from raycaster.configuration import Configuration
 from raycaster.engines.exact import AIM_CYCLES
+from raycaster.hdl.records import Interface
+from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.rtl.common.records import rect_of
 from raycaster.rtl.common.widths import (
     CYCLE_BITS,
@@ -16,19 +18,10 @@ from raycaster.rtl.common.widths import (
     RGB_BITS,
     SLOPE_BITS,
     WORD_BITS,
-    bit,
     index_bits,
     offset_bits,
     row_bits,
-    signed,
-    unsigned,
 )
-
-
-class Interface:
-    """A group of signals; generated Verilog names them group_signal."""
-
-    is_interface = True
 
 
 class Vga(Interface):

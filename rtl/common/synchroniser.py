@@ -3,7 +3,7 @@
 
 from myhdl import Signal, always_seq, block, instances
 
-from raycaster.rtl.common.ties import initial
+from raycaster.hdl.signals import initial
 
 
 @block

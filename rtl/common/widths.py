@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""All widths of the hardware, by name and derived from the configuration, and signals of those widths."""
-
-from myhdl import ConcatSignal, Signal, intbv
-from myhdl._Signal import _Signal
+"""All widths of the hardware, by name and derived from the configuration."""
 
 from raycaster.configuration import CHANNEL_BITS, COORDINATE_BITS, WORLD_SIZE, Configuration
+from raycaster.hdl.signals import bits_for
 from raycaster.scene import PATTERNS
 
 SLOPE_BITS = 9
@@ -42,11 +40,6 @@ LANES = 4
 
 CYCLE_BITS = 16
 """Width of the counters that measure the row budget."""
-
-
-def bits_for(count: int) -> int:
-    """Width of a counter with this many values; a signal has at least one bit."""
-    return max(1, (count - 1).bit_length())
 
 
 def position_bits(config: Configuration) -> int:
@@ -156,23 +149,3 @@ def index_bits(config: Configuration) -> int:
 def pixel_bits(config: Configuration) -> int:
     """Width of a pixel as stored for the monitor: red above green above blue."""
     return 3 * config.colour_bits
-
-
-def unsigned(width: int) -> _Signal:
-    """Return an unsigned signal, initially 0."""
-    return Signal(intbv(0)[width:])
-
-
-def signed(width: int) -> _Signal:
-    """Return a two's complement signal, initially 0."""
-    return Signal(intbv(0, min=-(1 << (width - 1)), max=1 << (width - 1)))
-
-
-def bit() -> _Signal:
-    """Return a one-bit signal, initially low."""
-    return Signal(bool(0))
-
-
-def side_by_side(signals: list) -> _Signal:
-    """Return the signals as one vector, the first in the lowest bits."""
-    return ConcatSignal(*reversed(signals)) if len(signals) > 1 else signals[0]

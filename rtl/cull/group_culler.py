@@ -4,10 +4,10 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.hdl.signals import bit, signed, tied, unsigned
 from raycaster.rtl.common.interfaces import Direction, Place, Rects
 from raycaster.rtl.common.records import Facet, Walk, WideRect
-from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import WIDE_BITS, bit, exact_slope_bits, signed, unsigned, walk_bits, wide_walk_bits
+from raycaster.rtl.common.widths import WIDE_BITS, exact_slope_bits, walk_bits, wide_walk_bits
 from raycaster.rtl.cull.group_tester import group_tester
 from raycaster.rtl.cull.rect_copy import rect_copy
 from raycaster.rtl.engine.rect_setup import rect_setup

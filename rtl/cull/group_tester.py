@@ -4,7 +4,7 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.widths import bit, signed, unsigned
+from raycaster.hdl.signals import bit, signed, unsigned
 
 
 @block

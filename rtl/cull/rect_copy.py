@@ -4,8 +4,9 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
-from raycaster.rtl.common.records import Record
-from raycaster.rtl.common.widths import AXIS_BITS, WIDE_BITS, bit, index_bits, signed, unsigned
+from raycaster.hdl.records import Record
+from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.rtl.common.widths import AXIS_BITS, WIDE_BITS, index_bits
 
 
 @block

@@ -3,8 +3,7 @@
 
 from myhdl import always, always_comb, block, concat, instances
 
-from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import bit, unsigned
+from raycaster.hdl.signals import bit, tied, unsigned
 from raycaster.rtl.dvi.tmds_encoder import tmds_encoder
 
 

@@ -3,7 +3,7 @@
 
 from myhdl import always_comb, block, instances
 
-from raycaster.rtl.common.widths import unsigned
+from raycaster.hdl.signals import unsigned
 
 
 @block

@@ -3,7 +3,7 @@
 
 from myhdl import always_comb, always_seq, block, concat, instances
 
-from raycaster.rtl.common.widths import bit, signed, unsigned
+from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.rtl.dvi.ones_count import ones_count
 
 SYMBOL_BITS = 10

@@ -3,8 +3,7 @@
 
 from myhdl import always_comb, block, concat, instances
 
-from raycaster.rtl.common.ties import Signed, tied
-from raycaster.rtl.common.widths import signed, unsigned
+from raycaster.hdl.signals import Signed, signed, tied, unsigned
 from raycaster.rtl.engine.multiplier_step import multiplier_step
 
 

@@ -4,8 +4,9 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.records import Colour
-from raycaster.rtl.common.widths import share_bits, unsigned
+from raycaster.rtl.common.widths import share_bits
 from raycaster.rtl.engine.colour_share import colour_share
 from raycaster.rtl.engine.colour_sum import colour_sum
 

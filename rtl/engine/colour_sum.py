@@ -4,7 +4,8 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import CHANNEL_BITS, Configuration
-from raycaster.rtl.common.widths import share_bits, unsigned
+from raycaster.hdl.signals import unsigned
+from raycaster.rtl.common.widths import share_bits
 
 
 @block

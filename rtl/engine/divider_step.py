@@ -3,7 +3,7 @@
 
 from myhdl import Signal, always_comb, block, concat, instances, intbv
 
-from raycaster.rtl.common.widths import unsigned
+from raycaster.hdl.signals import unsigned
 
 
 @block

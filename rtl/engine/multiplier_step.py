@@ -3,7 +3,7 @@
 
 from myhdl import always_comb, block, concat, instances
 
-from raycaster.rtl.common.widths import signed
+from raycaster.hdl.signals import signed
 
 
 @block

@@ -4,7 +4,8 @@
 from myhdl import Signal, always, always_comb, block, enum, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.widths import REFLECTION_BITS, bit, unsigned
+from raycaster.hdl.signals import bit, unsigned
+from raycaster.rtl.common.widths import REFLECTION_BITS
 from raycaster.rtl.engine.rect_sequencer import rect_sequencer
 
 EARLY_OUT_AT = 2

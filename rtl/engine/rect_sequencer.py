@@ -4,7 +4,8 @@
 from myhdl import always, always_comb, block, downrange, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.widths import bit, bits_for, index_bits, unsigned
+from raycaster.hdl.signals import bit, bits_for, unsigned
+from raycaster.rtl.common.widths import index_bits
 
 
 @block

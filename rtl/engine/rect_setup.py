@@ -4,17 +4,10 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
+from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.rtl.common.by_axis import along_a, along_p, along_q, by_axis
 from raycaster.rtl.common.records import Look
-from raycaster.rtl.common.widths import (
-    AXIS_BITS,
-    DISTANCE_BITS,
-    bit,
-    exact_slope_bits,
-    index_bits,
-    signed,
-    unsigned,
-)
+from raycaster.rtl.common.widths import AXIS_BITS, DISTANCE_BITS, exact_slope_bits, index_bits
 from raycaster.rtl.engine.array_multiplier import array_multiplier
 
 

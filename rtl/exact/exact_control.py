@@ -5,10 +5,9 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.engines.exact import PATTERN_LATENCY, WRITE_AT
+from raycaster.hdl.signals import bit, tied, unconnected, unsigned
 from raycaster.rtl.common.interfaces import ShadowPass
 from raycaster.rtl.common.records import surface_of
-from raycaster.rtl.common.ties import tied, unconnected
-from raycaster.rtl.common.widths import bit, unsigned
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
 from raycaster.rtl.exact.shadow_sequencer import shadow_sequencer
 

@@ -4,10 +4,10 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.hdl.signals import bit, unconnected, unsigned
 from raycaster.rtl.common.interfaces import Eye, Slope
 from raycaster.rtl.common.records import Colour, Signs, mirror_of, surface_of
-from raycaster.rtl.common.ties import unconnected
-from raycaster.rtl.common.widths import RGB_BITS, bit, exact_slope_bits, eye_bits, light_slope_bits, unsigned
+from raycaster.rtl.common.widths import RGB_BITS, exact_slope_bits, eye_bits, light_slope_bits
 from raycaster.rtl.engine.colour_combiner import colour_combiner
 from raycaster.rtl.engine.pattern_colour import pattern_colour
 from raycaster.rtl.engine.ray_generator import ray_generator

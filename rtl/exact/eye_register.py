@@ -4,8 +4,8 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS
+from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.rtl.common.by_axis import by_axis
-from raycaster.rtl.common.widths import bit, signed, unsigned
 
 
 @block

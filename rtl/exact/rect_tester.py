@@ -3,9 +3,9 @@
 
 from myhdl import always, always_comb, block, instances
 
+from raycaster.hdl.records import Record
+from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.rtl.common.by_axis import along_a, along_u, along_v, by_axis
-from raycaster.rtl.common.records import Record
-from raycaster.rtl.common.widths import bit, signed, unsigned
 from raycaster.rtl.exact.extent_tester import extent_tester
 
 

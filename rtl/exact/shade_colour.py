@@ -4,8 +4,8 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.configuration import CHANNEL_BITS
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.records import Colour
-from raycaster.rtl.common.widths import unsigned
 
 
 @block

@@ -5,7 +5,7 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS
 from raycaster.engines.exact import AIM_CYCLES
-from raycaster.rtl.common.widths import bit, unsigned
+from raycaster.hdl.signals import bit, unsigned
 
 
 @block

@@ -4,7 +4,7 @@
 from myhdl import Signal, always, always_comb, block, enum, instances
 
 from raycaster.engines.exact import AIM_CYCLES
-from raycaster.rtl.common.widths import bit, unsigned
+from raycaster.hdl.signals import bit, unsigned
 
 ShadowState = enum("WAIT", "AIM", "TEST")
 

@@ -4,8 +4,8 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.rtl.common.magnitude import magnitude
-from raycaster.rtl.common.widths import bit, signed, unsigned
 
 
 @block

@@ -4,7 +4,8 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.widths import bit, row_bits, signed, unsigned
+from raycaster.hdl.signals import bit, signed, unsigned
+from raycaster.rtl.common.widths import row_bits
 from raycaster.rtl.exact.slope_component import slope_component
 
 

@@ -4,9 +4,9 @@
 from myhdl import Signal, always_comb, block, instances, intbv
 
 from raycaster.configuration import Configuration
+from raycaster.hdl.signals import bit, tied
 from raycaster.registers import register_map
-from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import WORD_BITS, bit
+from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.rtl.scene.scene_word import scene_word
 
 REGISTERS = register_map(1)

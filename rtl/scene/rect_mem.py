@@ -4,9 +4,9 @@
 from myhdl import always, always_comb, always_seq, block, concat, instances
 
 from raycaster.configuration import Configuration
+from raycaster.hdl.signals import bit, side_by_side, signed, tied, unsigned
 from raycaster.rtl.common.records import rect_of
-from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import WORD_BITS, bit, index_bits, side_by_side, signed, unsigned
+from raycaster.rtl.common.widths import WORD_BITS, index_bits
 from raycaster.rtl.scene.rect_slot import rect_slot
 from raycaster.rtl.scene.rect_sorter import rect_sorter
 from raycaster.rtl.scene.written_rect import CORNER, PLACE_BITS, PLACES, Copies, implemented_bits, written_of

@@ -5,8 +5,8 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.fixed import varying_bits
-from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import index_bits, unsigned
+from raycaster.hdl.signals import tied, unsigned
+from raycaster.rtl.common.widths import index_bits
 
 
 @block

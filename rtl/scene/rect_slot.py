@@ -3,7 +3,7 @@
 
 from myhdl import always_comb, always_seq, block, instances
 
-from raycaster.rtl.common.widths import bit, unsigned
+from raycaster.hdl.signals import bit, unsigned
 from raycaster.rtl.scene.written_rect import PLACE_BITS
 
 

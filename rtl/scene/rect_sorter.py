@@ -4,7 +4,8 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
-from raycaster.rtl.common.widths import AXIS_BITS, KIND_BITS, MIRROR_BITS, unsigned
+from raycaster.hdl.signals import unsigned
+from raycaster.rtl.common.widths import AXIS_BITS, KIND_BITS, MIRROR_BITS
 from raycaster.scene import CELLS
 
 

@@ -3,7 +3,8 @@
 
 from myhdl import Signal, always_comb, always_seq, block, instances, intbv
 
-from raycaster.rtl.common.widths import WORD_BITS, unsigned
+from raycaster.hdl.signals import unsigned
+from raycaster.rtl.common.widths import WORD_BITS
 
 
 @block

@@ -2,10 +2,10 @@
 """A rectangle as software writes it."""
 
 from raycaster.configuration import Configuration
+from raycaster.hdl.records import Field, Record
+from raycaster.hdl.signals import bits_for, tied
 from raycaster.registers import register_map
-from raycaster.rtl.common.records import Field, Record
-from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import RGB_BITS, WORD_BITS, bits_for
+from raycaster.rtl.common.widths import RGB_BITS, WORD_BITS
 
 REGISTERS = register_map(1)
 CORNER = REGISTERS["rectangle[0].corner_0"]

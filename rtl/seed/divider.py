@@ -4,7 +4,8 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, unsigned
+from raycaster.hdl.signals import bit, unsigned
+from raycaster.rtl.common.widths import SLOPE_BITS, position_bits, product_bits
 from raycaster.rtl.engine.divider_step import divider_step
 
 

@@ -4,9 +4,9 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.hdl.signals import bit, signed, unconnected, unsigned
 from raycaster.rtl.common.by_axis import along_a, along_u, along_v, by_axis
-from raycaster.rtl.common.ties import unconnected
-from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, signed, unsigned
+from raycaster.rtl.common.widths import SLOPE_BITS, position_bits
 from raycaster.rtl.seed.cell_parity import cell_parity
 from raycaster.rtl.seed.intersection_helper import intersection_helper
 

@@ -4,9 +4,10 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.hdl.records import Record
+from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.rtl.common.magnitude import magnitude
-from raycaster.rtl.common.records import Record
-from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
+from raycaster.rtl.common.widths import SLOPE_BITS, position_bits, product_bits
 from raycaster.rtl.seed.divider import divider
 
 

@@ -5,10 +5,9 @@ from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.engines.seed import LOAD_AT, WRITE_AFTER
+from raycaster.hdl.signals import bit, tied, unsigned
 from raycaster.rtl.common.interfaces import ShadowPass
 from raycaster.rtl.common.records import rect_of
-from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import bit, unsigned
 from raycaster.rtl.engine.ray_sequencer import ends_early, ray_sequencer
 
 

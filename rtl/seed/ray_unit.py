@@ -4,10 +4,10 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.hdl.signals import bit, tied, unconnected, unsigned
 from raycaster.rtl.common.interfaces import Slope
 from raycaster.rtl.common.records import Origin, Ray, Signs
-from raycaster.rtl.common.ties import tied, unconnected
-from raycaster.rtl.common.widths import AXIS_BITS, MIRROR_BITS, RGB_BITS, bit, position_bits, unsigned
+from raycaster.rtl.common.widths import AXIS_BITS, MIRROR_BITS, RGB_BITS, position_bits
 from raycaster.rtl.engine.colour_combiner import colour_combiner
 from raycaster.rtl.engine.pattern_colour import pattern_colour
 from raycaster.rtl.engine.ray_generator import ray_generator

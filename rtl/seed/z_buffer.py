@@ -4,7 +4,8 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.widths import bit, position_bits, unsigned
+from raycaster.hdl.signals import bit, unsigned
+from raycaster.rtl.common.widths import position_bits
 
 
 @block

@@ -3,9 +3,9 @@
 
 from myhdl import always_comb, block, instances
 
+from raycaster.hdl.signals import unsigned
 from raycaster.memory_map import BUTTON_NAMES, INTERRUPT_BIT
 from raycaster.rtl.common.synchroniser import synchroniser
-from raycaster.rtl.common.widths import unsigned
 
 
 @block

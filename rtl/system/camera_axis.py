@@ -4,7 +4,7 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import WORLD_SIZE
-from raycaster.rtl.common.widths import bit
+from raycaster.hdl.signals import bit
 
 STEP = 3
 """World units that a held button moves the camera per frame: across the world in about three seconds."""

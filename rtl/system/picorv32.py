@@ -7,7 +7,7 @@ from pathlib import Path
 from myhdl import block
 
 from raycaster.errors import UserError, not_installed
-from raycaster.rtl.common.given import given_verilog
+from raycaster.hdl.given import given_verilog
 
 PACKAGE = "pythondata_cpu_picorv32"
 

@@ -7,11 +7,11 @@ from myhdl import ResetSignal
 
 from raycaster.buses import BUSES
 from raycaster.configuration import CHANNEL_BITS, Configuration
+from raycaster.hdl.signals import bit, unsigned
 from raycaster.memory_map import BUTTON_NAMES
 from raycaster.registers import address_bits
 from raycaster.rtl.bus.buses import BRIDGES
 from raycaster.rtl.common.interfaces import AvalonPort, Vga, vga_of
-from raycaster.rtl.common.widths import bit, unsigned
 from raycaster.rtl.dvi.tmds_encoder import SYMBOL_BITS
 from raycaster.rtl.system.scene_player import BUTTONS
 

@@ -4,13 +4,13 @@
 from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.hdl.signals import bit, bits_for, tied, unsigned
 from raycaster.memory_map import MEMORY_WORDS, clocks_per_bit
 from raycaster.rtl.bus.avalon_host import avalon_host
 from raycaster.rtl.bus.bus_decoder import bus_decoder
 from raycaster.rtl.bus.word_memory import word_memory
 from raycaster.rtl.common.interfaces import Access, ProcessorBus
-from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import WORD_BITS, bit, bits_for, unsigned
+from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.rtl.system.button_port import button_port
 from raycaster.rtl.system.picorv32 import picorv32
 from raycaster.rtl.system.uart_transmitter import DATA_BITS, uart_transmitter

@@ -7,10 +7,10 @@ from myhdl import always_comb, block, instances
 
 from raycaster.configuration import Configuration
 from raycaster.engines import EXACT, SEED
+from raycaster.hdl.signals import side_by_side, tied, unconnected
 from raycaster.rtl.common.interfaces import GroupFate, RayFate, Steps
 from raycaster.rtl.common.records import Pixel, rect_of, surface_of
-from raycaster.rtl.common.ties import tied, unconnected
-from raycaster.rtl.common.widths import side_by_side, unit_bits
+from raycaster.rtl.common.widths import unit_bits
 from raycaster.rtl.cull.group_culler import group_culler
 from raycaster.rtl.engine.ray_sequencer import ends_early
 from raycaster.rtl.exact.exact_control import exact_control

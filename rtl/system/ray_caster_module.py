@@ -6,6 +6,7 @@ from myhdl import always_comb, block, instances
 from raycaster.buses import BUSES
 from raycaster.configuration import Configuration
 from raycaster.engines import BEAM
+from raycaster.hdl.signals import bit, tied, unconnected, unsigned
 from raycaster.registers import address_bits
 from raycaster.rtl.beam.beam_renderer import beam_renderer
 from raycaster.rtl.bus.avalon_interface import avalon_interface
@@ -13,8 +14,7 @@ from raycaster.rtl.bus.buses import BRIDGES
 from raycaster.rtl.common.clock_gate import clock_gate, rests_on
 from raycaster.rtl.common.interfaces import AvalonPort, Picture, Progress, Rects, SceneBus
 from raycaster.rtl.common.records import camera_of
-from raycaster.rtl.common.ties import tied, unconnected
-from raycaster.rtl.common.widths import WORD_BITS, bit, unsigned
+from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.rtl.scene.camera_mem import camera_mem
 from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.rtl.scene.rect_rom import rect_rom

@@ -4,10 +4,11 @@
 from myhdl import always, always_comb, always_seq, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.hdl.signals import bit, bits_for, unsigned
 from raycaster.rtl.common.clock_gate import clock_gate, rests_on
 from raycaster.rtl.common.interfaces import Place, Scan
 from raycaster.rtl.common.records import Pixel
-from raycaster.rtl.common.widths import CYCLE_BITS, bit, bits_for, pixel_bits, unit_bits, unsigned
+from raycaster.rtl.common.widths import CYCLE_BITS, pixel_bits, unit_bits
 from raycaster.rtl.system.ray_caster import ray_caster
 from raycaster.rtl.video.line_buffer import line_buffer
 from raycaster.rtl.video.video_generator import video_generator

@@ -4,9 +4,9 @@
 from myhdl import ResetSignal, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.hdl.signals import bit
 from raycaster.registers import address_bits
 from raycaster.rtl.common.interfaces import AvalonPort
-from raycaster.rtl.common.widths import bit
 from raycaster.rtl.system.processor_host import processor_host
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
 from raycaster.rtl.system.reset_release import reset_release

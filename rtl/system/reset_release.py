@@ -3,8 +3,8 @@
 
 from myhdl import always_comb, always_seq, block, instances
 
+from raycaster.hdl.signals import bit, unsigned
 from raycaster.rtl.common.synchroniser import synchroniser
-from raycaster.rtl.common.widths import bit, unsigned
 
 HOLD_CYCLES = 16
 """Clock cycles for which reset lasts after `ready` is seen high."""

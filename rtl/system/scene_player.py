@@ -4,11 +4,11 @@
 from myhdl import always_comb, always_seq, block, instances
 
 from raycaster.configuration import COORDINATE_BITS, Configuration
+from raycaster.hdl.signals import bit, bits_for, tied, unsigned
 from raycaster.program import scene_words
 from raycaster.registers import register_map
 from raycaster.rtl.common.synchroniser import synchroniser
-from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, bits_for, unsigned
+from raycaster.rtl.common.widths import LANES, WORD_BITS
 from raycaster.rtl.system.camera_axis import camera_axis
 from raycaster.scene import Scene
 

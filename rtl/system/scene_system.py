@@ -4,10 +4,9 @@
 from myhdl import ResetSignal, block, instances
 
 from raycaster.configuration import Configuration
+from raycaster.hdl.signals import bit, tied, unconnected
 from raycaster.registers import address_bits
 from raycaster.rtl.common.interfaces import AvalonPort
-from raycaster.rtl.common.ties import tied, unconnected
-from raycaster.rtl.common.widths import bit
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
 from raycaster.rtl.system.reset_release import reset_release
 from raycaster.rtl.system.scene_player import scene_player

@@ -3,7 +3,7 @@
 
 from myhdl import Signal, always_comb, always_seq, block, instances
 
-from raycaster.rtl.common.widths import bit, bits_for, unsigned
+from raycaster.hdl.signals import bit, bits_for, unsigned
 
 DATA_BITS = 8
 FRAME_BITS = 1 + DATA_BITS + 1

@@ -4,7 +4,8 @@
 from myhdl import always, always_comb, block, instances
 
 from raycaster.configuration import Configuration
-from raycaster.rtl.common.widths import bits_for, pixel_bits, unsigned
+from raycaster.hdl.signals import bits_for, unsigned
+from raycaster.rtl.common.widths import pixel_bits
 
 
 @block

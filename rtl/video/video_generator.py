@@ -3,8 +3,7 @@
 
 from myhdl import Signal, always_comb, always_seq, block, instances, intbv
 
-from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import bit, bits_for, unsigned
+from raycaster.hdl.signals import bit, bits_for, tied, unsigned
 from raycaster.rtl.video.pixel_clock import pixel_clock
 from raycaster.screens import Screen
 

@@ -45,17 +45,18 @@ import raycaster.rtl.common.widths
 import raycaster.rtl.seed.divider
 import raycaster.rtl.seed.intersection_helper
 from raycaster.configuration import COORDINATE_BITS, Configuration, configure
-from raycaster.convert.elaboration import elaboration
-from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
+from raycaster.hdl.elaboration import elaboration
+from raycaster.hdl.hierarchy import convert_hierarchy
+from raycaster.hdl.signals import bit, signed, unsigned
 from raycaster.jobs import add_job_options, executors, run_jobs
 from raycaster.options import CommandParser
 from raycaster.outcomes import Check, add_keep_option, keep
 from raycaster.outcomes import Outcome as Kept
 from raycaster.output import Console, printable
 from raycaster.rtl.common.interfaces import Steps
-from raycaster.rtl.common.widths import SLOPE_BITS, bit, position_bits, product_bits, signed, unsigned
+from raycaster.rtl.common.widths import SLOPE_BITS, position_bits, product_bits
 from raycaster.rtl.seed.divider import divider
 from raycaster.rtl.seed.intersection_helper import intersection_helper
 from raycaster.sim.simulator import build_program

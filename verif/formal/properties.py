@@ -18,6 +18,7 @@ from raycaster.engines.engine import SETUP_LATENCY
 from raycaster.engines.exact import AIM_CYCLES
 from raycaster.fit.fixing import fixed_rectangle
 from raycaster.fixed import FixedScene
+from raycaster.hdl.signals import bits_for
 from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.bus.avalon_interface import engine_word, size_word
@@ -28,7 +29,6 @@ from raycaster.rtl.common.widths import (
     DISTANCE_BITS,
     REFLECTION_BITS,
     WIDE_BITS,
-    bits_for,
     exact_slope_bits,
     eye_bits,
     factor_bits,

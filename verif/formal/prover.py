@@ -15,10 +15,11 @@ from pathlib import Path
 
 from raycaster.buses import BUSES
 from raycaster.configuration import Configuration
-from raycaster.convert.elaboration import elaboration
-from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.convert.write import write_verilog
 from raycaster.digests import uncommented
+from raycaster.hdl.elaboration import elaboration
+from raycaster.hdl.hierarchy import convert_hierarchy
+from raycaster.hdl.signals import bit, reset_signal, unsigned
 from raycaster.output import emptied
 from raycaster.registers import address_bits
 from raycaster.rtl.beam.fold_tester import fold_tester
@@ -28,7 +29,7 @@ from raycaster.rtl.bus.avalon_host import avalon_host
 from raycaster.rtl.bus.buses import BRIDGES
 from raycaster.rtl.common.interfaces import Access, AvalonPort, Direction, Eye, Rects, Scan, SceneBus, Slope, Steps, Vga
 from raycaster.rtl.common.records import Candidate, Facet, Fold, Mirror, Pixel, Rect, Reflector, Signs, Turn, Walk
-from raycaster.rtl.common.widths import LANES, WORD_BITS, bit, unsigned
+from raycaster.rtl.common.widths import LANES, WORD_BITS
 from raycaster.rtl.exact.rect_tester import rect_tester
 from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.rtl.scene.rect_rom import rect_rom
@@ -36,7 +37,6 @@ from raycaster.rtl.video.video_generator import video_generator
 from raycaster.screens import Screen
 from raycaster.tools import TIMEOUT, ToolError, find_program, run_program, run_yosys
 from raycaster.verif.formal.lemmas import SOLVERS, Lemma
-from raycaster.verif.leaf import reset_signal
 
 WRAPPERS = Path(__file__).parent
 ONE_RESET = "state 1:*\nassume (= [reset] false)\n"

@@ -37,7 +37,7 @@ from rich.table import Table
 from rich.text import Text
 
 import raycaster
-from raycaster import convert, golden, rtl
+from raycaster import golden, hdl, rtl
 from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
 from raycaster.digests import digest
@@ -50,9 +50,9 @@ from raycaster.output import Console, emptied
 from raycaster.sim import ensure_tools
 from raycaster.sim.simulator import build_program
 from raycaster.tools import ToolError, run_yosys
-from raycaster.verif import leaf, seeds
+from raycaster.verif import expected, recording, seeds
 from raycaster.verif.formal.prover import missing_tools
-from raycaster.verif.leaf import RECORD_VARIABLE, recording_name
+from raycaster.verif.recording import RECORD_VARIABLE, recording_name
 
 SOURCES = Path(__file__).parent
 RTL = Path(rtl.__file__).parent
@@ -180,7 +180,7 @@ class Result:
 
 
 class Recording:
-    """Recording of a leaf test by `Leaf.record`, and the work on it.
+    """Recording of a leaf test by `raycaster.verif.recording`, and the work on it.
 
     Args:
         directory: the recording.
@@ -448,8 +448,10 @@ def record(tests: Iterable[str], directory: Path, jobs: int) -> None:
         MutationError: a test failed or does not exist.
     """
     tested = SOURCES.parent / "tests"
-    packages = (Path(package.__path__[0]) for package in (raycaster, rtl, golden, convert))
-    made_of = digest(os.environ.get(seeds.VARIABLE), tested, Path(leaf.__file__), *packages)
+    packages = (Path(package.__path__[0]) for package in (raycaster, rtl, golden, hdl))
+    made_of = digest(
+        os.environ.get(seeds.VARIABLE), tested, Path(expected.__file__), Path(recording.__file__), *packages
+    )
     stamps = {test: directory / f"{recording_name(test.partition('::')[2])}.stamp" for test in tests}
     missing = [test for test, stamp in stamps.items() if not stamp.exists() or stamp.read_text() != made_of]
     if not missing:

@@ -18,11 +18,12 @@ import pytest
 from raycaster.cli.__main__ import main
 from raycaster.configuration import Configuration
 from raycaster.convert import provenance
-from raycaster.convert.elaboration import forgetting
+from raycaster.hdl.elaboration import forgetting
+from raycaster.hdl.leaf import Leaf
 from raycaster.options import run_command
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import MODELS_VARIABLE, build_model, run_bench
-from raycaster.verif.leaf import Leaf
+from raycaster.verif.recording import RECORD_VARIABLE, record_test
 from raycaster.verif.seeds import repeat, seed
 
 ROOT = Path(__file__).parents[2]
@@ -69,8 +70,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.fixture(autouse=True)
 def one_set_in_myhdl(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Simulate MyHDL for one parameter set of each leaf test, the converted Verilog for all."""
-    monkeypatch.setattr(Leaf, "with_myhdl", request.node.stash.get(WITH_MYHDL, True))
+    """Simulate MyHDL for one parameter set of each leaf test, or for all that are recorded; the Verilog for all."""
+    recorded = RECORD_VARIABLE in os.environ
+    monkeypatch.setattr(Leaf, "with_myhdl", recorded or request.node.stash.get(WITH_MYHDL, True))
+    monkeypatch.setattr(Leaf, "recorder", record_test if recorded else None)
 
 
 @pytest.fixture(autouse=True)

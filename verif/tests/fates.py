@@ -11,11 +11,12 @@ import numpy as np
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import bit, unsigned
 from raycaster.rtl.common.interfaces import GroupFate, Picture, Rects, ShadowPass, Steps
 from raycaster.rtl.common.records import rect_of, surface_of
-from raycaster.rtl.common.widths import bit, unsigned
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
-from raycaster.verif.leaf import Leaf, TraceCycle, slot_length
+from raycaster.verif.expected import TraceCycle, slot_length
 
 
 def control_leaf(function: Callable, config: Configuration, directory: Path) -> Leaf:

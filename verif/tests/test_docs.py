@@ -25,8 +25,6 @@ from rich.console import Console
 from raycaster import outcomes
 from raycaster.configuration import configure
 from raycaster.convert import provenance
-from raycaster.convert.elaboration import elaboration
-from raycaster.convert.inside import find_block, look_inside
 from raycaster.convert.take_home import TOP
 from raycaster.digests import code_digest, uncommented
 from raycaster.docs import blocks, commands, drawings, engine_figures, facts, pages, proofs, scaling, tables, timing
@@ -35,11 +33,13 @@ from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.fpga.cells import Area
 from raycaster.golden.picture import shown
+from raycaster.hdl import lint
+from raycaster.hdl.elaboration import elaboration
+from raycaster.hdl.inside import find_block, look_inside
 from raycaster.options import CommandParser
 from raycaster.rtl.system.ports import module_ports
 from raycaster.rtl.system.ray_caster_module import ray_caster_module
 from raycaster.sim.simulator import convert
-from raycaster.verif import rtl_lint
 from raycaster.verif.formal.properties import PROPERTIES
 
 NOMINAL = {"74.0 MHz", "74.25 MHz"}
@@ -149,7 +149,7 @@ def test_the_example_module_works(tmp_path: Path, monkeypatch):
         spec = importlib.util.spec_from_file_location(name, path)
         monkeypatch.setitem(sys.modules, name, importlib.util.module_from_spec(spec))
         spec.loader.exec_module(sys.modules[name])
-    assert rtl_lint.check(tmp_path / "colour_dimmer.py") == []
+    assert lint.check(tmp_path / "colour_dimmer.py") == []
     sys.modules["test_colour_dimmer"].test_colour_dimmer(tmp_path)
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from raycaster.configuration import ConfigurationError, configure
 from raycaster.engines import EXACT
-from raycaster.verif.leaf import trace_cycles
+from raycaster.verif.expected import trace_cycles
 
 
 @pytest.mark.parametrize(

@@ -17,13 +17,14 @@ from raycaster.convert.write import write_dvi_encoder, write_scene_system, write
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError
 from raycaster.fit.fixing import fix
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import bit, reset_signal, unsigned
 from raycaster.rtl.common.interfaces import SceneBus
-from raycaster.rtl.common.widths import WORD_BITS, bit, unsigned
+from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.rtl.engine.divider_step import divider_step
 from raycaster.rtl.scene.scene_word import scene_word
 from raycaster.scene import load_scene
 from raycaster.verif.formal.prover import missing_tools
-from raycaster.verif.leaf import Leaf, reset_signal
 from raycaster.verif.mutation.mutate import (
     LEAST_CAUGHT,
     Expectation,
@@ -38,6 +39,7 @@ from raycaster.verif.mutation.mutate import (
     main,
     share_caught,
 )
+from raycaster.verif.recording import record as record_run
 
 pytestmark = pytest.mark.skipif(bool(missing_tools()), reason=f"not installed: {', '.join(missing_tools())}")
 
@@ -62,7 +64,7 @@ def recorded(tmp_path):
             if remainder < divisor
             for digits in range(1 << COUNT)
         ]
-        leaf.record(tmp_path / "recording", stimulus, [change(cycle) for cycle in leaf.run_myhdl(stimulus)], 0)
+        record_run(leaf, tmp_path / "recording", stimulus, [change(cycle) for cycle in leaf.run_myhdl(stimulus)], 0)
         return Recording(tmp_path / "recording", tmp_path / "work")
 
     return record
@@ -116,7 +118,7 @@ def word_recording(tmp_path, cycles: int) -> Recording:
     )
     written = {"reset": 0, "selected": 1, "bus_write": 1, "bus_mask": 0xFFFF, "bus_data": 0x5A5A, "implemented": 0xFFF}
     stimulus = [{"reset": 1}] + [written] * cycles
-    leaf.record(tmp_path / "recording", stimulus, leaf.run_myhdl(stimulus), 1)
+    record_run(leaf, tmp_path / "recording", stimulus, leaf.run_myhdl(stimulus), 1)
     return Recording(tmp_path / "recording", tmp_path / "work")
 
 

@@ -14,11 +14,11 @@ from conftest import ROOT
 from tcl import run_tcl
 
 from raycaster.configuration import Configuration, configure
-from raycaster.convert.hierarchy import Port
 from raycaster.convert.platform_designer import COMPONENT, NIOS_SYSTEM, READS_IN_FLIGHT, component, interfaces
 from raycaster.convert.take_home import FILE_LIST, TOP
 from raycaster.convert.write import write_verilog
 from raycaster.fit.fixing import fix
+from raycaster.hdl.hierarchy import Port
 from raycaster.registers import register_map
 from raycaster.tools import run_yosys
 

@@ -22,14 +22,14 @@ from raycaster import waits
 from raycaster.cli import __main__ as program
 from raycaster.cli import completion
 from raycaster.cli.commands import COMMANDS, NOT_OF_MAKE, Command, overview, verify_overview
-from raycaster.convert.elaboration import elaboration
-from raycaster.convert.hierarchy import convert_hierarchy
 from raycaster.docs.commands import outside_make
 from raycaster.engines import ENGINES
 from raycaster.errors import UserError
+from raycaster.hdl.elaboration import elaboration
+from raycaster.hdl.hierarchy import convert_hierarchy
+from raycaster.hdl.signals import bit
 from raycaster.options import FROM_MAKE, command_line, run_command
 from raycaster.rtl.common.records import Colour
-from raycaster.rtl.common.widths import bit
 from raycaster.scene import packaged_scenes
 
 SCREEN_LINES, MOST_LINES, COLUMNS = 24, 40, 80

@@ -25,23 +25,26 @@ from raycaster.verif.text_lint import findings
 HOOKS = ROOT / ".pre-commit-config.yaml"
 
 MAY_IMPORT = {
-    "raycaster": (),
+    "hdl": (),
+    "raycaster": ("hdl",),
     "scenes": (),
     "cli": ("raycaster",),
     "golden": ("raycaster",),
-    "rtl": ("raycaster",),
+    "rtl": ("hdl", "raycaster"),
     "sw": ("raycaster",),
-    "convert": ("raycaster", "rtl"),
+    "convert": ("hdl", "raycaster", "rtl"),
     "fit": ("raycaster", "golden"),
-    "fpga": ("raycaster", "golden", "rtl", "sw", "convert", "fit"),
-    "sim": ("raycaster", "golden", "rtl", "convert", "fit", "fpga"),
-    "debug": ("raycaster", "golden", "rtl", "convert", "sim"),
-    "play": ("raycaster", "golden", "rtl", "sw", "convert", "sim"),
-    "web": ("raycaster", "sw", "convert", "sim", "debug", "play"),
-    "verif": ("raycaster", "golden", "rtl", "sw", "convert", "fit", "fpga", "sim"),
-    "report": ("raycaster", "golden", "rtl", "convert", "fit", "fpga", "sim", "verif"),
-    "docs": ("raycaster", "cli", "golden", "rtl", "convert", "fpga", "sim", "debug", "play", "web", "verif", "report"),
-}
+    "fpga": ("hdl", "raycaster", "golden", "rtl", "sw", "convert", "fit"),
+    "sim": ("hdl", "raycaster", "golden", "rtl", "convert", "fit", "fpga"),
+    "debug": ("hdl", "raycaster", "golden", "rtl", "convert", "sim"),
+    "play": ("hdl", "raycaster", "golden", "rtl", "sw", "convert", "sim"),
+    "web": ("hdl", "raycaster", "sw", "convert", "sim", "debug", "play"),
+    "verif": ("hdl", "raycaster", "golden", "rtl", "sw", "convert", "fit", "fpga", "sim"),
+    "report": ("hdl", "raycaster", "golden", "rtl", "convert", "fit", "fpga", "sim", "verif"),
+    "docs": (
+        "hdl", "raycaster", "cli", "golden", "rtl", "convert", "fpga", "sim", "debug", "play", "web", "verif", "report",
+    ),
+}  # fmt: skip
 """Other folders that each folder may import from, without direct or indirect cycles."""
 
 MAY_IMPORT_IN_RTL = {

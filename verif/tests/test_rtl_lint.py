@@ -12,13 +12,14 @@ import pytest
 
 import raycaster.rtl
 from raycaster.errors import UserError
-from raycaster.verif.rtl_lint import Finding, check, main, processes
+from raycaster.hdl.lint import Finding, check, main, processes
 
 RTL = Path(raycaster.rtl.__path__[0])
 
 BLOCK = '''
 from myhdl import always, always_comb, always_seq, block, instance, intbv
-from raycaster.rtl.common.widths import WORD_BITS, bit, unsigned
+from raycaster.rtl.common.widths import WORD_BITS
+from raycaster.hdl.signals import bit, unsigned
 
 
 @block
@@ -185,11 +186,11 @@ def test_a_finding_names_its_line(tmp_path):
 
 
 def test_the_command(tmp_path):
-    command = [sys.executable, "-m", "raycaster.verif.rtl_lint"]
+    command = [sys.executable, "-m", "raycaster.hdl.lint", str(RTL)]
     clean = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (clean.returncode, clean.stdout) == (0, "")
     findings(tmp_path, "result.next = max(a, b)\ntotal.next = a + b + 1")
-    dirty = subprocess.run([*command, str(tmp_path)], capture_output=True, text=True, check=False)
+    dirty = subprocess.run([*command[:3], str(tmp_path)], capture_output=True, text=True, check=False)
     assert dirty.returncode == 1
     assert re.findall(r"planted\.py:\d+: (\w+): ", dirty.stdout) == ["call", "arithmetic"]
     assert "--help" in subprocess.run([*command, "--help"], capture_output=True, text=True, check=True).stdout

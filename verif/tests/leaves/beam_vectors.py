@@ -16,20 +16,19 @@ from raycaster.engines.beam import TESTER_LATENCY, fold_lead, is_staged, slope_a
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.random_world import random_basis, random_camera, random_rectangles
 from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import bit, unsigned
 from raycaster.rtl.common.interfaces import Direction, Slope
 from raycaster.rtl.common.records import Signs, candidate_of, facet_of, stride_of, walk_of
 from raycaster.rtl.common.widths import (
     DISTANCE_BITS,
-    bit,
     exact_slope_bits,
     fold_bits,
     index_bits,
     steepest_slope,
     turn_bits,
-    unsigned,
     walk_bits,
 )
-from raycaster.verif.leaf import Leaf
 
 P, Q = (1, 0, 1), (2, 2, 0)
 """The axes p and q, indexed by a plane's axis: p is y unless the plane is on y, q is z unless it is on z."""

@@ -10,10 +10,11 @@ import pytest
 from vectors import any_word
 
 from raycaster.buses import BUSES
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import bit, reset_signal
 from raycaster.rtl.bus.buses import BRIDGES
 from raycaster.rtl.common.interfaces import AvalonPort
-from raycaster.rtl.common.widths import LANES, bit
-from raycaster.verif.leaf import Leaf, reset_signal
+from raycaster.rtl.common.widths import LANES
 
 ADDRESS_BITS = 6
 

@@ -13,12 +13,14 @@ from vectors import AXES, ports
 from raycaster.configuration import WORLD_SIZE, Configuration, configure
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import Picture, Place, RayFate, Steps
 from raycaster.rtl.common.records import Pixel, Point, rect_of
-from raycaster.rtl.common.widths import unit_bits, unsigned
+from raycaster.rtl.common.widths import unit_bits
 from raycaster.rtl.seed.ray_unit import ray_unit
 from raycaster.screens import BEAM_SCREENS, SCREENS, Screen, Span
-from raycaster.verif.leaf import Leaf, sorted_rect, trace_cycles
+from raycaster.verif.expected import sorted_rect, trace_cycles
 
 SMALL_SCREEN = Screen(
     columns=16,

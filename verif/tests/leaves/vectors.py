@@ -7,8 +7,8 @@ import numpy as np
 
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden.random_world import EXTREMES
-from raycaster.rtl.common.widths import LANES, WORD_BITS, bit
-from raycaster.verif.leaf import reset_signal
+from raycaster.hdl.signals import bit, reset_signal
+from raycaster.rtl.common.widths import LANES, WORD_BITS
 
 EVERY_LANE = (1 << LANES) - 1
 

@@ -11,12 +11,14 @@ from raycaster.engines.beam import AIM_LATENCY, SETUP_LATENCY, beam_latency, sta
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.random_world import random_basis, random_looks
 from raycaster.golden.rays import primary_slopes
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import signed
 from raycaster.rtl.beam.beam_caster import beam_caster
 from raycaster.rtl.common.interfaces import Picture, Rects
 from raycaster.rtl.common.records import camera_of, shown_of
-from raycaster.rtl.common.widths import factor_bits, signed
+from raycaster.rtl.common.widths import factor_bits
 from raycaster.scene import UNTURNED
-from raycaster.verif.leaf import Leaf, sorted_rect
+from raycaster.verif.expected import sorted_rect
 
 
 @pytest.mark.slow_sets(

@@ -10,12 +10,12 @@ from vectors import config_id, ports
 from raycaster.engines.beam import beam_latency
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.rays import primary_slopes
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import tied
 from raycaster.rtl.beam.beam_lane import beam_lane
 from raycaster.rtl.common.interfaces import Picture
 from raycaster.rtl.common.records import Pixel, camera_of
-from raycaster.rtl.common.ties import tied
 from raycaster.rtl.common.widths import steepest_slope
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.slow_sets("beam-tiny48-s1", "beam-tiny48-s2-u2-r3-m2-c8-1")

@@ -10,10 +10,11 @@ from vectors import ports
 from raycaster.engines.beam import winner_latency
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.rays import primary_slopes
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import bit
 from raycaster.rtl.beam.beam_pass import beam_pass
 from raycaster.rtl.common.records import candidate_of, fold_of, winner_of
-from raycaster.rtl.common.widths import bit, steepest_slope
-from raycaster.verif.leaf import Leaf
+from raycaster.rtl.common.widths import steepest_slope
 
 
 @pytest.mark.slow_sets("1")

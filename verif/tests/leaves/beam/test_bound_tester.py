@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import signed
 from raycaster.rtl.beam.bound_tester import bound_tester
-from raycaster.rtl.common.widths import signed
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize("spare", [0, 2])

@@ -4,9 +4,9 @@
 import pytest
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.beam.cell_step import cell_step
 from raycaster.rtl.common.records import CellDivision
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize("place", [8, 5, 3])

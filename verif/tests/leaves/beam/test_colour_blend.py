@@ -9,11 +9,12 @@ from vectors import config_id, ports
 
 from raycaster.configuration import CHANNEL_BITS
 from raycaster.engines.beam import blend_latency, mixes
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.beam.colour_blend import colour_blend
 from raycaster.rtl.common.interfaces import Picture
 from raycaster.rtl.common.records import Pixel, seen_of
-from raycaster.rtl.common.widths import RGB_BITS, unsigned
-from raycaster.verif.leaf import Leaf
+from raycaster.rtl.common.widths import RGB_BITS
 
 
 @pytest.mark.parametrize(

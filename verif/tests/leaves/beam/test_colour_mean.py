@@ -5,9 +5,9 @@ import pytest
 from vectors import ports
 
 from raycaster.configuration import CHANNEL_BITS, MOST_REFLECTIONS
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.beam.colour_mean import colour_mean
-from raycaster.rtl.common.widths import unsigned
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize("behind", [0, 1, 3])

@@ -5,9 +5,10 @@ import pytest
 from vectors import ports
 
 from raycaster.configuration import CHANNEL_BITS
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.beam.colour_mix import colour_mix
-from raycaster.rtl.common.widths import MIRROR_BITS, unsigned
-from raycaster.verif.leaf import Leaf
+from raycaster.rtl.common.widths import MIRROR_BITS
 
 
 @pytest.mark.parametrize("behind", [0, 1, 3])

@@ -6,11 +6,11 @@ from beam_vectors import beam_config
 from vectors import ports
 
 from raycaster.configuration import MOST_REFLECTIONS
+from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.beam.colour_seen import colour_seen
 from raycaster.rtl.common.interfaces import Picture
 from raycaster.rtl.common.records import seen_of, shade_of
 from raycaster.rtl.common.widths import RGB_BITS
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize("materials", [False, True])

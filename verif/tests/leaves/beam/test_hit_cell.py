@@ -9,9 +9,10 @@ from beam_vectors import beam_config
 from vectors import LAST, any_place, config_id, ports
 
 from raycaster.engines.beam import CELL_LATENCY
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import signed, unsigned
 from raycaster.rtl.beam.hit_cell import hit_cell
-from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, signed, steepest_slope, turn_bits, unsigned
-from raycaster.verif.leaf import Leaf
+from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, steepest_slope, turn_bits
 
 
 @pytest.mark.parametrize("config", [beam_config(screen="tiny", patterns=True, turn=True, reflections=2)], ids=config_id)

@@ -12,11 +12,11 @@ from vectors import AXES, LAST, any_place, config_id, ports
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.engines.beam import CELL_LATENCY, CELL_SLOPE_AT
 from raycaster.golden.world import OTHER_AXES
+from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.beam.hit_cells import hit_cells
 from raycaster.rtl.common.interfaces import Direction
 from raycaster.rtl.common.records import Point, Sight, candidate_of, turn_of, winner_of
 from raycaster.rtl.common.widths import exact_slope_bits, index_bits, steepest_slope
-from raycaster.verif.leaf import Leaf
 
 
 def to_edge(random: np.random.Generator, config: Configuration, axis: int, plane: int, eye, turned, slope):

@@ -7,10 +7,11 @@ from beam_vectors import WALK, beam_config, flat_tables, products, word
 from vectors import AXES, any_place, ports
 
 from raycaster.golden.rays import primary_slopes
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.beam.lane_start import lane_start
 from raycaster.rtl.common.records import growth_of, walk_of
-from raycaster.rtl.common.widths import DISTANCE_BITS, unsigned, walk_bits
-from raycaster.verif.leaf import Leaf
+from raycaster.rtl.common.widths import DISTANCE_BITS, walk_bits
 
 
 @pytest.mark.parametrize("config", [beam_config(screen="tiny", pixels=2), beam_config(rows=180, scale=6, pixels=2)])

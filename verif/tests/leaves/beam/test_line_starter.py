@@ -8,11 +8,12 @@ from vectors import config_id, ports
 
 from raycaster.engines.beam import AIM_LATENCY, SETUP_LATENCY
 from raycaster.golden.random_world import random_basis
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import signed, unsigned
 from raycaster.rtl.beam.line_starter import line_starter
 from raycaster.rtl.common.interfaces import Direction
 from raycaster.rtl.common.records import camera_of
-from raycaster.rtl.common.widths import BASIS_BITS, exact_slope_bits, factor_bits, signed, unsigned
-from raycaster.verif.leaf import Leaf
+from raycaster.rtl.common.widths import BASIS_BITS, exact_slope_bits, factor_bits
 
 
 @pytest.mark.parametrize(

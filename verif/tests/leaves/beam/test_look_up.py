@@ -5,10 +5,11 @@ import pytest
 from beam_vectors import any_facets, beam_config
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.beam.look_up import look_up
 from raycaster.rtl.common.records import Sight, facet_of, seen_of, winner_of
-from raycaster.rtl.common.widths import index_bits, unsigned
-from raycaster.verif.leaf import Leaf
+from raycaster.rtl.common.widths import index_bits
 
 
 @pytest.mark.parametrize("looks", [{}, {"materials": True, "patterns": True}], ids=["plain", "looks"])

@@ -4,10 +4,10 @@
 from beam_vectors import any_facets, beam_config
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.beam.mirror_look_up import mirror_look_up
 from raycaster.rtl.common.records import Reflector, facet_of, winner_of
-from raycaster.rtl.common.widths import unsigned
-from raycaster.verif.leaf import Leaf
 
 
 def test_mirror_look_up(tmp_path, random):

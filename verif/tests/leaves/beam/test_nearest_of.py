@@ -5,10 +5,10 @@ import pytest
 from beam_vectors import CANDIDATE, any_candidate, beam_config, candidate_ports, close_candidates, fraction_of
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.beam.nearest_of import nearest_of
 from raycaster.rtl.common.records import candidate_of
-from raycaster.rtl.common.widths import unsigned
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize(("count", "contest"), [(1, 2), (2, 2), (3, 2), (5, 2), (8, 2), (12, 2), (1, 3), (7, 3)])

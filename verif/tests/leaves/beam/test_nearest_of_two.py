@@ -5,9 +5,9 @@ from beam_vectors import any_candidate, by_screen, candidate_ports, close_candid
 from vectors import ports
 
 from raycaster.engines.beam import contest_latency
+from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.beam.nearest_of_two import nearest_of_two
 from raycaster.rtl.common.records import candidate_of
-from raycaster.verif.leaf import Leaf
 
 
 @by_screen

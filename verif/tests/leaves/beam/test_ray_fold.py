@@ -6,11 +6,11 @@ from beam_vectors import beam_config, beam_rays, direction_ports, folded, image_
 from vectors import config_id, ports
 
 from raycaster.engines.beam import FOLD_LATENCY
+from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.beam.ray_fold import ray_fold
 from raycaster.rtl.common.interfaces import Direction
 from raycaster.rtl.common.records import Reflector, fold_of, turn_of
 from raycaster.rtl.common.widths import DISTANCE_BITS, exact_slope_bits
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.slow_sets(

@@ -6,10 +6,10 @@ import pytest
 from beam_vectors import by_screen, flat_tables, products, row_slopes, word
 from vectors import AXES, any_place, ports
 
+from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.beam.rect_walker import rect_walker
 from raycaster.rtl.common.records import stride_of, walk_of
 from raycaster.rtl.common.widths import walk_bits
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.slow_sets("beam-vga")

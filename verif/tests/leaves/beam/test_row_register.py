@@ -4,9 +4,9 @@
 import pytest
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.beam.row_register import row_register
-from raycaster.rtl.common.widths import unsigned
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize("live", [0xFFF, 0x5C3, 0])

@@ -4,10 +4,10 @@
 from beam_vectors import by_screen, direction_ports, row_slopes
 from vectors import AXES, ports
 
+from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.beam.slope_walker import slope_walker
 from raycaster.rtl.common.interfaces import Direction
 from raycaster.rtl.common.widths import exact_slope_bits
-from raycaster.verif.leaf import Leaf
 
 
 @by_screen

@@ -4,10 +4,10 @@
 from beam_vectors import beam_config
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.beam.word_of import word_of
 from raycaster.rtl.common.records import facet_of
-from raycaster.rtl.common.widths import unsigned
-from raycaster.verif.leaf import Leaf
 
 
 def test_word_of(tmp_path, random):

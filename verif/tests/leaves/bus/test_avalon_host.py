@@ -6,10 +6,11 @@ from __future__ import annotations
 import pytest
 from vectors import EVERY_LANE, any_strobe, any_word, ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.bus.avalon_host import avalon_host
 from raycaster.rtl.common.interfaces import Access, AvalonPort
-from raycaster.rtl.common.widths import LANES, WORD_BITS, unsigned
-from raycaster.verif.leaf import Leaf
+from raycaster.rtl.common.widths import LANES, WORD_BITS
 
 
 @pytest.mark.parametrize(("patience", "latency"), [(0.0, 1), (0.3, 4), (0.8, 9)])

@@ -7,12 +7,13 @@ import pytest
 from scene_vectors import EVERY_BIT, sized
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.registers import address_bits
 from raycaster.rtl.bus.avalon_interface import avalon_interface
 from raycaster.rtl.common.interfaces import AvalonPort, Picture, Progress, SceneBus
-from raycaster.rtl.common.widths import CYCLE_BITS, WORD_BITS, unsigned
+from raycaster.rtl.common.widths import CYCLE_BITS, WORD_BITS
 from raycaster.sim.register_model import Agent
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize(

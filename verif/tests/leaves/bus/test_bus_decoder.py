@@ -6,11 +6,12 @@ from __future__ import annotations
 import pytest
 from vectors import any_word, ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.memory_map import BUTTONS, MEMORY_WORDS, RAY_TRACER, UART
 from raycaster.rtl.bus.bus_decoder import bus_decoder
 from raycaster.rtl.common.interfaces import Access, ProcessorBus
-from raycaster.rtl.common.widths import WORD_BITS, unsigned
-from raycaster.verif.leaf import Leaf
+from raycaster.rtl.common.widths import WORD_BITS
 
 
 @pytest.mark.parametrize("tracer_address_bits", [5, 6])

@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 from vectors import any_strobe, any_word, ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import bits_for, unsigned
 from raycaster.rtl.bus.word_memory import word_memory
 from raycaster.rtl.common.interfaces import Access
-from raycaster.rtl.common.widths import LANES, WORD_BITS, bits_for, unsigned
-from raycaster.verif.leaf import Leaf
+from raycaster.rtl.common.widths import LANES, WORD_BITS
 
 
 def mask_of(strobe: int) -> int:

@@ -4,9 +4,9 @@
 import pytest
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.delay_line import delay_line
-from raycaster.rtl.common.widths import unsigned
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize("cycles", [1, 2, 3, 13])

@@ -4,9 +4,9 @@
 import pytest
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import signed, unsigned
 from raycaster.rtl.common.magnitude import magnitude
-from raycaster.rtl.common.widths import signed, unsigned
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize(("value_bits", "bits"), [(2, 1), (5, 4), (10, 9), (13, 9)])

@@ -6,9 +6,9 @@ from __future__ import annotations
 import pytest
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import bit, reset_signal, unsigned
 from raycaster.rtl.common.synchroniser import synchroniser
-from raycaster.rtl.common.widths import bit, unsigned
-from raycaster.verif.leaf import Leaf, reset_signal
 
 
 @pytest.mark.parametrize("resettable", [False, True])

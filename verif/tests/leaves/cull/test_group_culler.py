@@ -13,11 +13,12 @@ from raycaster.configuration import WORLD_SIZE, Configuration, ConfigurationErro
 from raycaster.engines.engine import SETUP_LATENCY
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import Place, Rects
 from raycaster.rtl.common.records import Point
-from raycaster.rtl.common.widths import unsigned
 from raycaster.rtl.cull.group_culler import group_culler
-from raycaster.verif.leaf import Leaf, sorted_rect
+from raycaster.verif.expected import sorted_rect
 
 
 @pytest.mark.parametrize(

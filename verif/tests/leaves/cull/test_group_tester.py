@@ -9,10 +9,11 @@ from vectors import ports
 
 from raycaster.configuration import Configuration
 from raycaster.golden.rays import primary_slopes
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import signed, unsigned
 from raycaster.rtl.common.records import Facet, Walk
-from raycaster.rtl.common.widths import WIDE_BITS, exact_slope_bits, signed, unsigned, walk_bits, wide_walk_bits
+from raycaster.rtl.common.widths import WIDE_BITS, exact_slope_bits, walk_bits, wide_walk_bits
 from raycaster.rtl.cull.group_tester import group_tester
-from raycaster.verif.leaf import Leaf
 
 
 def leaf_of_tester(config: Configuration, directory) -> Leaf:

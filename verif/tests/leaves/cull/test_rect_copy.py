@@ -7,11 +7,12 @@ from vectors import AXES, any_place, ports
 
 from raycaster.configuration import configure
 from raycaster.golden.world import Rectangles
+from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.common.interfaces import Rects
 from raycaster.rtl.common.records import WideRect
 from raycaster.rtl.common.widths import WIDE_BITS
 from raycaster.rtl.cull.rect_copy import rect_copy
-from raycaster.verif.leaf import Leaf, sorted_rect
+from raycaster.verif.expected import sorted_rect
 
 BOUNDS = ("u_low", "u_high", "v_low", "v_high")
 

@@ -8,9 +8,9 @@ import random
 import pytest
 
 from raycaster.golden.tmds import Sample, encode
+from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.dvi.dvi_encoder import dvi_encoder
 from raycaster.rtl.system.ports import dvi_ports
-from raycaster.verif.leaf import Leaf
 from raycaster.verif.seeds import repeat, seed
 
 

@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from raycaster.rtl.common.widths import unsigned
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.dvi.ones_count import ones_count
-from raycaster.verif.leaf import Leaf
 
 
 def test_ones_count(tmp_path):

@@ -6,9 +6,9 @@ from __future__ import annotations
 import random
 
 from raycaster.golden.tmds import Sample, encode
-from raycaster.rtl.common.widths import bit, unsigned
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import bit, unsigned
 from raycaster.rtl.dvi.tmds_encoder import SYMBOL_BITS, tmds_encoder
-from raycaster.verif.leaf import Leaf
 from raycaster.verif.seeds import repeat, seed
 
 

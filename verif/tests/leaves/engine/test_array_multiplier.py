@@ -5,9 +5,9 @@ import pytest
 from arithmetic_vectors import factors
 from vectors import ports
 
-from raycaster.rtl.common.widths import signed
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import signed
 from raycaster.rtl.engine.array_multiplier import array_multiplier
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize(("width", "count", "kept"), [(4, 5, 9), (5, 3, 6), (10, 9, 18), (11, 9, 20)])

@@ -7,12 +7,12 @@ from unit_vectors import any_config, plain_shares
 from vectors import ports
 
 from raycaster.configuration import CHANNEL_BITS
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import tied, unsigned
 from raycaster.rtl.common.interfaces import Picture, Steps
 from raycaster.rtl.common.records import Pixel
-from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import MIRROR_BITS, RGB_BITS, unsigned
+from raycaster.rtl.common.widths import MIRROR_BITS, RGB_BITS
 from raycaster.rtl.engine.colour_combiner import colour_combiner
-from raycaster.verif.leaf import Leaf
 
 
 def mirrored(random: np.random.Generator, run_time: int) -> list[tuple[bool, int]]:

@@ -7,11 +7,11 @@ import pytest
 from unit_vectors import any_config, cases, plain_shares
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import tied, unsigned
 from raycaster.rtl.common.interfaces import Steps
-from raycaster.rtl.common.ties import tied
-from raycaster.rtl.common.widths import MIRROR_BITS, share_bits, unsigned
+from raycaster.rtl.common.widths import MIRROR_BITS, share_bits
 from raycaster.rtl.engine.colour_share import colour_share
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize("materials", [False, True])

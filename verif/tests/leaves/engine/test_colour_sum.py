@@ -6,10 +6,11 @@ from unit_vectors import any_config, cases, plain_shares
 from vectors import ports
 
 from raycaster.configuration import CHANNEL_BITS
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import Steps
-from raycaster.rtl.common.widths import share_bits, unsigned
+from raycaster.rtl.common.widths import share_bits
 from raycaster.rtl.engine.colour_sum import colour_sum
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.slow_sets("1", "8")

@@ -5,9 +5,9 @@ import pytest
 from arithmetic_vectors import SLOPE_CORNERS
 from vectors import ports
 
-from raycaster.rtl.common.widths import unsigned
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.engine.divider_step import divider_step
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize(("width", "count"), [(1, 2), (2, 3), (4, 4), (9, 9), (9, 17)])

@@ -5,9 +5,9 @@ import pytest
 from arithmetic_vectors import factors
 from vectors import ports
 
-from raycaster.rtl.common.widths import signed, unsigned
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import signed, unsigned
 from raycaster.rtl.engine.multiplier_step import multiplier_step
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize("subtract", [False, True])

@@ -5,11 +5,12 @@ from itertools import product
 
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.records import Look
-from raycaster.rtl.common.widths import RGB_BITS, unsigned
+from raycaster.rtl.common.widths import RGB_BITS
 from raycaster.rtl.engine.pattern_colour import pattern_colour
 from raycaster.scene import PATTERNS
-from raycaster.verif.leaf import Leaf
 
 
 def test_pattern_colour(tmp_path, random):

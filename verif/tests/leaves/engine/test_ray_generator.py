@@ -6,12 +6,13 @@ from unit_vectors import any_config
 from vectors import AXES, config_id, ports
 
 from raycaster.golden.rays import primary_slopes
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import Place, Slope, Steps
 from raycaster.rtl.common.records import Signs
-from raycaster.rtl.common.widths import unit_bits, unsigned
+from raycaster.rtl.common.widths import unit_bits
 from raycaster.rtl.engine.ray_generator import ray_generator
 from raycaster.screens import VIEW_DISTANCE
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize(

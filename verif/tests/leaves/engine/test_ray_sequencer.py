@@ -12,7 +12,7 @@ from raycaster.golden.random_world import random_looks
 from raycaster.rtl.engine.ray_sequencer import ray_sequencer
 from raycaster.rtl.exact.exact_control import exact_control
 from raycaster.rtl.seed.ray_control import ray_control
-from raycaster.verif.leaf import EARLY_OUT_AT, TraceCycle, ends_early, slot_length, sorted_rect, trace_cycles
+from raycaster.verif.expected import EARLY_OUT_AT, TraceCycle, ends_early, slot_length, sorted_rect, trace_cycles
 
 
 def seed_config(**options) -> Configuration:

@@ -5,9 +5,10 @@ import pytest
 from exact_vectors import exact_config
 from vectors import ports
 
-from raycaster.rtl.common.widths import index_bits, unsigned
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
+from raycaster.rtl.common.widths import index_bits
 from raycaster.rtl.engine.rect_sequencer import rect_sequencer
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize("slot_cycles", [1, 3, 9])

@@ -10,11 +10,13 @@ from raycaster.configuration import Configuration
 from raycaster.engines.beam import SETUP_LATENCY
 from raycaster.golden.random_world import random_basis, random_looks
 from raycaster.golden.rays import primary_slopes
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import Direction, Rects
 from raycaster.rtl.common.records import Look, Point, facet_of, growth_of, walk_of
-from raycaster.rtl.common.widths import DISTANCE_BITS, exact_slope_bits, unsigned, walk_bits
+from raycaster.rtl.common.widths import DISTANCE_BITS, exact_slope_bits, walk_bits
 from raycaster.rtl.engine.rect_setup import rect_setup
-from raycaster.verif.leaf import Leaf, sorted_rect
+from raycaster.verif.expected import sorted_rect
 
 
 def any_slope(random: np.random.Generator, config: Configuration) -> np.ndarray:

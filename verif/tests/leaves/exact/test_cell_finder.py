@@ -9,11 +9,12 @@ from vectors import LAST, ports
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.golden.world import OTHER_AXES
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import Eye, Slope, Steps
 from raycaster.rtl.common.records import Signs, surface_of
-from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, unsigned
+from raycaster.rtl.common.widths import exact_slope_bits, eye_bits
 from raycaster.rtl.exact.cell_finder import cell_finder
-from raycaster.verif.leaf import Leaf
 
 
 @by_turn

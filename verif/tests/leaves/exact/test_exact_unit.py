@@ -9,11 +9,13 @@ from vectors import config_id, ports
 
 from raycaster.golden.random_world import random_basis
 from raycaster.golden.rays import primary_slopes
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import Picture, Place, RayFate, Steps
 from raycaster.rtl.common.records import Pixel, camera_of, rect_of, surface_of
-from raycaster.rtl.common.widths import unit_bits, unsigned
+from raycaster.rtl.common.widths import unit_bits
 from raycaster.rtl.exact.exact_unit import exact_unit
-from raycaster.verif.leaf import Leaf, sorted_rect, trace_cycles
+from raycaster.verif.expected import sorted_rect, trace_cycles
 
 
 def held_inputs(camera, background, reflections) -> dict[str, int]:

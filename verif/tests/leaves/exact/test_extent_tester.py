@@ -8,9 +8,10 @@ from exact_vectors import by_reflections, exact_config
 from vectors import LAST, ports
 
 from raycaster.configuration import WORLD_SIZE
-from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, signed, unsigned
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import signed, unsigned
+from raycaster.rtl.common.widths import exact_slope_bits, eye_bits
 from raycaster.rtl.exact.extent_tester import extent_tester
-from raycaster.verif.leaf import Leaf
 
 
 @by_reflections

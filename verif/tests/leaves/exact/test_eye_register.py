@@ -5,12 +5,12 @@ from exact_vectors import by_reflections, exact_config, two_complement
 from vectors import AXES, LAST, ports
 
 from raycaster.configuration import WORLD_SIZE
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import bit, unconnected, unsigned
 from raycaster.rtl.common.interfaces import Eye, Steps
 from raycaster.rtl.common.records import Point, Signs, Surface, mirror_of
-from raycaster.rtl.common.ties import unconnected
-from raycaster.rtl.common.widths import bit, eye_bits, unsigned
+from raycaster.rtl.common.widths import eye_bits
 from raycaster.rtl.exact.eye_register import eye_register
-from raycaster.verif.leaf import Leaf
 
 
 @by_reflections

@@ -6,9 +6,9 @@ from itertools import product
 import pytest
 from vectors import ports
 
-from raycaster.rtl.common.widths import signed, unsigned
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import signed, unsigned
 from raycaster.rtl.exact.hit_component import hit_component
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize(

@@ -6,11 +6,12 @@ from fractions import Fraction
 from exact_vectors import by_reflections, by_turn, exact_config
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.records import Surface
-from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, unsigned
+from raycaster.rtl.common.widths import exact_slope_bits, eye_bits
 from raycaster.rtl.exact.nearest_hit import nearest_hit
-from raycaster.verif.leaf import Leaf
 
 
 @by_turn

@@ -5,11 +5,11 @@ import pytest
 from vectors import ports
 
 from raycaster.configuration import configure
+from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.common.interfaces import Eye, Slope
 from raycaster.rtl.common.records import Signs, camera_of, mirror_of
 from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, light_slope_bits
 from raycaster.rtl.exact.ray_switch import ray_switch
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize("reflections", [1, 2])

@@ -11,11 +11,13 @@ from vectors import AXES, LAST, ports
 from raycaster.configuration import WORLD_SIZE, Configuration
 from raycaster.golden.random_world import EXTREMES, random_camera, random_rectangles
 from raycaster.golden.world import Rectangles
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import Eye, Slope, Steps
 from raycaster.rtl.common.records import Rect, Signs, mirror_of
-from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, unsigned
+from raycaster.rtl.common.widths import exact_slope_bits, eye_bits
 from raycaster.rtl.exact.rect_tester import rect_tester
-from raycaster.verif.leaf import Leaf, sorted_rect
+from raycaster.verif.expected import sorted_rect
 
 LATENCY = 3
 

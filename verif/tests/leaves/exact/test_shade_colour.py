@@ -3,10 +3,11 @@
 
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.records import Colour
-from raycaster.rtl.common.widths import RGB_BITS, SHADE_BITS, unsigned
+from raycaster.rtl.common.widths import RGB_BITS, SHADE_BITS
 from raycaster.rtl.exact.shade_colour import shade_colour
-from raycaster.verif.leaf import Leaf
 
 
 def test_shade_colour(tmp_path):

@@ -7,11 +7,12 @@ from vectors import LAST, ports
 
 from raycaster.configuration import WORLD_SIZE, configure
 from raycaster.golden.random_world import EXTREMES
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import Eye, Slope, Steps
 from raycaster.rtl.common.records import Signs, camera_of, surface_of
-from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, light_slope_bits, unsigned
+from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, light_slope_bits
 from raycaster.rtl.exact.shadow_ray import shadow_ray
-from raycaster.verif.leaf import Leaf
 
 CASES = 200
 

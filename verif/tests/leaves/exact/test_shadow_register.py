@@ -9,10 +9,11 @@ from vectors import ports
 
 from raycaster.configuration import WORLD_SIZE, configure
 from raycaster.engines.exact import AIM_CYCLES
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import Steps
-from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, light_slope_bits, unsigned
+from raycaster.rtl.common.widths import exact_slope_bits, eye_bits, light_slope_bits
 from raycaster.rtl.exact.shadow_register import shadow_register
-from raycaster.verif.leaf import Leaf
 
 CYCLES = 2000
 LAST_AIM = 1 << AIM_CYCLES - 1

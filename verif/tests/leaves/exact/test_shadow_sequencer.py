@@ -3,10 +3,10 @@
 
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import ShadowPass
-from raycaster.rtl.common.widths import unsigned
 from raycaster.rtl.exact.shadow_sequencer import shadow_sequencer
-from raycaster.verif.leaf import Leaf
 
 AIM = 4
 """Cycles in which a shadow ray is computed."""

@@ -5,10 +5,11 @@ from exact_vectors import exact_config
 from vectors import ports
 
 from raycaster.golden.random_world import random_basis
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import signed, unsigned
 from raycaster.rtl.common.interfaces import Steps
-from raycaster.rtl.common.widths import exact_slope_bits, signed, unit_bits, unsigned
+from raycaster.rtl.common.widths import exact_slope_bits, unit_bits
 from raycaster.rtl.exact.slope_component import slope_component
-from raycaster.verif.leaf import Leaf
 
 
 def test_slope_component(tmp_path, random):

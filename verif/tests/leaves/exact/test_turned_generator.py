@@ -7,11 +7,12 @@ from exact_vectors import basis_inputs, exact_config, slope_inputs
 from vectors import config_id, ports
 
 from raycaster.golden.random_world import random_basis
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import Place, Slope, Steps
 from raycaster.rtl.common.records import Signs, camera_of
-from raycaster.rtl.common.widths import exact_slope_bits, unit_bits, unsigned
+from raycaster.rtl.common.widths import exact_slope_bits, unit_bits
 from raycaster.rtl.exact.turned_generator import turned_generator
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize(

@@ -9,14 +9,15 @@ from vectors import ports
 
 from raycaster.configuration import WORLD_SIZE
 from raycaster.golden.random_world import EXTREMES
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.common.interfaces import SceneBus
 from raycaster.rtl.common.records import camera_of
-from raycaster.rtl.common.widths import WORD_BITS, unsigned
+from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.rtl.scene.camera_mem import camera_mem
 from raycaster.scene import UNTURNED
 from raycaster.sim.register_model import AXES, CameraWords
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize("light", [False, True], ids=["no light", "light"])

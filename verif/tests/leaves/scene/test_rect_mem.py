@@ -8,12 +8,14 @@ import pytest
 from scene_vectors import CYCLES, EVERY_BIT, label, random_bus, rectangle_words, sized
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.common.interfaces import Rects, SceneBus
-from raycaster.rtl.common.widths import WORD_BITS, unsigned
+from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.rtl.scene.rect_mem import rect_mem
 from raycaster.sim.register_model import Table
-from raycaster.verif.leaf import Leaf, sorted_rect
+from raycaster.verif.expected import sorted_rect
 
 
 def bits_of(flags) -> int:

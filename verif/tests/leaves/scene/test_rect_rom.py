@@ -11,11 +11,12 @@ import pytest
 from scene_vectors import fixed_config
 
 from raycaster.fixed import FixedRectangle, varying_bits
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import bit
 from raycaster.rtl.common.interfaces import Rects
-from raycaster.rtl.common.widths import bit, index_bits
+from raycaster.rtl.common.widths import index_bits
 from raycaster.rtl.scene.rect_rom import rect_rom
 from raycaster.tools import run_yosys
-from raycaster.verif.leaf import Leaf
 from raycaster.verif.seeds import repeat, seed
 
 

@@ -7,12 +7,12 @@ import pytest
 from scene_vectors import CYCLES, EVERY_BIT
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import SceneBus
-from raycaster.rtl.common.widths import unsigned
 from raycaster.rtl.scene.rect_slot import rect_slot
 from raycaster.rtl.scene.written_rect import PLACE_BITS, PLACES, Copies
 from raycaster.sim.register_model import Word
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize("number", [0, 3])

@@ -7,12 +7,13 @@ import pytest
 from scene_vectors import label, rectangle_words, sized
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
 from raycaster.registers import register_map
 from raycaster.rtl.common.records import rect_of
 from raycaster.rtl.scene.rect_sorter import rect_sorter
 from raycaster.rtl.scene.written_rect import written_of
 from raycaster.sim.register_model import Table
-from raycaster.verif.leaf import Leaf, sorted_rect
+from raycaster.verif.expected import sorted_rect
 
 LOOKS = [
     {"engine": "exact"}, {"engine": "exact", "materials": True}, {"engine": "beam", "patterns": True},

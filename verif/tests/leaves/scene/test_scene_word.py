@@ -8,11 +8,12 @@ from myhdl import Signal, intbv
 from scene_vectors import CYCLES, EVERY_BIT, random_bus
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import SceneBus
-from raycaster.rtl.common.widths import WORD_BITS, unsigned
+from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.rtl.scene.scene_word import scene_word
 from raycaster.sim.register_model import Word
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize(

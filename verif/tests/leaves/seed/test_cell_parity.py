@@ -6,9 +6,10 @@ from unit_vectors import any_config
 from vectors import ports
 
 from raycaster.configuration import WORLD_SIZE
-from raycaster.rtl.common.widths import CELL_BITS, position_bits, signed, unsigned
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import signed, unsigned
+from raycaster.rtl.common.widths import CELL_BITS, position_bits
 from raycaster.rtl.seed.cell_parity import cell_parity
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize("fraction_bits", [0, 1, 8])

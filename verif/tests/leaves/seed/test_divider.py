@@ -8,9 +8,10 @@ from vectors import ports
 
 from raycaster.configuration import Configuration
 from raycaster.golden import seed_engine
-from raycaster.rtl.common.widths import SLOPE_BITS, position_bits, product_bits, unsigned
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
+from raycaster.rtl.common.widths import SLOPE_BITS, position_bits, product_bits
 from raycaster.rtl.seed.divider import divider
-from raycaster.verif.leaf import Leaf
 
 
 def dividends_and_divisors(config: Configuration, random: np.random.Generator) -> list[tuple[int, int]]:

@@ -11,12 +11,13 @@ from raycaster.golden import seed_engine
 from raycaster.golden.engines import model_of
 from raycaster.golden.random_world import EXTREMES, random_camera, random_looks, random_rectangles, random_slopes
 from raycaster.golden.world import OTHER_AXES, Rectangles
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import bit, unconnected, unsigned
 from raycaster.rtl.common.interfaces import Slope, Steps
 from raycaster.rtl.common.records import Origin, Ray, rect_of
-from raycaster.rtl.common.ties import unconnected
-from raycaster.rtl.common.widths import bit, position_bits, unsigned
+from raycaster.rtl.common.widths import position_bits
 from raycaster.rtl.seed.intersection_finder import intersection_finder
-from raycaster.verif.leaf import Leaf, sorted_rect, trace_cycles
+from raycaster.verif.expected import sorted_rect, trace_cycles
 
 SLOPES = (0, 1, 2, 99, 100, 160, 190, 255, 256, 510, 511)
 

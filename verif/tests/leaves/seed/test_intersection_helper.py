@@ -6,10 +6,11 @@ from arithmetic_vectors import SLOPE_CORNERS, VECTORS, arithmetic, position_corn
 from vectors import ports
 
 from raycaster.golden import seed_engine
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import signed, unsigned
 from raycaster.rtl.common.interfaces import Steps
-from raycaster.rtl.common.widths import SLOPE_BITS, position_bits, signed, unsigned
+from raycaster.rtl.common.widths import SLOPE_BITS, position_bits
 from raycaster.rtl.seed.intersection_helper import intersection_helper
-from raycaster.verif.leaf import Leaf
 
 POWERS = tuple(1 << place for place in range(SLOPE_BITS))
 

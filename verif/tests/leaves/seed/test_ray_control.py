@@ -7,7 +7,7 @@ from fates import control_leaf, flat_rectangles, group_fate_in, mask_of, random_
 from vectors import config_id
 
 from raycaster.rtl.seed.ray_control import ray_control
-from raycaster.verif.leaf import sorted_rect, step_names, trace_cycles
+from raycaster.verif.expected import sorted_rect, step_names, trace_cycles
 
 controls = pytest.mark.parametrize(
     "config",

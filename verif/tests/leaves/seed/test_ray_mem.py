@@ -6,11 +6,12 @@ from unit_vectors import any_config
 from vectors import AXES, ports
 
 from raycaster.golden.random_world import EXTREMES
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.records import Origin, Ray
-from raycaster.rtl.common.widths import AXIS_BITS, position_bits, unsigned
+from raycaster.rtl.common.widths import AXIS_BITS, position_bits
 from raycaster.rtl.seed.ray_mem import ray_mem
-from raycaster.verif.leaf import Leaf
 
 fractions = pytest.mark.parametrize(
     "config", [any_config(fraction_bits=bits) for bits in (0, 3, 8)], ids=lambda config: f"F{config.fraction_bits}"

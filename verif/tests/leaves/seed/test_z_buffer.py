@@ -5,12 +5,12 @@ import pytest
 from unit_vectors import any_config
 from vectors import AXES, config_id, ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unconnected, unsigned
 from raycaster.rtl.common.interfaces import Steps
 from raycaster.rtl.common.records import Origin, rect_of
-from raycaster.rtl.common.ties import unconnected
-from raycaster.rtl.common.widths import AXIS_BITS, MIRROR_BITS, RGB_BITS, position_bits, unsigned
+from raycaster.rtl.common.widths import AXIS_BITS, MIRROR_BITS, RGB_BITS, position_bits
 from raycaster.rtl.seed.z_buffer import z_buffer
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize(

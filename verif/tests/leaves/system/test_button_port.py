@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.memory_map import BUTTON_NAMES, INTERRUPT_BIT
-from raycaster.rtl.common.widths import WORD_BITS, unsigned
+from raycaster.rtl.common.widths import WORD_BITS
 from raycaster.rtl.system.button_port import button_port
-from raycaster.verif.leaf import Leaf
 
 
 def test_button_port(tmp_path, random):

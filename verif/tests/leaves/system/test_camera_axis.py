@@ -8,9 +8,9 @@ from itertools import product
 from vectors import STEP, ports, stepped
 
 from raycaster.configuration import COORDINATE_BITS, WORLD_SIZE
-from raycaster.rtl.common.widths import unsigned
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.system.camera_axis import camera_axis
-from raycaster.verif.leaf import Leaf
 
 
 def test_camera_axis(tmp_path, random):

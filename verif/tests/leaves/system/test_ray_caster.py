@@ -14,12 +14,14 @@ from raycaster.configuration import Configuration
 from raycaster.engines.engine import SETUP_LATENCY
 from raycaster.golden.random_world import random_basis
 from raycaster.golden.rays import primary_slopes
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.rtl.common.interfaces import Picture, Place, Rects
 from raycaster.rtl.common.records import camera_of
-from raycaster.rtl.common.widths import pixel_bits, unsigned
+from raycaster.rtl.common.widths import pixel_bits
 from raycaster.rtl.system.ray_caster import ray_caster
 from raycaster.scene import UNTURNED
-from raycaster.verif.leaf import Leaf, TraceCycle, slot_length, sorted_rect, trace_cycles
+from raycaster.verif.expected import TraceCycle, slot_length, sorted_rect, trace_cycles
 
 
 def place_after(config: Configuration, place: tuple[int, int]) -> tuple[int, int]:

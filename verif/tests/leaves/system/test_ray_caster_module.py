@@ -23,6 +23,7 @@ from raycaster.golden.engines import model_of
 from raycaster.golden.random_world import random_basis
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
+from raycaster.hdl.leaf import Leaf
 from raycaster.program import basis_fields
 from raycaster.registers import register_map
 from raycaster.rtl.system.ports import module_ports
@@ -30,7 +31,6 @@ from raycaster.rtl.system.ray_caster_module import ray_caster_module
 from raycaster.scene import UNTURNED, Basis
 from raycaster.screens import Span
 from raycaster.sim.register_model import RegisterFile, Request
-from raycaster.verif.leaf import Leaf
 
 LONG_BLANKING = replace(SMALL_SCREEN, horizontal=Span(32, 8, 24, 44, active_high=False))
 """A screen with enough blanking for a beam engine whose camera can turn to set up a line."""

@@ -24,12 +24,13 @@ from raycaster.configuration import Configuration
 from raycaster.golden.engines import model_of
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
+from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.common.interfaces import Picture, Progress, Rects, vga_of
 from raycaster.rtl.common.records import Point
 from raycaster.rtl.system.ray_caster_module import RENDERERS
 from raycaster.rtl.system.ray_caster_renderer import ray_caster_renderer
 from raycaster.screens import Screen, Span
-from raycaster.verif.leaf import Leaf, sorted_rect, trace_cycles
+from raycaster.verif.expected import sorted_rect, trace_cycles
 
 COARSE = Screen(
     columns=8,

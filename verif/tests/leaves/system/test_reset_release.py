@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from vectors import ports
 
+from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.system.reset_release import reset_release
-from raycaster.verif.leaf import Leaf
 
 HOLD_CYCLES = 16
 """Cycles for which reset continues after its cause is over."""

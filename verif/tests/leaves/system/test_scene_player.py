@@ -10,13 +10,13 @@ from conftest import SMALL_SCENE
 from vectors import ports, stepped
 
 from raycaster.configuration import configure
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.program import scene_words
 from raycaster.registers import address_bits, register_map
 from raycaster.rtl.common.interfaces import AvalonPort
-from raycaster.rtl.common.widths import unsigned
 from raycaster.rtl.system.scene_player import BUTTONS, scene_player
 from raycaster.scene import load_scene
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.parametrize("rectangles", [4, 12])

@@ -17,13 +17,13 @@ from raycaster.configuration import WORLD_SIZE
 from raycaster.golden.engines import model_of
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
+from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.system.camera_axis import STEP
 from raycaster.rtl.system.ports import scene_system_ports
 from raycaster.rtl.system.reset_release import HOLD_CYCLES
 from raycaster.rtl.system.scene_player import BUTTONS
 from raycaster.rtl.system.scene_system import scene_system
 from raycaster.scene import Camera, Rectangle, Scene
-from raycaster.verif.leaf import Leaf
 
 
 def test_scene_system(tmp_path, random):

@@ -6,11 +6,12 @@ from __future__ import annotations
 import pytest
 from vectors import any_strobe, ports
 
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import unsigned
 from raycaster.memory_map import clocks_per_bit
 from raycaster.rtl.common.interfaces import Access
-from raycaster.rtl.common.widths import LANES, unsigned
+from raycaster.rtl.common.widths import LANES
 from raycaster.rtl.system.uart_transmitter import DATA_BITS, FRAME_BITS, uart_transmitter
-from raycaster.verif.leaf import Leaf
 
 
 def test_clocks_per_bit():

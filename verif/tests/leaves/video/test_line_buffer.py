@@ -5,9 +5,10 @@ import pytest
 from vectors import ports
 
 from raycaster.configuration import configure
-from raycaster.rtl.common.widths import bits_for, offset_bits, pixel_bits, unsigned
+from raycaster.hdl.leaf import Leaf
+from raycaster.hdl.signals import bits_for, unsigned
+from raycaster.rtl.common.widths import offset_bits, pixel_bits
 from raycaster.rtl.video.line_buffer import line_buffer
-from raycaster.verif.leaf import Leaf
 
 
 @pytest.mark.slow_sets("160", "5")

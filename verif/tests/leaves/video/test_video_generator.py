@@ -7,11 +7,11 @@ import pytest
 from vectors import ports
 
 from raycaster.configuration import Configuration, configure
+from raycaster.hdl.leaf import Leaf
 from raycaster.rtl.common.interfaces import Scan, Vga
 from raycaster.rtl.common.records import Pixel
 from raycaster.rtl.video.video_generator import video_generator
 from raycaster.screens import SCREENS, Screen, Span
-from raycaster.verif.leaf import Leaf
 
 
 def video_model(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`python -m raycaster.verif.rtl_lint`: find hardware sources that MyHDL converts wrongly, or not at all.
+"""`python -m raycaster.hdl.lint`: find hardware sources that MyHDL converts wrongly, or not at all.
 
 MyHDL computes with integers of any size, Verilog with the width of the widest operand. So where a result is compared,
 shifted, sliced or added to again, MyHDL keeps a carry that Verilog loses; no tool warns. In this project each process
@@ -25,9 +25,7 @@ from dataclasses import dataclass
 from itertools import repeat
 from pathlib import Path
 
-import raycaster.rtl
-from raycaster.errors import UserError
-from raycaster.options import run_command
+from raycaster.hdl.errors import UserError
 
 DECORATORS = {"always", "always_comb", "always_seq", "instance"}
 ALLOWED_CALLS = {"intbv", "modbv", "concat", "int", "len", "range", "bool"}
@@ -277,16 +275,14 @@ class _Process:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit code."""
     parser = argparse.ArgumentParser(
-        prog="python -m raycaster.verif.rtl_lint",
+        prog="python -m raycaster.hdl.lint",
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument(
-        "paths", nargs="*", type=Path, metavar="PATH", help="files and directories (default: all of the hardware)"
-    )
+    parser.add_argument("paths", nargs="+", type=Path, metavar="PATH", help="files and directories")
     arguments = parser.parse_args(argv)
     files: list[Path] = []
-    for path in arguments.paths or [Path(raycaster.rtl.__path__[0])]:
+    for path in arguments.paths:
         files += sorted(path.rglob("*.py")) if path.is_dir() else [path]
     findings = [finding for path in files for finding in check(path)]
     for finding in findings:
@@ -296,4 +292,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
-    run_command(main)
+    try:
+        sys.exit(main())
+    except UserError as error:
+        sys.exit(f"error: {error}")

@@ -7,17 +7,9 @@ import inspect
 import re
 import textwrap
 from collections.abc import Mapping, Sequence
-from typing import Any, get_args
+from typing import Any
 
-from raycaster.configuration import OPTIONS
-from raycaster.engines import beam, engine, exact
-from raycaster.rtl.common import widths
-from raycaster.rtl.common.interfaces import Interface
-from raycaster.rtl.common.records import Record
-
-_SHARED = {name: value for module in (engine, beam, exact, widths) for name, value in vars(module).items()}
-"""Latencies and widths that a docstring may name, even if the block's code does not use them."""
-
+from raycaster.hdl.records import Interface, Record
 
 CLOCK = "the clock."
 """Text of a clock that needs no comment."""
@@ -45,7 +37,9 @@ def split(purpose: str) -> tuple[str, Mapping[str, str]]:
     return re.sub(r"(?://\s*\n)+\Z", "", head), texts
 
 
-def commented(ports: Sequence[str], texts: Mapping[str, str], block: Any, width: int) -> Mapping[str, str]:
+def commented(
+    ports: Sequence[str], texts: Mapping[str, str], block: Any, width: int, vocabulary: Mapping[str, Any]
+) -> Mapping[str, str]:
     """Return the comment above each port.
 
     The text of an interface goes above the first of its ports, after a name for all of them, as in `vga_*`. Above each
@@ -56,12 +50,13 @@ def commented(ports: Sequence[str], texts: Mapping[str, str], block: Any, width:
         texts: texts of the arguments, by name.
         block: the block that has the ports.
         width: largest width of a line.
+        vocabulary: as for `in_verilog`.
     """
     comments = dict.fromkeys(ports, "")
     given = _given(block)
 
     def add(port: str, text: str) -> None:
-        text = _without_absent(in_verilog(text, block))
+        text = _without_absent(in_verilog(text, block, vocabulary))
         lines = textwrap.wrap(text, width - len("    // "), break_long_words=False, break_on_hyphens=False)
         comments[port] += "".join(f"    // {line}\n" for line in lines)
 
@@ -100,46 +95,35 @@ def _given(block: Any) -> Mapping[str, Any]:
     return inspect.signature(block.func).bind(*block.args, **block.kwargs).arguments
 
 
-def in_verilog(text: str, block: Any) -> str:
+def in_verilog(text: str, block: Any, vocabulary: Mapping[str, Any]) -> str:
     """Replace Python names in a text by their Verilog counterparts.
 
-    Names in backticks become numbers if a block's arguments or module have them, and a clock frequency becomes MHz. A
-    choice that the text depends on, `config.turn`, becomes the user's option, `TURN=1`. An attribute,
-    `steps.add_colour`, becomes the signal `steps_add_colour`.
+    Names in backticks become numbers if a block's arguments or module have them, and a clock frequency becomes MHz; a
+    function of the block's arguments is called. A name with dots that the vocabulary has, such as `config.turn`,
+    becomes the text there. Any other attribute, `steps.add_colour`, becomes the signal `steps_add_colour`.
 
     Args:
         text: text from a docstring or comment, with names such as `config.units`, `unit_bits` and `SETUP_LATENCY`.
         block: the block that has the text.
+        vocabulary: values of further names that may be in backticks, and texts for names with dots.
     """
     given = _given(block)
-    config = given.get("config")
-    screen = {"screen": config.screen_geometry, "doubling": config.screen_geometry.doubling} if config else {}
-    known: Mapping[str, Any] = {**screen, **_SHARED, **block.func.__globals__, **given}
+    known: Mapping[str, Any] = {**vocabulary, **block.func.__globals__, **given}
 
     def number(match: re.Match[str]) -> str:
         name, *attributes = match[1].split(".")
         value = known.get(name)
         for attribute in attributes:
             value = getattr(value, attribute, None)
-        if inspect.isfunction(value) and config and [*inspect.signature(value).parameters] == ["config"]:
-            value = value(config)
+        if inspect.isfunction(value) and (needed := inspect.signature(value).parameters.keys()) <= given.keys():
+            value = value(**{name: given[name] for name in needed})
         if not isinstance(value, int) or isinstance(value, bool):
             return match[1] + match[2]
         return f"{value / 1e6:g} MHz" if match[2] else str(value)
 
     text = re.sub(r"`([\w.]+)`((?: Hz)?)", number, text)
-    text = re.sub(r"\bconfig\.(\w+)\b", _option, text)
+    text = re.sub(r"\b\w+\.\w+\b", lambda match: str(vocabulary.get(match[0], match[0])), text)
     return re.sub(r"\b([a-z]\w*)\.([a-z]\w*)\b", r"\1_\2", text)
-
-
-def _option(match: re.Match[str]) -> str:
-    """Return the option of `make` or `raycaster` for an attribute of the configuration that is true."""
-    if match[1] == "fixed":
-        return "FIX"
-    if match[1] not in OPTIONS:
-        return match[0]
-    annotation = OPTIONS[match[1]].annotation
-    return f"{match[1].upper()}=1" if bool in (annotation, *get_args(annotation)) else match[1].upper()
 
 
 def _without_absent(text: str) -> str:

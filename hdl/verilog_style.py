@@ -15,7 +15,7 @@ from myhdl._block import _Block
 from myhdl._enum import EnumItemType
 from myhdl._instance import _Instantiator
 
-from raycaster.convert.port_comments import commented, in_verilog, split
+from raycaster.hdl.port_comments import commented, in_verilog, split
 
 LINE_LENGTH = 120
 
@@ -28,7 +28,7 @@ _OPERATORS = {
 }
 
 
-def restyle(text: str, block: _Block, ports: Sequence[str]) -> str:
+def restyle(text: str, block: _Block, ports: Sequence[str], vocabulary: Mapping[str, Any]) -> str:
     """Restyle one module.
 
     A comment above a process is kept. Port lists become ANSI style, codes of states become names, constant expressions
@@ -38,10 +38,11 @@ def restyle(text: str, block: _Block, ports: Sequence[str]) -> str:
         text: MyHDL's output.
         block: the block that was converted.
         ports: names of the module's ports, in order.
+        vocabulary: meanings of Python names in comments.
     """
     for sub in block.subs:
         if isinstance(sub, _Instantiator):
-            text = _comment(text, sub, block)
+            text = _comment(text, sub, block, vocabulary)
     # A block that declares nothing needs no name, which would cost Icarus a thread at each evaluation.
     text = re.sub(r"^(always [^\n]*begin): \w+\n(?! *(?:integer|reg)\b)", r"\1\n", text, flags=re.M)
     text = re.sub(r"^always @\(([^)]*)\)", _sensitivity, text, flags=re.M)
@@ -54,7 +55,7 @@ def restyle(text: str, block: _Block, ports: Sequence[str]) -> str:
     text = _size_words(text)
     text = "\n".join(map(_drop_parentheses, text.splitlines()))
     text = _declare_fields(text)
-    text = _declare_ports(text, ports, block)
+    text = _declare_ports(text, ports, block, vocabulary)
     text = _declare_constants(text)
     lines = (wrapped for line in text.splitlines() for wrapped in _wrap(line.rstrip()))
     text = re.sub(r"\n+endmodule\n*", "\n\nendmodule\n", "\n".join(lines).strip("\n") + "\n")
@@ -72,13 +73,13 @@ def _size_words(text: str) -> str:
     return re.sub(r"\b(\w+) (<?=) (\d+)'h([0-9a-f]+);", size, text)
 
 
-def _comment(text: str, process: _Instantiator, block: _Block) -> str:
+def _comment(text: str, process: _Instantiator, block: _Block, vocabulary: Mapping[str, Any]) -> str:
     """Put the comment above a process, if there is one, above it in the Verilog."""
     comment = inspect.getcomments(process.funcobj)
     if not comment:
         return text
     words = " ".join(line.lstrip("# ").rstrip() for line in comment.splitlines())
-    purpose = f"// {in_verilog(words, block)}\n"
+    purpose = f"// {in_verilog(words, block, vocabulary)}\n"
     label = re.escape(process.funcobj.__name__.lower())
     text, found = re.subn(
         rf"^(always [^\n]*begin: {label}\n)", lambda match: purpose + match[1], text, flags=re.M | re.I
@@ -179,7 +180,7 @@ def _is_one_group(text: str) -> bool:
     return False
 
 
-def _declare_ports(text: str, ports: Sequence[str], block: _Block) -> str:
+def _declare_ports(text: str, ports: Sequence[str], block: _Block, vocabulary: Mapping[str, Any]) -> str:
     """Declare each port once, in the module's head below its comment, and put the module's text above the head."""
     head = re.search(r"^module (\w+) \(\n[^)]*\);\n((?://[^\n]*\n)*)", text, re.M)
     if not head:
@@ -194,8 +195,8 @@ def _declare_ports(text: str, ports: Sequence[str], block: _Block) -> str:
         rows.append((f"{direction:<6} {'reg' if 'reg' in words else 'wire':<4}{sign}{width}", port))
     pad = max(len(left) for left, _ in rows)
     purpose, texts = split(purpose)
-    comments = commented(ports, texts, block, LINE_LENGTH)
-    purpose = in_verilog(purpose, block)
+    comments = commented(ports, texts, block, LINE_LENGTH, vocabulary)
+    purpose = in_verilog(purpose, block, vocabulary)
     declarations = ",\n".join(f"{comments[port]}    {left:<{pad}} {port}" for left, port in rows)
     return f"{before}{purpose}module {name} (\n{declarations}\n);\n{body}"
 

@@ -15,7 +15,7 @@ from myhdl._instance import _Instantiator
 from myhdl._ShadowSignal import _SliceSignal
 from myhdl._Signal import _Signal
 
-from raycaster.rtl.common.records import Record
+from raycaster.hdl.records import Record
 
 
 @dataclass(frozen=True)

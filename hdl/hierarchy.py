@@ -4,8 +4,7 @@
 Blocks are converted from the leaves up. Each is converted as a top level, and in its parent's conversion it is replaced
 by text that instantiates the module. Blocks of one function share a module if their arguments are alike: see `_kind`.
 
-This package, `raycaster.rtl.common.records`, `ties` and `widths`, and `raycaster.docs.blocks` import MyHDL's internals,
-so its version is pinned, and tests check the internals that they rely on.
+This package imports MyHDL's internals, so its version is pinned, and tests check the internals that it relies on.
 """
 
 from __future__ import annotations
@@ -26,13 +25,13 @@ from myhdl._ShadowSignal import _ShadowSignal, _SliceSignal
 from myhdl._Signal import Constant, _Signal
 from myhdl.conversion._toVerilog import _ToVerilogConvertor, toVerilog
 
-from raycaster.convert.elaboration import elaboration
-from raycaster.convert.inside import block_arguments, block_ports, signals_in
-from raycaster.convert.verilog_style import restyle
-from raycaster.errors import UserError
-from raycaster.rtl.common.given import GivenVerilog, load_words
-from raycaster.rtl.common.records import Field
-from raycaster.rtl.common.ties import Tied, Unconnected
+from raycaster.hdl.elaboration import elaboration
+from raycaster.hdl.errors import UserError
+from raycaster.hdl.given import GivenVerilog, load_words
+from raycaster.hdl.inside import block_arguments, block_ports, signals_in
+from raycaster.hdl.records import Field
+from raycaster.hdl.signals import Tied, Unconnected
+from raycaster.hdl.verilog_style import restyle
 
 
 class HierarchyError(UserError):
@@ -156,7 +155,9 @@ def prefixed(name: str, prefix: str) -> str:
     return name if f"{name}_".startswith(prefix) else f"{prefix}{name}"
 
 
-def convert_hierarchy(top: _Block, directory: Path, header: str, prefix: str = "") -> list[Module]:
+def convert_hierarchy(
+    top: _Block, directory: Path, header: str, prefix: str = "", vocabulary: Mapping[str, Any] | None = None
+) -> list[Module]:
     """Write one Verilog file for each distinct block below and including `top`.
 
     Args:
@@ -164,6 +165,7 @@ def convert_hierarchy(top: _Block, directory: Path, header: str, prefix: str = "
         directory: directory for the files, which exists.
         header: comment lines for the head of each file; `{module}` is replaced by the module's name.
         prefix: prefix of the names of modules and files; instances keep their names.
+        vocabulary: meanings of Python names in docstrings and comments; see `raycaster.hdl.port_comments.in_verilog`.
 
     Returns:
         The modules, each after those that it instantiates; `top` is the last.
@@ -175,12 +177,12 @@ def convert_hierarchy(top: _Block, directory: Path, header: str, prefix: str = "
             its module, or has the name of another block.
     """
     with elaboration():
-        return _Converter(directory, header, prefix).convert(top)
+        return _Converter(directory, header, prefix, vocabulary or {}).convert(top)
 
 
 class _Converter:
-    def __init__(self, directory: Path, header: str, prefix: str):
-        self._directory, self._header, self._prefix = directory, header, prefix
+    def __init__(self, directory: Path, header: str, prefix: str, vocabulary: Mapping[str, Any]):
+        self._directory, self._header, self._prefix, self._vocabulary = directory, header, prefix, vocabulary
         self._kinds: dict[str, Any] = {}
         self._modules: dict[str, Module] = {}
 
@@ -291,7 +293,7 @@ class _Converter:
         text = path.read_text().replace("endmodule\n", f"{declared}endmodule\n")
         for constant in convertor.constants:
             constant._clear()
-        path.write_text(restyle(text, block, [port.name for port in convertor.ports]))
+        path.write_text(restyle(text, block, [port.name for port in convertor.ports], self._vocabulary))
         return convertor.ports
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Instance ports without a signal: tied to a constant, or left open."""
+"""Signals of a given width; and instance ports without a signal: tied to a constant, or left open."""
 
-from myhdl import intbv
+from myhdl import ConcatSignal, ResetSignal, Signal, intbv
 from myhdl._Signal import _Signal
 
 
@@ -39,3 +39,33 @@ def tied(value: int, like: int | _Signal) -> Tied:
 def unconnected(like: int | _Signal) -> Unconnected:
     """Return a signal for an instance's output that nothing reads; `like` as for `initial`."""
     return Unconnected(initial(0, like))
+
+
+def bits_for(count: int) -> int:
+    """Width of a counter with this many values; a signal has at least one bit."""
+    return max(1, (count - 1).bit_length())
+
+
+def unsigned(width: int) -> _Signal:
+    """Return an unsigned signal, initially 0."""
+    return Signal(intbv(0)[width:])
+
+
+def signed(width: int) -> _Signal:
+    """Return a two's complement signal, initially 0."""
+    return Signal(intbv(0, min=-(1 << (width - 1)), max=1 << (width - 1)))
+
+
+def bit() -> _Signal:
+    """Return a one-bit signal, initially low."""
+    return Signal(bool(0))
+
+
+def side_by_side(signals: list) -> _Signal:
+    """Return the signals as one vector, the first in the lowest bits."""
+    return ConcatSignal(*reversed(signals)) if len(signals) > 1 else signals[0]
+
+
+def reset_signal() -> ResetSignal:
+    """Return a reset as all modules use it: synchronous and active high."""
+    return ResetSignal(0, active=1, isasync=False)

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: MIT
+"""Meanings of Python names in the hardware's docstrings and comments, for their Verilog."""
+
+from collections.abc import Mapping
+from typing import Any, get_args
+
+from raycaster.configuration import OPTIONS
+from raycaster.engines import beam, engine, exact
+from raycaster.rtl.common import widths
+
+
+def _option(name: str) -> str:
+    """Return the option of `make` or `raycaster` for an attribute of the configuration that is true."""
+    annotation = OPTIONS[name].annotation
+    return f"{name.upper()}=1" if bool in (annotation, *get_args(annotation)) else name.upper()
+
+
+VOCABULARY: Mapping[str, Any] = {
+    # Latencies and widths, which a docstring may name even if the block's code does not use them.
+    **{name: value for module in (engine, beam, exact, widths) for name, value in vars(module).items()},
+    # Choices that a text depends on.
+    **{f"config.{name}": _option(name) for name in OPTIONS},
+    "config.fixed": "FIX",
+}

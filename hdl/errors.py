@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+"""Errors that the user can fix, reported in one line, and the place of a fault in a block."""
+
+from __future__ import annotations
+
+import ast
+import re
+import traceback
+from typing import Any
+
+
+class UserError(Exception):
+    """An error that the user can fix; its text is the one line that they see."""
+
+
+def fault_in_block(error: BaseException, converters: tuple[str, ...] = ()) -> str | None:
+    """Return file, line and reason of a fault in a MyHDL block, or None if the error is unrelated to MyHDL.
+
+    Args:
+        error: the error, with its traceback.
+        converters: beginnings of the names of modules in which no fault can be, as they only call the conversion.
+    """
+    if found := re.fullmatch(r"in file (.+), line (\d+):\s*(.*)", str(error), re.DOTALL):
+        return f"{found[1]}:{found[2]}: {found[3]}"
+    if isinstance(error, SyntaxError):
+        return f"{error.filename}:{error.lineno}: {error.msg}"
+    frames = list(traceback.walk_tb(error.__traceback__))
+    modules = [frame.f_globals.get("__name__", "") for frame, _ in frames]
+    if not any(module.startswith("myhdl.") for module in modules):
+        return None
+    reason = f"{type(error).__name__}: {error}"
+    # While MyHDL analyses a process, the place is in the syntax tree; while code runs, it is in a frame.
+    values = [value for frame, _ in frames for value in frame.f_locals.values()]
+    processes: list[Any] = [value.ast for value in values if hasattr(getattr(value, "ast", None), "sourcefile")]
+    nodes = [value for value in values if isinstance(value, ast.stmt | ast.expr)]
+    if processes and nodes:
+        return f"{processes[-1].sourcefile}:{processes[-1].lineoffset + nodes[-1].lineno}: {reason}"
+    for (frame, line), module in zip(reversed(frames), reversed(modules), strict=True):
+        if not module.startswith(("myhdl.", "raycaster.hdl.", *converters)):
+            return f"{frame.f_code.co_filename}:{line}: {reason}"
+    return None

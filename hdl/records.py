@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: MIT
+"""Records: fields side by side in one word, so a copy is one assignment, and a memory of records is one of words.
+
+Interfaces: groups of ports, of which each is a signal of its own.
+"""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Self
+
+from myhdl import ConcatSignal
+from myhdl._ShadowSignal import _ShadowSignal, _SliceSignal
+from myhdl._Signal import _Signal
+from myhdl._Waiter import _SignalWaiter
+
+from raycaster.hdl.signals import Signed, Tied, Unconnected, initial, tied, unsigned
+
+
+class Interface:
+    """A group of signals; generated Verilog names them group_signal."""
+
+    is_interface = True
+
+
+class Part(_SliceSignal):
+    """Bits of a port's word, which may itself be a part, or several words side by side."""
+
+    def _setName(self, hdl):
+        """Name the bits as MyHDL does, but without following the word to its own source, which is in another module."""
+        bits = self._left if self._right is None else f"{self._left}-1:{self._right}"
+        self._name = f"{self._sig._name}[{bits}]"
+
+
+class Field(Part):
+    """A record's field: read-only bits of its word. In Verilog it is a wire in the module that reads it."""
+
+    def __init__(self, word: _Signal, name: str, low: int, width: int):
+        """Create the field from bits of a word; a `Signed` width means two's complement."""
+        bits = word.val[low + width : low]
+        value = int(bits.signed()) if isinstance(width, Signed) else int(bits)
+        _ShadowSignal.__init__(self, initial(value, width))
+        self.field = name
+        self._sig, self._left, self._right = word, low + width, low
+        if width == 1:
+            self._left, self._right = low, None
+        word._slicesigs.append(self)
+        self._waiter = _SignalWaiter(self._genfuncIndex() if width == 1 else self._genfuncSlice())
+
+    def _genfuncSlice(self):
+        """Follow the word as MyHDL does, but keep the sign of a signed field."""
+        set_next: Any = _Signal.next.fset
+        while True:
+            bits = self._sig[self._left : self._right]
+            set_next(self, bits.signed() if self.min < 0 else bits)
+            yield self._sig
+
+
+class Joined(ConcatSignal):
+    """A record's word, joined from its fields' values; see `Record.joined`. In Verilog a comment names each field."""
+
+    def __init__(self, parts: Mapping[str, _Signal | bool]):
+        super().__init__(*parts.values())
+        self.parts = dict(parts)
+
+    def _markRead(self):
+        """Mark the parts as read, as MyHDL does; a slice of a field also marks the field's word."""
+        self._read = True
+        for part in self._sigargs:
+            read = part
+            while isinstance(read, _SliceSignal):
+                read._markRead()
+                read = read._sig
+            read._markRead()
+
+    def toVerilog(self) -> str:
+        """Return the Verilog assignment, with one field per line."""
+        values = [_text(part) for part in self.parts.values()]
+        longest = max(map(len, values)) + 1
+        lines = [
+            f"    {value + ',' * (after < len(values)):{longest}}  // {name}"
+            for after, (name, value) in enumerate(zip(self.parts, values, strict=True), 1)
+        ]
+        return f"assign {self._name} = {{\n" + "\n".join(lines) + "\n};"
+
+
+def _text(part: Any) -> str:
+    """Return a field's value in Verilog."""
+    if isinstance(part, ConcatSignal):
+        return f"{{{', '.join(map(_text, part._args))}}}"
+    if isinstance(part, _SliceSignal) and isinstance(part._sig, Field) and not isinstance(part, Field):
+        return f"{part._sig._name}[{part._left}-1:{part._right}]"
+    return f"1'b{int(part)}" if isinstance(part, bool) else part._name
+
+
+class Record:
+    """A word with an attribute for each of its fields, the first in the highest bits.
+
+    For a port `rect`, the word becomes the Verilog port `rect_word`, and a field that is read becomes a wire such as
+    `rect_axis`. A record is driven by assigning the result of `joined` to `word`.
+
+    A field that a design lacks has no bits: it reads as 0, and its drivers are left out.
+    """
+
+    is_interface = True
+
+    def __init__(self, fields: Mapping[str, int], word: _Signal | None = None):
+        """Lay out fields.
+
+        Args:
+            fields: widths in bits by name, `Signed` for two's complement, 0 for a field that the design lacks.
+            word: an existing signal for all fields together; a new one by default.
+        """
+        width = sum(fields.values())
+        self.word = unsigned(width) if word is None else word
+        self.layout = {name: bits for name, bits in fields.items() if bits}
+        self.lacking = [name for name, bits in fields.items() if not bits]
+        for name, bits in self.layout.items():
+            width -= bits
+            setattr(self, name, Field(self.word, name, width, bits))
+        for name in self.lacking:
+            setattr(self, name, tied(0, 1))
+
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Field: ...
+
+    def twin(self) -> Self:
+        """Return a new record with the same layout."""
+        other = object.__new__(type(self))
+        Record.__init__(other, self._fields())
+        return other
+
+    def _fields(self) -> dict[str, int]:
+        return self.layout | dict.fromkeys(self.lacking, 0)
+
+    def has(self, name: str) -> bool:
+        """Return True if a field has bits; otherwise the logic that computes it is left out."""
+        return name in self.layout
+
+    def joined(self, **parts: _Signal | bool) -> Joined:
+        """Return the fields side by side, to assign to a record's word.
+
+        Args:
+            parts: a signal or a bit for each field.
+
+        Raises:
+            ValueError: a field is missing, unknown, or of another width.
+        """
+        if strange := (set(self.layout) ^ set(parts)) - set(self.lacking):
+            raise ValueError(f"{type(self).__name__}: {', '.join(sorted(strange))}: missing, or no field")
+        for name, bits in self.layout.items():
+            given = parts[name]
+            if (width := 1 if isinstance(given, bool) else len(given) or 1) != bits:
+                raise ValueError(f"{type(self).__name__}: {name} has {bits} bits, not {width}")
+        return Joined({name: parts[name] for name in self.layout})
+
+    def pack(self, values: Mapping[str, int]) -> int:
+        """Return the word with these field values, 0 for fields not named; each value is truncated to its width."""
+        word = 0
+        for name, bits in self.layout.items():
+            word = word << bits | int(values.get(name, 0)) % (1 << bits)
+        return word
+
+    def left_open(self) -> Self:
+        """Leave the record unconnected, and return it."""
+        Record.__init__(self, self._fields(), Unconnected(initial(0, self.word)))
+        return self
+
+    def slice(self, name: str) -> tuple[int, int]:
+        """Return the highest and the lowest bit of a field."""
+        names = list(self.layout)
+        low = sum(self.layout[after] for after in names[names.index(name) + 1 :])
+        return low + self.layout[name] - 1, low
+
+    def cut(self, words: _Signal, index: int) -> Self:
+        """Make the record one of several packed side by side in words, the first in the lowest bits, and return it."""
+        width = len(self.word)
+        part = Part(words, (index + 1) * width, index * width)
+        words._slicesigs.append(part)
+        Record.__init__(self, self._fields(), part)
+        return self
+
+    def tie(self, values: Mapping[str, int]) -> Self:
+        """Tie the record to these constant values, and return it."""
+        Record.__init__(self, self._fields(), Tied(initial(self.pack(values), self.word)))
+        return self
