@@ -182,14 +182,13 @@ def loop(
     while (frames is None or count < frames) and (held := window.held()) is not None:
         before = time.perf_counter()
         frame = play(held)
-        say(frame.text)
+        say(frame.text.replace("\r", ""))
         judge.look(frame)
         took = time.perf_counter() - before
         rate = 0.9 * rate + 0.1 / took if rate else 1 / took
-        parts = [f"{config.engine} engine", f"{rate:.1f} frames per second"]
-        parts += [f"{frame.clocks:,} clocks per frame, {frame.busy:,} of them computing"]
+        parts = [config.engine, f"{rate:.1f} frames/s", f"computes in {frame.busy:,} of {frame.clocks:,} clocks"]
         if judge.wrong is not None:
-            parts += [f"{judge.wrong:,} pixels differ from exact arithmetic"]
+            parts += [f"{judge.wrong:,} pixels wrong"]
         window.show(frame.picture, "    ".join(parts))
         count += 1
     return count, count / (time.perf_counter() - started)
