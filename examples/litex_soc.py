@@ -13,17 +13,21 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from litex.build.generic_platform import GenericPlatform, Pins, Subsignal
-from litex.soc.cores.gpio import GPIOOut
-from litex.soc.integration.export import get_csr_header, get_mem_header, get_soc_header
-from litex.soc.integration.soc_core import SoCCore
-from migen.genlib.io import CRG
-
 from raycaster.configuration import Configuration, configure
-from raycaster.convert.litex import add_ray_caster
 from raycaster.memory_map import MEMORY_BYTES
 from raycaster.rtl.common.interfaces import vga_of
 from raycaster.sw.firmware import DRIVER, START, build_firmware
+
+try:
+    from litex.build.generic_platform import GenericPlatform, Pins, Subsignal
+    from litex.soc.cores.gpio import GPIOOut
+    from litex.soc.integration.export import get_csr_header, get_mem_header, get_soc_header
+    from litex.soc.integration.soc_core import SoCCore
+    from migen.genlib.io import CRG
+
+    from raycaster.convert.litex import add_ray_caster
+except ModuleNotFoundError as missing:
+    raise SystemExit(f"error: {missing.name} is not installed; run: pip install 'raycaster[litex,play]'") from None
 
 PROGRAM = Path(__file__).with_suffix(".c")
 
