@@ -39,7 +39,7 @@ MAY_IMPORT = {
     "play": ("raycaster", "golden", "rtl", "sw", "convert", "sim"),
     "web": ("raycaster", "sw", "convert", "sim", "debug", "play"),
     "verif": ("raycaster", "golden", "rtl", "sw", "convert", "fit", "fpga", "sim"),
-    "report": ("raycaster", "golden", "rtl", "convert", "fit", "fpga", "sim", "verif"),
+    "report": ("raycaster", "golden", "rtl", "convert", "fit", "fpga", "sim", "web", "verif"),
     "docs": ("raycaster", "cli", "golden", "rtl", "convert", "fpga", "sim", "debug", "play", "web", "verif", "report"),
 }
 """Other folders that each folder may import from, without direct or indirect cycles."""
