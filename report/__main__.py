@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from raycaster.configuration import configure
+from raycaster.configuration import Rounding, configure
 from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
 from raycaster.fpga.cells import DECIDES, TOOLS
@@ -64,7 +64,9 @@ def write_report(directory: Path, what: Extent, sweep: Sweep, command_line: str)
     if not scenes:
         raise UserError(f"{SCENES}: contains no scene files; run this in the project directory")
     pictures = find_pictures(what, scenes, sweep)
-    shares = {(f, r): found for r, of in pictures.all_shares.items() for f, found in of.items()}
+    shares: dict[tuple[int, Rounding], list[float]] = {
+        (f, r): found for r, of in pictures.all_shares.items() for f, found in of.items()
+    }
     designs = find_designs(what, {key: float(np.mean(found)) for key, found in shares.items()}, sweep)
     stability, of_cases = stability_chapter(what, sweep)
     page = sum(

@@ -11,7 +11,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from raycaster.configuration import OPTIONS, Rounding, configure
+from raycaster.configuration import OPTIONS, Configuration, Rounding, configure
 from raycaster.convert.take_home import TOP
 from raycaster.report import hardware, plots
 from raycaster.report.extent import Extent
@@ -145,11 +145,11 @@ def find_designs(what: Extent, errors: Errors, sweep: Sweep) -> Designs:
     return Designs([*seeds, *exacts, *culled], by_time, by_cells, frontier(exacts, "pixel_ns", "cells"), said)
 
 
-def _cells_point(config: hardware.Configuration) -> Point:
+def _cells_point(config: Configuration) -> Point:
     return Point("cells", TOP, config)
 
 
-def _time_point(config: hardware.Configuration) -> Point:
+def _time_point(config: Configuration) -> Point:
     return Point("time", str(WORST_SCENE), config)
 
 

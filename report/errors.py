@@ -14,7 +14,7 @@ from raycaster.report import plots
 from raycaster.report.extent import Extent
 from raycaster.report.page import Chapter, Data, Plot, Section, Table
 from raycaster.report.points import GRID, SEED, Point, name_of, picture, scene_of
-from raycaster.report.statistics import Slope, Spread, slope
+from raycaster.report.statistics import Spread, slope
 from raycaster.report.sweep import Sweep
 
 ROUNDINGS: tuple[Rounding, ...] = ("truncate", "nearest")
@@ -199,7 +199,7 @@ def _trends(pictures: Pictures, by: Shares) -> tuple[Section, str]:
     for r in ROUNDINGS:
         found = pictures.of(pictures.every, fewest, r, most)
         rows[r] = [_depth_row(found, depth) for depth in depths]
-        grows[r]: Slope = slope(list(depths), *_sums(found, depths))
+        grows[r] = slope(list(depths), *_sums(found, depths))
         said.append(
             f"Each reflection increases a hit point's mean error by {grows[r]} world units at F = {fewest} "
             f"(rounding: {r})."

@@ -19,6 +19,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
+from raycaster.configuration import Rounding
 from raycaster.engines import ENGINES, EXACT, SEED
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong, diff_picture
@@ -173,7 +174,7 @@ def designs(
 
 
 @styled
-def shares(by: Mapping[str, Mapping[int, Sequence[float]]]) -> Figure:
+def shares(by: Mapping[Rounding, Mapping[int, Sequence[float]]]) -> Figure:
     """Plot the distribution of the share of wrong pixels, by rounding and fraction bits."""
     figure, [[axes]] = new_figure(3.6)
     for side, (rounding, of) in zip((-0.2, 0.2), by.items(), strict=True):
@@ -364,7 +365,7 @@ def waterfall(title: str, steps: Sequence[tuple[str, int]]) -> Figure:
     bars = [(first, 0, whole, f"{whole:,}", BLUE)]
     for what, before, after in changed:
         colour = ORANGE if after < before else VERMILION
-        bars.append((f"- {what}", *sorted((before, after)), f"{after - before:+,}", colour))
+        bars.append((f"- {what}", min(before, after), max(before, after), f"{after - before:+,}", colour))
     bars.append(("this scene alone", 0, left, f"{left:,} ({left / whole:.0%})", BLUE))
     names, starts, ends, words, colours = zip(*bars, strict=True)
     figure, [[axes]] = new_figure(0.9 + 0.24 * len(bars))

@@ -30,7 +30,7 @@ from raycaster.golden.catalogue import catalogue
 from raycaster.golden.engines import model_of
 from raycaster.golden.errors import conditions, depth_errors
 from raycaster.golden.exact import ExactModel
-from raycaster.golden.model import Trace
+from raycaster.golden.model import Model, Trace
 from raycaster.golden.picture import wrong_pixels
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.seed_engine import SeedModel
@@ -106,9 +106,15 @@ def _world(number: str) -> Scene:
     return scene.model_copy(update={"rows": WORLD_ROWS})
 
 
-@lru_cache(maxsize=2)
 def exact_trace(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
-    """Return the slopes of a picture, int64 (rows, columns, 3), and its exact trace; cached for successive points.
+    """Return the slopes of a picture, int64 (rows, columns, 3), and its exact trace; cached for successive points."""
+    # Frozen models are hashable, but pydantic's types do not show it.
+    return _exact_trace(scene, screen, reflections)  # pyright: ignore[reportArgumentType]
+
+
+@lru_cache(maxsize=2)
+def _exact_trace(scene: Scene, screen: str, reflections: int) -> tuple[np.ndarray, Trace]:
+    """Trace a picture.
 
     The screen is tiny or VGA; scenes of 180 rows, made for the beam engine, are drawn with 240.
     """
@@ -210,7 +216,7 @@ def _picture(point: Point) -> dict[str, Any]:
     }
 
 
-def _traced(model: ExactModel | SeedModel, scene: Scene, rays: np.ndarray, config: Configuration) -> Trace:
+def _traced(model: Model, scene: Scene, rays: np.ndarray, config: Configuration) -> Trace:
     rectangles = Rectangles.of_scene(scene)
     return model.trace(rectangles, scene.camera.position, scene.background, rays, config.reflections)
 

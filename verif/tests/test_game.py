@@ -230,11 +230,15 @@ def test_buttons_move_the_racket(session, button, axis, sign):
 
 
 def test_bars_show_lives_and_tiles(demo):
-    frame, game = demo[329]
-    lives, score = (ENTRIES.index(f"GAME_{name}_BAR") for name in ("LIVES", "SCORE"))
-    lengths = frame.live.rectangles.high[:, 0] - frame.live.rectangles.low[:, 0]
-    assert (game.lives, game.tiles) == (3, 3)
-    assert (lengths[lives], lengths[score]) == (180, 135)
+    bars = [ENTRIES.index(f"GAME_{name}_BAR") for name in ("LIVES", "SCORE")]
+    shown = set()
+    for frame, game in demo:
+        if not game.attract:
+            live = frame.live.rectangles
+            lengths = (live.high[bars, 0] - live.low[bars, 0]) * live.enabled[bars]
+            assert lengths.tolist() == [60 * game.lives, 45 * game.tiles]
+            shown.add(game.tiles)
+    assert shown == {0, 1, 2, 3}
 
 
 def test_the_score_follows_from_the_events(demo):
