@@ -12,6 +12,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from raycaster.configuration import Rounding, configure
 from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
@@ -20,17 +22,16 @@ from raycaster.jobs import add_job_options, executors
 from raycaster.options import CommandParser
 from raycaster.outcomes import RESULTS, Check, Outcome, Published, add_keep_option, keep, kept_outcome, table
 from raycaster.output import Console
-from raycaster.report.acne import shadow_sections
-from raycaster.report.designs import design_sections, find_designs, of_kept, to_keep
-from raycaster.report.errors import REFLECTIONS, ROUNDINGS, error_sections, find_pictures, mean_errors
+from raycaster.report.acne import shadow_chapter
+from raycaster.report.designs import design_chapter, find_designs, of_kept, to_keep
+from raycaster.report.errors import REFLECTIONS, error_chapter, find_pictures
 from raycaster.report.extent import Extent, extent
 from raycaster.report.hardware import describe
-from raycaster.report.omissions import omission_sections
-from raycaster.report.page import Page, Section, write_html, write_markdown
-from raycaster.report.points import View
-from raycaster.report.stability import stability_sections
+from raycaster.report.omissions import omission_chapter
+from raycaster.report.page import Chapter, Section, write
+from raycaster.report.stability import stability_chapter
 from raycaster.report.statistics import RESAMPLED, RESAMPLING_SEED, Spread
-from raycaster.report.sweep import Store, Sweep
+from raycaster.report.sweep import Sweep
 from raycaster.sim.simulator import SimulationError
 
 SCENES = Path("scenes")
@@ -59,28 +60,27 @@ def write_report(directory: Path, what: Extent, sweep: Sweep, command_line: str)
         UserError: there are no scenes here, or a tool is missing.
         SimulationError: the hardware differs from the golden model.
     """
-    scenes = [View.of(str(path)) for path in sorted(SCENES.glob("*.toml"))]
+    scenes = [str(path) for path in sorted(SCENES.glob("*.toml"))]
     if not scenes:
         raise UserError(f"{SCENES}: contains no scene files; run this in the project directory")
     pictures = find_pictures(what, scenes, sweep)
-    errors, said_of_errors = error_sections(what, pictures, directory)
-    designs = find_designs(what, mean_errors(what, pictures), sweep)
-    spreads: dict[tuple[int, Rounding], Spread] = {
-        (f, r): Spread.of(pictures.shares(f, r)) for f in what.fractions for r in ROUNDINGS
+    shares: dict[tuple[int, Rounding], list[float]] = {
+        (f, r): found for r, of in pictures.all_shares.items() for f, found in of.items()
     }
-    first, alarms, said_of_designs = design_sections(designs, spreads, directory)
-    stability, more, said_of_cases, of_cases = stability_sections(what, directory, sweep)
-    omissions, others, said_of_omissions = omission_sections(what, scenes, directory, sweep)
-    shadows = shadow_sections(what, scenes, directory)
-    alarms += [f"{pictures.exceeded} coordinates exceed their bound."] if pictures.exceeded else []
-    page = Page(
-        [*alarms, *more, *others],
-        [*said_of_designs, *said_of_errors, said_of_cases, said_of_omissions],
-        [*first, *errors, *stability, *shadows, *omissions, _method(what, command_line)],
+    designs = find_designs(what, {key: float(np.mean(found)) for key, found in shares.items()}, sweep)
+    stability, of_cases = stability_chapter(what, sweep)
+    page = sum(
+        (
+            design_chapter(designs, {key: Spread.of(found) for key, found in shares.items()}),
+            error_chapter(pictures),
+            stability,
+            shadow_chapter(what, scenes),
+            omission_chapter(what, scenes, sweep),
+            Chapter([_method(what, command_line)]),
+        ),
+        Chapter(),
     )
-    write_markdown(page, directory)
-    figures = {"designs": to_keep(designs), "alarms": len(page.alarms), **of_cases}
-    return write_html(page, directory), figures
+    return write(page, directory), {"designs": to_keep(designs), "alarms": len(page.alarms), **of_cases}
 
 
 def _method(what: Extent, command_line: str) -> Section:
@@ -154,7 +154,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments.output.mkdir(parents=True, exist_ok=True)
     try:
         with executors(arguments.scheduler, arguments.jobs) as make_executor:
-            sweep = Sweep(Store(arguments.output / "points"), make_executor, console)
+            sweep = Sweep(arguments.output / "points", make_executor, console)
             page, figures = write_report(arguments.output, extent(arguments.quick), sweep, arguments.command_line)
     except SimulationError as error:
         console.print(str(error), style="red")

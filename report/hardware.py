@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import itertools
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
@@ -53,7 +53,7 @@ class Candidate:
     """Counted cells of the whole design, by kind."""
 
     timing: Mapping[str, Any] | None = None
-    """Simulation result of `raycaster.report.points.TimePoint`."""
+    """Simulation result: a point of the kind time, see `raycaster.report.points`."""
 
     @property
     def cells(self) -> int:
@@ -74,7 +74,8 @@ class Candidate:
     @property
     def pixel_ns(self) -> float:
         """Nanoseconds to compute a pixel, at the clock that the design needs."""
-        return self.frame_ms * 1e6 / pixels(self.config)
+        screen = self.config.screen_geometry
+        return self.frame_ms * 1e6 / (screen.columns * screen.rows)
 
     @property
     def frame_ms(self) -> float:
@@ -87,9 +88,6 @@ class Candidate:
         return self.counted is not None and self.timing is not None
 
 
-Measure = Callable[[Candidate], float]
-
-
 def predicted_cycles(config: Configuration) -> int:
     """Predict the cycles per frame in the worst case, in which every group tests all rectangles.
 
@@ -100,27 +98,15 @@ def predicted_cycles(config: Configuration) -> int:
     return config.group_cycles * config.groups * screen.rows * times
 
 
-def pixels(config: Configuration) -> int:
-    """Return the number of computed pixels per frame."""
-    return config.screen_geometry.columns * config.screen_geometry.rows
-
-
 def seed_designs(fractions: Iterable[int], units: Iterable[int], screen: str) -> list[Configuration]:
     """List the seed engine's designs with these options that meet the row budget, with one reflection.
 
     They have no culling, so that a design's time does not depend on the scene.
     """
+    names = "fraction_bits", "units", "rounding", "divider_bits"
     choices = itertools.product(fractions, units, ("truncate", "nearest"), (1, 2, 3))
     return _possible(
-        {
-            "fraction_bits": f,
-            "units": count,
-            "rounding": rounding,
-            "divider_bits": bits,
-            "screen": screen,
-            "culling": False,
-        }
-        for f, count, rounding, bits in choices
+        {"screen": screen, "culling": False, **dict(zip(names, choice, strict=True))} for choice in choices
     )
 
 
@@ -168,35 +154,19 @@ def with_estimates(candidates: Sequence[Candidate], whole: Mapping[str, int], ba
     return [replace(one, estimated=shared + one.config.units * units[unit_of(one.config)]) for one in candidates]
 
 
-def frontier(candidates: Sequence[Candidate], *measures: Measure) -> list[Candidate]:
-    """Return the designs that no other one dominates, ordered by the first measure.
+def frontier(candidates: Sequence[Candidate], *measures: str) -> list[Candidate]:
+    """Return the designs that no other one dominates, ordered by the first of these attributes.
 
     A design dominates another if it is better by one measure and not worse by any.
     """
-    values = {one: tuple(measure(one) for measure in measures) for one in candidates}
+    values = {one: tuple(getattr(one, name) for name in measures) for one in candidates}
 
-    def dominated(one: Candidate) -> bool:
-        mine = values[one]
+    def dominated(mine: tuple[float, ...]) -> bool:
         return any(
             theirs != mine and all(a <= b for a, b in zip(theirs, mine, strict=True)) for theirs in values.values()
         )
 
-    return sorted((one for one in candidates if not dominated(one)), key=lambda one: values[one])
-
-
-def time(one: Candidate) -> float:
-    """Return the time that plots show."""
-    return one.pixel_ns
-
-
-def error(one: Candidate) -> float:
-    """Return the error that plots show."""
-    return one.error
-
-
-def cells(one: Candidate) -> float:
-    """Return the size that plots show."""
-    return one.cells
+    return sorted((one for one in candidates if not dominated(values[one])), key=values.__getitem__)
 
 
 @cache

@@ -5,14 +5,16 @@ from __future__ import annotations
 
 import base64
 import csv
-import io
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
+from matplotlib.figure import Figure
+
+from raycaster.report import plots
 
 TEMPLATE = Path(__file__).with_name("page.html.jinja")
 TITLE = "RayCaster: error against run time"
@@ -20,27 +22,44 @@ Cell = str | int | float | None
 
 
 @dataclass(frozen=True)
-class Plot:
-    """A plot, `<name>.svg`, and the numbers that it shows, `<numbers>.csv`."""
-
-    name: str
-    caption: str
-    numbers: str = ""
-    """Name of the CSV file without its suffix; empty if it is `name`."""
-
-    @property
-    def csv(self) -> str:
-        """Name of the CSV file, without its suffix."""
-        return self.numbers or self.name
-
-
-@dataclass(frozen=True)
-class Table:
-    """A sortable table; `<name>.csv` has all columns."""
+class Data:
+    """Numbers of plots and tables, written with all digits to `<name>.csv`."""
 
     name: str
     columns: Sequence[str]
     rows: Sequence[Sequence[Cell]]
+
+    def write(self, directory: Path) -> None:
+        """Write the file."""
+        with (directory / f"{self.name}.csv").open("w", newline="") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(self.columns)
+            writer.writerows(self.rows)
+
+
+@dataclass(frozen=True)
+class Plot:
+    """A plot, written to `<name>.svg`, and the numbers that it shows."""
+
+    name: str
+    caption: str
+    figure: Figure
+    data: Data
+
+
+@dataclass(frozen=True)
+class Table:
+    """A sortable table, which shows a part of its data."""
+
+    data: Data
+    columns: Sequence[str]
+    rows: Sequence[Sequence[Cell]]
+
+    @classmethod
+    def of(cls, data: Data, hidden: int = 0) -> Table:
+        """Make the table of all rows, without as many of the last columns."""
+        shown = len(data.columns) - hidden
+        return cls(data, data.columns[:shown], [row[:shown] for row in data.rows])
 
 
 @dataclass(frozen=True)
@@ -52,30 +71,36 @@ class Section:
     sentences: Sequence[str] = ()
     plots: Sequence[Plot] = ()
     tables: Sequence[Table] = ()
+    files: Sequence[Data] = ()
+    """Data that is only written next to the page."""
 
 
 @dataclass(frozen=True)
-class Page:
-    """Contents of the whole page."""
+class Chapter:
+    """Sections on one subject; the whole page consists of several chapters."""
 
-    alarms: Sequence[str]
+    sections: list[Section] = field(default_factory=list)
+    alarms: list[str] = field(default_factory=list)
     """Faults, each shown as a red line at the top."""
 
-    summary: Sequence[str]
-    sections: Sequence[Section]
+    summary: list[str] = field(default_factory=list)
+    """Sentences for the top of the page."""
+
+    def __add__(self, other: Chapter) -> Chapter:
+        """Append another chapter."""
+        return Chapter(
+            self.sections + other.sections, self.alarms + other.alarms, self.summary + other.summary
+        )  # fmt: skip
 
 
-def show(cell: Cell) -> str:
-    """Convert a cell to text; numbers are rounded to significant digits."""
-    if cell is None:
-        return ""
-    if isinstance(cell, str):
-        return cell
-    return f"{cell:,}" if isinstance(cell, int) else f"{cell:.3g}" if cell < 1000 else f"{cell:,.0f}"
-
-
-def write_html(page: Page, directory: Path) -> Path:
-    """Write `index.html`, which embeds the plots and the CSV files."""
+def write(page: Chapter, directory: Path) -> Path:
+    """Write the plots and the data, `report.md`, and `index.html`, which embeds all; return its path."""
+    for section in page.sections:
+        for data in (*section.files, *(each.data for each in (*section.plots, *section.tables))):
+            data.write(directory)
+        for plot in section.plots:
+            plots.save(plot.figure, directory / f"{plot.name}.svg")
+    (directory / "report.md").write_text(_markdown(page))
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     template = environment.from_string(TEMPLATE.read_text())
     path = directory / "index.html"
@@ -85,45 +110,39 @@ def write_html(page: Page, directory: Path) -> Path:
             page=page,
             show=show,
             svg=lambda name: _inline(directory, name),
-            data=lambda name: base64.b64encode((directory / f"{name}.csv").read_bytes()).decode(),
+            encoded=lambda data: base64.b64encode((directory / f"{data.name}.csv").read_bytes()).decode(),
         )
     )
     return path
+
+
+def show(cell: Cell) -> str:
+    """Convert a cell to text; numbers are rounded to significant digits."""
+    if cell is None or isinstance(cell, str):
+        return cell or ""
+    return f"{cell:,}" if isinstance(cell, int) else f"{cell:.3g}" if cell < 1000 else f"{cell:,.0f}"
 
 
 def _inline(directory: Path, name: str) -> Markup:
     """Read an SVG for embedding: make its identifiers unique on the page, and remove its size, which CSS sets."""
     svg = (directory / f"{name}.svg").read_text()
     svg = svg[svg.index("<svg") :]
-    svg = re.sub(r'\bid="', f'id="{name}-', svg)
-    svg = re.sub(r'href="#', f'href="#{name}-', svg)
-    svg = re.sub(r"url\(#", f"url(#{name}-", svg)
-    return Markup(re.sub(r'(<svg[^>]*?) width="[^"]*pt"', r"\1", re.sub(r'(<svg[^>]*?) height="[^"]*pt"', r"\1", svg)))
+    svg = re.sub(r'(\bid="|href="#|url\(#)', rf"\1{name}-", svg)
+    return Markup(re.sub(r'(?<= )(width|height)="[^"]*pt" ', "", svg, count=2))
 
 
-def write_markdown(page: Page, directory: Path) -> Path:
-    """Write `report.md`, which links to the plots next to it."""
-    parts = [f"# {TITLE}", *(f"**{alarm}**" for alarm in page.alarms)]
-    parts.append("\n".join(f"- {sentence}" for sentence in page.summary))
+def _markdown(page: Chapter) -> str:
+    parts = [f"# {TITLE}", *(f"**{alarm}**" for alarm in page.alarms), _listed(page.summary)]
     for section in page.sections:
-        parts.append(f"## {section.title}")
-        parts += [section.text] if section.text else []
-        parts += ["\n".join(f"- {sentence}" for sentence in section.sentences)] if section.sentences else []
-        parts += [f"![{plot.name}]({plot.name}.svg)\n\n*{plot.caption}* [{plot.csv}.csv]({plot.csv}.csv)"
-                  for plot in section.plots]  # fmt: skip
+        parts += [f"## {section.title}", section.text, _listed(section.sentences)]
+        for plot in section.plots:
+            file = f"{plot.data.name}.csv"
+            parts += [f"![{plot.name}]({plot.name}.svg)", f"*{plot.caption}* [{file}]({file})"]
         for table in section.tables:
-            texts = [[show(cell) for cell in row] for row in table.rows]
-            lines = [table.columns, ["---"] * len(table.columns), *texts]
+            lines = [table.columns, ["---"] * len(table.columns), *(map(show, row) for row in table.rows)]
             parts.append("\n".join(f"| {' | '.join(line)} |" for line in lines))
-    path = directory / "report.md"
-    path.write_text("\n\n".join(parts) + "\n")
-    return path
+    return "\n\n".join(filter(None, parts)) + "\n"
 
 
-def write_csv(columns: Sequence[str], rows: Sequence[Sequence[Cell]], path: Path) -> None:
-    """Write a table as CSV, with all digits."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(rows)
-    path.write_text(text.getvalue())
+def _listed(sentences: Sequence[str]) -> str:
+    return "\n".join(f"- {sentence}" for sentence in sentences)

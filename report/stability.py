@@ -3,22 +3,23 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
-from pathlib import Path
+from dataclasses import asdict
 from typing import Any
 
 from raycaster.configuration import configure
 from raycaster.golden.catalogue import catalogue
-from raycaster.golden.errors import DepthErrors, compare
+from raycaster.golden.errors import compare
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
 from raycaster.report import plots
+from raycaster.report.errors import ROUNDINGS
 from raycaster.report.extent import CASE_REFLECTIONS, Extent
-from raycaster.report.page import Plot, Section, Table, write_csv
-from raycaster.report.points import CASE, CasesPoint, ConditionPoint, HitsPoint, PicturePoint, View, command
+from raycaster.report.page import Chapter, Data, Plot, Section, Table
+from raycaster.report.points import CASE, Point, name_of, picture, scene_of
 from raycaster.report.sweep import Sweep
 
-ROUNDINGS = ("truncate", "nearest")
 OF_SEED = ("materials", "patterns")
 """Looks that the seed engine's cases may need."""
 
@@ -29,59 +30,66 @@ BOUNCES = 8
 GROWING = ("facing_y_40", "facing_z", "box_20", "box_off_centre", "corner_reflector", "box_in_box")
 """Cases whose error is computed over all bounces."""
 
+GROWTH = {
+    "bound": {"color": plots.GREY, "linestyle": "--"},
+    "worst": {"color": plots.VERMILION, "marker": "o"},
+    "mean": {"color": plots.BLUE, "marker": "o"},
+}
+"""Errors of `raycaster.golden.errors.DepthErrors` that are plotted over all bounces, and their lines."""
+
+FLIPPED = 10
+"""Number of cases whose pictures are shown."""
+
 LABELLED = 6
 """Number of labelled cases in the plot: half are the stiffest, half have the greatest error."""
 
 LEAST = 0.1
 """Lower limit for drawing errors, in world units; smaller errors are drawn at this value."""
 
-HOLDS, EXCEEDED, EXACT, WRONG = "holds", "EXCEEDED", "exact", "WRONG"
 COLUMNS = (
     "case", "engine", "condition", "wrong pixels", "rays flipped", "worst error", "bound", "error / bound", "verdict",
 )  # fmt: skip
-SEEN_COLUMNS = "case", "design", "hit points unlike the model", "worst error", "bound", "over the bound"
+SEEN_COLUMNS = (
+    "case", "design", "hit points unlike the model", "worst error", "bound", "over the bound", "command",
+)  # fmt: skip
 
-Results = Mapping[PicturePoint, Mapping[str, Any]]
+Results = Mapping[Point, Mapping[str, Any]]
+Conditions = Mapping[str, float | None]
 
 
-def stability_sections(
-    what: Extent, directory: Path, sweep: Sweep
-) -> tuple[list[Section], list[str], str, dict[str, int]]:
-    """Write the plots and tables of the chapter, and return its sections, alarms, summary sentence and kept figures."""
-    views = {case.name: View.of(f"{CASE}{case.name}") for case in what.cases}
-    of_seed = [view for case in what.cases if not case.scene.lacks(OF_SEED) for view in [views[case.name]]]
+def stability_chapter(what: Extent, sweep: Sweep) -> tuple[Chapter, dict[str, int]]:
+    """Return the chapter and the figures to keep."""
+    of_seed = [case for case in what.cases if not case.scene.lacks(OF_SEED)]
     pictures = sweep(
         "catalogue",
         [
-            PicturePoint(view, f, rounding, CASE_REFLECTIONS, what.case_screen)
-            for view in of_seed for f in what.case_fractions for rounding in ROUNDINGS
+            picture(f"{CASE}{case.name}", f, rounding, CASE_REFLECTIONS, what.case_screen)
+            for case in of_seed for f in what.case_fractions for rounding in ROUNDINGS
         ],
     )  # fmt: skip
-    asked = {name: ConditionPoint(view, CASE_REFLECTIONS, what.case_screen) for name, view in views.items()}
-    found = sweep("conditions", list(asked.values()))
-    conditions = {name: found[point]["worst"] for name, point in asked.items()}
-    probed = [HitsPoint(View.of(f"{CASE}{case.name}"), config) for config in what.probed for case in what.probed_cases]
-    measured = sweep("hit points", probed)
-    shown = _shown(what, sweep)
-    rows = _rows(pictures, shown, conditions)
-    write_csv((*COLUMNS, "strains", "command"), _with_strains(what, rows), directory / "catalogue.csv")
+    config = configure(reflections=CASE_REFLECTIONS, screen=what.case_screen, allow_underrun=True)
+    asked = [Point("condition", f"{CASE}{case.name}", config) for case in what.cases]
+    conditions = {name_of(point.what): found["worst"] for point, found in sweep("conditions", asked).items()}
+    probed = [Point("hits", f"{CASE}{case.name}", config) for config in what.probed for case in what.probed_cases]
+    hits = sweep("hit points", probed)
+    shown = sweep("cases", [point for config in what.shown for point in _shares(config)])
+
+    measured = {point: {**result, **_extremes(result["depths"])} for point, result in pictures.items()}
+    found = {point: {**result, **_extremes(result["depths"])} for point, result in hits.items()}
     seen = [
-        [
-            point.view.name, point.config.name, result["different"],
-            max(depth["worst"] for depth in result["depths"]), max(depth["bound"] for depth in result["depths"]),
-            sum(depth["exceeded"] for depth in result["depths"]),
-        ]
-        for point, result in measured.items()
-    ]  # fmt: skip
-    write_csv(
-        (*SEEN_COLUMNS, "command"),
-        [[*row, command(point)] for row, point in zip(seen, measured, strict=True)],
-        directory / "hit_points.csv",
+        [name_of(one.what), one.config.name, *(of[n] for n in ("different", "worst", "bound", "exceeded")), one.command]
+        for one, of in found.items()
+    ]
+    said, alarms, summary = _judged(measured, shown, found, conditions)
+    strains = {case.name: case.strain for case in what.cases}
+    rows = _rows(measured, shown, conditions)
+    data = Data(
+        "catalogue",
+        (*COLUMNS, "strains", "command"),
+        [[*row, strains[row[0]], point.command] for point, row in rows],
     )
-    said, alarms, summary = _judged(pictures, shown, measured, conditions)
-    _plot(what, pictures, conditions, directory)
-    at_first = {point: result for point, result in pictures.items() if point.fraction_bits == what.case_fractions[0]}
-    of_page = [row[:-1] for row in _rows(at_first, shown, conditions)]
+    first = what.case_fractions[0]
+    of_page = [row for point, row in rows if point.kind == "cases" or point.config.fraction_bits == first]
     text = (
         "These scenes strain fixed-point arithmetic: grazed planes, corners, slits, points, facing mirrors, turned "
         "cameras, and patterns hit on the borders of their cells. The condition number of a case is the distance, in "
@@ -89,87 +97,66 @@ def stability_sections(
         "The exact and beam engines do not round, so they have no error in any case. The seed engine's camera cannot "
         "turn."
     )
+    drawn = [_stiffness(measured, conditions, first), _growth(), _flips(measured)]
     sections = [
-        Section(
-            "Stiff and extreme cases", text, said,
-            [
-                Plot("stiffness", f"Condition number, worst error and greatest bound of each case, with F = "
-                     f"{what.case_fractions[0]}, truncated. Errors below {LEAST:g} are drawn at this value."),
-                Plot("growth", f"Errors and bounds over {BOUNCES} bounces in the golden model, with F = 0, truncated."),
-                Plot("flips", "The cases with the most wrong pixels: the seed engine's picture, the exact picture and "
-                     "their difference."),
-            ],
-            [Table("catalogue", COLUMNS, of_page)],
-        ),
+        Section("Stiff and extreme cases", text, said, drawn, [Table(data, COLUMNS, of_page)]),
         Section(
             "Hit points in the converted Verilog",
             f"Read from the simulated ray units, for {len(what.probed_cases)} cases and {len(what.probed)} designs.",
-            tables=[Table("hit_points", SEEN_COLUMNS, seen)],
+            tables=[Table.of(Data("hit_points", SEEN_COLUMNS, seen), hidden=1)],
         ),
-    ]  # fmt: skip
+    ]
     kept = {
         "stiff_cases": len(what.probed_cases),
-        "unlike_golden": sum(row[2] for row in seen),
-        "over_bound": sum(row[-1] for row in seen),
+        "unlike_golden": sum(one["different"] for one in found.values()),
+        "over_bound": sum(one["exceeded"] for one in found.values()),
     }
-    return sections, alarms, summary, kept
+    return Chapter(sections, alarms, [summary]), kept
 
 
-def _shown(what: Extent, sweep: Sweep) -> dict[CasesPoint, dict[str, Any]]:
-    """Simulate every case that the designs without rounding can show."""
-    points = []
-    for config in what.shown:
-        count = len(catalogue(config.looks))
-        points += [CasesPoint(config, first, min(SHARE, count - first)) for first in range(0, count, SHARE)]
-    return sweep("cases", points)
+def _shares(config) -> list[Point]:
+    """Return the points that simulate every case that a design can show."""
+    count = len(catalogue(config.looks))
+    return [Point("cases", f"{first}+{min(SHARE, count - first)}", config) for first in range(0, count, SHARE)]
 
 
-def _rows(pictures: Results, shown: Mapping[CasesPoint, Mapping], conditions: Mapping[str, float | None]) -> list[list]:
-    """Return a row per case and engine, with the command last."""
+def _extremes(depths: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Summarise the errors of all depths."""
+    extremes = {name: max(depth[name] for depth in depths) for name in ("worst", "bound", "tightest")}
+    return extremes | {name: sum(depth[name] for depth in depths) for name in ("flips", "exceeded")}
+
+
+def _rows(pictures: Results, shown: Results, conditions: Conditions) -> list[tuple[Point, list]]:
+    """Return a row per case and engine, each with its point."""
     rows = []
-    for point, result in pictures.items():
-        depths = result["depths"]
-        row = [point.view.name, f"seed F = {point.fraction_bits} {point.rounding}", conditions[point.view.name]]
-        row += [result["wrong"], sum(depth["flips"] for depth in depths), max(depth["worst"] for depth in depths)]
-        row += [max(depth[name] for depth in depths) for name in ("bound", "tightest")]
-        rows.append([*row, EXCEEDED if any(depth["exceeded"] for depth in depths) else HOLDS, command(point)])
+    for point, one in pictures.items():
+        name = name_of(point.what)
+        engine = f"seed F = {point.config.fraction_bits} {point.config.rounding}"
+        counts = [one[key] for key in ("wrong", "flips", "worst", "bound", "tightest")]
+        rows.append((point, [name, engine, conditions[name], *counts, "EXCEEDED" if one["exceeded"] else "holds"]))
     for point, cases in shown.items():
         for name, one in cases.items():
-            verdict = WRONG if one["wrong"] else EXACT
-            rows.append(
-                [name, point.config.engine, conditions[name], one["wrong"], 0, 0.0, 0.0, None, verdict, command(point)]
-            )
+            verdict = "WRONG" if one["wrong"] else "exact"
+            row = [name, point.config.engine, conditions[name], one["wrong"], 0, 0.0, 0.0, None, verdict]
+            rows.append((point, row))
     return rows
 
 
-def _with_strains(what: Extent, rows: Sequence[Sequence]) -> list[list]:
-    strains = {case.name: case.strain for case in what.cases}
-    return [[*row[:-1], strains[row[0]], row[-1]] for row in rows]
-
-
 def _judged(
-    pictures: Results,
-    shown: Mapping[CasesPoint, Mapping],
-    measured: Mapping[HitsPoint, Mapping],
-    conditions: Mapping[str, float | None],
+    pictures: Results, shown: Results, hits: Results, conditions: Conditions
 ) -> tuple[list[str], list[str], str]:
     """Return the sentences, the alarms and the summary."""
-    cases = {point.view.name for point in pictures}
-    over = [point for point, result in pictures.items() if any(depth["exceeded"] for depth in result["depths"])]
-    tightest = max(pictures, key=lambda point: max(depth["tightest"] for depth in pictures[point]["depths"]))
-    part = max(depth["tightest"] for depth in pictures[tightest]["depths"])
-    different = sum(one["different"] for one in measured.values())
-    over_seen = sum(depth["exceeded"] for one in measured.values() for depth in one["depths"])
+
+    def words(point: Point) -> str:
+        return f"F = {point.config.fraction_bits}, {point.config.rounding}"
+
+    over = [point for point, result in pictures.items() if result["exceeded"]]
+    tightest = max(pictures, key=lambda point: pictures[point]["tightest"])
+    part = pictures[tightest]["tightest"]
+    different, over_seen = (sum(one[name] for one in hits.values()) for name in ("different", "exceeded"))
     wrong = sum(case["wrong"] for one in shown.values() for case in one.values())
-    by_engine: dict[str, int] = {}
-    for point, one in shown.items():
-        by_engine[point.config.engine] = by_engine.get(point.config.engine, 0) + len(one)
-    engines = ", ".join(f"{engine} engine {count}" for engine, count in by_engine.items())
     stiffest = max((name for name in conditions if conditions[name]), key=lambda name: conditions[name] or 0)
-    alarms = [
-        f"A bound is exceeded: {point.view.name}, F = {point.fraction_bits}, {point.rounding}. {command(point)}"
-        for point in over
-    ]
+    alarms = [f"A bound is exceeded: {name_of(one.what)}, {words(one)}. {one.command}" for one in over]
     if over_seen or different:
         alarms.append(
             f"In simulation, {different} hit points differ from the golden model, and {over_seen} coordinates exceed "
@@ -180,23 +167,27 @@ def _judged(
     said = [
         f"The stiffest of {len(conditions)} cases is {stiffest}: hits move by up to {conditions[stiffest]:,.0f} world "
         "units per pixel of error in the ray.",
-        f"{len(over)} of the seed engine's {len(pictures)} pictures, for {len(cases)} cases, have a coordinate over "
-        f"its bound. The closest to its bound is in {tightest.view.name} (F = {tightest.fraction_bits}, "
-        f"{tightest.rounding}), with {part:.2%} of it.",
+        f"{len(over)} of the seed engine's {len(pictures)} pictures, for {len({one.what for one in pictures})} cases, "
+        f"have a coordinate over its bound. The closest to its bound is in {name_of(tightest.what)} "
+        f"({words(tightest)}), with {part:.2%} of it.",
     ]
     for rounding in ROUNDINGS:
-        most = max((p for p in pictures if p.rounding == rounding), key=lambda point: pictures[point]["wrong"])
-        result = pictures[most]
+        of_rounding = {point: one for point, one in pictures.items() if point.config.rounding == rounding}
+        most, result = max(of_rounding.items(), key=lambda item: item[1]["wrong"])
         said.append(
-            f"The most wrong pixels are in {most.view.name} with F = {most.fraction_bits} (rounding: {rounding}): "
-            f"{result['wrong']:,} of {result['pixels']:,}."
+            f"The most wrong pixels are in {name_of(most.what)} with F = {most.config.fraction_bits} (rounding: "
+            f"{rounding}): {result['wrong']:,} of {result['pixels']:,}."
         )
-    if measured:
+    if hits:
         said.append(
-            f"In the seed engine's converted Verilog, {different} hit points of {len(measured)} frames differ from "
+            f"In the seed engine's converted Verilog, {different} hit points of {len(hits)} frames differ from "
             f"the golden model, and {over_seen} coordinates exceed their bound."
         )
     if shown:
+        counts: Counter[str] = Counter()
+        for point, cases in shown.items():
+            counts[point.config.engine] += len(cases)
+        engines = ", ".join(f"{engine} engine {count}" for engine, count in counts.items())
         said.append(f"Cases drawn in simulation: {engines}; {wrong} pixels differ from exact arithmetic.")
     summary = (
         f"In {len(conditions)} stiff and extreme cases, {len(over)} bounds are exceeded, errors reach at most "
@@ -206,45 +197,50 @@ def _judged(
     return said, alarms, summary
 
 
-def _plot(what: Extent, pictures: Results, conditions: Mapping[str, float | None], directory: Path) -> None:
-    first = what.case_fractions[0]
+def _stiffness(pictures: Results, conditions: Conditions, first: int) -> Plot:
     stiff = {}
-    for point, result in pictures.items():
-        condition = conditions[point.view.name]
-        if (point.fraction_bits, point.rounding) == (first, "truncate") and condition:
-            worst, bound = (max(depth[name] for depth in result["depths"]) for name in ("worst", "bound"))
-            stiff[point.view.name] = condition, max(worst, LEAST), max(bound, LEAST)
+    for point, one in pictures.items():
+        name = name_of(point.what)
+        if (point.config.fraction_bits, point.config.rounding) == (first, "truncate") and conditions[name]:
+            stiff[name] = conditions[name], max(one["worst"], LEAST), max(one["bound"], LEAST)
     labelled = [name for place in (0, 1) for name in sorted(stiff, key=lambda one: -stiff[one][place])[: LABELLED // 2]]
-    plots.save(plots.stiffness(stiff, list(dict.fromkeys(labelled))), directory / "stiffness.svg")
-    write_csv(
-        ("case", "condition", "worst error", "bound"),
-        [[name, *values] for name, values in stiff.items()],
-        directory / "stiffness.csv",
-    )
-    by_case: dict[str, PicturePoint] = {}
-    for point in sorted(pictures, key=lambda point: -pictures[point]["wrong"]):
-        by_case.setdefault(point.view.name, point)
-    flipped = list(by_case.values())[: plots.FLIPPED]
-    plots.save(plots.flips(flipped), directory / "flips.svg")
-    write_csv(
-        ("case", "F", "rounding", "wrong", "command"),
-        [[one.view.name, one.fraction_bits, one.rounding, pictures[one]["wrong"], command(one)] for one in flipped],
-        directory / "flips.csv",
-    )
-    grown = {name: _growth(name) for name in GROWING}
-    plots.save(plots.growth(grown), directory / "growth.svg")
-    write_csv(
-        ("case", "bounces", "mean", "worst", "bound"),
-        [
-            [name, depth, one.mean, one.worst, one.bound]
-            for name, depths in grown.items()
-            for depth, one in enumerate(depths)
-        ],
-        directory / "growth.csv",
+    return Plot(
+        "stiffness",
+        f"Condition number, worst error and greatest bound of each case, with F = {first}, truncated. Errors below "
+        f"{LEAST:g} are drawn at this value.",
+        plots.stiffness(stiff, list(dict.fromkeys(labelled))),
+        Data("stiffness", ("case", "condition", "worst error", "bound"), [[n, *values] for n, values in stiff.items()]),
     )
 
 
-def _growth(name: str) -> tuple[DepthErrors, ...]:
-    scene = View.of(f"{CASE}{name}").scene
+def _growth() -> Plot:
     slopes = primary_slopes(configure(screen="tiny", allow_underrun=True).screen_geometry).reshape(-1, 3)
-    return compare(Rectangles.of_scene(scene), scene.camera.position, slopes, BOUNCES, 0, "truncate")
+    lines, rows = {}, []
+    for name in GROWING:
+        scene = scene_of(f"{CASE}{name}")
+        depths = compare(Rectangles.of_scene(scene), scene.camera.position, slopes, BOUNCES, 0, "truncate")
+        lines[name] = {kind: [asdict(depth)[kind] for depth in depths] for kind in GROWTH}
+        rows += [[name, bounces, one.mean, one.worst, one.bound] for bounces, one in enumerate(depths)]
+    return Plot(
+        "growth",
+        f"Errors and bounds over {BOUNCES} bounces in the golden model, with F = 0, truncated.",
+        plots.by_depth(lines, GROWTH, 5.6, "bounces", "world units"),
+        Data("growth", ("case", "bounces", "mean", "worst", "bound"), rows),
+    )
+
+
+def _flips(pictures: Results) -> Plot:
+    by_case: dict[str, Point] = {}
+    for point in sorted(pictures, key=lambda point: -pictures[point]["wrong"]):
+        by_case.setdefault(point.what, point)
+    flipped = list(by_case.values())[:FLIPPED]
+    rows = [
+        [name_of(one.what), one.config.fraction_bits, one.config.rounding, pictures[one]["wrong"], one.command]
+        for one in flipped
+    ]
+    return Plot(
+        "flips",
+        "The cases with the most wrong pixels: the seed engine's picture, the exact picture and their difference.",
+        plots.flips(flipped),
+        Data("flips", ("case", "F", "rounding", "wrong", "command"), rows),
+    )

@@ -3,8 +3,7 @@
 // nothing with the hardware or its Verilog. The page runs it alongside the design and compares the pictures.
 //
 // The caller writes the live words to golden_words(), each at its register's word address, and calls golden_draw;
-// golden_picture() then holds red, green and blue of each pixel. golden_compare counts the differences from the picture
-// in golden_shown(), which the caller writes in the same layout. golden_ray explains one pixel of the last drawing in
+// golden_picture() then holds red, green and blue of each pixel. golden_ray explains one pixel of the last drawing in
 // golden_bounces(): a struct Bounce, nine 64-bit numbers, for the camera's ray and for each reflection.
 
 #include <stddef.h>
@@ -77,7 +76,7 @@ struct Scene {
 };
 
 uint32_t words[1024];
-uint8_t picture[3 * MOST_PIXELS], shown[3 * MOST_PIXELS];
+uint8_t picture[3 * MOST_PIXELS];
 Scene scene;
 Bounce path[MOST_BOUNCES];
 
@@ -277,7 +276,6 @@ void read_light(bool has_light) {
 
 EXPORT(golden_words) uint32_t *golden_words() { return words; }
 EXPORT(golden_picture) uint8_t *golden_picture() { return picture; }
-EXPORT(golden_shown) uint8_t *golden_shown() { return shown; }
 EXPORT(golden_bounces) int64_t *golden_bounces() { return &path[0].winner; }
 
 // Draw the picture that a design must show.
@@ -308,14 +306,6 @@ void golden_draw(
             const int count = follow(column, row);
             for (int shift = 16; shift >= 0; shift -= 8) *channel++ = blended(count, shift) & kept;
         }
-}
-
-// Return how many of the first pixels of golden_shown() and golden_picture() differ.
-EXPORT(golden_compare) int golden_compare(int pixels) {
-    int wrong = 0;
-    for (int i = 0; i < 3 * pixels; i += 3)
-        wrong += shown[i] != picture[i] || shown[i + 1] != picture[i + 1] || shown[i + 2] != picture[i + 2];
-    return wrong;
 }
 
 // Fill golden_bounces() for a pixel of the last drawing, and return their number: 0 while the design does not run.

@@ -40,7 +40,7 @@ MAY_IMPORT = {
     "play": ("hdl", "raycaster", "golden", "rtl", "sw", "convert", "sim"),
     "web": ("hdl", "raycaster", "sw", "convert", "sim", "debug", "play"),
     "verif": ("hdl", "raycaster", "golden", "rtl", "sw", "convert", "fit", "fpga", "sim"),
-    "report": ("hdl", "raycaster", "golden", "rtl", "convert", "fit", "fpga", "sim", "verif"),
+    "report": ("hdl", "raycaster", "golden", "rtl", "convert", "fit", "fpga", "sim", "verif", "web"),
     "docs": (
         "hdl", "raycaster", "cli", "golden", "rtl", "convert", "fpga", "sim", "debug", "play", "web", "verif", "report",
     ),

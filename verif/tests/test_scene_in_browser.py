@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import functools
 import itertools
+import json
 import math
 import operator
 import random
@@ -110,28 +111,18 @@ def _broken(rng: random.Random) -> Iterator[str]:
 
 def _as_read(scene: Scene) -> dict[str, object]:
     """Return a scene in the form that `RayCasterScene.read` must return."""
-    camera = scene.camera
-    return {
-        "title": scene.title,
-        "rows": scene.rows,
-        "reflections": scene.reflections,
-        "background": list(scene.background),
-        "camera": {"position": list(camera.position), "yaw": camera.yaw, "pitch": camera.pitch, "roll": camera.roll},
-        "light": scene.light and {"position": list(scene.light.position), "quarters": scene.light.quarters},
-        "rect": [
-            {
-                "name": rectangle.name,
-                "corners": [list(corner) for corner in rectangle.corners],
-                "colour": list(rectangle.colour),
-                "quarters": rectangle.quarters,
-                "kind": rectangle.kind,
-                "cell": rectangle.cell,
-                "colour2": list(rectangle.colour2 or (0, 0, 0)),
-            }
-            for rectangle in scene.rect
-        ],
-        "needs": scene.needs,
-    }
+    read = json.loads(scene.model_dump_json(exclude={"rect", "background", "light"}))
+    rects = [
+        {
+            "name": rectangle.name, "corners": rectangle.corners, "colour": rectangle.colour,
+            "quarters": rectangle.quarters, "kind": rectangle.kind, "cell": rectangle.cell,
+            "colour2": rectangle.colour2 or (0, 0, 0),
+        }
+        for rectangle in scene.rect
+    ]  # fmt: skip
+    light = scene.light and {"position": scene.light.position, "quarters": scene.light.quarters}
+    more = {"background": scene.background, "light": light, "rect": rects, "needs": scene.needs}
+    return read | json.loads(json.dumps(more))
 
 
 @pytest.fixture(scope="module")

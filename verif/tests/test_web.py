@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The web page in Chromium: its pictures, counts and texts."""
 
+from __future__ import annotations
+
 import json
 import math
-from collections.abc import Sequence
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -13,24 +14,34 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from raycaster.configuration import configure
 from raycaster.engines import SEED
 from raycaster.errors import UserError
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.seed_engine import SeedModel
 from raycaster.golden.world import Rectangles
 from raycaster.play.machine import Machine, build_machine
-from raycaster.scene import Camera, SceneError, load_scene, packaged_scenes
+from raycaster.scene import Camera, Scene, SceneError, load_scene, packaged_scenes
+from raycaster.screens import SCREENS, Screen
 from raycaster.sim.simulator import BUILD
 from raycaster.sw.firmware import build_firmware
 from raycaster.sw.play_script import DEMO, load
 from raycaster.web import speed
 from raycaster.web.browser import browser_page
-from raycaster.web.site import MODELS, write_site
+from raycaster.web.site import MODELS, Model, write_site
 from raycaster.web.site import main as site_main
 
 SHOWN = "RayCaster.state.walk?.frames > 2 && RayCaster.state.walk.wrong !== null"
 TIMEOUT_MS = 60_000
+LOOKS = {"materials": True, "patterns": True, "reflections": 2}
+SMALL_MODELS = (
+    Model("walk", {"engine": "beam", "screen": "tiny", "turn": True}),
+    Model("exact", {"engine": "exact", "screen": "tiny", "turn": True, **LOOKS, "light": True}, taps=True),
+    Model("seed-0", {"engine": "seed", "screen": "tiny", **LOOKS}, taps=True),
+)
+"""Small models with the names of the page's own; other tests of the page have the last two as well."""
+
+WALK, TINY, _ = (model.configuration.screen_geometry for model in SMALL_MODELS)
+PIXELS = f"{WALK.columns * WALK.rows:,}"
 MOST_BYTES = 2_000_000
 """Largest size of the whole page, compressed."""
 
@@ -52,21 +63,13 @@ def picture_hash(picture: np.ndarray) -> str:
     return f"{value:08x}"
 
 
-def golden_hash(scene, camera: Camera | None = None) -> str:
-    """Return the hash of the exact picture on the page's screen."""
-    screen = configure(engine="beam", screen="play").screen_geometry
-    camera = camera or scene.camera
-    return picture_hash(
-        ExactModel().picture(
-            screen,
-            Rectangles.of_scene(scene),
-            camera.position,
-            scene.background,
-            scene.reflections,
-            basis=camera.basis,
-            light=scene.light,
-        )
-    )
+def golden_hash(scene: Scene, camera: Camera | None = None, screen: Screen = WALK) -> str:
+    """Return the hash of the exact picture, optionally from another camera."""
+    return picture_hash(ExactModel().render(scene.model_copy(update={"camera": camera or scene.camera}), screen))
+
+
+def packaged(name: str) -> Scene:
+    return load_scene(packaged_scenes()[name])
 
 
 def cameras_around(camera: Camera, count: int) -> list[Camera]:
@@ -81,18 +84,21 @@ def cameras_around(camera: Camera, count: int) -> list[Camera]:
     ]  # fmt: skip
 
 
-def tour_of(page, model: str, name: str, cameras: Sequence[Camera]) -> list[str]:
-    """Return the hashes of a scene's frame and of frames from other cameras, drawn by a model in the browser."""
-    source = packaged_scenes()[name].read_text()
-    views = [{"position": camera.position, "basis": camera.basis} for camera in cameras]
-    return page.evaluate(TOUR, [model, source, views])
+def assert_tour(page, model: str, name: str, count: int, screen: Screen = WALK) -> None:
+    """Assert that a model draws golden frames in the browser, from a scene's camera and on a walk from there."""
+    scene = packaged(name)
+    cameras = [scene.camera, *cameras_around(scene.camera, count)]
+    expected = [golden_hash(scene, camera, screen) for camera in cameras]
+    assert len(set(expected)) > count // 2
+    views = [{"position": camera.position, "basis": camera.basis} for camera in cameras[1:]]
+    assert page.evaluate(TOUR, [model, packaged_scenes()[name].read_text(), views]) == expected, name
 
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory) -> Path:
-    """Write a page with only the walk's fastest model."""
+    """Write a page with three models, whose designs have the tiny screen."""
     output = tmp_path_factory.mktemp("site") / "web"
-    write_site(output, BUILD, Console(quiet=True), models=MODELS[:1], test=True)
+    write_site(output, BUILD, Console(quiet=True), models=SMALL_MODELS, test=True)
     return output
 
 
@@ -130,11 +136,10 @@ def opened(page, site: Path, place: str = "") -> dict:
 
 
 def test_draws_from_a_disk(page, site):
-    scene = load_scene(packaged_scenes()["mirror_room"])
     state = opened(page, site)
-    assert state["hash"] == golden_hash(scene)
+    assert state["hash"] == golden_hash(packaged("mirror_room"))
     assert state["wrong"] == 0
-    assert "0 wrong pixels of 76,800" in page.text_content("#walk-status")
+    assert f"0 wrong pixels of {PIXELS}" in page.text_content("#walk-status")
 
 
 def test_draws_from_a_server(page, site):
@@ -161,10 +166,9 @@ def test_keys_move_the_camera(page, site):
     page.wait_for_function("RayCaster.state.walk.wrong === 0")
     state = page.evaluate("RayCaster.state.walk")
     assert state["camera"]["basis"] != start["basis"]
-    scene = load_scene(packaged_scenes()["mirror_room"])
-    screen = configure(engine="beam", screen="play").screen_geometry
+    scene = packaged("mirror_room")
     golden = ExactModel().picture(
-        screen, Rectangles.of_scene(scene), state["camera"]["position"], scene.background, scene.reflections,
+        WALK, Rectangles.of_scene(scene), state["camera"]["position"], scene.background, scene.reflections,
         basis=tuple(map(tuple, state["camera"]["basis"])),
     )  # fmt: skip
     assert state["hash"] == picture_hash(golden)
@@ -188,36 +192,26 @@ def test_a_bad_scene_shows_its_line(page, site, tmp_path):
 
 
 def test_a_planted_pixel_is_counted_and_marked(page, site):
-    state = opened(page, site, "?plant=100,50")
+    state = opened(page, site, "?plant=40,30")
     assert state["wrong"] == 1
-    assert "1 wrong pixel of 76,800" in page.text_content("#walk-status .wrong")
+    assert f"1 wrong pixel of {PIXELS}" in page.text_content("#walk-status .wrong")
     page.wait_for_function(
-        "[...find('walk-picture').getContext('2d').getImageData(100, 50, 1, 1).data].join() === '255,0,255,255'"
+        "[...find('walk-picture').getContext('2d').getImageData(40, 30, 1, 1).data].join() === '255,0,255,255'"
     )
 
 
-def test_hashes_equal_golden(page, site):
-    """Frames from turning cameras have the golden model's hashes."""
+@pytest.mark.parametrize(("model", "name", "screen"), [("walk", "boxes", WALK), ("exact", "shadow_hall", TINY)])
+def test_turning_cameras_and_a_light(page, site, model, name, screen):
     opened(page, site)
-    name = "boxes"
-    scene = load_scene(packaged_scenes()[name])
-    cameras = cameras_around(scene.camera, 5)
-    expected = [golden_hash(scene, camera) for camera in (scene.camera, *cameras)]
-    assert len(set(expected)) == 5
-    assert tour_of(page, MODELS[0].name, name, cameras) == expected
+    assert_tour(page, model, name, 5, screen)
 
 
 @pytest.mark.slow
-def test_a_hundred_hashes_equal_golden(page, whole_site):
+@pytest.mark.parametrize("name", ["checkered_hall", "kaleidoscope", "periscope", "pool", "rooftops"])
+def test_a_hundred_frames(page, whole_site, name):
     """Five scenes together need every look that the design can have."""
-    site, _ = whole_site
-    opened(page, site)
-    for name in ("checkered_hall", "kaleidoscope", "periscope", "pool", "rooftops"):
-        scene = load_scene(packaged_scenes()[name])
-        cameras = cameras_around(scene.camera, 20)
-        expected = [golden_hash(scene, camera) for camera in (scene.camera, *cameras)]
-        assert len(set(expected)) > 10
-        assert tour_of(page, "walk-looks", name, cameras) == expected, name
+    opened(page, whole_site[0])
+    assert_tour(page, "walk-looks", name, 20, SCREENS["vga", 240])
 
 
 @pytest.mark.slow
@@ -254,61 +248,46 @@ def test_the_game_is_the_native_one(page, whole_site):
     assert len(set(expected)) > 10
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("fraction_bits", [0, 4])
-def test_the_engines_side_by_side(page, whole_site, fraction_bits):
-    site, _ = whole_site
-    page.goto((site / "index.html").as_uri() + "#engines")
+def engines(page, scene: str, fraction_bits: int) -> dict:
+    """Return the state of the tab with both engines once it shows a scene."""
+    for select, value in (("scene", scene), ("fraction", str(fraction_bits))):
+        page.evaluate("delete RayCaster.state.engines")
+        page.select_option(f"#engines-{select}", value)
+        page.wait_for_function("RayCaster.state.engines?.done")
+    return page.evaluate("RayCaster.state.engines")
+
+
+@pytest.mark.slow_sets("whole")
+@pytest.mark.parametrize(
+    ("which", "screen", "fraction_bits"), [("site", TINY, 0), ("whole_site", SCREENS["vga", 240], 4)]
+)
+def test_the_engines_side_by_side(page, request, which, screen, fraction_bits):
+    """The exact engine draws the shadows, and afterwards a scene without a light; the seed engine refuses the first."""
+    site = request.getfixturevalue(which)
+    page.goto((site if which == "site" else site[0]).joinpath("index.html").as_uri() + "#engines")
     page.wait_for_function("RayCaster.state.engines?.done")
-    page.select_option("#engines-fraction", str(fraction_bits))
-    page.wait_for_function(f"RayCaster.state.engines.fraction === '{fraction_bits}'")
-    state = page.evaluate("RayCaster.state.engines")
-    scene = load_scene(packaged_scenes()["mirror_room"])
-    screen = configure(engine="seed").screen_geometry
-    perfect = ExactModel().render(scene, screen)
-    rounded = SeedModel(fraction_bits).render(scene, screen)
+    reason = SEED.lacks["light"].replace("the seed engine", "it")
+    state = engines(page, "evening", fraction_bits)
+    # The exact engine of the whole page has the screen of the walk.
+    assert state["exact"] == {"hash": golden_hash(packaged("evening"), screen=screen), "wrong": 0}
+    assert state["seed"] == {"error": f"The seed engine refuses this scene: {reason}."}
+    assert page.locator("#engines-seed").is_hidden()
+    state = engines(page, "mirror_room", fraction_bits)
+    scene = packaged("mirror_room")
+    perfect, rounded = (model.render(scene, screen) for model in (ExactModel(), SeedModel(fraction_bits)))
     assert state["exact"] == {"hash": picture_hash(perfect), "wrong": 0}
     assert state["seed"] == {"hash": picture_hash(rounded), "wrong": 0}
     assert state["differs"] == np.any(perfect != rounded, axis=2).sum() > 0
+    assert not page.locator("#engines-seed").is_hidden()
 
 
-@pytest.mark.slow
-def test_the_engines_with_a_light(page, whole_site):
-    """The exact engine draws the shadows, and afterwards a scene without a light; the seed engine refuses the first."""
-    site, _ = whole_site
-    page.goto((site / "index.html").as_uri() + "#engines")
-    page.wait_for_function("RayCaster.state.engines?.done")
-    first = page.evaluate("RayCaster.state.engines")
-    reason = SEED.lacks["light"].replace("the seed engine", "it")
-    refusal = f"The seed engine refuses this scene: {reason}."
-    for name, seed in (("evening", {"error": refusal}), ("mirror_room", first["seed"])):
-        page.evaluate("delete RayCaster.state.engines")
-        page.select_option("#engines-scene", name)
-        page.wait_for_function("RayCaster.state.engines?.done")
-        state = page.evaluate("RayCaster.state.engines")
-        assert state["exact"] == {"hash": golden_hash(load_scene(packaged_scenes()[name])), "wrong": 0}
-        assert state["seed"] == seed
-        assert page.locator("#engines-seed").is_hidden() == ("error" in seed)
-    assert state == first
-
-
-@pytest.mark.slow
-def test_a_walk_with_a_light(page, whole_site):
+def test_a_walk_with_a_light(page, site):
     """The walk takes the exact engine for a scene with a light, and the beam engine again for the next scene."""
-    site, _ = whole_site
     opened(page, site)
-    for name in ("evening", "boxes"):
+    for name, screen in (("evening", TINY), ("boxes", WALK)):
         page.select_option("#walk-scene", name)
-        scene = load_scene(packaged_scenes()[name])
-        expected = golden_hash(scene)
+        expected = golden_hash(packaged(name), screen=screen)
         page.wait_for_function(f"RayCaster.state.walk.hash === '{expected}' && RayCaster.state.walk.wrong === 0")
-        # The exact engine's screen has eight times the clocks.
-        assert (page.evaluate("RayCaster.state.walk.clocks") > 400_000) == bool(scene.light)
-    scene = load_scene(packaged_scenes()["shadow_hall"])
-    cameras = cameras_around(scene.camera, 4)
-    expected = [golden_hash(scene, camera) for camera in (scene.camera, *cameras)]
-    assert len(set(expected)) == 4
-    assert tour_of(page, "exact", "shadow_hall", cameras) == expected
 
 
 @pytest.mark.slow

@@ -5,7 +5,7 @@
 tabs.engines = {
   async open() {
     const selects = { scene: find("engines-scene"), fraction: find("engines-fraction") };
-    fill(selects.scene, Object.keys(RayCaster.scenes), RayCaster.walk.first);
+    fillScenes(selects.scene);
     fill(selects.fraction, RayCaster.seed.fractions.map(String), "0");
     const box = find("engines-mark");
     const canvases = { seed: find("engines-seed"), exact: find("engines-exact") };
@@ -21,11 +21,7 @@ tabs.engines = {
 
     const compute = async (side, model) => {
       statuses[side].textContent = "computing";
-      if (machines[side]?.name !== model) {
-        machines[side]?.end();
-        machines[side] = await Machine.start(model);
-      }
-      const machine = machines[side];
+      const machine = (machines[side] = await Machine.instead(machines[side], model));
       await machine.call("load", readScene(RayCaster.scenes[selects.scene.value], "", machine.design.rectangles));
       drawn[side] = await machine.frame();
     };
@@ -69,9 +65,7 @@ tabs.engines = {
       RayCaster.state.engines = { done: true, fraction, exact, seed, differs: differs.count };
     };
 
-    // One comparison at a time, however fast the choices change.
-    let queue = Promise.resolve();
-    const ask = () => (queue = queue.then(all).catch((error) => showFailure("engines", error)));
+    const ask = latest("engines", all);
     selects.scene.addEventListener("change", ask);
     selects.fraction.addEventListener("change", ask);
     box.addEventListener("change", paint);

@@ -54,6 +54,7 @@ class Remote {
 
   end() {
     this.worker.terminate();
+    this.name = null;
   }
 }
 
@@ -66,6 +67,13 @@ class Machine extends Remote {
     machine.design = design;
     await machine.call("start", wasm, design, program);
     return machine;
+  }
+
+  // Return a running design of this name: the given one, or a new one that replaces it.
+  static async instead(machine, name) {
+    if (machine?.name === name) return machine;
+    machine?.end();
+    return Machine.start(name);
   }
 
   // Compute a frame; its picture has one pixel per ray.

@@ -11,6 +11,12 @@ function fill(select, names, chosen) {
   select.replaceChildren(...names.map((name) => new Option(name, name, false, name === chosen)));
 }
 
+function fillScenes(select) {
+  fill(select, Object.keys(RayCaster.scenes), RayCaster.walk.first);
+}
+
+const rgb = ([red, green, blue]) => (red << 16) | (green << 8) | blue;
+
 const counted = (count, noun) => `${count.toLocaleString("en")} ${noun}${count === 1 ? "" : "s"}`;
 
 // Say in one line why the seed engine refuses a scene; "" if it does not.
@@ -107,6 +113,21 @@ class Show {
   }
 }
 
+// Return a function that asks for a computation. There is one at a time; of the requests meanwhile, only the last counts.
+function latest(id, compute) {
+  let runs = false, asked = false;
+  return async () => {
+    asked = true;
+    if (runs) return;
+    runs = true;
+    while (asked) {
+      asked = false;
+      await compute().catch((error) => showFailure(id, error));
+    }
+    runs = false;
+  };
+}
+
 function showFailure(id, error) {
   const status = find(`${id}-status`) ?? find(`${id}-exact-status`);
   status.textContent = error.message;
@@ -180,7 +201,7 @@ const tabs = {
         text.value = await file.text();
         use(text.value, file.name);
       });
-      fill(select, Object.keys(RayCaster.scenes), RayCaster.walk.first);
+      fillScenes(select);
       choose();
 
       // The first design with the features that the scene needs is the fastest.
@@ -192,10 +213,7 @@ const tabs = {
             ({ looks, reflections }) => reflections >= scene.reflections &&
               Object.entries(scene.needs).every(([look, isNeeded]) => !isNeeded || looks.includes(look)),
           ).name;
-          if (machine?.name !== name) {
-            machine?.end();
-            machine = await Machine.start(name);
-          }
+          machine = await Machine.instead(machine, name);
           await machine.call("load", scene);
           walker = new Walker(scene);
           return { ...(await machine.frame()), camera: walker.camera };

@@ -50,7 +50,7 @@ const above = ([x, y]) => [y, 511 - x];
 
 function drawRectangle({ corners: [first, second], colour }, label) {
   const [[left, top], [right, bottom]] = [first, second].map(above);
-  const fill = hex((colour[0] << 16) | (colour[1] << 8) | colour[2]);
+  const fill = hex(rgb(colour));
   if (first[2] === second[2] && left !== right && top !== bottom) {
     return drawn("rect", {
       x: Math.min(left, right), y: Math.min(top, bottom), width: Math.abs(right - left),
@@ -259,16 +259,15 @@ tabs.pixel = {
     const selects = { scene: find("pixel-scene"), engine: find("pixel-engine") };
     const inputs = { column: find("pixel-column"), row: find("pixel-row") };
     const canvas = find("pixel-picture"), status = find("pixel-status");
-    fill(selects.scene, Object.keys(RayCaster.scenes), RayCaster.walk.first);
+    fillScenes(selects.scene);
     fill(selects.engine, Object.keys(PIXEL_ENGINES), "exact");
     const judge = await Judge.start();
     let machine = null, loaded = null, chosen = false;
 
     const start = async (name) => {
       if (machine?.name === name) return;
-      machine?.end();
-      machine = loaded = null;
-      machine = await Machine.start(name);
+      loaded = null;
+      machine = await Machine.instead(machine, name);
       for (const [input, count] of [[inputs.column, machine.design.columns], [inputs.row, machine.design.rows]]) {
         input.max = count - 1;
         // Start with the pixel in the middle.
@@ -280,9 +279,9 @@ tabs.pixel = {
     const show = (scene, column, row, frame, explained) => {
       const { design } = machine;
       const { columns, fraction_bits: fractionBits, taps: { units } } = design;
-      const [red, green, blue] = frame.pixels.subarray(4 * (row * columns + column));
+      const monitor = rgb(frame.pixels.subarray(4 * (row * columns + column)));
       const life = RayCasterLife.read(design.taps, frame.samples, fractionBits);
-      const story = new PixelStory(scene, design, life, explained, (red << 16) | (green << 8) | blue);
+      const story = new PixelStory(scene, design, life, explained, monitor);
       draw(canvas, frame.pixels, design);
       drawMark(canvas, column, row);
       drawPlan(find("pixel-plan"), scene, life, (index) => story.label(index));
@@ -290,8 +289,7 @@ tabs.pixel = {
       status.className = story.isWrong ? "error" : "";
       status.textContent = `Column ${column}, row ${row}: ray unit ${column % units} of ${units} took ` +
         `${counted(life.clocks, "clock")}, and ${story.isWrong ? "differs from" : "matches"} the golden model.`;
-      const { isWrong: wrong, monitor } = story;
-      RayCaster.state.pixel = { done: true, column, row, wrong, life, golden: explained, monitor };
+      RayCaster.state.pixel = { done: true, column, row, wrong: story.isWrong, life, golden: explained, monitor };
     };
 
     const compute = async () => {
@@ -317,18 +315,7 @@ tabs.pixel = {
       show(scene, column, row, frame, await judge.call("explain", column, row, design.columns));
     };
 
-    // One computation at a time; of the requests made meanwhile, only the last counts.
-    let runs = false, asked = false;
-    const ask = async () => {
-      asked = true;
-      if (runs) return;
-      runs = true;
-      while (asked) {
-        asked = false;
-        await compute().catch((error) => showFailure("pixel", error));
-      }
-      runs = false;
-    };
+    const ask = latest("pixel", compute);
     for (const control of Object.values({ ...selects, ...inputs })) control.addEventListener("change", ask);
     canvas.addEventListener("click", (event) => {
       const box = canvas.getBoundingClientRect();
