@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Boards, each a folder with a description and, for Quartus, a top; checks of descriptions, pins and projects."""
+"""Boards, each a folder with a description and, for Quartus, a top; checks of descriptions."""
 
 from __future__ import annotations
 
@@ -248,51 +248,3 @@ def top_ports(verilog: str) -> dict[str, str]:
         names = [name] if highest is None else [f"{name}[{index}]" for index in range(int(highest) + 1)]
         ports |= dict.fromkeys(names, direction)
     return ports
-
-
-def assignments(qsf: str) -> list[tuple[str, str, str]]:
-    """List a settings file's assignments to ports: kind (such as `LOCATION` or `IO_STANDARD`), value and port bit."""
-    found = []
-    for line in qsf.splitlines():
-        if location := re.fullmatch(r"set_location_assignment PIN_(\w+) -to (\S+)", line):
-            found.append(("LOCATION", location[1], location[2]))
-        elif instance := re.fullmatch(r'set_instance_assignment -name (\w+) "(.*)" -to (\S+)', line):
-            found.append((instance[1], instance[2], instance[3]))
-    return found
-
-
-def check_project(board: QuartusBoard, verilog: str, qsf: str) -> None:
-    """Check that a settings file and the top agree with each other and with the board.
-
-    Args:
-        board: board with the pins.
-        verilog: text of the top.
-        qsf: text of the settings file.
-
-    Raises:
-        BoardError: they do not agree; one line lists all mistakes.
-    """
-    ports = top_ports(verilog)
-    given = assignments(qsf)
-    locations = [(value, bit) for kind, value, bit in given if kind == "LOCATION"]
-    standards = {bit for kind, _, bit in given if kind == "IO_STANDARD"}
-    wrong = [f"{bit} has no pin" for bit in ports if bit not in {bit for _, bit in locations}]
-    wrong += [f"{bit} has no I/O standard" for bit in ports if bit not in standards]
-    wrong += [f"{bit} is not a port" for bit in dict.fromkeys(bit for *_, bit in given) if bit not in ports]
-    wrong += _wrong_pins(locations, {pin: bit for bit, pin in board.pins.items()})
-    if wrong:
-        raise BoardError(f"{TOP} on the {board.title}: {'; '.join(wrong)}")
-
-
-def _wrong_pins(locations: list[tuple[str, str]], known: Mapping[str, str]) -> list[str]:
-    wrong = []
-    users: dict[str, str] = {}
-    for pin, bit in locations:
-        if pin in users:
-            wrong.append(f"{pin} is both {users[pin]} and {bit}")
-        elif pin not in known:
-            wrong.append(f"{bit} is on {pin}, which is not among the board's pins")
-        elif known[pin] != bit:
-            wrong.append(f"{bit} is on {pin}, which is the board's {known[pin]}")
-        users[pin] = bit
-    return wrong

@@ -20,7 +20,7 @@ from raycaster.convert.take_home import clock_period
 from raycaster.convert.write import write_scene_system
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
-from raycaster.fpga.board import TOP, QuartusBoard, board_names, check_project, find_board, top_ports
+from raycaster.fpga.board import TOP, BoardError, QuartusBoard, board_names, find_board, top_ports
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.output import Console, printable, replaced
 from raycaster.scene import Scene, find_scene
@@ -53,13 +53,13 @@ def write_project(board: QuartusBoard, config: Configuration, scene: Scene, dire
         directory: output directory, replaced as a whole once everything is generated.
 
     Raises:
-        BoardError: the board's pins and its top do not agree; nothing is generated.
+        BoardError: the top has a port that is not among the board's signals; nothing is generated.
         UserError: the engine needs the pixel clock, which the projects lack.
     """
     top = (board.directory / board.top).read_text()
     ports = top_ports(top)
-    pins = _pin_assignments(board, ports)
-    check_project(board, top, pins)
+    if missing := [bit for bit in ports if bit not in board.pins]:
+        raise BoardError(f"{TOP} on the {board.title}: no pin for {', '.join(missing)}")
     if config.screen_geometry.clocks_per_pixel == 1:
         raise UserError(
             f"engine: the boards' projects run at 50 MHz, but the {config.engine} engine needs the pixel clock; use "
@@ -71,7 +71,7 @@ def write_project(board: QuartusBoard, config: Configuration, scene: Scene, dire
         shutil.copyfile(HELPER, written / HELPER.name)
         (written / f"{TOP}.v").write_text(top)
         (written / f"{TOP}.qpf").write_text(f'PROJECT_REVISION = "{TOP}"\n')
-        (written / f"{TOP}.qsf").write_text(_settings(board, config, sources) + pins)
+        (written / f"{TOP}.qsf").write_text(_settings(board, config, sources) + _pin_assignments(board, ports))
         (written / f"{TOP}.sdc").write_text(_constraints(board, config, ports))
 
 
@@ -124,16 +124,14 @@ def _settings(board: QuartusBoard, config: Configuration, sources: list[str]) ->
     return "\n".join(lines) + "\n"
 
 
-def _pin_assignments(board: QuartusBoard, ports: dict[str, str]) -> str:
-    """Generate the pin and standard of each bit of the top's ports that the board has."""
-    pins = board.pins
+def _pin_assignments(board: QuartusBoard, ports: Iterable[str]) -> str:
+    """Generate the pin and standard of each bit of the top's ports."""
     lines = []
     for bit in ports:
-        if bit in pins:
-            lines.append(f"set_location_assignment PIN_{pins[bit]} -to {bit}")
-            standard = board.signals[bit.partition("[")[0]].standard
-            lines.append(f'set_instance_assignment -name IO_STANDARD "{standard}" -to {bit}')
-    return "".join(f"{line}\n" for line in lines)
+        standard = board.signals[bit.partition("[")[0]].standard
+        lines.append(f"set_location_assignment PIN_{board.pins[bit]} -to {bit}\n")
+        lines.append(f'set_instance_assignment -name IO_STANDARD "{standard}" -to {bit}\n')
+    return "".join(lines)
 
 
 def _constraints(board: QuartusBoard, config: Configuration, ports: dict[str, str]) -> str:
