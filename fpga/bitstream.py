@@ -165,12 +165,6 @@ VIDEO = {
 
 def top_of(board: OpenBoard, config: Configuration) -> str:
     """Generate the top, which only connects the board's pins."""
-    ports = []
-    for name, signal in board.signals.items():
-        bits = f" [{len(signal.pins) - 1}:0]" if isinstance(signal.pins, tuple) else ""
-        ports.append(f"    {'output' if name in board.outputs else 'input '} wire{bits} {name}")
-    values = {button: board.inputs.get(button, "1'b0") for button in BUTTONS}
-    listed = ",\n".join(ports)
     assigned = "\n".join(f"assign {name} = {value};" for name, value in board.outputs.items())
     parameters, wires = VIDEO[board.video]
     connected = ("run", "buttons", "locked", "serial", *re.findall(r"\w+(?=[,;])", wires))
@@ -179,15 +173,15 @@ def top_of(board: OpenBoard, config: Configuration) -> str:
 // Pins of the {board.title}.
 
 module {board.name} (
-{listed}
+{board.port_list({name: list(board.bits(name)) for name in board.signals})}
 );
 
 localparam COLOUR_BITS = {config.colour_bits};
 
 wire locked, serial;
 {wires}
-wire run = !({board.inputs.get("reset", "1'b0")});
-wire [{len(BUTTONS) - 1}:0] buttons = {{{", ".join(reversed(values.values()))}}};
+wire run = !({board.pressed("reset")});
+wire [{len(BUTTONS) - 1}:0] buttons = {board.buttons};
 
 {assigned}
 

@@ -55,17 +55,14 @@ def test_modules_and_their_multipliers(family, tmp_path):
     whole = measure(SMALL, family, tmp_path / "whole")
     assert whole.multipliers == parts.multipliers == 2 * SMALL.units
     # Flattening propagates constants across modules and adds no registers.
-    assert 0.6 * parts.registers < whole.registers <= parts.registers
-    assert 0.6 * parts.tables < whole.tables <= 1.05 * parts.tables
+    assert 0 < 0.6 * parts.registers < whole.registers <= parts.registers
+    assert 0 < 0.6 * parts.tables < whole.tables <= 1.05 * parts.tables
 
-    culled = measure_modules(replace(SMALL, culling=True), family, tmp_path / "culled")
-    more = {name: (instances, area) for name, (instances, area) in culled.items() if name not in modules}
-    assert {"group_culler", "group_tester", "rect_copy", "rect_setup", "array_multiplier"} <= set(more)
-    taken = sum((area * instances for instances, area in more.values()), NOTHING)
+    more = measure(replace(SMALL, culling=True), family, tmp_path / "culled") - whole
     unit = measure(SMALL, family, tmp_path / "unit", "ray_unit")
-    assert not taken.multipliers
-    assert taken.tables < 4 * unit.tables
-    assert taken.registers < 4 * unit.registers
+    assert not more.multipliers
+    assert more.tables < 4 * unit.tables
+    assert more.registers < 4 * unit.registers
 
 
 @pytest.mark.slow_sets("cycloneive")
@@ -76,24 +73,6 @@ def test_wide_multipliers(family, multipliers, tmp_path):
         screen="tiny", units=2, rectangles=2, fraction_bits=8, divider_bits=1, allow_underrun=True, culling=False
     )
     assert measure(wide, FAMILIES[family], tmp_path / "area", "ray_unit").multipliers == 2 * multipliers
-
-
-@pytest.mark.slow
-def test_one_more_register_shows(tmp_path, monkeypatch):
-    family = FAMILIES["cycloneive"]
-    sound = measure(SMALL, family, tmp_path / "sound")
-
-    def write_with_register(config, directory):
-        files = write_verilog(config, directory)
-        path = directory / "avalon_interface.v"
-        right = "assign irq = irq_pending && irq_enable;\n"
-        assert right in path.read_text()
-        late = "reg late;\nalways @(posedge clk) late <= irq_pending && irq_enable;\nassign irq = late;\n"
-        path.write_text(path.read_text().replace(right, late))
-        return files
-
-    monkeypatch.setattr("raycaster.fpga.cells.write_verilog", write_with_register)
-    assert measure(SMALL, family, tmp_path / "broken").registers == sound.registers + 1
 
 
 def test_the_model_predicts_linear_growth():

@@ -95,6 +95,8 @@ def test_each_port_has_a_pin_and_a_standard(tmp_path):
         ("icepi_zero", 'PULLMODE = "NONE"', 'PULLMODE = ["NONE", "UP"]', "PULLMODE has 2 values for"),
         ("de10_lite", '["B8", "A7"]', "[]", 'signals.KEY.pins: must be a pin such as "N2", or a list of them'),
         ("de2", 'dac_clock = "VGA_CLK"', 'dac_clock = "DAC"', "DAC is missing, but is one of the board's clocks"),
+        ("de10_lite", 'VGA_HS = "vga_hs"', 'VGA_HS = "hs"', "outputs: hs is not one of vga_r, "),
+        ("de10_lite", 'VGA_R = "vga_r"', "", "outputs: none is vga_r"),
         ("de10_lite", "family =", "familiy =", "familiy: is unknown (did you mean family?)"),
     ],
 )  # fmt: skip
