@@ -343,6 +343,30 @@ def test_only_what_decides_a_figure_makes_it_stale(monkeypatch):
     assert tables._changed(then, "no such scene") == ["the command, which is refused: no such scene"]
 
 
+def test_digests_are_stored(monkeypatch, tmp_path: Path):
+    """Commands are described again after any change, designs are digested again only after one to the hardware."""
+    versions, asked = {tables.DECIDING: 0, tables.HARDWARE: 0}, []
+
+    def run(what, function, jobs, *_):
+        asked.append((what, len(jobs)))
+        return list(map(function, jobs))
+
+    monkeypatch.setattr(tables, "ROOT", tmp_path)
+    monkeypatch.setattr(tables, "run_jobs", run)
+    monkeypatch.setattr(tables, "_state", lambda places: [str(versions[places])])
+    monkeypatch.setattr(tables, "_described", lambda command: provenance.Provenance([configure()]))
+    monkeypatch.setattr(tables, "_digested", lambda design: f"digest {versions[tables.HARDWARE]}")
+    found = []
+    for changed in ((), (), (tables.DECIDING,), (tables.DECIDING, tables.HARDWARE)):
+        for places in changed:
+            versions[places] += 1
+        found.append(tables._current(["area"])["area"]["designs"][configure().name])
+    assert found == ["digest 0", "digest 0", "digest 0", "digest 1"]
+    assert asked == [(what, 1) for what in ("commands", "designs")] + [
+        ("commands", 1), ("designs", 0), ("commands", 1), ("designs", 1),
+    ]  # fmt: skip
+
+
 def test_one_design_has_one_count():
     """All tables have the same LUT4 count for a design; stale figures are marked, and are left out here."""
     found: dict[str, dict[str, int]] = {}
