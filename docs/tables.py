@@ -51,6 +51,9 @@ DECIDING = (
 )  # fmt: skip
 """Sources on which any digest may depend: digests are only computed again if one of them changes."""
 
+HARDWARE = ("hdl", "rtl", "convert", "raycaster")
+"""Sources on which the Verilog of a design may depend: `convert` imports nothing else."""
+
 JOBS = 2
 
 
@@ -139,32 +142,36 @@ def outcomes() -> Mapping[str, Outcome]:
 def _current(commands: Sequence[str]) -> Mapping[str, Digests | str]:
     """Return the current digests for the figures of these commands, or the reason why a command is refused.
 
-    Digests are stored in build/ and computed again if a source or a tool has changed.
+    Digests are stored in build/ and computed again if a source or a tool has changed; those of designs, which take most
+    of the time, only if the hardware or its conversion has.
     """
-    store, state, console = ROOT / "build" / "provenance.json", _state(), Console(stderr=True)
+    store, console = ROOT / "build" / "provenance.json", Console(stderr=True)
+    state, hardware = _state(DECIDING), _state(HARDWARE)
     # New processes, because MyHDL searches all loaded modules repeatedly, and a test has loaded many.
     pool = partial(ProcessPoolExecutor, JOBS, mp_context=get_context("spawn"))
     store.parent.mkdir(exist_ok=True)
     with FileLock(store.with_suffix(".lock")):
         stored = json.loads(store.read_text()) if store.exists() else {}
         found = stored["found"] if stored.get("state") == state else {}
+        known = stored["designs"] if stored.get("hardware") == hardware else {}
         wanted = [command for command in commands if command not in found]
         if wanted:
             described = run_jobs("commands", _described, wanted, pool, console)
             designs = {one.name: one for each in described if isinstance(each, Provenance) for one in each.designs}
-            digests = run_jobs("designs", _digested, list(designs.values()), pool, console)
-            known = dict(zip(designs, digests, strict=True))
+            new = [one for name, one in designs.items() if name not in known]
+            known |= zip((one.name for one in new), run_jobs("designs", _digested, new, pool, console), strict=True)
             made = (each.digests(known) if isinstance(each, Provenance) else each for each in described)
             found |= zip(wanted, made, strict=True)
             partly = store.with_suffix(".partial")
-            partly.write_text(json.dumps({"state": state, "found": found}))
+            kept = {"state": state, "found": found, "hardware": hardware, "designs": known}
+            partly.write_text(json.dumps(kept))
             partly.replace(store)
     return found
 
 
-def _state() -> list[str]:
+def _state(places: Sequence[str]) -> list[str]:
     packages = sorted({f"{one.name} {one.version}" for one in distributions()})  # one on two paths comes twice
-    return [*(code_digest(ROOT / place, ROOT) for place in DECIDING), *packages]
+    return [*(code_digest(ROOT / place, ROOT) for place in places), *packages]
 
 
 def _described(command: str) -> Provenance | str:

@@ -94,6 +94,10 @@ class Model:
         return fit
 
 
+Counted = tuple[dict[str, Any], Configuration, str]
+"""Labels of a row of figures, the design, and its module whose cells are counted."""
+
+
 def unit_counts(config: Configuration) -> list[int]:
     """Return the numbers of units to synthesise: the given one and, if fewer are possible, up to three halvings."""
     if not config.facts.line_buffered:
@@ -106,8 +110,8 @@ def with_units(config: Configuration, units: int) -> Configuration:
     return replace(config, units=units, allow_underrun=True)
 
 
-def feature_designs() -> list[tuple[str, str, dict[str, Any]]]:
-    """List each engine's designs without features, with each one alone, and with all: module, engine and options.
+def feature_designs() -> list[Counted]:
+    """List each engine's designs without features, with each one alone, and with all.
 
     For the seed engine, the module is one ray unit, because a design has many.
     """
@@ -115,26 +119,28 @@ def feature_designs() -> list[tuple[str, str, dict[str, Any]]]:
     for engine in ENGINES.values():
         top = "ray_unit" if engine.divides else TOP
         for chosen in ([], *([name] for name in engine.looks), engine.looks):
-            designs.append((top, engine.name, dict.fromkeys(chosen, 1)))
+            options = dict.fromkeys(chosen, 1)
+            labels = {"engine": engine.name, "module": top, "options": options}
+            designs.append((labels, configure(engine=engine.name, **options), top))
     return designs
 
 
-def measure_features(output: Path, console: Console) -> list[dict[str, Any]]:
-    """Count the cells of each feature's designs for an ECP5.
+def bridge_designs() -> list[Counted]:
+    """List designs with each bus bridge; only the bridge is counted."""
+    return [({"bus": bus}, configure(engine="exact", bus=bus), f"{bus}_bridge") for bus in BRIDGED]
+
+
+def measure_set(designs: Sequence[Counted], output: Path, console: Console) -> list[dict[str, Any]]:
+    """Count the cells of a fixed set of designs for an ECP5.
 
     Raises:
         UserError: as `measure`.
     """
-    tasks: dict[tuple[str, int], Callable[[Path], Any]] = {}
-    for top, engine, options in feature_designs():
-        config = configure(engine=engine, **options)
-        key = config.name, config.units
-        tasks[key] = lambda path, c=config, t=top: (c, t, measure(c, FAMILIES["ecp5"], path, t))
+    tasks = {
+        (config.name, config.units): partial(measure, config, FAMILIES["ecp5"], top=top) for _, config, top in designs
+    }
     results = _run(tasks, output, console)
-    return [
-        {"engine": config.engine, "module": top, "options": options, **asdict(area)}
-        for (_, _, options), (config, top, area) in zip(feature_designs(), (results[key] for key in tasks), strict=True)
-    ]
+    return [{**labels, **asdict(results[config.name, config.units])} for labels, config, _ in designs]
 
 
 def show_features(features: Sequence[Mapping[str, Any]], console: Console) -> None:
@@ -151,26 +157,19 @@ def show_features(features: Sequence[Mapping[str, Any]], console: Console) -> No
     console.print(table)
 
 
-def measure_bridges(output: Path, console: Console) -> list[dict[str, Any]]:
-    """Count the cells of each bus bridge for an ECP5.
-
-    Raises:
-        UserError: as `measure`.
-    """
-    tasks: dict[tuple[str, int], Callable[[Path], Any]] = {}
-    for bus in BRIDGED:
-        config = configure(engine="exact", bus=bus)
-        tasks[config.name, 0] = lambda path, c=config: measure(c, FAMILIES["ecp5"], path, f"{c.bus}_bridge")
-    results = _run(tasks, output, console)
-    return [{"bus": bus, **asdict(results[key])} for bus, key in zip(BRIDGED, tasks, strict=True)]
-
-
 def show_bridges(bridges: Sequence[Mapping[str, Any]], console: Console) -> None:
     """Print the bridges' cells."""
     table = _table("ECP5, the bridge alone", "bus", "tables", "registers")
     for row in bridges:
         table.add_row(row["bus"], f"{row['tables']:,}", f"{row['registers']:,}")
     console.print(table)
+
+
+SETS = {
+    "features": (feature_designs, show_features, "designs", {"rectangles": configure().rectangles}),
+    "bridges": (bridge_designs, show_bridges, "bridges", {}),
+}
+"""Fixed sets of designs by option: their list, the function that prints them, their name in the figures, the scope."""
 
 
 def route(config: Configuration, directory: Path, seed: int) -> dict[str, Any]:
@@ -354,11 +353,9 @@ def command_parser() -> CommandParser:
 
 def provenance(arguments: argparse.Namespace) -> Provenance:
     """Digest everything that affects the command's figures."""
-    if arguments.bridges:
-        return Provenance([configure(engine="exact", bus=bus) for bus in BRIDGED], DECIDES, TOOLS)
-    if arguments.features:
-        designs = [configure(engine=engine, **options) for _, engine, options in feature_designs()]
-        return Provenance(designs, DECIDES, TOOLS)
+    for name in SETS:
+        if getattr(arguments, name):
+            return Provenance([config for _, config, _ in SETS[name][0]()], DECIDES, TOOLS)
     config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, Console(quiet=True))
     if not (arguments.route or arguments.route_only):
         return Provenance([config], DECIDES, TOOLS)
@@ -371,23 +368,15 @@ def main(argv: Sequence[str] | None = None) -> None:
     if arguments.family and arguments.family not in FAMILIES:
         raise UserError(f"family: expected one of {', '.join(FAMILIES)}, got {arguments.family}")
     console = Console()
-    if arguments.features or arguments.bridges:
-        asked = "features" if arguments.features else "bridges"
-        both = arguments.features and arguments.bridges
-        if both or given_options(arguments) or arguments.scene or arguments.fix or arguments.family or arguments.route:
-            raise UserError(f"{asked}: counts a fixed set of designs, for the ECP5; leave everything else out")
+    if asked := [name for name in SETS if getattr(arguments, name)]:
+        others = arguments.scene, arguments.fix, arguments.family, arguments.route, given_options(arguments)
+        if len(asked) > 1 or any(others):
+            raise UserError(f"{asked[0]}: counts a fixed set of designs, for the ECP5; leave everything else out")
         announce("area")
-    if arguments.bridges:
-        bridges = measure_bridges(arguments.output, console)
-        show_bridges(bridges, console)
-        keep(arguments, {"bridges": bridges}, {}, provenance, "placing and routing")
-        return
-    if arguments.features:
-        features = measure_features(arguments.output, console)
-        show_features(features, console)
-        keep(
-            arguments, {"designs": features}, {"rectangles": configure().rectangles}, provenance, "placing and routing"
-        )
+        designs, show, name, scope = SETS[asked[0]]
+        rows = measure_set(designs(), arguments.output, console)
+        show(rows, console)
+        keep(arguments, {name: rows}, scope, provenance, "placing and routing")
         return
     config = configuration_of(arguments.scene, given_options(arguments), arguments.fix, console)
     announce("area")

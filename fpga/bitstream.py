@@ -114,7 +114,7 @@ def write_project(board: OpenBoard, design: Design | ProcessorDesign, directory:
         files += write_dvi_encoder(config, directory / "dvi")
     own = [*HERE.glob(f"{board.video}_*.v"), *(HERE / kind).glob("*.v"), *(HERE / board.flow).glob("*.v")]
     files += [Path(shutil.copy(path, directory)) for path in sorted(own)]
-    for name, text in (("board_clocks", _clocks(clocks, config)), (board.name, _top(board, config))):
+    for name, text in (("board_clocks", _clocks(clocks, config)), (board.name, top_of(board, config))):
         files.append(directory / f"{name}.v")
         files[-1].write_text(text)
     suffix, write = FLOWS[board.flow].pin_file
@@ -153,71 +153,44 @@ endmodule
 """
 
 
-def _top(board: OpenBoard, config: Configuration) -> str:
+VIDEO = {
+    "dvi": ("", "wire [3:0] link_p, link_n;"),
+    "parallel": (
+        " #(.COLOUR_BITS(COLOUR_BITS))",
+        "wire [COLOUR_BITS-1:0] vga_r, vga_g, vga_b;\nwire vga_hs, vga_vs, vga_blank_n, vga_clk;",
+    ),
+}
+"""Parameters of the video's module, and the wires that it drives, for use in output expressions, by kind of video."""
+
+
+def top_of(board: OpenBoard, config: Configuration) -> str:
     """Generate the top, which only connects the board's pins."""
-    ports = []
-    for name, signal in board.signals.items():
-        bits = f" [{len(signal.pins) - 1}:0]" if isinstance(signal.pins, tuple) else ""
-        ports.append(f"    {'output' if name in board.outputs else 'input '} wire{bits} {name}")
-    values = {button: board.inputs.get(button, "1'b0") for button in BUTTONS}
-    listed = ",\n".join(ports)
     assigned = "\n".join(f"assign {name} = {value};" for name, value in board.outputs.items())
-    wires, connections = VIDEO[board.video]
+    parameters, wires = VIDEO[board.video]
+    connected = ("run", "buttons", "locked", "serial", *re.findall(r"\w+(?=[,;])", wires))
+    instance = "".join(f",\n    .{name}({name})" for name in connected)
     return f"""// SPDX-License-Identifier: MIT
 // Pins of the {board.title}.
 
 module {board.name} (
-{listed}
+{board.port_list({name: list(board.bits(name)) for name in board.signals})}
 );
 
 localparam COLOUR_BITS = {config.colour_bits};
 
 wire locked, serial;
 {wires}
-wire run = !({board.inputs.get("reset", "1'b0")});
-wire [{len(BUTTONS) - 1}:0] buttons = {{{", ".join(reversed(values.values()))}}};
+wire run = !({board.pressed("reset")});
+wire [{len(BUTTONS) - 1}:0] buttons = {board.buttons};
 
 {assigned}
 
-{connections.format(clock=board.clock)}
+{board.video}_board{parameters} board (
+    .clk_in({board.clock}){instance}
+);
+
 endmodule
 """
-
-
-VIDEO = {
-    "dvi": (
-        "wire [3:0] link_p, link_n;",
-        """dvi_board board (
-    .clk_in({clock}),
-    .run(run),
-    .buttons(buttons),
-    .locked(locked),
-    .serial(serial),
-    .link_p(link_p),
-    .link_n(link_n)
-);
-""",
-    ),
-    "parallel": (
-        "wire [COLOUR_BITS-1:0] vga_r, vga_g, vga_b;\nwire vga_hs, vga_vs, vga_blank_n, vga_clk;",
-        """parallel_board #(.COLOUR_BITS(COLOUR_BITS)) board (
-    .clk_in({clock}),
-    .run(run),
-    .buttons(buttons),
-    .locked(locked),
-    .serial(serial),
-    .vga_r(vga_r),
-    .vga_g(vga_g),
-    .vga_b(vga_b),
-    .vga_hs(vga_hs),
-    .vga_vs(vga_vs),
-    .vga_blank_n(vga_blank_n),
-    .vga_clk(vga_clk)
-);
-""",
-    ),
-}
-"""Wires of the top, for use in output expressions, and the instance that drives them, by kind of video."""
 
 
 def make_bitstream(

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Boards, each a folder with a description and, for Quartus, a top; checks of descriptions, pins and projects."""
+"""Boards, each a folder with a description, which is checked here."""
 
 from __future__ import annotations
 
 import json
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
 
@@ -23,7 +23,10 @@ TOP = "ray_caster_project"
 DESCRIPTION = "board.toml"
 """Name of the file that makes a folder here a board."""
 
-_INPUT = re.compile(r"~?(\w+)(?:\[(\d+)\])?")
+
+CHANNELS = ("vga_r", "vga_g", "vga_b")
+VGA = (*CHANNELS, "vga_hs", "vga_vs", "vga_blank_n", "vga_sync_n", "vga_clk")
+"""Outputs of `scene_system`."""
 
 
 class BoardError(UserError):
@@ -38,6 +41,11 @@ def _check_pins(value: object) -> object:
         if not isinstance(pin, str) or not re.fullmatch("[A-Z]{0,2}[1-9][0-9]?", pin):
             raise ValueError(f'must be a pin such as "N2", not {json.dumps(pin, default=str)}')
     return value
+
+
+def _signal(bit: str) -> str:
+    """Return the name of a bit's signal: `KEY` for `~KEY[0]`."""
+    return bit.removeprefix("~").partition("[")[0]
 
 
 class _Strict(BaseModel):
@@ -66,7 +74,11 @@ class BoardSignal(_Strict):
 
 
 class Board(_Strict):
-    """Description of a board: the part that all kinds share."""
+    """Description of a board: the part that all kinds share. The top of its designs is generated.
+
+    `inputs` and `outputs` are Verilog. An input is a bit that is high while one of `BUTTONS`, or `reset`, is pressed.
+    An output is an expression of the signals of the modules in the top.
+    """
 
     directory: Path
     title: str
@@ -78,6 +90,8 @@ class Board(_Strict):
     disagreements: str
     configuration: dict[str, Any]
     """Default configuration options of the hardware."""
+    inputs: dict[str, str]
+    outputs: dict[str, str]
     signals: dict[str, BoardSignal]
 
     @model_validator(mode="after")
@@ -90,7 +104,37 @@ class Board(_Strict):
         for name in self.clocks:
             if name not in self.pins:
                 raise ValueError(f"signals: {name} is missing, but is one of the board's clocks")
+        for name, value in self.inputs.items():
+            if name not in ("reset", *BUTTONS):
+                raise ValueError(f"inputs: {name} is not one of reset, {', '.join(BUTTONS)}")
+            if value.removeprefix("~") not in self.pins or _signal(value) in self.outputs:
+                raise ValueError(f"inputs: {name}: {value} is not a bit of a signal here, or is an output")
+        for name in self.outputs:
+            if name not in self.signals:
+                raise ValueError(f"outputs: {name} is not among the signals")
         return self
+
+    @property
+    def used(self) -> set[str]:
+        """Names of the signals in use: the clock, and those in the inputs and outputs."""
+        return {self.clock, *map(_signal, self.inputs.values()), *self.outputs}
+
+    def pressed(self, name: str) -> str:
+        """Return the Verilog of an input, which is 0 if the board lacks it."""
+        return self.inputs.get(name, "1'b0")
+
+    @property
+    def buttons(self) -> str:
+        """Verilog of all `BUTTONS`, the first in bit 0."""
+        return f"{{{', '.join(map(self.pressed, reversed(BUTTONS)))}}}"
+
+    def port_list(self, ports: Mapping[str, Sequence[str]]) -> str:
+        """Return the Verilog of the top's ports, given by name and bits."""
+        lines = []
+        for name, bits in ports.items():
+            vector = "" if list(bits) == [name] else f" [{len(bits) - 1}:0]"
+            lines.append(f"    {'output' if name in self.outputs else 'input '} wire{vector} {name}")
+        return ",\n".join(lines)
 
     @property
     def name(self) -> str:
@@ -114,19 +158,31 @@ class Board(_Strict):
 
 
 class QuartusBoard(Board):
-    """Board with an Intel (formerly Altera) chip. Lists more signals than projects use, named as in its manual."""
+    """Board with an Intel (formerly Altera) chip. Lists more signals than projects use, named as in its manual.
+
+    Its outputs are outputs of `scene_system`.
+    """
 
     flow: Literal["quartus"]
     family: str
     device: str
     quartus: str
     """Required version of Quartus."""
-    top: Path
-    """Verilog of the top, relative to the board's folder."""
     dac_clock: str | None = None
     """Signal whose rising edge clocks the DAC; None if the DAC has no clock."""
     settings: dict[str, str]
     """Global assignments of the board in Quartus."""
+
+    @model_validator(mode="after")
+    def _check_outputs(self) -> QuartusBoard:
+        given = self.outputs.values()
+        for port in given:
+            if port not in VGA:
+                raise ValueError(f"outputs: {port} is not one of {', '.join(VGA)}")
+        for channel in CHANNELS:
+            if channel not in given:
+                raise ValueError(f"outputs: none is {channel}")
+        return self
 
     @property
     def clocks(self) -> list[str]:
@@ -135,11 +191,7 @@ class QuartusBoard(Board):
 
 
 class OpenBoard(Board):
-    """Board whose bitstreams Yosys and nextpnr make. Its top is generated, with every signal here as a port.
-
-    `inputs` and `outputs` are Verilog. An input is a bit that is high while one of `BUTTONS`, or `reset`, is pressed.
-    An output is an expression of the inputs and of the outputs of the module for `video`.
-    """
+    """Board whose bitstreams Yosys and nextpnr make. Every signal here is a port of its top."""
 
     flow: Literal["ecp5", "ice40", "gowin"]
     """Name of an entry of `flows.FLOWS`, and of the folder with modules made of the chip's own cells."""
@@ -153,24 +205,11 @@ class OpenBoard(Board):
     """Kind of output: a DVI link driven by the chip itself, or colours and syncs for a DAC or a transmitter."""
     loader: tuple[str, ...]
     """openFPGALoader's options for the board."""
-    inputs: dict[str, str]
-    outputs: dict[str, str]
 
     @model_validator(mode="after")
-    def _check_ports(self) -> OpenBoard:
-        read = {self.clock}
-        for name, value in self.inputs.items():
-            if name not in ("reset", *BUTTONS):
-                raise ValueError(f"inputs: {name} is not one of reset, {', '.join(BUTTONS)}")
-            bit = _INPUT.fullmatch(value)
-            if bit is None or value.removeprefix("~") not in self.pins or bit[1] in self.outputs:
-                raise ValueError(f"inputs: {name}: {value} is not a bit of a signal here, or is an output")
-            read.add(bit[1])
-        for name in self.outputs:
-            if name not in self.signals:
-                raise ValueError(f"outputs: {name} is not among the signals")
+    def _check_use(self) -> OpenBoard:
         for name in self.signals:
-            if name not in read and name not in self.outputs:
+            if name not in self.used:
                 raise ValueError(f"signals: {name} is neither the clock nor used in inputs or outputs")
         return self
 
@@ -228,71 +267,3 @@ def find_board(name: str, kind: type[Kind]) -> Kind:
     if not isinstance(board, kind):
         raise BoardError(f"board: {name} is not one of {', '.join(known)}")
     return board
-
-
-def top_ports(verilog: str) -> dict[str, str]:
-    """Return the bits of the top's ports and their directions, from Verilog in the style of the tops here.
-
-    Raises:
-        BoardError: the Verilog has another style.
-    """
-    header = re.search(rf"^module {TOP} #\(\n[^()]*\n\) \(\n(.*?)\n\);$", verilog, re.M | re.S)
-    if header is None:
-        raise BoardError(f"the top has no module {TOP} with parameters and ports")
-    ports: dict[str, str] = {}
-    for line in header[1].splitlines():
-        port = re.fullmatch(r" *(input|output) +wire +(?:\[(\d+):0\] +)?(\w+),?", line)
-        if port is None:
-            raise BoardError(f"the top has a port that cannot be read: {line.strip()}")
-        direction, highest, name = port.groups()
-        names = [name] if highest is None else [f"{name}[{index}]" for index in range(int(highest) + 1)]
-        ports |= dict.fromkeys(names, direction)
-    return ports
-
-
-def assignments(qsf: str) -> list[tuple[str, str, str]]:
-    """List a settings file's assignments to ports: kind (such as `LOCATION` or `IO_STANDARD`), value and port bit."""
-    found = []
-    for line in qsf.splitlines():
-        if location := re.fullmatch(r"set_location_assignment PIN_(\w+) -to (\S+)", line):
-            found.append(("LOCATION", location[1], location[2]))
-        elif instance := re.fullmatch(r'set_instance_assignment -name (\w+) "(.*)" -to (\S+)', line):
-            found.append((instance[1], instance[2], instance[3]))
-    return found
-
-
-def check_project(board: QuartusBoard, verilog: str, qsf: str) -> None:
-    """Check that a settings file and the top agree with each other and with the board.
-
-    Args:
-        board: board with the pins.
-        verilog: text of the top.
-        qsf: text of the settings file.
-
-    Raises:
-        BoardError: they do not agree; one line lists all mistakes.
-    """
-    ports = top_ports(verilog)
-    given = assignments(qsf)
-    locations = [(value, bit) for kind, value, bit in given if kind == "LOCATION"]
-    standards = {bit for kind, _, bit in given if kind == "IO_STANDARD"}
-    wrong = [f"{bit} has no pin" for bit in ports if bit not in {bit for _, bit in locations}]
-    wrong += [f"{bit} has no I/O standard" for bit in ports if bit not in standards]
-    wrong += [f"{bit} is not a port" for bit in dict.fromkeys(bit for *_, bit in given) if bit not in ports]
-    wrong += _wrong_pins(locations, {pin: bit for bit, pin in board.pins.items()})
-    if wrong:
-        raise BoardError(f"{TOP} on the {board.title}: {'; '.join(wrong)}")
-
-
-def _wrong_pins(locations: list[tuple[str, str]], known: Mapping[str, str]) -> list[str]:
-    wrong = []
-    users: dict[str, str] = {}
-    for pin, bit in locations:
-        if pin in users:
-            wrong.append(f"{pin} is both {users[pin]} and {bit}")
-        elif pin not in known:
-            wrong.append(f"{bit} is on {pin}, which is not among the board's pins")
-        elif known[pin] != bit:
-            wrong.append(f"{bit} is on {pin}, which is the board's {known[pin]}")
-        users[pin] = bit
-    return wrong

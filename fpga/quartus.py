@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from raycaster.configuration import Configuration
@@ -20,7 +20,7 @@ from raycaster.convert.take_home import clock_period
 from raycaster.convert.write import write_scene_system
 from raycaster.errors import UserError
 from raycaster.fit.fixing import add_fix_option, design_of
-from raycaster.fpga.board import TOP, QuartusBoard, board_names, check_project, find_board, top_ports
+from raycaster.fpga.board import CHANNELS, TOP, VGA, QuartusBoard, board_names, find_board
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.output import Console, printable, replaced
 from raycaster.scene import Scene, find_scene
@@ -53,13 +53,8 @@ def write_project(board: QuartusBoard, config: Configuration, scene: Scene, dire
         directory: output directory, replaced as a whole once everything is generated.
 
     Raises:
-        BoardError: the board's pins and its top do not agree; nothing is generated.
         UserError: the engine needs the pixel clock, which the projects lack.
     """
-    top = (board.directory / board.top).read_text()
-    ports = top_ports(top)
-    pins = _pin_assignments(board, ports)
-    check_project(board, top, pins)
     if config.screen_geometry.clocks_per_pixel == 1:
         raise UserError(
             f"engine: the boards' projects run at 50 MHz, but the {config.engine} engine needs the pixel clock; use "
@@ -69,10 +64,10 @@ def write_project(board: QuartusBoard, config: Configuration, scene: Scene, dire
         modules = write_scene_system(config, scene, written / VERILOG)
         sources = [f"{VERILOG}/{path.name}" for path in modules] + [HELPER.name, f"{TOP}.v"]
         shutil.copyfile(HELPER, written / HELPER.name)
-        (written / f"{TOP}.v").write_text(top)
+        (written / f"{TOP}.v").write_text(top_of(board))
         (written / f"{TOP}.qpf").write_text(f'PROJECT_REVISION = "{TOP}"\n')
-        (written / f"{TOP}.qsf").write_text(_settings(board, config, sources) + pins)
-        (written / f"{TOP}.sdc").write_text(_constraints(board, config, ports))
+        (written / f"{TOP}.qsf").write_text(_settings(board, config, sources) + _pin_assignments(board))
+        (written / f"{TOP}.sdc").write_text(_constraints(board, config))
 
 
 def compile_project(board: QuartusBoard, directory: Path) -> Path:
@@ -124,21 +119,71 @@ def _settings(board: QuartusBoard, config: Configuration, sources: list[str]) ->
     return "\n".join(lines) + "\n"
 
 
-def _pin_assignments(board: QuartusBoard, ports: dict[str, str]) -> str:
-    """Generate the pin and standard of each bit of the top's ports that the board has."""
-    pins = board.pins
+def _ports(board: QuartusBoard) -> dict[str, list[str]]:
+    """Return the bits of each port of the top: of an input, no bits after the last one that is used."""
+    read = [bit.removeprefix("~") for bit in (board.clock, *board.inputs.values())]
+    ports = {}
+    for name in [name for name in board.signals if name in board.used]:
+        bits = list(board.bits(name))
+        last = max((bits.index(bit) for bit in read if bit in bits), default=len(bits) - 1)
+        ports[name] = bits[: last + 1]
+    return ports
+
+
+def top_of(board: QuartusBoard) -> str:
+    """Generate the top, which connects the board's pins to `scene_system`."""
+    ports = _ports(board)
+    controls = "".join(
+        f"// {name}: {bit.removeprefix('~')} {'low' if bit.startswith('~') else 'high'}.\n"
+        for name, bit in board.inputs.items()
+    )
+    driven = {source: name for name, source in board.outputs.items()}
+    video = ",\n    ".join(f".{port}({port if port in CHANNELS else driven.get(port, '')})" for port in VGA)
+    pins = "".join(
+        f"channel_pins #(.BITS(COLOUR_BITS), .PINS({len(ports[driven[channel]])})) {channel}_pins "
+        f"(.channel({channel}), .pins({driven[channel]}));\n"
+        for channel in CHANNELS
+    )
+    return f"""// SPDX-License-Identifier: MIT
+
+`timescale 1ns/10ps
+
+// RayCaster on the pins of a {board.title}, named as in its manual. These bits control it, at this level:
+{controls}module {TOP} #(
+    parameter COLOUR_BITS = 8
+) (
+{board.port_list(ports)}
+);
+
+wire [COLOUR_BITS-1:0] {", ".join(CHANNELS)};
+
+scene_system system (
+    .clk({board.clock}),
+    .ready(!({board.pressed("reset")})),
+    .buttons({board.buttons}),
+    {video}
+);
+
+{pins}
+endmodule
+"""
+
+
+def _pin_assignments(board: QuartusBoard) -> str:
+    """Generate the pin and standard of each bit of the top's ports."""
     lines = []
-    for bit in ports:
-        if bit in pins:
-            lines.append(f"set_location_assignment PIN_{pins[bit]} -to {bit}")
-            standard = board.signals[bit.partition("[")[0]].standard
-            lines.append(f'set_instance_assignment -name IO_STANDARD "{standard}" -to {bit}')
-    return "".join(f"{line}\n" for line in lines)
+    for name, bits in _ports(board).items():
+        for bit in bits:
+            lines.append(f"set_location_assignment PIN_{board.pins[bit]} -to {bit}\n")
+            standard = board.signals[name].standard
+            lines.append(f'set_instance_assignment -name IO_STANDARD "{standard}" -to {bit}\n')
+    return "".join(lines)
 
 
-def _constraints(board: QuartusBoard, config: Configuration, ports: dict[str, str]) -> str:
+def _constraints(board: QuartusBoard, config: Configuration) -> str:
     """Generate the timing constraints."""
-    asynchronous = _patterns(bit for bit, direction in ports.items() if direction == "input" and bit != board.clock)
+    ports = _ports(board)
+    asynchronous = _patterns(ports, lambda name: name not in (*board.outputs, board.clock))
     start = f"""# SPDX-License-Identifier: MIT
 # RayCaster, {config.name}, on the {board.title}.
 create_clock -name clk -period {clock_period(config)} [get_ports {board.clock}]
@@ -150,15 +195,13 @@ set_false_path -from [get_ports {{{asynchronous}}}]
     sync = ["VGA_HS", "VGA_VS"]
     divided = config.screen_geometry.clocks_per_pixel
     if board.dac_clock is None:
-        pins = _patterns(bit for bit, direction in ports.items() if direction == "output")
+        pins = _patterns(ports, lambda name: name in board.outputs)
         return f"""{start}
 # No register captures these outputs: the monitor sees each change. A limit of half a pixel keeps them aligned.
 set_max_delay -to [get_ports {{{pins}}}] {clock_period(config)}
 set_min_delay -to [get_ports {{{pins}}}] 0.000
 """
-    taken = _patterns(
-        bit for bit, direction in ports.items() if direction == "output" and bit not in (*sync, board.dac_clock)
-    )
+    taken = _patterns(ports, lambda name: name in board.outputs and name not in (*sync, board.dac_clock))
     return f"""{start}
 # The pixel clock comes from a register and drives the DAC's pin.
 create_generated_clock -name vga_clk -divide_by {divided} -source [get_ports {board.clock}] \\
@@ -177,9 +220,9 @@ set_min_delay -to [get_ports {{{" ".join(sync)}}}] 0.000
 """
 
 
-def _patterns(bits: Iterable[str]) -> str:
-    """Return Tcl patterns of whole ports, such as `KEY[*] VGA_HS`."""
-    return " ".join(dict.fromkeys(re.sub(r"\[\d+\]$", "[*]", bit) for bit in bits))
+def _patterns(ports: Mapping[str, Sequence[str]], chosen: Callable[[str], bool]) -> str:
+    """Return Tcl patterns of the chosen ports, such as `KEY[*] VGA_HS`."""
+    return " ".join(name if list(bits) == [name] else f"{name}[*]" for name, bits in ports.items() if chosen(name))
 
 
 def command_parser() -> CommandParser:

@@ -9,6 +9,7 @@ import os
 import re
 import shutil
 import subprocess
+import sysconfig
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
@@ -22,7 +23,7 @@ from raycaster.hdl.elaboration import forgetting
 from raycaster.hdl.leaf import Leaf
 from raycaster.options import run_command
 from raycaster.sim.job import Job
-from raycaster.sim.simulator import MODELS_VARIABLE, build_model, run_bench
+from raycaster.sim.simulator import MODELS_VARIABLE, build_model, find_tool, run_bench
 from raycaster.verif.recording import RECORD_VARIABLE, record_test
 from raycaster.verif.seeds import repeat, seed
 
@@ -164,6 +165,35 @@ def called(*words: str, cwd: Path, program: Callable[[list[str]], int | None] = 
     ):
         run_command(lambda: program(list(words)))
     return subprocess.CompletedProcess(words, ended.value.code, out.getvalue(), err.getvalue())
+
+
+def run_tool(directory: Path, *command: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    """Run a program in a directory, with all tools on the path, and return what it said on both outputs together."""
+    environment = os.environ | dict(find_tool("verilator").environment)
+    path = f"{sysconfig.get_path('scripts')}{os.pathsep}{environment['PATH']}"
+    return subprocess.run(
+        command,
+        cwd=directory,
+        env=environment | {"PATH": path} | variables,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.fixture
+def stand_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str], None]:
+    """Return a function that writes a shell script with the name of a program, in the only folder that is searched."""
+    monkeypatch.setattr("raycaster.tools._search_path", lambda: f"{tmp_path / 'bin'}:/usr/bin:/bin")
+
+    def write(name: str, script: str) -> None:
+        program = tmp_path / "bin" / name
+        program.parent.mkdir(exist_ok=True)
+        program.write_text(f"#!/bin/sh\n{script}\n")
+        program.chmod(0o755)
+
+    return write
 
 
 @pytest.fixture

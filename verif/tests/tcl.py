@@ -1,12 +1,28 @@
 # SPDX-License-Identifier: MIT
-"""Run Tcl scripts made for Intel's tools in a real Tcl interpreter."""
+"""Run Tcl scripts made for Intel's tools in a real Tcl interpreter, and record the commands that they call."""
 
 from __future__ import annotations
 
+import os
 import subprocess
+from importlib.metadata import version
 from pathlib import Path
 
 from raycaster.sim import ensure_tools
+
+KEPT = Path(__file__).with_name("kept")
+"""Calls as they were reviewed."""
+
+RECORD = r"""
+rename package ""
+proc unknown args {
+    # The index of a port's bit, as in KEY[0], which Quartus does not evaluate.
+    if {[string is integer $args]} { return "\[$args\]" }
+    puts [join $args \t]
+    return [lindex $args end]
+}
+"""
+"""Commands that Tcl does not know are Intel's: each call is printed as a line, and returns its last argument."""
 
 
 def run_tcl(directory: Path, script: str, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -22,3 +38,25 @@ def run_tcl(directory: Path, script: str, *arguments: str) -> subprocess.Complet
     main.write_text(script)
     command = [program, main.name, *arguments]
     return subprocess.run(command, cwd=directory, capture_output=True, text=True, check=False)
+
+
+def tcl_calls(directory: Path, script: Path, settings: str = "") -> list[list[str]]:
+    """Return the calls of Intel's commands by a script that runs in a directory: each call's name and arguments.
+
+    The settings are Tcl that runs before the script. An error in the script is an AssertionError with its first line.
+    """
+    done = run_tcl(directory, f"{RECORD}\n{settings}\nsource {{{script}}}\n")
+    assert not done.returncode, done.stderr.splitlines()[0]
+    return [line.split("\t") for line in done.stdout.splitlines()]
+
+
+def compare_calls(name: str, calls: list[list[str]]) -> None:
+    """Compare calls, except the project's version, with those kept under a name.
+
+    With `KEEP=1` in the environment, they are kept first.
+    """
+    text = "".join(" | ".join(call).rstrip() + "\n" for call in calls).replace(version("raycaster"), "VERSION")
+    path = KEPT / f"{name}.txt"
+    if os.environ.get("KEEP"):
+        path.write_text(text)
+    assert text == path.read_text(), f"if {path.name} should be so, pytest with KEEP=1 in its environment keeps it"

