@@ -9,7 +9,7 @@ import os
 import re
 import shutil
 import subprocess
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -161,6 +161,26 @@ def called(*words: str, cwd: Path, program: Callable[[list[str]], int | None] = 
     ):
         run_command(lambda: program(list(words)))
     return subprocess.CompletedProcess(words, ended.value.code, out.getvalue(), err.getvalue())
+
+
+def broken(files: Iterable[Path], directory: Path, module: str, right: str, wrong: str) -> list[Path]:
+    """Copy a design's Verilog with a fault in one module; the copy's directory must exist."""
+    copies = []
+    for source in files:
+        text = source.read_text()
+        assert source.stem != module or right in text, f"{module}.v has no {right!r}"
+        copies.append(directory / source.name)
+        copies[-1].write_text(text.replace(right, wrong) if source.stem == module else text)
+    assert module in {copy.stem for copy in copies}
+    return copies
+
+
+def write_script(directory: Path, name: str, text: str = "exit 1") -> None:
+    """Write a shell script that stands for a program."""
+    directory.mkdir(exist_ok=True)
+    path = directory / name
+    path.write_text(f"#!/bin/sh\n{text}\n")
+    path.chmod(0o755)
 
 
 @pytest.fixture

@@ -21,6 +21,7 @@ from raycaster.sim.register_model import LiveScene, RegisterFile, Request
 
 ROOT = Path(__file__).parents[2]
 SOFTWARE = ROOT / "sw"
+COMPILER = shutil.which("gcc") or shutil.which("cc")
 STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror")
 
 ON_HOST_BUS = ("-fcommon", "-include", Path(__file__).with_name("host_bus.h"))
@@ -107,12 +108,20 @@ def basis_of(turned: ctypes.Structure) -> Basis:
 def compile_library(directory: Path, *sources: str | Path, flags: Sequence[str | Path] = ON_HOST_BUS) -> ctypes.CDLL:
     """Compile sources from sw/, or from elsewhere by absolute path, and load them."""
     library = directory / "library.so"
-    compiler = shutil.which("gcc") or shutil.which("cc")
-    command = [compiler, *STRICT, "-O1", "-shared", "-fPIC", f"-I{SOFTWARE}", "-o", library, *flags]
+    command = [COMPILER, *STRICT, "-O1", "-shared", "-fPIC", f"-I{SOFTWARE}", "-o", library, *flags]
     subprocess.run([*command, *(SOFTWARE / source for source in sources)], check=True)
     loaded = ctypes.CDLL(library)
     HEADER.declare(loaded)
     return loaded
+
+
+def run_c(directory: Path, program: str) -> str:
+    """Compile and run a C program that includes headers of a directory; return what it prints."""
+    (directory / "program.c").write_text(program)
+    subprocess.run(
+        [COMPILER, "-std=gnu11", "-Wall", "-Werror", "program.c", "-o", "program"], cwd=directory, check=True
+    )
+    return subprocess.run([directory / "program"], capture_output=True, text=True, check=True).stdout
 
 
 class Registers:

@@ -16,8 +16,8 @@ from conftest import BUILD, ROOT, SMALL_SCENE, Bench
 from raycaster.configuration import Configuration, configure
 from raycaster.engines import ENGINES, EXACT
 from raycaster.sim.job import Job
-from raycaster.sim.simulator import SimulationError, build_model, run_bench
-from raycaster.verif.seeds import repeat, seed
+from raycaster.sim.simulator import build_model, run_bench
+from raycaster.verif.seeds import seed
 
 TRAFFIC_SEEDS = {"verilator": 2, "icarus": 1}
 EVERYTHING = dict.fromkeys(EXACT.looks, True)
@@ -32,18 +32,10 @@ DESIGNS = [
 on_every_engine = pytest.mark.parametrize(("simulator", "configuration", "scene"), DESIGNS)
 
 
-def run_with_seed(bench: Bench, *arguments: Any, **options: Any) -> None:
-    """Run a bench that uses random numbers; a failure shows the command that repeats it."""
-    try:
-        bench(*arguments, **options)
-    except SimulationError as error:
-        pytest.fail(f"{error}; {repeat()}")
-
-
 @pytest.mark.slow_sets(quick=["exact"])
 @on_every_engine
 def test_motion(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
-    """Changes appear only in whole frames; check StartScreen and its interrupt."""
+    """Changes appear only in whole frames; StartScreen interrupts."""
     bench("verif.benches.motion_bench", configuration, simulator, scene)
 
 
@@ -53,20 +45,22 @@ def test_motion_full_size(bench: Bench):
     bench("verif.benches.motion_bench", configure(), "verilator", FULL_SCENE)
 
 
+@pytest.mark.usefixtures("random")
 @pytest.mark.slow_sets("beam", "everything", "icarus", "seed")
 @on_every_engine
 def test_registers(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
-    """The register map and the function of its bits."""
-    run_with_seed(bench, "verif.benches.register_bench", configuration, simulator, scene)
+    """The scene's words, and the effects of registers on the picture."""
+    bench("verif.benches.register_bench", configuration, simulator, scene)
 
 
+@pytest.mark.usefixtures("random")
 @pytest.mark.slow_sets("beam", "everything", "icarus", "seed")
 @on_every_engine
 def test_traffic(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
     """Random traffic, and resets at any time: check every answer, the interrupt, the sync and the picture."""
     first = 100 * seed()
     seeds = tuple(range(first, first + TRAFFIC_SEEDS[simulator]))
-    run_with_seed(bench, "verif.benches.traffic_bench", configuration, simulator, seeds=seeds)
+    bench("verif.benches.traffic_bench", configuration, simulator, seeds=seeds)
 
 
 @pytest.mark.slow_sets("beam-pairs", "exact", "icarus", "seed")

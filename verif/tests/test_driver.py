@@ -49,7 +49,7 @@ EVERYTHING = configure(engine="exact", screen="tiny", **dict.fromkeys(EXACT.look
 
 LARGE = configure(engine="beam", screen="tiny", rectangles=32)
 WHITE = Colour(255, 255, 255)
-OUTSIDE = [tuple(value * (axis == other) for other in range(3)) for axis in range(3) for value in (512, 0xFFFF)]
+OUTSIDE = [Point(*np.roll((value, 0, 0), axis).tolist()) for axis in range(3) for value in (512, 0xFFFF)]
 PAGE = ROOT / "docs" / "integration.md"
 
 
@@ -235,67 +235,69 @@ def test_any_scene_is_shown(library, config):
             np.testing.assert_array_equal(getattr(shown, name)[patterned], getattr(wanted, name)[patterned], repeat())
 
 
-BAD_INDICES = (12, 0xFFFFFFFF)
+OF_A_RECTANGLE = {
+    "set_rectangle": (0, Point(), Point(), WHITE), "enable_rectangle": (0, True), "set_mirror": (0, 1),
+    "set_pattern": (0, 1, 8, WHITE),
+}  # fmt: skip
+OF_LOOKS = {"set_basis": (turned(UNTURNED),), "set_light": (Point(1, 2, 3), 2), "clear_light": ()}
+CALLS = OF_A_RECTANGLE | OF_LOOKS | {"set_camera": (Point(),), "set_background": (WHITE,), "set_reflections": (1,)}
+"""Valid arguments by function."""
+
+
+@pytest.mark.parametrize(
+    ("config", "built_in", "error", "refused"),
+    [
+        (CONFIG, 0, Error.NOT_IN_HARDWARE, {"set_mirror", "set_pattern", *OF_LOOKS}),
+        (EVERYTHING, 0, Error.OK, set()),
+        (EVERYTHING, 1, Error.FIXED, {*OF_A_RECTANGLE}),
+        (EVERYTHING, 2, Error.FIXED, {*CALLS}),
+    ],
+)
+def test_parts_that_cannot_be_set(library, config, built_in, error, refused):
+    """They are not in the hardware, or built into it; nothing is written."""
+    size = {"rectangles": 0} if built_in else {}
+    for function, arguments in CALLS.items():
+        device = Device(library, config, engine={"fixed": built_in}, size=size)
+        expected = error if function in refused else Error.OK
+        assert getattr(device, function)(*arguments) == expected, function
+        assert bool(device.registers.written) == (expected == Error.OK)
+
+
 REFUSED = [
-    *((CONFIG, Error.NO_SUCH_RECTANGLE, "set_rectangle", index, Point(), Point(), WHITE) for index in BAD_INDICES),
-    *((CONFIG, Error.NO_SUCH_RECTANGLE, "enable_rectangle", index, True) for index in BAD_INDICES),
-    *((EVERYTHING, Error.NO_SUCH_RECTANGLE, "set_mirror", index, 1) for index in BAD_INDICES),
-    *((EVERYTHING, Error.NO_SUCH_RECTANGLE, "set_pattern", index, 1, 8, WHITE) for index in BAD_INDICES),
     *(
-        (CONFIG, Error.OUTSIDE_WORLD, "set_rectangle", 0, *corners, WHITE)
-        for place in OUTSIDE
-        for corners in ((Point(*place), Point()), (Point(), Point(*place)), 2 * (Point(*place),))
+        (Error.NO_SUCH_RECTANGLE, function, index, *arguments)
+        for function, (_, *arguments) in OF_A_RECTANGLE.items()
+        for index in (12, 0xFFFFFFFF)
     ),
-    (CONFIG, Error.NO_PLANE, "set_rectangle", 0, Point(0, 1, 2), Point(1, 2, 3), WHITE),
-    *((CONFIG, Error.OUTSIDE_WORLD, "set_camera", Point(*place)) for place in OUTSIDE),
-    *((EVERYTHING, Error.OUTSIDE_WORLD, "set_light", Point(*place), 0) for place in OUTSIDE),
     *(
-        (EVERYTHING, Error.OUTSIDE_WORLD, "set_basis", turned(np.roll([part] + 8 * [0], place).reshape(3, 3).tolist()))
+        (Error.OUTSIDE_WORLD, *call)
+        for place in OUTSIDE
+        for call in (
+            ("set_rectangle", 0, place, Point(), WHITE), ("set_rectangle", 0, Point(), place, WHITE),
+            ("set_rectangle", 0, place, place, WHITE), ("set_camera", place), ("set_light", place, 0),
+        )
+    ),
+    *(
+        (Error.OUTSIDE_WORLD, "set_basis", turned(np.roll([part] + 8 * [0], place).reshape(3, 3).tolist()))
         for place in range(9)
         for part in (512, -513)
     ),
-    *((EVERYTHING, Error.NO_SUCH_LOOK, "set_mirror", 0, quarters) for quarters in (5, 8, 0xFFFFFFFF)),
-    *((EVERYTHING, Error.NO_SUCH_LOOK, "set_pattern", 0, kind, 32, WHITE) for kind in (len(PATTERNS), 0xFFFFFFFF)),
-    *(
-        (EVERYTHING, Error.NO_SUCH_LOOK, "set_pattern", 0, 1, cell, WHITE)
-        for cell in (0, 4, 12, 257, 512, 0x80000000)
-    ),
-    (EVERYTHING, Error.NO_SUCH_LOOK, "set_light", Point(), 4),
-    (CONFIG, Error.TOO_MANY_REFLECTIONS, "set_reflections", 2),
-    (CONFIG, Error.NOT_IN_HARDWARE, "set_mirror", 0, 1),
-    (CONFIG, Error.NOT_IN_HARDWARE, "set_pattern", 0, 1, 8, WHITE),
-    (CONFIG, Error.NOT_IN_HARDWARE, "set_basis", turned(UNTURNED)),
-    (CONFIG, Error.NOT_IN_HARDWARE, "set_light", Point(1, 2, 3), 2),
-    (CONFIG, Error.NOT_IN_HARDWARE, "clear_light"),
+    (Error.NO_PLANE, "set_rectangle", 0, Point(0, 1, 2), Point(1, 2, 3), WHITE),
+    *((Error.NO_SUCH_LOOK, "set_mirror", 0, quarters) for quarters in (5, 8, 0xFFFFFFFF)),
+    *((Error.NO_SUCH_LOOK, "set_pattern", 0, kind, 32, WHITE) for kind in (len(PATTERNS), 0xFFFFFFFF)),
+    *((Error.NO_SUCH_LOOK, "set_pattern", 0, 1, cell, WHITE) for cell in (0, 4, 12, 257, 512, 0x80000000)),
+    (Error.NO_SUCH_LOOK, "set_light", Point(), 4),
+    (Error.TOO_MANY_REFLECTIONS, "set_reflections", 2),
 ]  # fmt: skip
-"""Calls that write nothing: design, error, function and arguments."""
+"""Errors of functions with wrong arguments."""
 
 
-@pytest.mark.parametrize("config", [CONFIG, EVERYTHING], ids=["plain", "everything"])
-def test_calls_that_are_refused(library, config):
-    device = Device(library, config)
-    for design, expected, function, *arguments in REFUSED:
-        if design == config:
-            assert getattr(device, function)(*arguments) == expected, (function, arguments)
+def test_wrong_arguments(library):
+    """The call is refused, and nothing is written."""
+    device = Device(library, EVERYTHING)
+    for error, function, *arguments in REFUSED:
+        assert getattr(device, function)(*arguments) == error, (function, arguments)
     assert not device.registers.written
-
-
-SCENE_CALLS = {
-    "set_camera": (Point(1, 2, 3),), "set_background": (WHITE,), "set_reflections": (1,),
-    "set_basis": (turned(UNTURNED),), "set_light": (Point(1, 2, 3), 2), "clear_light": (),
-}  # fmt: skip
-RECTANGLE_CALLS = {"set_rectangle": (0, Point(), Point(), WHITE), "enable_rectangle": (0, True)}
-
-
-@pytest.mark.parametrize(("built_in", "camera"), [(1, Error.OK), (2, Error.FIXED)])
-def test_built_in_parts_cannot_be_set(library, built_in, camera):
-    device = Device(library, EVERYTHING, engine={"fixed": built_in}, size={"rectangles": 0})
-    for function, arguments in RECTANGLE_CALLS.items():
-        assert getattr(device, function)(*arguments) == Error.FIXED, function
-    assert not device.registers.written
-    for function, arguments in SCENE_CALLS.items():
-        assert getattr(device, function)(*arguments) == camera, function
-    assert bool(device.registers.written) == (camera == Error.OK)
 
 
 def test_a_rectangle_is_left_out_and_shown_again(library):
@@ -317,6 +319,7 @@ def test_a_rectangle_is_left_out_and_shown_again(library):
 def test_the_longest_vectors(library):
     basis = ((-512, 511, 0), (1, -1, 256), (511, -512, -511))
     device = Device(library, EVERYTHING)
+    assert device.shown().basis == UNTURNED
     assert device.set_basis(turned(basis)) == Error.OK
     assert device.shown().basis == basis
 
