@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from raycaster.cli.__main__ import main
-from raycaster.configuration import Configuration
+from raycaster.configuration import Configuration, configure
 from raycaster.convert import provenance
 from raycaster.convert.elaboration import forgetting
 from raycaster.options import run_command
@@ -30,6 +30,13 @@ BUILD = ROOT / "build"
 """Models are shared with `make sim`."""
 
 SMALL_SCENE = Path(__file__).with_name("small.toml")
+
+TINY = {
+    "seed": configure(engine="seed", screen="tiny", units=8, rectangles=3),
+    "exact": configure(engine="exact", screen="tiny", rectangles=3),
+    "beam": configure(engine="beam", screen="tiny", rectangles=3),
+}
+"""Designs for the small scene, by engine, for tests to which the design does not matter."""
 
 Bench = Callable[..., Path]
 
@@ -121,13 +128,7 @@ def bench(output: Path) -> Bench:
         job = Job(
             configuration, scene=str(scene), output=str(output), reflections=configuration.reflections, seeds=seeds
         )
-        run_bench(
-            model,
-            f"raycaster.{module}",
-            job,
-            output,
-            plusargs=plusargs,
-        )
+        run_bench(model, f"raycaster.{module}", job, output, plusargs=plusargs)
         return output
 
     return run

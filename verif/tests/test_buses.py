@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
-from conftest import BUILD, SMALL_SCENE, Bench, broken
+from conftest import BUILD, SMALL_SCENE, TINY, Bench, broken
 
 from raycaster.buses import BRIDGED
-from raycaster.configuration import ConfigurationError, configure
+from raycaster.configuration import ConfigurationError
 from raycaster.convert.write import write_scene_system, write_system
 from raycaster.fpga import verilog
 from raycaster.scene import load_scene
@@ -18,7 +20,7 @@ SCENE = load_scene(SMALL_SCENE)
 
 
 def small(bus: str):
-    return configure(screen="tiny", units=8, rectangles=3, bus=bus)
+    return replace(TINY["seed"], bus=bus)
 
 
 @pytest.mark.slow_sets("apb-verilator", "axi4lite-verilator", "wishbone-icarus", "wishbone-verilator")

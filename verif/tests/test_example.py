@@ -5,18 +5,17 @@ import importlib.util
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import ROOT, TINY
 
-from raycaster.configuration import configure
 from raycaster.convert.write import write_verilog
 from raycaster.golden.seed_engine import SeedModel
 from raycaster.scene import load_scene
 from raycaster.tools import find_program
-
-ROOT = Path(__file__).parents[2]
 
 BENCH = """
 module example_bench;
@@ -65,7 +64,7 @@ def test_picture_frame(name, bus, ports, tmp_path, monkeypatch):
     example = importlib.util.module_from_spec(spec)
     monkeypatch.setitem(sys.modules, name, example)
     spec.loader.exec_module(example)
-    config = configure(screen="tiny", units=4, rectangles=3, bus=bus)
+    config = replace(TINY["seed"], bus=bus)
     screen = config.screen_geometry
     scene = load_scene(ROOT / "scenes" / "boxes.toml")
     scene = scene.model_copy(update={"rect": scene.rect[:3]})
@@ -111,7 +110,7 @@ endmodule
 @pytest.mark.parametrize(("colour", "alike"), [("204060", True), ("204061", False)])
 def test_apb_background(colour, alike, tmp_path):
     """The plain Verilog example works with the files that `make verilog` writes."""
-    config = configure(screen="tiny", units=8, rectangles=3, bus="apb")
+    config = replace(TINY["seed"], bus="apb")
     files = write_verilog(config, tmp_path / "verilog")
     bench = BACKGROUND_BENCH.replace("COLOUR", colour)
     said = simulated(tmp_path, bench, [ROOT / "examples" / "apb_background.v", *files], "-Wall", "-Wno-timescale")

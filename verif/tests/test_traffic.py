@@ -6,13 +6,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from conftest import BUILD, SMALL_SCENE, Bench, broken
+from conftest import BUILD, SMALL_SCENE, TINY, Bench, broken
 
 from raycaster.buses import BRIDGED, OWN
-from raycaster.configuration import configure
 from raycaster.sim.simulator import SimulationError, convert
 
-SMALL = configure(screen="tiny", units=8, rectangles=3)
+SMALL = TINY["seed"]
 
 
 BENCH = "verif.benches.traffic_bench"
