@@ -44,29 +44,10 @@ module bench #(
     wire vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_clk;
 
     ray_caster_module dut (
-        .clk(clk),
-        .reset(reset),
 `ifdef BRIDGED
 `include "bus_ports.vh"
-`else
-        .avs_s0_address(avs_s0_address),
-        .avs_s0_read(avs_s0_read),
-        .avs_s0_write(avs_s0_write),
-        .avs_s0_writedata(avs_s0_writedata),
-        .avs_s0_byteenable(avs_s0_byteenable),
-        .avs_s0_readdata(avs_s0_readdata),
-        .avs_s0_readdatavalid(avs_s0_readdatavalid),
-        .avs_s0_waitrequest(avs_s0_waitrequest),
 `endif
-        .irq(irq),
-        .vga_r(vga_r),
-        .vga_g(vga_g),
-        .vga_b(vga_b),
-        .vga_hs(vga_hs),
-        .vga_vs(vga_vs),
-        .vga_blank_n(vga_blank_n),
-        .vga_sync_n(vga_sync_n),
-        .vga_clk(vga_clk)
+        .*
     );
 
     // Rendering cycles since the last StartScreen; stays 0 in a netlist, which does not keep the names.
@@ -95,15 +76,6 @@ module bench #(
         .CLOCKS_PER_PIXEL(CLOCKS_PER_PIXEL),
         .PIXELS(PIXELS)
     ) sink (
-        .clk(clk),
-        .reset(reset),
-        .vga_r(vga_r),
-        .vga_g(vga_g),
-        .vga_b(vga_b),
-        .vga_hs(vga_hs),
-        .vga_vs(vga_vs),
-        .vga_blank_n(vga_blank_n),
-        .vga_sync_n(vga_sync_n),
-        .vga_clk(vga_clk)
+        .*
     );
 endmodule

@@ -12,7 +12,6 @@ from cocotb.handle import HierarchyObject
 from PIL import Image
 
 from raycaster.golden.picture import count_wrong, diff_picture, first_wrong
-from raycaster.scene import load_scene
 from raycaster.sim.harness import Harness
 
 
@@ -20,14 +19,11 @@ from raycaster.sim.harness import Harness
 async def one_frame(bench: HierarchyObject) -> None:
     """Program the job's scene, capture a frame, write pictures and `result.json` to the job's output directory."""
     harness = Harness(bench)
-    job, configuration, bus = harness.job, harness.configuration, harness.bus
-    scene = load_scene(job.scene, configuration.capacity)
-    reflections = job.reflections_of(scene)
+    job, bus, scene, reflections = harness.job, harness.bus, harness.scene, harness.reflections
 
     started = time.perf_counter()
     await harness.reset()
-    await bus.load_scene(scene)
-    await bus.commit(reflections=reflections)
+    await harness.load(scene, reflections)
     frame = await harness.monitor.frame(on_row=harness.write_progress)
     frame_cycles = int(harness.bench.busy_cycles.value)
     cycles = await bus.read("cycles")
@@ -43,7 +39,7 @@ async def one_frame(bench: HierarchyObject) -> None:
     doubling = harness.screen.doubling
     place = first_wrong(frame, golden)
     result = {
-        "configuration": configuration.name,
+        "configuration": harness.configuration.name,
         "reflections": reflections,
         "pixels": golden[..., 0].size,
         "wrong_vs_golden": count_wrong(frame, golden),

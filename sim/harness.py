@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from cocotb.triggers import FallingEdge, RisingEdge
 from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong, shown
-from raycaster.scene import Scene
+from raycaster.scene import Scene, load_scene
 from raycaster.sim.buses import DRIVERS
 from raycaster.sim.job import Job
 from raycaster.sim.monitor import CLOCK_NS, Monitor
@@ -31,13 +32,27 @@ RESET_TOLERANCE = 8
 class Viewer:
     """A monitor that watches a bench, and the pictures that it must show."""
 
-    def __init__(self, bench: HierarchyObject):
+    def __init__(self, bench: HierarchyObject, *, blanking: bool = True):
         self.bench: Any = bench
         self.job = Job.from_environment()
         self.configuration = self.job.configuration
         self.screen = self.configuration.screen_geometry
         self.model = model_of(self.configuration)
-        self.monitor = Monitor(bench, self.configuration)
+        self.monitor = Monitor(bench, self.configuration, blanking=blanking)
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The job's scene."""
+        return load_scene(self.job.scene, self.configuration.capacity)
+
+    def seen_from(self, place: tuple[int, ...]) -> Scene:
+        """Return the job's scene with the camera in another place."""
+        return self.scene.model_copy(update={"camera": self.scene.camera.model_copy(update={"position": place})})
+
+    @property
+    def reflections(self) -> int:
+        """Number of reflections to show the job's scene with."""
+        return self.job.reflections_of(self.scene)
 
     def shown(self, picture: np.ndarray) -> np.ndarray:
         """Convert a golden picture to what the monitor must show; see `raycaster.golden.picture.shown`."""
@@ -73,6 +88,10 @@ class Viewer:
                 f"is {seen[line, pixel].tolist()}, expected {expected[line, pixel].tolist()}"
             )
 
+    async def expect(self, scene: Scene, reflections: int, what: str) -> None:
+        """Wait for the next frame, and check every pixel of the scene that it must show."""
+        self.expect_picture(await self.monitor.frame(), self.golden(scene, reflections), what)
+
 
 class Harness(Viewer):
     """The bench with a bus to program the design and a monitor that watches it."""
@@ -80,6 +99,11 @@ class Harness(Viewer):
     def __init__(self, bench: HierarchyObject):
         super().__init__(bench)
         self.bus = DRIVERS[self.configuration.bus](bench, self.configuration)
+
+    async def load(self, scene: Scene, reflections: int) -> None:
+        """Write a scene and commit it."""
+        await self.bus.load_scene(scene)
+        await self.bus.commit(reflections=reflections)
 
     async def reset(self) -> None:
         """Reset the design; returns at the first clock edge at which reset is low."""

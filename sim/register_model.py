@@ -21,6 +21,11 @@ VECTORS = ("forward", "right", "up")
 EVERY_LANE = 0b1111
 
 
+def mask_of(lanes: int) -> int:
+    """Return the mask of the enabled bytes."""
+    return sum(0xFF << 8 * lane for lane in range(4) if lanes >> lane & 1)
+
+
 class Word:
     """A register's word in three stages: shadow, which software writes; pending; and live, which is shown."""
 
@@ -32,6 +37,10 @@ class Word:
         """Reset all stages."""
         self.shadow = self.pending = self.live = self.first
 
+    def write(self, data: int, mask: int) -> None:
+        """Write some bits of the shadow."""
+        self.shadow = (self.shadow & ~mask | data & mask) & self.implemented
+
     def clock(self, bus: dict[str, int], selected: bool) -> None:
         """Apply a clock edge, with the internal bus's signals before it."""
         if bus["bus_go_live"]:
@@ -39,8 +48,7 @@ class Word:
         if bus["bus_commit"]:
             self.pending = self.shadow
         if bus["bus_write"] and selected:
-            mask = bus["bus_mask"]
-            self.shadow = (self.shadow & ~mask | bus["bus_data"] & mask) & self.implemented
+            self.write(bus["bus_data"], bus["bus_mask"])
 
 
 class Table:
@@ -270,8 +278,7 @@ class Agent:
         if accepted and (inputs["avs_s0_read"] or inputs["avs_s0_write"]):
             self.bus["bus_address"] = inputs["avs_s0_address"]
         if accepted and inputs["avs_s0_write"]:
-            lanes = [0xFF << 8 * lane for lane in range(4) if inputs["avs_s0_byteenable"] >> lane & 1]
-            self.bus |= {"bus_data": inputs["avs_s0_writedata"], "bus_mask": sum(lanes)}
+            self.bus |= {"bus_data": inputs["avs_s0_writedata"], "bus_mask": mask_of(inputs["avs_s0_byteenable"])}
 
 
 class Request(NamedTuple):
@@ -345,13 +352,18 @@ class SceneFollower:
         self.live: LiveScene | None = None
         """Scene that the last StartScreen made live; None before the first."""
 
+    @property
+    def shadow(self) -> dict[int, int]:
+        """The scene's words as last written, by address."""
+        return {address: word.shadow for address, word in self._words.items()}
+
     def write(self, clock: int, address: int, data: int, lanes: int) -> None:
         """Record that a write was accepted in this clock."""
-        mask = sum(0xFF << 8 * lane for lane in range(4) if lanes >> lane & 1)
+        mask = mask_of(lanes)
         if word := self._words.get(address):
-            word.shadow = (word.shadow & ~mask | data & mask) & word.implemented
+            word.write(data, mask)
         if address == self._control_address and data & mask & self._commit:
-            self._commits.append((clock, {address: word.shadow for address, word in self._words.items()}))
+            self._commits.append((clock, self.shadow))
 
     def start_screen(self, clock: int) -> None:
         """Record that StartScreen was high in this clock."""

@@ -31,18 +31,7 @@ module system_bench #(
     wire vga_hs, vga_vs, vga_blank_n, vga_sync_n, vga_clk;
 
     ray_caster_system dut (
-        .clk(clk),
-        .ready(ready),
-        .buttons(buttons),
-        .uart_tx(uart_tx),
-        .vga_r(vga_r),
-        .vga_g(vga_g),
-        .vga_b(vga_b),
-        .vga_hs(vga_hs),
-        .vga_vs(vga_vs),
-        .vga_blank_n(vga_blank_n),
-        .vga_sync_n(vga_sync_n),
-        .vga_clk(vga_clk)
+        .*
     );
 
     // The design is still in reset at the clock edge at which reset falls; the monitor's clock runs from the next on.
@@ -57,16 +46,8 @@ module system_bench #(
         .CLOCKS_PER_PIXEL(CLOCKS_PER_PIXEL),
         .PIXELS(PIXELS)
     ) sink (
-        .clk(clk),
         .reset(was_reset),
-        .vga_r(vga_r),
-        .vga_g(vga_g),
-        .vga_b(vga_b),
-        .vga_hs(vga_hs),
-        .vga_vs(vga_vs),
-        .vga_blank_n(vga_blank_n),
-        .vga_sync_n(vga_sync_n),
-        .vga_clk(vga_clk)
+        .*
     );
 
     // The processor stopped at an instruction or an access that it does not support.

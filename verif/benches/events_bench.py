@@ -12,7 +12,6 @@ from cocotb.simtime import get_sim_time
 from cocotb.triggers import FallingEdge, NextTimeStep, ReadOnly, ReadWrite, RisingEdge, Timer
 from PIL import Image
 
-from raycaster.scene import load_scene
 from raycaster.sim.harness import Harness
 
 DELAYS_NS = 1, 4, 5, 7, 13, 20, 30, 40, 123
@@ -47,7 +46,7 @@ async def events(bench: HierarchyObject) -> None:
 
     cocotb.start_soon(note_delays())
     cocotb.start_soon(note_phases())
-    scene = load_scene(harness.job.scene, harness.configuration.capacity)
+    scene = harness.scene
     await harness.reset()
     note("reset", 0)
     await harness.bus.load_scene(scene)

@@ -19,16 +19,7 @@ module tiny_tapeout_bench #(
 
     wire [7:0] uo_out;
 
-    tt_um_raycaster project (
-        .ui_in(ui_in),
-        .uo_out(uo_out),
-        .uio_in(uio_in),
-        .uio_out(uio_out),
-        .uio_oe(uio_oe),
-        .ena(ena),
-        .clk(clk),
-        .rst_n(rst_n)
-    );
+    tt_um_raycaster project (.*);
 
     // The Pmod has no pins for the clock, blanking or composite sync.
     line_sink #(

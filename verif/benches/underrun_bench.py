@@ -48,14 +48,12 @@ async def underrun(bench: HierarchyObject) -> None:
     light_picture, heavy_picture = harness.golden(light, reflections), harness.golden(heavy, reflections)
 
     await harness.reset()
-    await bus.load_scene(light)
-    await bus.commit(reflections=reflections)
+    await harness.load(light, reflections)
     harness.expect_picture(await monitor.frame(), light_picture, "the light scene")
     assert (await bus.read("status"))["underrun"] == 0
     assert (await bus.read("cycles"))["row"] <= harness.screen.row_cycles
 
-    await bus.load_scene(heavy)
-    await bus.commit(reflections=reflections)
+    await harness.load(heavy, reflections)
     if not configuration.allow_underrun:
         harness.expect_picture(await monitor.frame(), heavy_picture, "the heavy scene")
         assert (await bus.read("status"))["underrun"] == 0
@@ -71,8 +69,7 @@ async def underrun(bench: HierarchyObject) -> None:
     await bus.write("cycles")
     assert (await bus.read("cycles"))["row"] < harness.screen.row_cycles
 
-    await bus.load_scene(light)
-    await bus.commit(reflections=reflections)
+    await harness.load(light, reflections)
     harness.expect_picture(await monitor.frame(), light_picture, "the light scene after the heavy one")
     assert (await bus.read("status"))["underrun"] == 1, "underrun is sticky"
     await bus.write("status", underrun=0)

@@ -10,14 +10,15 @@ import re
 import shutil
 import subprocess
 import sysconfig
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from raycaster.cli.__main__ import main
-from raycaster.configuration import Configuration
+from raycaster.configuration import Configuration, configure
 from raycaster.convert import provenance
 from raycaster.hdl.elaboration import forgetting
 from raycaster.hdl.leaf import Leaf
@@ -32,6 +33,13 @@ BUILD = ROOT / "build"
 """Models are shared with `make sim`."""
 
 SMALL_SCENE = Path(__file__).with_name("small.toml")
+
+TINY = {
+    "seed": configure(engine="seed", screen="tiny", units=8, rectangles=3),
+    "exact": configure(engine="exact", screen="tiny", rectangles=3),
+    "beam": configure(engine="beam", screen="tiny", rectangles=3),
+}
+"""Designs for the small scene, by engine, for tests to which the design does not matter."""
 
 Bench = Callable[..., Path]
 
@@ -125,13 +133,7 @@ def bench(output: Path) -> Bench:
         job = Job(
             configuration, scene=str(scene), output=str(output), reflections=configuration.reflections, seeds=seeds
         )
-        run_bench(
-            model,
-            f"raycaster.{module}",
-            job,
-            output,
-            plusargs=plusargs,
-        )
+        run_bench(model, f"raycaster.{module}", job, output, plusargs=plusargs)
         return output
 
     return run
@@ -187,13 +189,27 @@ def stand_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, 
     """Return a function that writes a shell script with the name of a program, in the only folder that is searched."""
     monkeypatch.setattr("raycaster.tools._search_path", lambda: f"{tmp_path / 'bin'}:/usr/bin:/bin")
 
-    def write(name: str, script: str) -> None:
-        program = tmp_path / "bin" / name
-        program.parent.mkdir(exist_ok=True)
-        program.write_text(f"#!/bin/sh\n{script}\n")
-        program.chmod(0o755)
+    return partial(write_script, tmp_path / "bin")
 
-    return write
+
+def broken(files: Iterable[Path], directory: Path, module: str, right: str, wrong: str) -> list[Path]:
+    """Copy a design's Verilog with a fault in one module; the copy's directory must exist."""
+    copies = []
+    for source in files:
+        text = source.read_text()
+        assert source.stem != module or right in text, f"{module}.v has no {right!r}"
+        copies.append(directory / source.name)
+        copies[-1].write_text(text.replace(right, wrong) if source.stem == module else text)
+    assert module in {copy.stem for copy in copies}
+    return copies
+
+
+def write_script(directory: Path, name: str, text: str = "exit 1") -> None:
+    """Write a shell script that stands for a program."""
+    directory.mkdir(exist_ok=True)
+    path = directory / name
+    path.write_text(f"#!/bin/sh\n{text}\n")
+    path.chmod(0o755)
 
 
 @pytest.fixture

@@ -7,8 +7,9 @@ import ctypes
 import re
 import shutil
 import subprocess
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from enum import IntEnum
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,9 +21,13 @@ from raycaster.sim.register_model import LiveScene, RegisterFile, Request
 
 ROOT = Path(__file__).parents[2]
 SOFTWARE = ROOT / "sw"
+COMPILER = shutil.which("gcc") or shutil.which("cc")
 STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror")
 
-GAME_HEADER = SOFTWARE / "game" / "game.h"
+ON_HOST_BUS = ("-fcommon", "-include", Path(__file__).with_name("host_bus.h"))
+"""Flags that connect the driver to `attached` registers."""
+
+DRIVER_HEADER, GAME_HEADER = SOFTWARE / "raycaster.h", SOFTWARE / "game" / "game.h"
 SEED = int(re.search(r"GAME_SEED = (\d+)", GAME_HEADER.read_text())[1])
 EVENTS = {
     name: int(bit)
@@ -35,100 +40,9 @@ CONFIG = configure(engine="exact", screen="tiny", rectangles=12)
 _Read = ctypes.CFUNCTYPE(ctypes.c_uint32, ctypes.c_uint32)
 _Write = ctypes.CFUNCTYPE(None, ctypes.c_uint32, ctypes.c_uint32)
 
-
-class Point(ctypes.Structure):
-    """`struct raycaster_point`."""
-
-    _fields_ = [(axis, ctypes.c_uint16) for axis in "xyz"]
-
-
-class Colour(ctypes.Structure):
-    """`struct raycaster_colour`."""
-
-    _fields_ = [(channel, ctypes.c_uint8) for channel in ("red", "green", "blue")]
-
-
-class Status(ctypes.Structure):
-    """`struct raycaster_status`."""
-
-    _fields_ = [("frame", ctypes.c_uint16)] + [(name, ctypes.c_bool) for name in ("busy", "underrun", "bad_rectangle")]
-
-
-class Cycles(ctypes.Structure):
-    """`struct raycaster_cycles`."""
-
-    _fields_ = [("row", ctypes.c_uint16), ("group", ctypes.c_uint16)]
-
-
-class RayCaster(ctypes.Structure):
-    """`struct raycaster`."""
-
-    _fields_ = [
-        ("base", ctypes.c_void_p),
-        *((name, ctypes.c_uint16) for name in ("major", "minor", "units", "rows")),
-        *(
-            (name, ctypes.c_uint8)
-            for name in (
-                "rectangles", "reflections", "engine", "built_in", "scale", "fraction_bits", "divider_bits",
-                "colour_bits",
-            )
-        ),
-        *((name, ctypes.c_bool) for name in ("nearest", "turn", "materials", "patterns", "light")),
-    ]  # fmt: skip
-
-
-class Direction(ctypes.Structure):
-    """`struct raycaster_vector`."""
-
-    _fields_ = [(axis, ctypes.c_int16) for axis in "xyz"]
-
-
-class Turned(ctypes.Structure):
-    """`struct raycaster_basis`."""
-
-    _fields_ = [(name, Direction) for name in ("forward", "right", "up")]
-
-    @classmethod
-    def of(cls, basis: Basis) -> Turned:
-        """Convert from Python vectors."""
-        return cls(*(Direction(*vector) for vector in basis))
-
-    @property
-    def basis(self) -> Basis:
-        """The three vectors in Python."""
-        return tuple(tuple(getattr(getattr(self, name), axis) for axis in "xyz") for name, _ in self._fields_)
-
-
-class Vector(ctypes.Structure):
-    """`struct game_vector`."""
-
-    _fields_ = [(axis, ctypes.c_int32) for axis in "xyz"]
-
-
-class GameRectangle(ctypes.Structure):
-    """`struct game_rectangle`."""
-
-    _fields_ = [("low", Point), ("high", Point), ("colour", Colour), ("enabled", ctypes.c_bool)]
-
-
-class Game(ctypes.Structure):
-    """`struct game`."""
-
-    _fields_ = [
-        ("phase", ctypes.c_int),
-        ("attract", ctypes.c_bool),
-        *((name, ctypes.c_uint8) for name in ("lives", "level", "tiles")),
-        *(
-            (name, ctypes.c_uint32)
-            for name in ("score", "random", "age", "held", "sway", "racket_flash", "tile_flash", "alarm")
-        ),
-        *((name, Vector) for name in ("ball", "velocity", "racket", "target", "veil")),
-        ("turn", ctypes.c_int32),
-        ("drawn", ctypes.c_bool),
-        ("shown_turn", ctypes.c_int32),
-        ("camera", Point),
-        ("shown", 12 * GameRectangle),
-    ]
+_NUMBERS = {"bool": ctypes.c_bool, "int": ctypes.c_int, "unsigned": ctypes.c_uint, "void": None} | {
+    f"{sign}int{bits}_t": getattr(ctypes, f"c_{sign}int{bits}") for sign in ("", "u") for bits in (8, 16, 32)
+}
 
 
 def enumerators(header: Path, name: str) -> list[str]:
@@ -138,28 +52,76 @@ def enumerators(header: Path, name: str) -> list[str]:
     return re.findall(r"\w+", body)
 
 
-def compile_library(directory: Path, *sources: str | Path) -> ctypes.CDLL:
+Error = IntEnum(
+    "Error", [name.removeprefix("RAYCASTER_") for name in enumerators(DRIVER_HEADER, "raycaster_error")], start=0
+)
+
+
+class Header:
+    """Types of the headers in sw/, as ctypes."""
+
+    def __init__(self, *paths: Path):
+        self._text = re.sub(r"//.*", "", "".join(path.read_text() for path in paths))
+        self._structures: dict[str, type[ctypes.Structure]] = {}
+        self._lengths = {"GAME_RECTANGLES": CONFIG.rectangles}
+        for name, body in re.findall(r"^struct (\w+) {(.*?)^};", self._text, re.M | re.S):
+            members = re.findall(r"([\w ]+[ *])(\w+)(?:\[(\w+)\])?;", body)
+            fields = [
+                (member, self._type(kind) * self._lengths[length] if length else self._type(kind))
+                for kind, member, length in members
+            ]
+            self._structures[name] = type(name, (ctypes.Structure,), {"_fields_": fields})
+
+    def __getitem__(self, name: str) -> type[ctypes.Structure]:
+        return self._structures[name]
+
+    def _type(self, text: str) -> type | None:
+        *_, name = re.findall(r"\w+", text)
+        if "*" in text:
+            return ctypes.c_char_p if name == "char" else ctypes.POINTER(self._type(name))
+        return ctypes.c_int if "enum" in text else self._structures.get(name) or _NUMBERS[name]
+
+    def declare(self, library: ctypes.CDLL) -> None:
+        """Give a library's functions the types in their prototypes, so that arguments are converted as in C."""
+        for kind, name, arguments in re.findall(r"^(\w[\w ]+[ *])(\w+)\(([^)]*)\);", self._text, re.M):
+            if hasattr(library, name):
+                function = getattr(library, name)
+                function.argtypes = [self._type(re.sub(r"\w+$", "", one)) for one in arguments.split(",")]
+                function.restype = Error if "enum raycaster_error" in kind else self._type(kind)
+
+
+HEADER = Header(DRIVER_HEADER, GAME_HEADER)
+Point, Colour, Turned, RayCaster = (HEADER[f"raycaster{name}"] for name in ("_point", "_colour", "_basis", ""))
+Game = HEADER["game"]
+
+
+def turned(basis: Basis) -> ctypes.Structure:
+    """Convert a basis to C."""
+    return Turned(*map(tuple, basis))
+
+
+def basis_of(turned: ctypes.Structure) -> Basis:
+    """Convert a basis from C."""
+    return tuple(tuple(getattr(getattr(turned, name), axis) for axis in "xyz") for name, _ in turned._fields_)
+
+
+def compile_library(directory: Path, *sources: str | Path, flags: Sequence[str | Path] = ON_HOST_BUS) -> ctypes.CDLL:
     """Compile sources from sw/, or from elsewhere by absolute path, and load them."""
-    compiler = shutil.which("gcc") or shutil.which("cc")
     library = directory / "library.so"
-    tests = Path(__file__).parent
-    command = [
-        compiler, *STRICT, "-O1", "-shared", "-fPIC", "-include", tests / "host_bus.h", f"-I{SOFTWARE}", "-o", library,
-        tests / "host_bus.c", *(SOFTWARE / source for source in sources),
-    ]  # fmt: skip
-    subprocess.run(command, check=True)
+    command = [COMPILER, *STRICT, "-O1", "-shared", "-fPIC", f"-I{SOFTWARE}", "-o", library, *flags]
+    subprocess.run([*command, *(SOFTWARE / source for source in sources)], check=True)
     loaded = ctypes.CDLL(library)
-    for function, result in (
-        ("raycaster_error_text", ctypes.c_char_p),
-        ("raycaster_get_status", Status),
-        ("raycaster_get_cycles", Cycles),
-        ("raycaster_frame", ctypes.c_uint16),
-        ("raycaster_acknowledge", ctypes.c_bool),
-        ("raycaster_is_committing", ctypes.c_bool),
-        ("raycaster_turned", Turned),
-    ):
-        getattr(loaded, function).restype = result
+    HEADER.declare(loaded)
     return loaded
+
+
+def run_c(directory: Path, program: str) -> str:
+    """Compile and run a C program that includes headers of a directory; return what it prints."""
+    (directory / "program.c").write_text(program)
+    subprocess.run(
+        [COMPILER, "-std=gnu11", "-Wall", "-Werror", "program.c", "-o", "program"], cwd=directory, check=True
+    )
+    return subprocess.run([directory / "program"], capture_output=True, text=True, check=True).stdout
 
 
 class Registers:
@@ -231,7 +193,7 @@ def attached(library: ctypes.CDLL, registers: Registers) -> Iterator[None]:
 def probed(library: ctypes.CDLL) -> RayCaster:
     """Return the handle of the attached device."""
     device = RayCaster()
-    assert library.raycaster_probe(ctypes.byref(device), None) == 0
+    assert library.raycaster_probe(device, None) == Error.OK
     return device
 
 
@@ -252,35 +214,35 @@ class Session:
         self.registers = Registers(config)
         with attached(library, self.registers):
             self.device = probed(library)
-            library.raycaster_set_run(ctypes.byref(self.device), True)
-            assert library.raycaster_set_reflections(ctypes.byref(self.device), 1) == 0
-        library.game_init(ctypes.byref(self.game), seed)
+            library.raycaster_set_run(self.device, True)
+            assert library.raycaster_set_reflections(self.device, 1) == Error.OK
+        library.game_init(self.game, seed)
 
-    def draw(self) -> int:
+    def draw(self) -> Error:
         """Draw; return the driver's error."""
         with attached(self.software, self.registers):
-            return self.software.game_draw(ctypes.byref(self.game), ctypes.byref(self.device))
+            return self.software.game_draw(self.game, self.device)
 
     def step(self, buttons: int) -> set[str]:
         """Run a frame with these buttons, without drawing; return its events."""
-        bits = self.software.game_step(ctypes.byref(self.game), buttons)
+        bits = self.software.game_step(self.game, buttons)
         return {name for name, bit in EVENTS.items() if bits & bit}
 
     def autoplay(self) -> int:
         """Return the buttons that a good player would hold now."""
-        return self.software.game_autoplay(ctypes.byref(self.game))
+        return self.software.game_autoplay(self.game)
 
     def play(self, script: Iterable[int]) -> Iterator[Frame]:
         """Play, draw and show frame after frame; the sticky errors must stay clear."""
         for buttons in script:
             self.registers.written.clear()
             events = self.step(buttons)
-            assert self.draw() == 0
+            assert self.draw() == Error.OK
             written = list(self.registers.written)
             with attached(self.software, self.registers):
-                assert self.software.raycaster_commit(ctypes.byref(self.device)) == 0
+                assert self.software.raycaster_commit(self.device) == Error.OK
                 live = self.registers.start_screen()
-                assert self.software.raycaster_check(ctypes.byref(self.device)) == 0
+                assert self.software.raycaster_check(self.device) == Error.OK
             yield Frame(events, live, written)
 
     def start(self) -> None:

@@ -11,62 +11,41 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import BUILD, ROOT, SMALL_SCENE, Bench
+from conftest import BUILD, ROOT, SMALL_SCENE, TINY, Bench
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import configure
 from raycaster.engines import ENGINES, EXACT
 from raycaster.sim.job import Job
-from raycaster.sim.simulator import SimulationError, build_model, run_bench
-from raycaster.verif.seeds import repeat, seed
+from raycaster.sim.simulator import build_model, run_bench
+from raycaster.verif.seeds import seed
 
 TRAFFIC_SEEDS = {"verilator": 2, "icarus": 1}
 EVERYTHING = dict.fromkeys(EXACT.looks, True)
 FULL_SCENE = ROOT / "scenes" / "mirror_room.toml"
-DESIGNS = [
-    *(pytest.param("verilator", configure(engine=engine, screen="tiny"), FULL_SCENE, id=engine) for engine in ENGINES),
-    pytest.param("icarus", configure(screen="tiny", units=8, rectangles=3, culling=False), SMALL_SCENE, id="icarus"),
-    pytest.param(
-        "icarus", configure(engine="exact", screen="tiny", rectangles=3, **EVERYTHING), SMALL_SCENE, id="everything"
-    ),
-]
-on_every_engine = pytest.mark.parametrize(("simulator", "configuration", "scene"), DESIGNS)
+DESIGNS = {
+    **{engine: ("verilator", configure(engine=engine, screen="tiny"), FULL_SCENE) for engine in ENGINES},
+    "icarus": ("icarus", configure(screen="tiny", units=8, rectangles=3, culling=False), SMALL_SCENE),
+    "everything": ("icarus", configure(engine="exact", screen="tiny", rectangles=3, **EVERYTHING), SMALL_SCENE),
+}
+"""Simulator, design and scene."""
 
 
-def run_with_seed(bench: Bench, *arguments: Any, **options: Any) -> None:
-    """Run a bench that uses random numbers; a failure shows the command that repeats it."""
-    try:
-        bench(*arguments, **options)
-    except SimulationError as error:
-        pytest.fail(f"{error}; {repeat()}")
-
-
-@pytest.mark.slow_sets(quick=["exact"])
-@on_every_engine
-def test_motion(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
-    """Changes appear only in whole frames; check StartScreen and its interrupt."""
-    bench("verif.benches.motion_bench", configuration, simulator, scene)
+@pytest.mark.usefixtures("random")
+@pytest.mark.slow_sets(quick=["motion-exact", "register-exact", "traffic-exact"])
+@pytest.mark.parametrize("design", DESIGNS)
+@pytest.mark.parametrize("name", ["motion", "register", "traffic"])
+def test_bench(bench: Bench, name: str, design: str):
+    """Changes appear only in whole frames; registers and their effects on the picture; random traffic and resets."""
+    simulator, configuration, scene = DESIGNS[design]
+    first = 100 * seed()
+    seeds = tuple(range(first, first + TRAFFIC_SEEDS[simulator]))
+    bench(f"verif.benches.{name}_bench", configuration, simulator, scene, seeds=seeds)
 
 
 @pytest.mark.slow
 def test_motion_full_size(bench: Bench):
     """Motion at 640x480."""
     bench("verif.benches.motion_bench", configure(), "verilator", FULL_SCENE)
-
-
-@pytest.mark.slow_sets("beam", "everything", "icarus", "seed")
-@on_every_engine
-def test_registers(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
-    """The register map and the function of its bits."""
-    run_with_seed(bench, "verif.benches.register_bench", configuration, simulator, scene)
-
-
-@pytest.mark.slow_sets("beam", "everything", "icarus", "seed")
-@on_every_engine
-def test_traffic(bench: Bench, simulator: str, configuration: Configuration, scene: Path):
-    """Random traffic, and resets at any time: check every answer, the interrupt, the sync and the picture."""
-    first = 100 * seed()
-    seeds = tuple(range(first, first + TRAFFIC_SEEDS[simulator]))
-    run_with_seed(bench, "verif.benches.traffic_bench", configuration, simulator, seeds=seeds)
 
 
 @pytest.mark.slow_sets("beam-pairs", "exact", "icarus", "seed")
@@ -86,10 +65,9 @@ def test_underrun(bench: Bench, simulator: str, options: dict[str, Any]):
     bench("verif.benches.underrun_bench", configuration, simulator)
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_the_main_program_matches_cocotb(tmp_path: Path, engine: str):
+def test_the_main_program_matches_cocotb(tmp_path: Path):
     """Our main program and cocotb's main program give the same events, times and picture."""
-    configuration = configure(engine=engine, screen="tiny", rectangles=3, **{"units": 8} if engine == "seed" else {})
+    configuration = TINY["exact"]
     events, pictures = [], []
     for own_main in (True, False):
         output = tmp_path / str(own_main)

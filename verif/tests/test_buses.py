@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from dataclasses import replace
 
 import pytest
-from conftest import BUILD, SMALL_SCENE, Bench
+from conftest import BUILD, SMALL_SCENE, TINY, Bench, broken
 
 from raycaster.buses import BRIDGED
-from raycaster.configuration import ConfigurationError, configure
+from raycaster.configuration import ConfigurationError
 from raycaster.convert.write import write_scene_system, write_system
 from raycaster.fpga import verilog
 from raycaster.scene import load_scene
@@ -20,7 +20,7 @@ SCENE = load_scene(SMALL_SCENE)
 
 
 def small(bus: str):
-    return configure(screen="tiny", units=8, rectangles=3, bus=bus)
+    return replace(TINY["seed"], bus=bus)
 
 
 @pytest.mark.slow_sets("apb-verilator", "axi4lite-verilator", "wishbone-icarus", "wishbone-verilator")
@@ -30,15 +30,6 @@ def test_bus(bench: Bench, bus, simulator):
     """Random words with back-pressure, a frame, and cycles per access; in Icarus, registers start unknown."""
     first = seed()
     bench("verif.benches.bus_bench", small(bus), simulator, SMALL_SCENE, seeds=(first, first + 1, first + 2))
-
-
-@pytest.mark.slow_sets(quick=["axi4lite-1"])
-@pytest.mark.parametrize("start", [1, 2])
-@pytest.mark.parametrize("bus", BRIDGED)
-def test_random_start(bench: Bench, bus, start):
-    """Registers start with random values, and none is visible after reset."""
-    values = ("+verilator+rand+reset+2", f"+verilator+seed+{start}")
-    bench("sim.frame_bench", small(bus), "verilator", SMALL_SCENE, plusargs=values)
 
 
 @pytest.mark.slow_sets(quick=["axi4lite-s_axi"])
@@ -53,15 +44,8 @@ def test_random_start(bench: Bench, bus, start):
         ("apb", "s_apb_paddr[", "s_apb_pwdata[", "reads 0x"),
     ],
 )
-def test_a_fault_is_noticed(bench: Bench, tmp_path: Path, bus, right, wrong, complaint):
-    files = []
-    for source in convert(small(bus), BUILD):
-        text = source.read_text()
-        if source.stem == f"{bus}_bridge":
-            assert text.count(right) == 1
-            text = text.replace(right, wrong)
-        files.append(tmp_path / source.name)
-        files[-1].write_text(text)
+def test_a_fault_is_noticed(bench: Bench, tmp_path, bus, right, wrong, complaint):
+    files = broken(convert(small(bus), BUILD), tmp_path, f"{bus}_bridge", right, wrong)
     with pytest.raises(SimulationError, match=complaint):
         bench("verif.benches.bus_bench", small(bus), "icarus", SMALL_SCENE, seeds=(seed(),), verilog=files)
 

@@ -5,44 +5,52 @@ from __future__ import annotations
 
 import ctypes
 import re
-import shutil
 import subprocess
-from itertools import product
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
 from host_software import (
     CONFIG,
+    DRIVER_HEADER,
     ROOT,
     SOFTWARE,
     STRICT,
     Colour,
+    Error,
     Point,
     RayCaster,
     Registers,
-    Turned,
     attached,
+    basis_of,
     compile_library,
     enumerators,
     probed,
+    turned,
 )
 from tcl import run_tcl
 
-from raycaster.configuration import configure
+from raycaster.configuration import Configuration, configure
 from raycaster.convert.take_home import TOP
 from raycaster.engines import ENGINES, EXACT
 from raycaster.golden.engines import model_of
 from raycaster.golden.world import Rectangles
 from raycaster.program import scene_words
 from raycaster.registers import register_map
-from raycaster.scene import PATTERNS, UNTURNED, Camera, Light, load_scene
+from raycaster.scene import PATTERNS, UNTURNED, Camera, Scene, load_scene
+from raycaster.sim.register_model import LiveScene
+from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.seeds import repeat, seed
 
-ERRORS = enumerators(SOFTWARE / "raycaster.h", "raycaster_error")
+MAP = register_map(CONFIG.rectangles)
+EVERYTHING = configure(engine="exact", screen="tiny", **dict.fromkeys(EXACT.looks, True))
+"""Design with all features that scenes may need."""
+
+LARGE = configure(engine="beam", screen="tiny", rectangles=32)
 WHITE = Colour(255, 255, 255)
+OUTSIDE = [Point(*np.roll((value, 0, 0), axis).tolist()) for axis in range(3) for value in (512, 0xFFFF)]
 PAGE = ROOT / "docs" / "integration.md"
-CONTROL = 4 * register_map(CONFIG.rectangles)["control"].address
-COMMIT = register_map(CONFIG.rectangles)["control"].fields["commit"].mask
 
 
 @pytest.fixture(scope="module")
@@ -50,20 +58,33 @@ def library(tmp_path_factory) -> ctypes.CDLL:
     return compile_library(tmp_path_factory.mktemp("driver"), "raycaster.c")
 
 
-@pytest.fixture
-def registers(library):
-    model = Registers(CONFIG)
-    with attached(library, model):
-        yield model
+class Device:
+    """Registers of a design, and the driver's functions for them, without prefix and handle."""
+
+    def __init__(self, library: ctypes.CDLL, config=CONFIG, **said: dict[str, int]):
+        self.registers = Registers(config)
+        self._library = library
+        for register, fields in said.items():
+            self.registers.say(register, **fields)
+        with attached(library, self.registers):
+            self.handle = probed(library)
+
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        def call(*arguments: Any) -> Any:
+            with attached(self._library, self.registers):
+                return getattr(self._library, f"raycaster_{name}")(self.handle, *arguments)
+
+        return call
+
+    def shown(self) -> LiveScene:
+        """Commit, and return what is live from the next frame on."""
+        assert self.commit() == Error.OK
+        return self.registers.start_screen()
 
 
 @pytest.fixture
-def device(library, registers) -> RayCaster:
-    return probed(library)
-
-
-def error(number: int) -> str:
-    return ERRORS[number].removeprefix("RAYCASTER_")
+def device(library) -> Device:
+    return Device(library)
 
 
 @pytest.mark.parametrize(
@@ -82,22 +103,18 @@ def error(number: int) -> str:
     ids=lambda config: config.name,
 )  # fmt: skip
 def test_probe_reads_the_configuration(library, config):
-    with attached(library, Registers(config)):
-        found = probed(library)
-    for name in (
-        "units", "rows", "rectangles", "reflections", "scale", "fraction_bits", "divider_bits", "colour_bits", "turn",
-        "materials", "patterns", "light",
-    ):  # fmt: skip
-        assert getattr(found, name) == getattr(config, name), name
-    assert found.engine == config.facts.code
-    assert found.nearest == (config.rounding == "nearest")
-    version = register_map(config.rectangles)["version"].fields
-    assert (found.major, found.minor) == (version["major"].reset, version["minor"].reset)
-    assert found.built_in == 0
+    found = Device(library, config).handle
+    version = MAP["version"].fields
+    expected = {
+        "major": version["major"].reset, "minor": version["minor"].reset, "engine": config.facts.code,
+        "built_in": 0, "nearest": config.rounding == "nearest",
+    }  # fmt: skip
+    for name, _ in found._fields_[1:]:
+        assert getattr(found, name) == expected.get(name, getattr(config, name, None)), name
 
 
 def test_the_header_names_every_engine_and_pattern():
-    engines, patterns = (enumerators(SOFTWARE / "raycaster.h", f"raycaster_{what}") for what in ("engine", "pattern"))
+    engines, patterns = (enumerators(DRIVER_HEADER, f"raycaster_{what}") for what in ("engine", "pattern"))
     assert dict(enumerate(engines)) == {engine.code: f"RAYCASTER_{name.upper()}" for name, engine in ENGINES.items()}
     assert patterns == [f"RAYCASTER_{name.upper()}" for name in PATTERNS]
 
@@ -105,26 +122,31 @@ def test_the_header_names_every_engine_and_pattern():
 @pytest.mark.parametrize(
     ("register", "fields", "expected"),
     [
-        ("id", {"magic": 0}, "NOT_FOUND"),
-        ("id", {"magic": 0xFFFFFFFF}, "NOT_FOUND"),
-        ("version", {"major": 1}, "OTHER_VERSION"),
-        ("version", {"minor": 77}, "OK"),
+        ("id", {"magic": 0}, Error.NOT_FOUND),
+        ("id", {"magic": 0xFFFFFFFF}, Error.NOT_FOUND),
+        ("version", {"major": 1}, Error.OTHER_VERSION),
+        ("version", {"minor": 77}, Error.OK),
     ],
 )
-def test_probe_refuses_others(library, registers, register, fields, expected):
+def test_probe_refuses_others(library, register, fields, expected):
+    registers = Registers(CONFIG)
     registers.say(register, **fields)
-    assert error(library.raycaster_probe(ctypes.byref(RayCaster()), None)) == expected
+    with attached(library, registers):
+        assert library.raycaster_probe(RayCaster(), None) == expected
     assert not registers.written
 
 
 class ShownWhenPolled(Registers):
     """A register model that makes a commit live while software polls for it."""
 
-    live = None
+    live: LiveScene | None = None
+    polls = 0
 
     def read(self, offset: int) -> int:
-        if self.live is None and self.written and offset == CONTROL and self.written[-1][1] & COMMIT:
-            self.polls = getattr(self, "polls", 0) + 1
+        control = MAP["control"]
+        committing = self.written and self.written[-1][1] & control.fields["commit"].mask
+        if self.live is None and committing and offset == 4 * control.address:
+            self.polls += 1
             if self.polls == 3:
                 self.live = self.start_screen()
         return super().read(offset)
@@ -151,214 +173,155 @@ def test_the_programs_of_the_page(language, tmp_path):
         names["draw"](scene, model.read, model.write)
         with pytest.raises(OSError, match="no ray tracer"):
             names["draw"](scene, lambda address: 0, model.write)
-    live = model.live
-    assert live.run
-    full, screen = model_of(configure(engine="exact")), configure(engine="exact").screen_geometry
-    shown = live.picture(full, screen)
+    assert model.live.run
+    golden, screen = model_of(CONFIG), configure(engine="exact").screen_geometry
+    shown = model.live.picture(golden, screen)
     assert np.unique(shown.reshape(-1, 3), axis=0).shape[0] > 1
-    np.testing.assert_array_equal(shown, full.render(load_scene(scene), screen, 1))
+    np.testing.assert_array_equal(shown, golden.render(load_scene(scene), screen, 1))
 
 
-def test_a_scene_gives_the_same_words_as_the_project(library, registers, device, scenes):
-    for path in sorted(scenes.glob("*.toml")):
-        scene = load_scene(path)
+def draw(device: Device, scene: Scene, config: Configuration) -> LiveScene:
+    """Show a scene through the driver."""
+    assert device.set_background(Colour(*scene.background)) == Error.OK
+    assert device.set_camera(Point(*scene.camera.position)) == Error.OK
+    if config.turn:
+        assert device.set_basis(turned(scene.camera.basis)) == Error.OK
+    if scene.light:
+        assert device.set_light(Point(*scene.light.position), round(4 * scene.light.shade)) == Error.OK
+    for index, one in enumerate(scene.rect):
+        corners = [Point(*corner) for corner in one.corners]
+        assert device.set_rectangle(index, *corners, Colour(*one.colour)) == Error.OK
+        if config.materials:
+            assert device.set_mirror(index, one.quarters) == Error.OK
+        if one.kind:
+            assert device.set_pattern(index, one.kind, one.cell, Colour(*one.colour2)) == Error.OK
+    for index in range(len(scene.rect), config.rectangles):
+        assert device.enable_rectangle(index, False) == Error.OK
+    device.set_run(True)
+    assert device.set_reflections(scene.reflections) == Error.OK
+    return device.shown()
+
+
+def test_a_scene_gives_the_same_words_as_the_project(library, scenes):
+    for scene in map(load_scene, sorted(scenes.glob("*.toml"))):
         if scene.reflections > CONFIG.reflections or scene.lacks(()):
             continue
-        model = Registers(CONFIG)
-        with attached(library, model):
-            results = [
-                library.raycaster_set_background(ctypes.byref(device), Colour(*scene.background)),
-                library.raycaster_set_camera(ctypes.byref(device), Point(*scene.camera.position)),
-            ]
-            for index, rectangle in enumerate(scene.rect):
-                corners = [Point(*corner) for corner in rectangle.corners]
-                colour = Colour(*rectangle.colour)
-                results.append(library.raycaster_set_rectangle(ctypes.byref(device), index, *corners, colour))
-            for index in range(len(scene.rect), CONFIG.rectangles):
-                results.append(library.raycaster_enable_rectangle(ctypes.byref(device), index, False))
-            library.raycaster_set_run(ctypes.byref(device), True)
-            results.append(library.raycaster_set_reflections(ctypes.byref(device), scene.reflections))
-            results.append(library.raycaster_commit(ctypes.byref(device)))
-        assert set(results) == {0}
-        expected = [(4 * address, word) for address, word in scene_words(scene, CONFIG)]
+        device = Device(library)
+        draw(device, scene, CONFIG)
         # Run and reflections share a register with commit, and each is written separately.
-        run_and_reflections = len(model.written) - len(expected)
-        assert run_and_reflections == 2
-        assert model.written[: len(expected) - 1] + model.written[-1:] == expected
-        live = model.start_screen()
-        assert (live.run, live.reflections, live.background) == (True, scene.reflections, scene.background)
-        assert live.camera == scene.camera.position
+        *others, _, _, commit = device.registers.written
+        assert [*others, commit] == [(4 * address, word) for address, word in scene_words(scene, CONFIG)]
+
+
+@pytest.mark.parametrize("config", [CONFIG, EVERYTHING, LARGE], ids=lambda config: config.name)
+def test_any_scene_is_shown(library, config):
+    """Random scenes, drawn one after another, become live whole and unchanged; new rectangles have default looks."""
+    device = Device(library, config)
+    for number in range(24):
+        scene = random_scene(100 * seed() + number, config.rectangles, 1, config.looks)
+        live = draw(device, scene, config)
+        assert (live.run, live.reflections, live.background) == (True, scene.reflections, scene.background), repeat()
+        assert (live.camera, live.basis) == (scene.camera.position, scene.camera.basis), repeat()
+        if scene.light:
+            assert live.light == scene.light, repeat()
+            assert device.clear_light() == Error.OK
+        assert device.shown().light is None
         shown, wanted = live.rectangles, Rectangles.of_scene(scene)
+        used, patterned = slice(len(wanted)), np.flatnonzero(wanted.kinds)
         assert shown.enabled.sum() == len(wanted)
-        np.testing.assert_array_equal(shown.corners[: len(wanted)], wanted.corners)
-        np.testing.assert_array_equal(shown.colours[: len(wanted)], wanted.colours)
+        for name in ("enabled", "corners", "colours", "mirrors", "kinds"):
+            np.testing.assert_array_equal(getattr(shown, name)[used], getattr(wanted, name), repeat())
+        for name in ("cells", "colours_2"):
+            np.testing.assert_array_equal(getattr(shown, name)[patterned], getattr(wanted, name)[patterned], repeat())
+
+
+OF_A_RECTANGLE = {
+    "set_rectangle": (0, Point(), Point(), WHITE), "enable_rectangle": (0, True), "set_mirror": (0, 1),
+    "set_pattern": (0, 1, 8, WHITE),
+}  # fmt: skip
+OF_LOOKS = {"set_basis": (turned(UNTURNED),), "set_light": (Point(1, 2, 3), 2), "clear_light": ()}
+CALLS = OF_A_RECTANGLE | OF_LOOKS | {"set_camera": (Point(),), "set_background": (WHITE,), "set_reflections": (1,)}
+"""Valid arguments by function."""
 
 
 @pytest.mark.parametrize(
-    ("index", "corners", "expected"),
+    ("config", "built_in", "error", "refused"),
     [
-        (11, ((0, 0, 5), (511, 511, 5)), "OK"),
-        (0, ((7, 8, 9), (7, 8, 9)), "OK"),
-        (12, ((0, 0, 5), (511, 511, 5)), "NO_SUCH_RECTANGLE"),
-        (0xFFFFFFFF, ((0, 0, 5), (511, 511, 5)), "NO_SUCH_RECTANGLE"),
-        (0, ((512, 0, 5), (511, 511, 5)), "OUTSIDE_WORLD"),
-        (0, ((0, 0, 5), (511, 512, 5)), "OUTSIDE_WORLD"),
-        (0, ((0, 0, 512), (511, 511, 512)), "OUTSIDE_WORLD"),
-        (0, ((0, 0, 5), (65535, 511, 5)), "OUTSIDE_WORLD"),
-        (0, ((0, 1, 2), (1, 2, 3)), "NO_PLANE"),
+        (CONFIG, 0, Error.NOT_IN_HARDWARE, {"set_mirror", "set_pattern", *OF_LOOKS}),
+        (EVERYTHING, 0, Error.OK, set()),
+        (EVERYTHING, 1, Error.FIXED, {*OF_A_RECTANGLE}),
+        (EVERYTHING, 2, Error.FIXED, {*CALLS}),
     ],
 )
-def test_rectangles_that_are_refused(library, registers, device, index, corners, expected):
-    result = library.raycaster_set_rectangle(ctypes.byref(device), index, *(Point(*c) for c in corners), WHITE)
-    assert error(result) == expected
-    assert len(registers.written) == (3 if expected == "OK" else 0)
+def test_parts_that_cannot_be_set(library, config, built_in, error, refused):
+    """They are not in the hardware, or built into it; nothing is written."""
+    size = {"rectangles": 0} if built_in else {}
+    for function, arguments in CALLS.items():
+        device = Device(library, config, engine={"fixed": built_in}, size=size)
+        expected = error if function in refused else Error.OK
+        assert getattr(device, function)(*arguments) == expected, function
+        assert bool(device.registers.written) == (expected == Error.OK)
 
 
-def test_a_rectangle_is_left_out_and_shown_again(library, registers, device):
-    corners = Point(1, 2, 3), Point(1, 20, 30)
-    assert library.raycaster_set_rectangle(ctypes.byref(device), 4, *corners, Colour(1, 2, 3)) == 0
-    for enable in (False, True):
-        assert library.raycaster_enable_rectangle(ctypes.byref(device), 4, enable) == 0
-        assert library.raycaster_commit(ctypes.byref(device)) == 0
-        rectangles = registers.start_screen().rectangles
-        assert rectangles.enabled[4] == enable
-        assert rectangles.corners[4].tolist() == [[1, 2, 3], [1, 20, 30]]
-        assert rectangles.colours[4].tolist() == [1, 2, 3]
-    assert error(library.raycaster_enable_rectangle(ctypes.byref(device), 12, True)) == "NO_SUCH_RECTANGLE"
+REFUSED = [
+    *(
+        (Error.NO_SUCH_RECTANGLE, function, index, *arguments)
+        for function, (_, *arguments) in OF_A_RECTANGLE.items()
+        for index in (12, 0xFFFFFFFF)
+    ),
+    *(
+        (Error.OUTSIDE_WORLD, *call)
+        for place in OUTSIDE
+        for call in (
+            ("set_rectangle", 0, place, Point(), WHITE), ("set_rectangle", 0, Point(), place, WHITE),
+            ("set_rectangle", 0, place, place, WHITE), ("set_camera", place), ("set_light", place, 0),
+        )
+    ),
+    *(
+        (Error.OUTSIDE_WORLD, "set_basis", turned(np.roll([part] + 8 * [0], place).reshape(3, 3).tolist()))
+        for place in range(9)
+        for part in (512, -513)
+    ),
+    (Error.NO_PLANE, "set_rectangle", 0, Point(0, 1, 2), Point(1, 2, 3), WHITE),
+    *((Error.NO_SUCH_LOOK, "set_mirror", 0, quarters) for quarters in (5, 8, 0xFFFFFFFF)),
+    *((Error.NO_SUCH_LOOK, "set_pattern", 0, kind, 32, WHITE) for kind in (len(PATTERNS), 0xFFFFFFFF)),
+    *((Error.NO_SUCH_LOOK, "set_pattern", 0, 1, cell, WHITE) for cell in (0, 4, 12, 257, 512, 0x80000000)),
+    (Error.NO_SUCH_LOOK, "set_light", Point(), 4),
+    (Error.TOO_MANY_REFLECTIONS, "set_reflections", 2),
+]  # fmt: skip
+"""Errors of functions with wrong arguments."""
 
 
-def test_the_whole_table_of_a_larger_design(library):
-    model = Registers(configure(engine="beam", screen="tiny", rectangles=32))
-    with attached(library, model):
-        device = probed(library)
-        for index in range(32):
-            corners = Point(index, 0, 0), Point(index, 1, 1)
-            assert library.raycaster_set_rectangle(ctypes.byref(device), index, *corners, WHITE) == 0
-        assert library.raycaster_commit(ctypes.byref(device)) == 0
-        assert error(library.raycaster_enable_rectangle(ctypes.byref(device), 32, True)) == "NO_SUCH_RECTANGLE"
-    assert model.start_screen().rectangles.corners[:, 0, 0].tolist() == list(range(32))
+def test_wrong_arguments(library):
+    """The call is refused, and nothing is written."""
+    device = Device(library, EVERYTHING)
+    for error, function, *arguments in REFUSED:
+        assert getattr(device, function)(*arguments) == error, (function, arguments)
+    assert not device.registers.written
 
 
-@pytest.mark.parametrize(("built_in", "camera"), [(1, "OK"), (2, "FIXED")])
-def test_built_in_parts_cannot_be_set(library, registers, built_in, camera):
-    registers.say("engine", fixed=built_in)
-    registers.say("size", rectangles=0)
-    device = probed(library)
-    handle = ctypes.byref(device)
-    assert error(library.raycaster_set_rectangle(handle, 0, Point(), Point(), WHITE)) == "FIXED"
-    assert error(library.raycaster_enable_rectangle(handle, 0, True)) == "FIXED"
-    assert not registers.written
-    assert error(library.raycaster_set_camera(handle, Point(1, 2, 3))) == camera
-    assert error(library.raycaster_set_background(handle, WHITE)) == camera
-    assert error(library.raycaster_set_reflections(handle, 1)) == camera
-    assert len(registers.written) == (3 if camera == "OK" else 0)
+def test_a_rectangle_is_left_out_and_shown_again(library):
+    """It keeps its contents and looks. A point and the ends of the table are accepted."""
+    device = Device(library, EVERYTHING)
+    for index, corners in ((0, (Point(7, 8, 9), Point(7, 8, 9))), (11, (Point(1, 2, 3), Point(1, 20, 511)))):
+        assert device.set_rectangle(index, *corners, Colour(1, 2, 3)) == Error.OK
+        assert device.set_mirror(index, 3) == Error.OK
+        assert device.set_pattern(index, 3, 16, WHITE) == Error.OK
+        for enable in (False, True):
+            assert device.enable_rectangle(index, enable) == Error.OK
+            live = device.shown().rectangles
+            assert live.enabled[index] == enable
+            assert live.corners[index].tolist() == [[corner.x, corner.y, corner.z] for corner in corners]
+            assert live.colours[index].tolist() == [1, 2, 3]
+            assert (live.mirrors[index], live.kinds[index], live.cells[index]) == (3, 3, 16)
 
 
-@pytest.fixture
-def everything(library):
-    """The registers of a design with all features that scenes may need, and its handle."""
-    model = Registers(configure(engine="exact", screen="tiny", **dict.fromkeys(EXACT.looks, True)))
-    with attached(library, model):
-        yield model, ctypes.byref(probed(library))
-
-
-def shown(library, model, handle):
-    assert library.raycaster_commit(handle) == 0
-    return model.start_screen()
-
-
-def test_looks(library, everything):
-    model, handle = everything
-    corners = Point(1, 2, 3), Point(1, 20, 30)
-    for index in range(12):
-        assert library.raycaster_set_rectangle(handle, index, *corners, Colour(1, 2, 3)) == 0
-        assert library.raycaster_set_mirror(handle, index, index % 5) == 0
-        assert library.raycaster_set_pattern(handle, index, index % 4, 8 << index % 6, Colour(index, 5, 6)) == 0
-    live = shown(library, model, handle).rectangles
-    indices = np.arange(12)
-    assert live.enabled.all()
-    assert (live.mirrors == indices % 5).all()
-    assert (live.kinds == indices % 4).all()
-    assert (live.cells == 8 << indices % 6).all()
-    assert live.colours_2.tolist() == [[index, 5, 6] for index in range(12)]
-    assert (live.colours == [1, 2, 3]).all()
-    # A new rectangle in the same place has default looks; one that was only disabled for a while keeps its looks.
-    assert library.raycaster_set_rectangle(handle, 3, *corners, Colour(7, 8, 9)) == 0
-    for enable in (False, True):
-        assert library.raycaster_enable_rectangle(handle, 7, enable) == 0
-    live = shown(library, model, handle).rectangles
-    assert (live.mirrors[3], live.kinds[3]) == (2, 0)
-    assert (live.mirrors[7], live.kinds[7], live.cells[7]) == (2, 3, 16)
-
-
-@pytest.mark.parametrize("quarters", [5, 8, 0xFFFFFFFF])
-def test_invalid_mirrors(library, everything, quarters):
-    model, handle = everything
-    assert error(library.raycaster_set_mirror(handle, 0, quarters)) == "NO_SUCH_LOOK"
-    assert error(library.raycaster_set_mirror(handle, 12, 1)) == "NO_SUCH_RECTANGLE"
-    assert not model.written
-
-
-@pytest.mark.parametrize(
-    ("pattern", "cell"),
-    [(len(PATTERNS), 32), (0xFFFFFFFF, 32), (1, 0), (1, 4), (1, 12), (1, 257), (1, 512), (1, 0x80000000)],
-)
-def test_invalid_patterns(library, everything, pattern, cell):
-    model, handle = everything
-    assert error(library.raycaster_set_pattern(handle, 0, pattern, cell, WHITE)) == "NO_SUCH_LOOK"
-    assert error(library.raycaster_set_pattern(handle, 12, 1, 8, WHITE)) == "NO_SUCH_RECTANGLE"
-    assert not model.written
-
-
-def test_looks_that_the_hardware_does_not_have(library, registers, device):
-    handle = ctypes.byref(device)
-    assert error(library.raycaster_set_mirror(handle, 0, 1)) == "NOT_IN_HARDWARE"
-    assert error(library.raycaster_set_pattern(handle, 0, 1, 8, WHITE)) == "NOT_IN_HARDWARE"
-    assert error(library.raycaster_set_basis(handle, ctypes.byref(Turned.of(UNTURNED)))) == "NOT_IN_HARDWARE"
-    assert error(library.raycaster_set_light(handle, Point(1, 2, 3), 2)) == "NOT_IN_HARDWARE"
-    assert error(library.raycaster_clear_light(handle)) == "NOT_IN_HARDWARE"
-    assert not registers.written
-
-
-def test_a_light(library, everything):
-    model, handle = everything
-    assert shown(library, model, handle).light is None
-    for position, quarters in product(((0, 0, 0), (511, 0, 1), (7, 300, 511)), range(4)):
-        assert library.raycaster_set_light(handle, Point(*position), quarters) == 0
-        assert shown(library, model, handle).light == Light(position=position, shade=quarters / 4)
-    written = len(model.written)
-    for axis in range(3):
-        outside = Point(*(512 * (axis == other) for other in range(3)))
-        assert error(library.raycaster_set_light(handle, outside, 0)) == "OUTSIDE_WORLD"
-    assert error(library.raycaster_set_light(handle, Point(0, 0, 0), 4)) == "NO_SUCH_LOOK"
-    assert len(model.written) == written
-    assert library.raycaster_clear_light(handle) == 0
-    assert shown(library, model, handle).light is None
-    model.say("engine", fixed=2)
-    fixed = ctypes.byref(probed(library))
-    assert error(library.raycaster_set_light(fixed, Point(1, 2, 3), 2)) == "FIXED"
-    assert error(library.raycaster_clear_light(fixed)) == "FIXED"
-
-
-def test_a_camera_turns(library, everything):
-    model, handle = everything
-    assert library.raycaster_set_camera(handle, Point(1, 2, 3)) == 0
-    assert shown(library, model, handle).basis == UNTURNED
+def test_the_longest_vectors(library):
     basis = ((-512, 511, 0), (1, -1, 256), (511, -512, -511))
-    assert library.raycaster_set_basis(handle, ctypes.byref(Turned.of(basis))) == 0
-    live = shown(library, model, handle)
-    assert (live.basis, live.camera) == (basis, (1, 2, 3))
-    written = len(model.written)
-    for place in range(9):
-        for part in (512, -513):
-            parts = [part if place == other else 0 for other in range(9)]
-            wrong = Turned.of([parts[:3], parts[3:6], parts[6:]])
-            assert error(library.raycaster_set_basis(handle, ctypes.byref(wrong))) == "OUTSIDE_WORLD"
-    model.say("engine", fixed=2)
-    fixed = probed(library)
-    right = Turned.of(UNTURNED)
-    assert error(library.raycaster_set_basis(ctypes.byref(fixed), ctypes.byref(right))) == "FIXED"
-    assert len(model.written) == written
+    device = Device(library, EVERYTHING)
+    assert device.shown().basis == UNTURNED
+    assert device.set_basis(turned(basis)) == Error.OK
+    assert device.shown().basis == basis
 
 
 def test_angles_match_those_of_scenes(library):
@@ -371,119 +334,103 @@ def test_angles_match_those_of_scenes(library):
     angles += random.integers(-360, 361, (12000, 3)).tolist()
     for yaw, pitch, roll in angles:
         wanted = Camera(position=(0, 0, 0), yaw=yaw, pitch=pitch, roll=roll).basis
-        assert library.raycaster_turned(yaw, pitch, roll).basis == wanted, (yaw, pitch, roll, repeat())
+        assert basis_of(library.raycaster_turned(yaw, pitch, roll)) == wanted, (yaw, pitch, roll, repeat())
 
 
 def test_angles_of_any_size(library):
+    def of(*angles: int):
+        return basis_of(library.raycaster_turned(*angles))
+
     for turns in (-5, 7, 5_000_000):
-        wanted = library.raycaster_turned(30, -20, 77).basis
-        assert library.raycaster_turned(30 + 360 * turns, -20, 77 - 360 * turns).basis == wanted
-    assert (
-        library.raycaster_turned(2**31 - 1, -(2**31), 0).basis
-        == Camera(position=(0, 0, 0), yaw=(2**31 - 1) % 360, pitch=2**31 % 360 * -1.0).basis
-    )
+        assert of(30 + 360 * turns, -20, 77 - 360 * turns) == of(30, -20, 77)
+    extreme = Camera(position=(0, 0, 0), yaw=(2**31 - 1) % 360, pitch=2**31 % 360 * -1.0)
+    assert of(2**31 - 1, -(2**31), 0) == extreme.basis
 
 
-@pytest.mark.parametrize("position", [(512, 0, 0), (0, 512, 0), (0, 0, 512), (65535, 65535, 65535)])
-def test_cameras_outside_the_world(library, registers, device, position):
-    assert error(library.raycaster_set_camera(ctypes.byref(device), Point(*position))) == "OUTSIDE_WORLD"
-    assert not registers.written
-
-
-def test_reflections_that_the_hardware_does_not_have(library, registers, device):
-    assert error(library.raycaster_set_reflections(ctypes.byref(device), 2)) == "TOO_MANY_REFLECTIONS"
-    assert not registers.written
-
-
-def test_a_commit_waits_for_the_one_before(library, registers, device):
-    handle = ctypes.byref(device)
-    library.raycaster_set_run(handle, True)
-    assert library.raycaster_commit(handle) == 0
-    assert library.raycaster_is_committing(handle)
+def test_a_commit_waits_for_the_one_before(device):
+    device.set_run(True)
+    assert device.commit() == Error.OK
+    assert device.is_committing()
     # Changes from now on belong to the next commit and must not trigger one.
-    assert library.raycaster_set_reflections(handle, 1) == 0
-    assert library.raycaster_set_camera(handle, Point(1, 2, 3)) == 0
-    written = len(registers.written)
-    assert error(library.raycaster_commit(handle)) == "STILL_COMMITTING"
-    assert len(registers.written) == written
-    live = registers.start_screen()
+    assert device.set_reflections(1) == Error.OK
+    assert device.set_camera(Point(1, 2, 3)) == Error.OK
+    written = len(device.registers.written)
+    assert device.commit() == Error.STILL_COMMITTING
+    assert len(device.registers.written) == written
+    live = device.registers.start_screen()
     assert (live.run, live.reflections, live.camera) == (True, 0, (0, 0, 0))
-    assert not library.raycaster_is_committing(handle)
-    assert library.raycaster_commit(handle) == 0
-    live = registers.start_screen()
+    assert not device.is_committing()
+    live = device.shown()
     assert (live.run, live.reflections, live.camera) == (True, 1, (1, 2, 3))
-    library.raycaster_set_run(handle, False)
-    assert library.raycaster_commit(handle) == 0
-    live = registers.start_screen()
+    device.set_run(False)
+    live = device.shown()
     assert (live.run, live.reflections) == (False, 1)
 
 
-def test_waiting_for_a_frame(library, registers, device):
-    handle = ctypes.byref(device)
-    registers.polls_to_frame = 10
-    assert error(library.raycaster_wait_frame(handle, 9)) == "NO_FRAME"
-    assert library.raycaster_frame(handle) == 0
-    assert error(library.raycaster_wait_frame(handle, 9)) == "OK"
-    assert library.raycaster_frame(handle) == 1
+def test_waiting_for_a_frame(device):
+    device.registers.polls_to_frame = 10
+    assert device.wait_frame(9) == Error.NO_FRAME
+    assert device.frame() == 0
+    assert device.wait_frame(9) == Error.OK
+    assert device.frame() == 1
     # Each frame counts once, even if it came before the wait.
-    assert error(library.raycaster_wait_frame(handle, 100)) == "NO_FRAME"
-    registers.start_screen()
-    assert error(library.raycaster_wait_frame(handle, 1)) == "OK"
-    assert error(library.raycaster_wait_frame(handle, 0)) == "NO_FRAME"
+    assert device.wait_frame(100) == Error.NO_FRAME
+    device.registers.start_screen()
+    assert device.wait_frame(1) == Error.OK
+    assert device.wait_frame(0) == Error.NO_FRAME
 
 
-def test_the_interrupt(library, registers, device):
-    handle = ctypes.byref(device)
+def test_the_interrupt(device):
+    agent = device.registers.file.agent
 
     def raised() -> bool:
-        agent = registers.file.agent
         return agent.irq_enable and agent.irq_pending
 
-    registers.start_screen()
+    device.registers.start_screen()
     assert not raised()
-    library.raycaster_enable_interrupt(handle, True)
+    device.enable_interrupt(True)
     assert raised()
-    assert library.raycaster_acknowledge(handle)
+    assert device.acknowledge()
     assert not raised()
-    assert not library.raycaster_acknowledge(handle)
-    registers.start_screen()
+    assert not device.acknowledge()
+    device.registers.start_screen()
     assert raised()
-    library.raycaster_enable_interrupt(handle, False)
+    device.enable_interrupt(False)
     assert not raised()
 
 
-def test_sticky_errors(library, registers, device):
-    handle = ctypes.byref(device)
-    assert error(library.raycaster_check(handle)) == "OK"
+def test_sticky_errors(device):
+    def status() -> tuple[int, ...]:
+        found = device.get_status()
+        return tuple(getattr(found, name) for name in ("frame", "busy", "underrun", "bad_rectangle"))
+
+    assert device.check() == Error.OK
     # Bypass the driver, which would refuse the rectangle.
-    table = register_map(CONFIG.rectangles)
-    registers.write(4 * table["rectangle[3].corner_0"].address, table["rectangle[3].corner_0"].pack(x=1, y=2, z=3))
-    assert library.raycaster_enable_rectangle(handle, 3, True) == 0
-    assert library.raycaster_commit(handle) == 0
-    assert error(library.raycaster_check(handle)) == "BAD_RECTANGLE"
-    registers.file.agent.underrun = True
-    assert error(library.raycaster_check(handle)) == "UNDERRUN"
+    corner = MAP["rectangle[3].corner_0"]
+    device.registers.write(4 * corner.address, corner.pack(x=1, y=2, z=3))
+    assert device.enable_rectangle(3, True) == Error.OK
+    assert device.commit() == Error.OK
+    assert device.check() == Error.BAD_RECTANGLE
+    device.registers.file.agent.underrun = True
+    assert device.check() == Error.UNDERRUN
     for _ in range(3):
-        registers.start_screen()
-    status = library.raycaster_get_status(handle)
-    assert (status.frame, status.busy, status.underrun, status.bad_rectangle) == (3, False, True, True)
-    library.raycaster_clear_status(handle)
-    assert error(library.raycaster_check(handle)) == "OK"
-    status = library.raycaster_get_status(handle)
-    assert (status.frame, status.underrun, status.bad_rectangle) == (3, False, False)
+        device.registers.start_screen()
+    assert status() == (3, False, True, True)
+    device.clear_status()
+    assert device.check() == Error.OK
+    assert status() == (3, False, False, False)
 
 
-def test_cycles(library, registers, device):
-    registers.file.agent.row, registers.file.agent.group = 1234, 321
-    cycles = library.raycaster_get_cycles(ctypes.byref(device))
-    assert (cycles.row, cycles.group) == (1234, 321)
-    library.raycaster_clear_cycles(ctypes.byref(device))
-    cycles = library.raycaster_get_cycles(ctypes.byref(device))
-    assert (cycles.row, cycles.group) == (0, 0)
+def test_cycles(device):
+    device.registers.file.agent.row, device.registers.file.agent.group = 1234, 321
+    for expected in ((1234, 321), (0, 0)):
+        cycles = device.get_cycles()
+        assert (cycles.row, cycles.group) == expected
+        device.clear_cycles()
 
 
 def test_every_error_has_its_own_text(library):
-    texts = [library.raycaster_error_text(number).decode() for number in range(len(ERRORS) + 1)]
+    texts = [library.raycaster_error_text(number).decode() for number in range(len(Error) + 1)]
     assert len(set(texts)) == len(texts)
     assert texts[-1] == "unknown error"
     assert not any(text.endswith(".") for text in texts)
@@ -493,25 +440,21 @@ def test_every_error_has_its_own_text(library):
 @pytest.mark.parametrize("level", ["-O0", "-Os", "-O2"])
 def test_plain_memory_and_no_library(tmp_path, standard, level):
     """The driver works with its own register access and links without any library."""
-    compiler = shutil.which("gcc") or shutil.which("cc")
-    flags = (f"-std={standard}", *STRICT[1:], level, "-ffreestanding", "-shared", "-fPIC", "-nostdlib", "-Wl,-z,defs")
-    subprocess.run([compiler, *flags, SOFTWARE / "raycaster.c", "-o", tmp_path / "driver.so"], check=True)
-    library = ctypes.CDLL(tmp_path / "driver.so")
+    flags = (f"-std={standard}", level, "-ffreestanding", "-nostdlib", "-Wl,-z,defs")
+    library = compile_library(tmp_path, "raycaster.c", flags=flags)
     memory = (ctypes.c_uint32 * 64)()
-    registers = register_map(CONFIG.rectangles)
-    memory[registers["id"].address] = registers["id"].reset
-    memory[registers["version"].address] = registers["version"].reset
-    memory[registers["size"].address] = registers["size"].pack(units=4, rectangles=12, rows=240)
+    for name in ("id", "version"):
+        memory[MAP[name].address] = MAP[name].reset
+    memory[MAP["size"].address] = MAP["size"].pack(units=4, rectangles=12, rows=240)
     device = RayCaster()
-    assert library.raycaster_probe(ctypes.byref(device), memory) == 0
+    assert library.raycaster_probe(device, memory) == Error.OK
     assert (device.units, device.rectangles, device.rows) == (4, 12, 240)
-    assert library.raycaster_set_camera(ctypes.byref(device), Point(1, 2, 3)) == 0
-    assert memory[registers["camera"].address] == registers["camera"].pack(x=1, y=2, z=3)
+    assert library.raycaster_set_camera(device, Point(1, 2, 3)) == Error.OK
+    assert memory[MAP["camera"].address] == MAP["camera"].pack(x=1, y=2, z=3)
 
 
 def test_a_cpp_compiler_takes_the_header():
-    command = ["g++", "-x", "c++", *STRICT[1:], "-fsyntax-only", SOFTWARE / "raycaster.h"]
-    subprocess.run(command, check=True)
+    subprocess.run(["g++", "-x", "c++", *STRICT[1:], "-fsyntax-only", DRIVER_HEADER], check=True)
 
 
 def test_the_driver_for_nios(tmp_path):

@@ -5,18 +5,17 @@ import importlib.util
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import ROOT, TINY
 
-from raycaster.configuration import configure
 from raycaster.convert.write import write_verilog
 from raycaster.golden.seed_engine import SeedModel
 from raycaster.scene import load_scene
 from raycaster.tools import find_program
-
-ROOT = Path(__file__).parents[2]
 
 BENCH = """
 module example_bench;
@@ -41,6 +40,15 @@ endmodule
 """
 
 
+def simulated(directory: Path, bench: str, files: list[Path], *options: str) -> str:
+    """Simulate a bench in Icarus, without a warning; return what it prints."""
+    (directory / "bench.v").write_text(bench)
+    for command in (["iverilog", "-g2005", *options, "-o", "bench", "bench.v", *files], ["vvp", "-n", "bench"]):
+        done = subprocess.run(command, cwd=directory, capture_output=True, text=True, check=False)
+        assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
+
+
 @pytest.mark.parametrize(
     ("name", "bus", "ports"),
     [
@@ -56,7 +64,7 @@ def test_picture_frame(name, bus, ports, tmp_path, monkeypatch):
     example = importlib.util.module_from_spec(spec)
     monkeypatch.setitem(sys.modules, name, example)
     spec.loader.exec_module(example)
-    config = configure(screen="tiny", units=4, rectangles=3, bus=bus)
+    config = replace(TINY["seed"], bus=bus)
     screen = config.screen_geometry
     scene = load_scene(ROOT / "scenes" / "boxes.toml")
     scene = scene.model_copy(update={"rect": scene.rect[:3]})
@@ -65,13 +73,7 @@ def test_picture_frame(name, bus, ports, tmp_path, monkeypatch):
     bench = BENCH.replace("PIXELS", str(visible[0] * visible[1]))
     for written, other in ports.items():
         bench = bench.replace(written, other)
-    (tmp_path / "example_bench.v").write_text(bench)
-    for command in (
-        ["iverilog", "-g2005", "-s", "example_bench", "-o", "bench", "example_bench.v", *files],
-        ["vvp", "-n", "bench"],
-    ):
-        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stdout + done.stderr
+    simulated(tmp_path, bench, files)
     words = np.array([int(line, 16) for line in (tmp_path / "pixels.txt").read_text().split()]).reshape(visible)
     shown = np.stack([words >> 16, words >> 8 & 255, words & 255], axis=-1)
     expected = SeedModel().render(scene, screen)
@@ -108,20 +110,13 @@ endmodule
 @pytest.mark.parametrize(("colour", "alike"), [("204060", True), ("204061", False)])
 def test_apb_background(colour, alike, tmp_path):
     """The plain Verilog example works with the files that `make verilog` writes."""
-    config = configure(screen="tiny", units=8, rectangles=3, bus="apb")
+    config = replace(TINY["seed"], bus="apb")
     files = write_verilog(config, tmp_path / "verilog")
-    (tmp_path / "bench.v").write_text(BACKGROUND_BENCH.replace("COLOUR", colour))
-    example = ROOT / "examples" / "apb_background.v"
-    for command in (
-        ["iverilog", "-g2005", "-Wall", "-Wno-timescale", "-s", "background_bench", "-o", "bench", "bench.v", example,
-         *files],
-        ["vvp", "-n", "bench"],
-    ):  # fmt: skip
-        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-        assert (done.returncode, done.stderr) == (0, "")
+    bench = BACKGROUND_BENCH.replace("COLOUR", colour)
+    said = simulated(tmp_path, bench, [ROOT / "examples" / "apb_background.v", *files], "-Wall", "-Wno-timescale")
     screen = config.screen_geometry
     clocks = screen.vertical.visible * screen.horizontal.visible * screen.clocks_per_pixel
-    assert done.stdout.split() == [str(clocks), "pixels,", "0" if alike else str(clocks), "others"]
+    assert said.split() == [str(clocks), "pixels,", "0" if alike else str(clocks), "others"]
 
 
 @pytest.mark.slow_sets("fault")

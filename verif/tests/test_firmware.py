@@ -5,11 +5,10 @@ from __future__ import annotations
 
 import re
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from conftest import called
 from host_software import CONFIG, FIRE, Registers, Session, compile_library
 
 from raycaster.memory_map import BUTTONS, MEMORY, MEMORY_BYTES, RAY_TRACER, UART, UART_BUSY, c_header
@@ -188,13 +187,12 @@ def test_the_image_is_the_program(firmware):
     assert firmware.elf.read_bytes()[:4] == b"\x7fELF"
 
 
-def test_the_command(tmp_path):
-    pytest.importorskip("ziglang", reason="the extra firmware is not installed")
-    command = (sys.executable, "-m", "raycaster.sw.firmware", "--output", "here")
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+def test_the_command(firmware, tmp_path):
+    done = called("--output", "here", cwd=tmp_path, program=main)
     assert (done.returncode, done.stderr) == (0, "")
     assert "32,768 bytes of RAM" in done.stdout
     assert {path.name for path in (tmp_path / "here").glob("[!.]*")} == {"firmware.elf", "firmware.hex"}
+    assert (tmp_path / "here" / "firmware.hex").read_bytes() == firmware.words.read_bytes()
 
 
 @pytest.mark.parametrize("missing", ["ziglang", "elftools"])
@@ -205,12 +203,7 @@ def test_a_missing_tool_is_one_line(tmp_path, monkeypatch, missing):
     assert not any(tmp_path.iterdir())
 
 
-def test_equal_sources_give_equal_words(firmware, tmp_path):
-    assert build_firmware(tmp_path / "other").words.read_bytes() == firmware.words.read_bytes()
-
-
-def test_a_program_that_does_not_compile(tmp_path):
-    pytest.importorskip("ziglang", reason="the extra firmware is not installed")
+def test_a_program_that_does_not_compile(firmware, tmp_path):
     broken = tmp_path / "broken.c"
     shutil.copy(SOURCES[1], broken)
     broken.write_text(broken.read_text().replace("int main(void) {", "int main(void) { int unused;"))

@@ -23,33 +23,31 @@ from raycaster.errors import UserError
 from raycaster.fit.choice import keep_choice, kept_choice
 from raycaster.fit.fixing import FIT, SCOPES, configuration_of, design_of, fix, fixed_rectangle
 from raycaster.fit.unneeded import at_the_edge, covered, needed, unreachable, without_mirrors
-from raycaster.fixed import FixedRectangle, FixedScene, varying_bits
+from raycaster.fixed import FixedRectangle, FixedScene
 from raycaster.fpga import fit as search
 from raycaster.fpga.cells import FAMILIES, measure
 from raycaster.golden.engines import model_of
 from raycaster.golden.exact import ExactModel
 from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.registers import address_bits, register_map
+from raycaster.registers import address_bits
 from raycaster.rtl.beam.beam_caster import known_facet, known_growth
 from raycaster.scene import Camera, Rectangle, Scene, dump_scene, load_scene
 from raycaster.sim.simulator import SimulationError
 from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.seeds import repeat, seed
 
-BOXES = ROOT / "scenes" / "boxes.toml"
+SCENES = ROOT / "scenes"
+BOXES = SCENES / "boxes.toml"
+NOTHING = '[camera]\nposition = [9, 9, 9]\n[[rect]]\ncorners = [[0, 0, 0], [0, 9, 9]]\ncolour = "#ffffff"\n'
+"""Scene of a rectangle that nobody sees."""
 
 
-def scene_of(*corners, **values) -> Scene:
+def scene_of(*corners, matte=(), **values) -> Scene:
     """Return a scene of differently coloured rectangles, seen from the middle of the world's near side."""
     rect = [{"corners": pair, "colour": f"#{number:06x}"} for number, pair in enumerate(corners, 1)]
+    for index in matte:
+        rect[index]["mirror"] = 0.0
     return Scene(**{"camera": {"position": (0, 255, 100)}, "rect": rect, **values})
-
-
-def matte(scene: Scene, index: int) -> Scene:
-    """Return the scene with one rectangle made matte."""
-    rect = list(scene.rect)
-    rect[index] = rect[index].model_copy(update={"mirror": 0.0})
-    return scene.model_copy(update={"rect": tuple(rect)})
 
 
 WALL = ((300, 0, 0), (300, 511, 511))
@@ -61,26 +59,24 @@ NEAR = ((0, 0, 0), (0, 511, 511))
 # Unneeded parts -------------------------------------------------------------------------------------------------------
 
 
-def test_the_earlier_of_two_in_a_plane_covers_the_later():
-    assert covered(Rectangles.of_scene(scene_of(WALL, FLOOR, WINDOW))) == {2: 0}
-    assert covered(Rectangles.of_scene(scene_of(WINDOW, FLOOR, WALL))) == {}
-    assert covered(Rectangles.of_scene(scene_of(FLOOR, FLOOR, FLOOR))) == {1: 0, 2: 0}
-    beside = ((300, 100, 100), (300, 201, 511))
-    assert covered(Rectangles.of_scene(scene_of(((300, 0, 0), (300, 200, 511)), beside))) == {}
+def test_parts_that_no_ray_meets():
+    """The earlier of two in a plane covers the later. Nothing runs to x = 0 that met no other mirror on x. Nothing is
+    reflected where nothing mirrors."""
 
+    def found(find, *corners, reflections=(), matte=()):
+        return find(Rectangles.of_scene(scene_of(*corners, matte=matte)), *reflections)
 
-def test_nothing_runs_to_x_0_that_met_no_other_mirror_on_x():
-    assert unreachable(Rectangles.of_scene(scene_of(NEAR, FLOOR)), 1) == [{0}, {0}]
-    assert unreachable(Rectangles.of_scene(scene_of(NEAR, WALL)), 2) == [{0}, set(), set()]
-    assert unreachable(Rectangles.of_scene(scene_of(WALL, FLOOR)), 1) == [set(), set()]
-    assert unreachable(Rectangles.of_scene(matte(scene_of(NEAR, WALL), 1)), 1) == [{0}, {0}]
-    assert unreachable(Rectangles.of_scene(matte(scene_of(NEAR, WALL), 0)), 1) == [{0}, set()]
-
-
-def test_nothing_is_reflected_where_nothing_mirrors():
-    scene = matte(scene_of(WALL, FLOOR), 0)
-    assert without_mirrors(Rectangles.of_scene(scene), 2) == [set(), set(), set()]
-    assert without_mirrors(Rectangles.of_scene(matte(scene, 1)), 2) == [set(), {0, 1}, {0, 1}]
+    beside = ((300, 0, 0), (300, 200, 511)), ((300, 100, 100), (300, 201, 511))
+    assert found(covered, WALL, FLOOR, WINDOW) == {2: 0}
+    assert found(covered, WINDOW, FLOOR, WALL) == found(covered, *beside) == {}
+    assert found(covered, FLOOR, FLOOR, FLOOR) == {1: 0, 2: 0}
+    assert found(unreachable, NEAR, FLOOR, reflections=[1]) == [{0}, {0}]
+    assert found(unreachable, NEAR, WALL, reflections=[2]) == [{0}, set(), set()]
+    assert found(unreachable, WALL, FLOOR, reflections=[1]) == [set(), set()]
+    assert found(unreachable, NEAR, WALL, reflections=[1], matte=[1]) == [{0}, {0}]
+    assert found(unreachable, NEAR, WALL, reflections=[1], matte=[0]) == [{0}, set()]
+    assert found(without_mirrors, WALL, FLOOR, reflections=[2], matte=[0]) == [set(), set(), set()]
+    assert found(without_mirrors, WALL, FLOOR, reflections=[2], matte=[0, 1]) == [set(), {0, 1}, {0, 1}]
 
 
 def test_a_turned_camera_looks_back(tmp_path):
@@ -168,22 +164,15 @@ def test_fixed_rectangles_are_in_order():
     )
 
 
-def test_varying_bits():
-    assert varying_bits((0b1100,)) == 0
-    assert varying_bits((0b1100, 0b1010, 0b1000)) == 0b0110
-
-
 def test_units_are_as_few_as_possible():
-    general, fixed = design_for(BOXES, {}), fix(BOXES, {}, "all").design
-    assert (general.configuration.units, general.configuration.divider_bits) == (32, 1)
-    config = fixed.configuration
+    general, config = design_for(BOXES, {}).configuration, fix(BOXES, {}, "all").design.configuration
+    assert (general.units, general.divider_bits, config.units, config.divider_bits) == (32, 1, 10, 3)
     assert config.group_cycles <= config.group_budget
-    assert (config.units, config.divider_bits) == (10, 3)
     # Given options are kept.
     assert fix(BOXES, {"units": "40"}, "all").design.configuration.units == 40
     assert fix(BOXES, {"divider_bits": "1"}, "rects").design.configuration.divider_bits == 1
     # Too few units for an arbitrary scene may suffice for this one; the general design keeps all rectangles.
-    fewer = fix(ROOT / "scenes" / "corners.toml", {"units": "20", "divider_bits": "1"}, "all")
+    fewer = fix(SCENES / "corners.toml", {"units": "20", "divider_bits": "1"}, "all")
     assert (fewer.design.configuration.units, fewer.general.configuration.rectangles) == (20, 12)
 
 
@@ -204,19 +193,16 @@ def test_names_differ_where_scenes_do(tmp_path):
     assert len(names) == 3  # `rects` does not fix the camera
 
 
-def test_fixed_words_have_no_registers():
-    assert not any(name.startswith("rectangle") for name in register_map(0))
-    assert address_bits(0) == 4
-
-
 def test_omissions_say_why():
-    omissions = dict(dataclasses.astuple(one) for one in fix(BOXES, {"screen": "tiny"}, "all").omissions)
-    assert omissions["rectangle memory: 36 words, three copies each"] == "rectangles are constants"
-    assert omissions["ceiling"] == "no ray of the picture meets it first"
-    matte = dict(dataclasses.astuple(one) for one in fix(ROOT / "scenes" / "matte.toml", {}, "rects").omissions)
-    assert "memory of camera and background" not in matte
-    floors = dict(dataclasses.astuple(one) for one in fix(ROOT / "scenes" / "floor.toml", {}, "all").omissions)
-    assert "tests of the reflection against green slab, side" in floors
+    def omissions(name, scope):
+        fixed = fix(SCENES / f"{name}.toml", {"screen": "tiny"} if name == "boxes" else {}, scope)
+        return dict(dataclasses.astuple(one) for one in fixed.omissions)
+
+    boxes = omissions("boxes", "all")
+    assert boxes["rectangle memory: 36 words, three copies each"] == "rectangles are constants"
+    assert boxes["ceiling"] == "no ray of the picture meets it first"
+    assert "memory of camera and background" not in omissions("matte", "rects")
+    assert "tests of the reflection against green slab, side" in omissions("floor", "all")
 
 
 @pytest.mark.parametrize(
@@ -242,7 +228,7 @@ def test_without_a_scope_a_design_is_general():
 def test_a_scene_of_one_rectangle_that_nobody_sees(tmp_path):
     """The design keeps one rectangle, the least that an engine can have."""
     path = tmp_path / "nothing.toml"
-    path.write_text('[camera]\nposition = [9, 9, 9]\n[[rect]]\ncorners = [[0, 0, 0], [0, 9, 9]]\ncolour = "#ffffff"\n')
+    path.write_text(NOTHING)
     for scope, engine in itertools.product(SCOPES, ENGINES):
         config = fix(path, {"engine": engine, "screen": "tiny"}, scope).design.configuration
         assert config.rectangles == 1
@@ -257,55 +243,58 @@ def test_known_values_of_fixed_rectangles(camera):
         facet, growth = known_facet(number, config), known_growth(number, config)
         assert set(facet) == {"usable", "axis", "colour"} | ({"distance"} if camera else set())
         assert camera == (len(growth) == 5)
+        # A column adds 1 to the slope along y.
+        step, (p, q) = int(rectangle.axis == 1), {0: (1, 2), 1: (0, 2), 2: (1, 0)}[rectangle.axis]
+        u, v = OTHER_AXES[rectangle.axis]
+        low, high = {u: rectangle.u_low, v: rectangle.v_low}, {u: rectangle.u_high, v: rectangle.v_high}
         for _ in range(8):
             eye = config.fixed.camera or random.integers(512, size=3).tolist()
             away = rectangle.position - eye[rectangle.axis]
-            u, v = OTHER_AXES[rectangle.axis]
-            bounds = {u: (rectangle.u_low, rectangle.u_high), v: (rectangle.v_low, rectangle.v_high)}
-            p, q = {0: (1, 2), 1: (0, 2), 2: (1, 0)}[rectangle.axis]
-            # A column adds 1 to the slope along y.
-            step = (0, 1, 0)
-            ends = {f"{end}_{name}": (bounds[axis][i] - eye[axis]) * step[rectangle.axis]
-                    for name, axis in (("p", p), ("q", q)) for i, end in enumerate(("low", "high"))}  # fmt: skip
             seen = {"usable": 1, "axis": rectangle.axis, "colour": rectangle.colour, "distance": away}
+            grown = {
+                "way_p": away * int(p == 1),
+                **{f"low_{name}": (low[axis] - eye[axis]) * step for name, axis in (("p", p), ("q", q))},
+                **{f"high_{name}": (high[axis] - eye[axis]) * step for name, axis in (("p", p), ("q", q))},
+            }
             assert facet == {name: seen[name] for name in facet}, repeat()
-            grown = {"way_p": away * step[p], **ends}
             assert growth == {name: grown[name] for name in growth}, repeat()
 
 
 # Whole designs --------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow_sets("beam-all", "beam-rects", "exact-rects", "seed-all", "seed-rects")
-@pytest.mark.parametrize("scope", SCOPES)
+MIRRORS = "facing_mirrors"
+FRAMES = [
+    *((engine, "boxes", scope, {}) for engine in ENGINES for scope in SCOPES),
+    *(("exact", "lamplight", scope, {}) for scope in SCOPES),
+    *((engine, MIRRORS, "all", {}) for engine in ENGINES),
+    ("seed", MIRRORS, "all", {"fraction_bits": 2, "rounding": "nearest"}),
+    *((engine, "nothing", "all", {}) for engine in ENGINES),
+]
+
+
+@pytest.mark.slow_sets(quick=["exact-boxes-all", "exact-lamplight"])
 @pytest.mark.parametrize(
-    ("engine", "scene"), [*((engine, BOXES) for engine in ENGINES), ("exact", ROOT / "scenes" / "lamplight.toml")],
-    ids=[*ENGINES, "light"],
-)  # fmt: skip
-def test_no_pixel_changes(bench: Bench, engine, scene, scope):
-    design = fix(scene, {"engine": engine, "screen": "tiny"}, scope).design
+    ("engine", "name", "scope", "options"), FRAMES, ids=["-".join([*one[:3], *one[3]]) for one in FRAMES]
+)
+def test_no_pixel_changes(bench: Bench, tmp_path, engine, name, scope, options):
+    """Scenes with a light, with two reflections, or with nothing in sight are among them."""
+    scene = SCENES / f"{name}.toml"
+    if name == "nothing":
+        scene = tmp_path / scene.name
+        scene.write_text(f'background = "#123456"\n{NOTHING}')
+    design = fix(scene, {"engine": engine, "screen": "tiny", **options}, scope).design
+    assert design.reflections == (2 if name == MIRRORS else 1)
     result = json.loads((bench("sim.frame_bench", design.configuration, "icarus", scene) / "result.json").read_text())
     assert result["wrong_vs_golden"] == 0
     assert result["worst_group_cycles"] <= design.configuration.group_cycles
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("engine", "options"),
-    [("seed", {"fraction_bits": 2, "rounding": "nearest"}), ("seed", {}), ("exact", {}), ("beam", {})],
-)
-def test_two_reflections(bench: Bench, engine, options):
-    scene = ROOT / "scenes" / "facing_mirrors.toml"
-    design = fix(scene, {"engine": engine, "screen": "tiny", **options}, "all").design
-    assert design.reflections == 2
-    bench("sim.frame_bench", design.configuration, "icarus", scene)
 
 
 @pytest.mark.slow_sets("beam", "exact", "seed")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_any_camera_may_look_at_fixed_rectangles(bench: Bench, engine):
     """The scene has coplanar rectangles and some at x = 0 that `rects` leaves out."""
-    scene = ROOT / "scenes" / "mirror_room.toml"
+    scene = SCENES / "mirror_room.toml"
     design = fix(scene, {"engine": engine, "screen": "tiny"}, "rects").design
     bench("verif.benches.camera_bench", design.configuration, "verilator", scene, seeds=tuple(range(24)))
 
@@ -313,20 +302,9 @@ def test_any_camera_may_look_at_fixed_rectangles(bench: Bench, engine):
 @pytest.mark.slow_sets("all")
 @pytest.mark.parametrize("scope", SCOPES)
 def test_fixed_words_ignore_writes(bench: Bench, scope):
+    assert address_bits(0) == 4
     design = fix(SMALL_SCENE, {"engine": "exact", "screen": "tiny"}, scope).design
     bench("verif.benches.fixed_bench", design.configuration, "icarus", SMALL_SCENE)
-
-
-@pytest.mark.slow
-def test_nothing_in_sight(bench: Bench, tmp_path):
-    path = tmp_path / "nothing.toml"
-    path.write_text(
-        'background = "#123456"\n[camera]\nposition = [9, 9, 9]\n'
-        '[[rect]]\ncorners = [[0, 0, 0], [0, 9, 9]]\ncolour = "#ffffff"\n'
-    )
-    for engine in ENGINES:
-        design = fix(path, {"engine": engine, "screen": "tiny"}, "all").design
-        bench("sim.frame_bench", design.configuration, "icarus", path)
 
 
 @pytest.mark.slow_sets("exact", "seed")

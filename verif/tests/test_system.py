@@ -5,18 +5,17 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from conftest import BUILD, ROOT, SMALL_SCENE
+from conftest import BUILD, ROOT, SMALL_SCENE, broken
 from PIL import Image
 from small_program import write_program
 
 from raycaster.configuration import configure
-from raycaster.convert.write import write_system
 from raycaster.errors import UserError
 from raycaster.memory_map import BUTTON_NAMES, MEMORY_WORDS
 from raycaster.play import game
 from raycaster.play.system import check_program, play, read_buttons
 from raycaster.rtl.system import picorv32
-from raycaster.sim.simulator import SYSTEM_BENCH, SimulationError, build_model
+from raycaster.sim.simulator import SYSTEM_BENCH, SimulationError, build_model, convert
 
 pytestmark = pytest.mark.skipif(
     picorv32.importlib.util.find_spec(picorv32.PACKAGE) is None, reason="PicoRV32 is not installed"
@@ -89,11 +88,7 @@ def test_a_fault_is_noticed(module, right, wrong, complaint, output, tmp_path):
     """The bench finds faults behind the ray tracer's bus; faults in front of it show in text and pictures."""
     configuration = configure(engine="exact", screen="tiny", rectangles=3)
     program = write_program(SMALL_SCENE, configuration, tmp_path)
-    files = write_system(configuration, tmp_path / "verilog")
-    [broken] = [path for path in files if path.stem == module]
-    text = broken.read_text()
-    assert text.count(right) == 1, f"{module}.v has {text.count(right)} places for this fault"
-    broken.write_text(text.replace(right, wrong))
+    files = broken(convert(configuration, BUILD, system=True), tmp_path, module, right, wrong)
     model = build_model(configuration, "icarus", build=tmp_path, verilog=files, bench=SYSTEM_BENCH)
     with pytest.raises(SimulationError, match=complaint):
         play(model, program, [0, 0, 0], output / "play")
