@@ -407,7 +407,7 @@ class HitsPoint:
 
     view: View
     config: Configuration
-    sources: ClassVar[Sequence[str]] = (*_OF_SIMULATIONS, "verif/hit_points.py", "verif/hit_probe.v")
+    sources: ClassVar[Sequence[str]] = (*_OF_SIMULATIONS, "verif/hit_points.py", "debug/probes")
 
     @property
     def arguments(self) -> str:
