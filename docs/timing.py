@@ -83,7 +83,7 @@ class Frame:
     def __init__(self, waves: Waves, configuration: Configuration):
         self._waves = waves
         self._groups = configuration.groups
-        (start_screen,), (run,) = SEED.signals("scan_start_screen"), SEED.signals("picture_run")
+        start_screen, run = (SEED.signals(name)[0] for name in ("scan_start_screen", "picture_run"))
         samples = waves.sample([start_screen, run])
         starts = [i for i, value in enumerate(samples.values[start_screen]) if value]
         # Committed registers go live at StartScreen, and change in the cycle after it.

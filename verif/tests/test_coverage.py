@@ -20,7 +20,7 @@ from raycaster.configuration import configure
 from raycaster.errors import UserError
 from raycaster.golden.rays import primary_slopes
 from raycaster.golden.world import Rectangles
-from raycaster.scene import dump_scene, load_scene
+from raycaster.scene import Camera, Rectangle, Scene, dump_scene, load_scene
 from raycaster.sim.simulator import build_model, convert
 from raycaster.verif.coverage.code import EVERY, Explanation, Judgement, describe, judge, load_explanations, read_counts
 from raycaster.verif.coverage.functional import RAYS, Cross, FunctionalCoverage
@@ -257,6 +257,17 @@ def test_extra_scenes_hit_their_bins(engine, stem, wanted):
     (scene,) = (load_scene(path) for path in EXTRA_SCENES if path.stem == stem)
     counts = count_intersections(scene, configure(engine=engine, reflections=2))
     assert all(counts[place_of(bins, INTERSECTIONS[engine])] >= 10 for bins in wanted)
+
+
+@pytest.mark.parametrize("engine", INTERSECTIONS)
+def test_a_hit_ranks_against_the_nearest_one(engine):
+    """Of three walls, the second and the third are behind the first, though the third is before the second."""
+    walls = tuple(Rectangle(corners=((x, 0, 0), (x, 511, 511)), colour=(0, 0, 0)) for x in (100, 300, 200))
+    scene = Scene(background=(0, 0, 0), camera=Camera(position=(20, 256, 100)), rect=walls)
+    counts = count_intersections(scene, configure(engine=engine, screen="tiny"))
+    ranks = dict(zip(INTERSECTIONS[engine].points["rank"], counts.sum(axis=(0, 1, 2, 4)).tolist(), strict=True))
+    assert ranks["first"] < ranks["farther"]
+    assert ranks["nearer"] == ranks["tie"] == 0
 
 
 def test_the_seed_engine_gives_rectangles_up():
