@@ -102,7 +102,7 @@ class Frame:
 
     def has_data(self, lane: Lane) -> bool:
         """True if a lane shows texts, instead of the level of a signal of one bit."""
-        return len(lane.signals) > 1 or self._waves.width(lane.signals[0]) > 1
+        return sum(map(self._waves.width, lane.signals)) > 1
 
     def strobe(self, name: str, number: int) -> int:
         """Return the cycle of a strobe by its number, counted from 0."""

@@ -261,7 +261,7 @@ def test_extra_scenes_hit_their_bins(engine, stem, wanted):
 
 @pytest.mark.parametrize("engine", INTERSECTIONS)
 def test_a_hit_ranks_against_the_nearest_one(engine):
-    """Of three walls, the second and the third are behind the first, though the third is before the second."""
+    """The third wall is farther than the first, though it is nearer than the second."""
     walls = tuple(Rectangle(corners=((x, 0, 0), (x, 511, 511)), colour=(0, 0, 0)) for x in (100, 300, 200))
     scene = Scene(background=(0, 0, 0), camera=Camera(position=(20, 256, 100)), rect=walls)
     counts = count_intersections(scene, configure(engine=engine, screen="tiny"))
