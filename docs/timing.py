@@ -8,8 +8,9 @@ the lane `cycle` shows their number.
 from __future__ import annotations
 
 import json
+import re
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain, pairwise
 from pathlib import Path
@@ -19,12 +20,10 @@ from typing import Any
 import wavedrom
 
 from raycaster.configuration import Configuration, configure
-from raycaster.debug.probes.ray import fields
+from raycaster.debug.probes.engines import description_of
 from raycaster.debug.waves import Waves, signed
 from raycaster.errors import UserError
-from raycaster.hdl.records import Record
 from raycaster.options import command_line
-from raycaster.rtl.common.records import Origin, Ray
 from raycaster.sim.job import Job
 from raycaster.sim.simulator import build_model, run_bench
 
@@ -39,45 +38,43 @@ CONFIGURATION = configure(screen="tiny", units=8, rectangles=3, reflections=1, c
 ROW, GROUP = 44, 6
 """Row and group of the followed rays: the first ray hits wall and post, and its reflection hits the wall."""
 
-RENDERER = "bench.dut.ray_caster_renderer_i."
-CASTER = RENDERER + "ray_caster_i."
-VIDEO = RENDERER + "video_generator_i."
-UNIT = CASTER + "ray_unit_0_i."
+SEED = description_of(CONFIGURATION, 0)
+"""Description of the signals of the first unit."""
 
 
 @dataclass(frozen=True)
 class Lane:
-    """A line of a diagram: its signals, and the text for their values."""
+    """A line of a diagram: its name, its signals by their names in the description, and the text for their values."""
 
     name: str
-    signals: tuple[str, ...]
-    text: Callable[..., str] | None = None
-    """Formatter of the values; None for a single signal of one bit."""
+    of: tuple[str, ...] = ()
+    """Names in the description; by default the lane's own name."""
 
+    text: Callable[..., str] = str
     is_signed: bool = False
 
-
-@dataclass(frozen=True)
-class Arrow:
-    """An arrow from a rising edge of one lane to one of another, labelled with the cycles between them.
-
-    Edges are counted from 0.
-    """
-
-    start: str
-    start_edge: int
-    end: str
-    end_edge: int
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """Full names of the signals."""
+        return tuple(chain.from_iterable(map(SEED.signals, self.of or (self.name,))))
 
 
 @dataclass(frozen=True)
 class Diagram:
-    """A drawing: groups of lanes, and the first cycle and the end of each drawn range of cycles."""
+    """A drawing: groups of lanes, the first cycle and the end of each drawn range of cycles, and arrows.
+
+    An arrow runs from a rising edge of one lane to one of another, labelled with the cycles between them: lane, number
+    of the edge, counted from 0, and the same for its end.
+    """
 
     name: str
-    groups: dict[str, Sequence[Lane]]
+    groups: Mapping[str, str]
     windows: Callable[[Frame], list[tuple[int, int]]]
-    arrows: Sequence[Arrow] = ()
+    arrows: Sequence[tuple[str, int, str, int]] = ()
+
+    def lanes(self, group: str) -> list[Lane]:
+        """Return the lanes of a group."""
+        return [LANES.get(name) or Lane(PREFIX.sub("", name), (name,)) for name in self.groups[group].split()]
 
 
 class Frame:
@@ -86,10 +83,11 @@ class Frame:
     def __init__(self, waves: Waves, configuration: Configuration):
         self._waves = waves
         self._groups = configuration.groups
-        samples = waves.sample([VIDEO + "scan_start_screen", RENDERER + "picture_run"])
-        starts = [i for i, value in enumerate(samples.values[VIDEO + "scan_start_screen"]) if value]
+        start_screen, run = (SEED.signals(name)[0] for name in ("scan_start_screen", "picture_run"))
+        samples = waves.sample([start_screen, run])
+        starts = [i for i, value in enumerate(samples.values[start_screen]) if value]
         # Committed registers go live at StartScreen, and change in the cycle after it.
-        live = [i for i in starts if samples.values[RENDERER + "picture_run"][i + 1]]
+        live = [i for i in starts if samples.values[run][i + 1]]
         if not live:
             raise UserError(f"{waves.path}: expected a frame with a live scene, got none")
         self._start_ns = samples.times_ns[live[0] - 1]
@@ -102,8 +100,13 @@ class Frame:
         values = self._values[signal]
         return [signed(value, self._waves.width(signal)) for value in values] if is_signed else values
 
-    def strobe(self, signal: str, number: int) -> int:
+    def has_data(self, lane: Lane) -> bool:
+        """True if a lane shows texts, instead of the level of a signal of one bit."""
+        return sum(map(self._waves.width, lane.signals)) > 1
+
+    def strobe(self, name: str, number: int) -> int:
         """Return the cycle of a strobe by its number, counted from 0."""
+        (signal,) = SEED.signals(name)
         cycles = [i - 1 for i, value in enumerate(self.values(signal)) if value]
         if number >= len(cycles):
             raise UserError(f"{self._waves.path}: {signal} is high {len(cycles)} times in a frame, not {number + 1}")
@@ -111,58 +114,17 @@ class Frame:
 
     def done(self, row: int, group: int) -> int:
         """Return the cycle in which a group of pixels is complete; negative groups count from the end of the row."""
-        return self.strobe(RENDERER + "done", row * self._groups + group % self._groups)
+        return self.strobe("done", row * self._groups + group % self._groups)
 
     def texts(self, lane: Lane, cycles: range) -> list[str]:
         """Return the text of a lane for each cycle, "x" if a bit is unknown."""
         columns = [self.values(signal, lane.is_signed)[cycles.start + 1 : cycles.stop + 1] for signal in lane.signals]
-        show = lane.text or str
-        return ["x" if None in values else show(*values) for values in zip(*columns, strict=True)]
+        return ["x" if None in values else lane.text(*values) for values in zip(*columns, strict=True)]
 
 
-def _bits(prefix: str, *names: str) -> list[Lane]:
-    """Return lanes for signals of one bit."""
-    return [Lane(name, (prefix + name,)) for name in names]
-
-
-def _strobes(*names: str) -> list[Lane]:
-    """Return lanes for strobes of the scan."""
-    return [Lane(name, (f"{VIDEO}scan_{name}",)) for name in names]
-
-
-def _number(prefix: str, name: str, is_signed: bool = False) -> Lane:
-    return Lane(name, (prefix + name,), str, is_signed)
-
-
-def _colour(prefix: str, name: str) -> Lane:
-    return Lane(name, (prefix + name,), "#{:06x}".format)
-
-
-def _word(name: str) -> Lane:
-    """Return a lane for a unit's colour record."""
-    return Lane(name, (f"{UNIT}{name}_word",), "#{:06x}".format)
-
-
-def _place(name: str) -> Lane:
-    """Return a lane for a coordinate of the group."""
-    return Lane(name, (f"{RENDERER}place_{name}",), str)
-
-
-def _point(name: str, record: str, layout: Record) -> Lane:
-    """Return a lane for the coordinates in one of a unit's records."""
-    return Lane(name, fields(UNIT.rstrip("."), record, "xyz", layout), "{} {} {}".format)
-
-
-def _slope() -> Lane:
-    """Return a lane for the slope of the traced ray, from its magnitudes and signs."""
-    components = ("dx", "dy", "dz")
-    unit = UNIT.rstrip(".")
-    signals = (*fields(unit, "slope", components), *fields(unit, "ray", components, Ray(CONFIGURATION)))
-
-    def text(x: int, y: int, z: int, *negative: int) -> str:
-        return " ".join(f"{'-' if sign else ''}{size}" for size, sign in zip((x, y, z), negative, strict=True))
-
-    return Lane("slope", signals, text)
+def _slope(x: int, y: int, z: int, *negative: int) -> str:
+    """Format the slope of the traced ray, from its magnitudes and signs."""
+    return " ".join(f"{'-' if sign else ''}{size}" for size, sign in zip((x, y, z), negative, strict=True))
 
 
 def _followed(frame: Frame) -> list[tuple[int, int]]:
@@ -170,84 +132,83 @@ def _followed(frame: Frame) -> list[tuple[int, int]]:
     return [(frame.done(ROW, GROUP - 1), frame.done(ROW, GROUP) + 5)]
 
 
-STEPS = CASTER + "steps_"
+PREFIX = re.compile("^(steps|scan|place)_")
+"""Beginnings of signals that lanes omit."""
+
+LANES = {
+    lane.name: lane
+    for lane in (
+        Lane("y", is_signed=True),
+        Lane("slope", ("slope, magnitudes", "signs"), _slope),
+        Lane("origin", text="{} {} {}".format),
+        Lane("hit", ("inside",)),
+        Lane("found_colour", ("its colour",), "#{:06x}".format),
+        Lane("found_point", ("nearest point",), "{} {} {}".format),
+        Lane("pixel", text="#{:06x}".format),
+    )
+}
+"""Lanes of quantities and of signed numbers; others are signals of the control."""
+
 DIAGRAMS = (
     Diagram(
         "video_and_counters",
         {
-            "video": [_number(VIDEO, "y", is_signed=True), *_strobes("start_screen", "start_row")],
-            "counters": [
-                _place("row"), *_bits(RENDERER, "line_buf_sel"), _place("column_offset"),
-            ],
-            "caster": _bits(RENDERER, "enable", "done"),
+            "video": "y scan_start_screen scan_start_row",
+            "counters": "place_row line_buf_sel place_column_offset",
+            "caster": "enable done",
         },
         lambda frame: [
             (cycle - 1, cycle + 5)
             for cycle in (
-                frame.strobe(VIDEO + "scan_start_screen", 0), frame.done(0, 0), frame.done(0, 1), frame.done(0, -1),
-                frame.strobe(VIDEO + "scan_start_row", 0), frame.done(1, 0),
+                frame.strobe("scan_start_screen", 0), frame.done(0, 0), frame.done(0, 1), frame.done(0, -1),
+                frame.strobe("scan_start_row", 0), frame.done(1, 0),
             )
         ],
-        [Arrow("start_screen", 0, "start_row", 0)],
+        [("start_screen", 0, "start_row", 0)],
     ),
     Diagram(
         "enable_and_reset",
         {
-            "renderer": [
-                *_bits(RENDERER, "done", "restart", "reset_delay", "reset_ray_caster"),
-                _place("column_offset"), *_bits(RENDERER, "enable"), *_bits(STEPS, "screen_to_ray"),
-            ],
+            "renderer": "done restart reset_delay reset_ray_caster place_column_offset enable steps_screen_to_ray",
         },
         lambda frame: [(cycle - 2, cycle + 8) for cycle in (frame.done(0, 0), frame.done(0, -1))],
-        [Arrow("done", 0, "screen_to_ray", 0)],
+        [("done", 0, "screen_to_ray", 0)],
     ),
     Diagram(
         "renderer_and_ray_unit",
         {
-            "renderer": [
-                *_bits(RENDERER, "reset_ray_caster", "enable"), _place("row"), _place("column_offset"),
-            ],
-            "ray_unit": [*_bits(STEPS, "screen_to_ray"), _slope(), _word("pixel")],
-            "buffer": [
-                *_bits(RENDERER, "done", "line_buf_sel"), _number(RENDERER + "line_buffer_0_i.", "write_address"),
-            ],
+            "renderer": "reset_ray_caster enable place_row place_column_offset",
+            "ray_unit": "steps_screen_to_ray slope pixel",
+            "buffer": "done line_buf_sel write_address",
         },
         lambda frame: [
             (frame.done(ROW, GROUP - 1) - 3, frame.done(ROW, GROUP - 1) + 12),
             (frame.done(ROW, GROUP) - 6, frame.done(ROW, GROUP) + 10),
         ],
-        [Arrow("done", 0, "done", 1)],
+        [("done", 0, "done", 1)],
     ),
     Diagram(
         "ray_control_and_ray_unit",
         {
-            "memory": [*_bits(CASTER, "rects_fetch"), _number(CASTER, "rects_index")],
-            "ray_control": [
-                *_bits(RENDERER, "reset_ray_caster"),
-                *_bits(STEPS, "screen_to_ray", "initial_ray", "reset_colour", "reset_z_buf", "find_intersection"),
-                *_bits(STEPS, "load_divider", "store_quotient", "write_z_buf", "add_colour", "store_ray"),
-                *_bits(RENDERER, "done"),
-            ],
+            "memory": "rects_fetch rects_index",
+            "ray_control": "reset_ray_caster steps_screen_to_ray steps_initial_ray steps_reset_colour "
+            "steps_reset_z_buf steps_find_intersection steps_load_divider steps_store_quotient steps_write_z_buf "
+            "steps_add_colour steps_store_ray done",
         },
         _followed,
         [
-            Arrow("find_intersection", 0, "load_divider", 0), Arrow("load_divider", 0, "store_quotient", 0),
-            Arrow("store_quotient", 0, "write_z_buf", 0), Arrow("find_intersection", 0, "find_intersection", 1),
-            Arrow("screen_to_ray", 0, "add_colour", 0), Arrow("add_colour", 0, "add_colour", 1),
+            ("find_intersection", 0, "load_divider", 0), ("load_divider", 0, "store_quotient", 0),
+            ("store_quotient", 0, "write_z_buf", 0), ("find_intersection", 0, "find_intersection", 1),
+            ("screen_to_ray", 0, "add_colour", 0), ("add_colour", 0, "add_colour", 1),
         ],
     ),
     Diagram(
         "ray_unit_and_output",
         {
-            "ray": [_point("origin", "ray", Ray(CONFIGURATION)), _slope()],
-            "intersection": [
-                *_bits(STEPS, "find_intersection"), *_bits(UNIT, "hit"), _number(UNIT, "depth"),
-            ],
-            "z_buffer": [
-                *_bits(STEPS, "reset_z_buf", "write_z_buf"), *_bits(UNIT, "found"), _colour(UNIT, "found_colour"),
-                _point("found_point", "found_point", Origin(CONFIGURATION)),
-            ],
-            "output": [*_bits(STEPS, "add_colour"), _word("pixel"), *_bits(RENDERER, "done")],
+            "ray": "origin slope",
+            "intersection": "steps_find_intersection hit depth",
+            "z_buffer": "steps_reset_z_buf steps_write_z_buf found found_colour found_point",
+            "output": "steps_add_colour pixel done",
         },
         _followed,
     ),
@@ -283,7 +244,7 @@ def wave_json(diagram: Diagram, frame: Frame) -> str:
     """Return a diagram as WaveJSON, one lane per line."""
     columns: list[int | None] = []  # None marks a gap
     texts: dict[str, dict[int, str]] = {}
-    lanes = list(chain.from_iterable(diagram.groups.values()))
+    lanes = list(chain.from_iterable(map(diagram.lanes, diagram.groups)))
     for start, end in diagram.windows(frame):
         cycles = range(start, end)
         seen = {lane.name: dict(zip(cycles, frame.texts(lane, cycles), strict=True)) for lane in lanes}
@@ -293,16 +254,15 @@ def wave_json(diagram: Diagram, frame: Frame) -> str:
     nodes, edges = _place_arrows(diagram.arrows, columns, texts)
 
     def draw(lane: Lane) -> dict[str, Any]:
-        drawn = _wave(
-            lane.name, [None if cycle is None else texts[lane.name][cycle] for cycle in columns], bool(lane.text)
-        )
+        shown = [None if cycle is None else texts[lane.name][cycle] for cycle in columns]
+        drawn = _wave(lane.name, shown, frame.has_data(lane))
         return drawn | ({"node": nodes[lane.name]} if lane.name in nodes else {})
 
     clock = "".join("|" if cycle is None else "." for cycle in columns)
     signals = [{"name": "clk", "wave": "p" + clock[1:]}, _count(columns), {}]
     lines = [*map(json.dumps, signals)]
-    for name, group in diagram.groups.items():
-        members = ",\n    ".join(json.dumps(draw(lane)) for lane in group)
+    for name in diagram.groups:
+        members = ",\n    ".join(json.dumps(draw(lane)) for lane in diagram.lanes(name))
         lines.append(f"[{json.dumps(name)},\n    {members}\n  ]")
     signal = ",\n  ".join(lines)
     return f'{{"signal": [\n  {signal}\n],\n"edge": {json.dumps(edges)},\n"config": {{"skin": "narrow"}}}}\n'
@@ -337,7 +297,7 @@ def _count(columns: Sequence[int | None]) -> dict[str, Any]:
 
 
 def _place_arrows(
-    arrows: Sequence[Arrow], columns: Sequence[int | None], texts: dict[str, dict[int, str]]
+    arrows: Sequence[tuple[str, int, str, int]], columns: Sequence[int | None], texts: dict[str, dict[int, str]]
 ) -> tuple[dict[str, str], list[str]]:
     """Return the nodes of each lane and the arrows between them, in WaveDrom's notation."""
     letters: dict[tuple[str, int], str] = {}
@@ -351,10 +311,8 @@ def _place_arrows(
             raise UserError(f"{name} rises {len(rising)} times in the diagram, not {number + 1}")
         return rising[number]
 
-    for arrow in arrows:
-        ends = [
-            (name, column(name, edge)) for name, edge in ((arrow.start, arrow.start_edge), (arrow.end, arrow.end_edge))
-        ]
+    for first, first_edge, last, last_edge in arrows:
+        ends = [(first, column(first, first_edge)), (last, column(last, last_edge))]
         for end in ends:
             letters.setdefault(end, ascii_uppercase[len(letters)])
         start, end = (letters[end] for end in ends)
@@ -385,4 +343,5 @@ def kept(name: str) -> str:
 def measured(diagram: Diagram, source: str) -> list[tuple[str, str, int]]:
     """Return the arrows of a drawing: start lane, end lane, and the cycles between them."""
     edges = json.loads(source)["edge"]
-    return [(arrow.start, arrow.end, int(edge.split()[1])) for arrow, edge in zip(diagram.arrows, edges, strict=True)]
+    arrows = zip(diagram.arrows, edges, strict=True)
+    return [(start, end, int(edge.split()[1])) for (start, _, end, _), edge in arrows]

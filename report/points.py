@@ -384,7 +384,7 @@ KINDS = {
     "left": Kind(_left, (*_CELLS, "golden", "fit"), ("engine",)),
     "time": Kind(_time, _SIMULATIONS),
     "cases": Kind(_simulated_cases, _CASES, of_scene=False),
-    "hits": Kind(_hits, (*_SIMULATIONS, "verif/hit_points.py", "verif/hit_probe.v")),
+    "hits": Kind(_hits, (*_SIMULATIONS, "verif/hit_points.py", "debug/probes")),
 }
 
 

@@ -27,7 +27,7 @@ class AvalonBus(RegisterBus):
             await self._master.write(address, word)
             return
         # cocotb-bus always enables all bytes.
-        signals = self._master.bus
+        signals: Any = self._master.bus
         await RisingEdge(self._clock)
         for name, value in {"address": address, "writedata": word, "byteenable": byteenable, "write": 1}.items():
             getattr(signals, name).value = value

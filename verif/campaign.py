@@ -18,7 +18,7 @@ from raycaster.digests import digest
 from raycaster.jobs import Kept, run_jobs
 from raycaster.output import Console, emptied
 from raycaster.sim.job import Job
-from raycaster.sim.simulator import VERILATOR_FLAGS, Model, SimulationError, build_model, convert, run_bench
+from raycaster.sim.simulator import VERILATOR_FLAGS, Model, SimulationError, build_model, run_bench
 from raycaster.verif import benches, random_scenes
 from raycaster.waits import building
 
@@ -37,7 +37,6 @@ class Campaign:
         build: directory that holds `model/`.
         simulator: one of `SIMULATORS`.
         flags: for Verilator.
-        probes: Verilog files in addition to the design.
         stiff: passed on to the job.
         registers: passed on to the job.
         share: number of cases per simulation; 0 chooses one.
@@ -51,7 +50,6 @@ class Campaign:
     build: Path
     simulator: str = "verilator"
     flags: Sequence[str] = VERILATOR_FLAGS
-    probes: Sequence[Path] = ()
     stiff: bool = False
     registers: Mapping[str, Sequence[str]] = field(default_factory=dict)
     share: int = 0
@@ -67,14 +65,12 @@ class Outcome:
         failures: message of each failed simulation.
         missing: number of cases without a result.
         seconds: wall-clock time of the simulations of this run.
-        directories: output directory of each simulation.
     """
 
     results: list[dict]
     failures: list[str]
     missing: int
     seconds: float
-    directories: list[Path]
 
     def verdict(self, cases: str, console: Console) -> int:
         """Print failures and how many `cases`, a plural noun, have no result; return the command's exit code."""
@@ -113,7 +109,7 @@ def run_campaign(
     (campaign.output / "results.jsonl").write_text("".join(json.dumps(result) + "\n" for result in results))
     failures = [failure for _, failure in found if failure]
     seconds = time.perf_counter() - started
-    return Outcome(results, failures, len(cases) - len(results), seconds, [_directory(share) for share in shares])
+    return Outcome(results, failures, len(cases) - len(results), seconds)
 
 
 def bench_digest(bench: str, model: Model, *parts: object) -> str:
@@ -137,10 +133,7 @@ def _place(share: Campaign) -> Path:
 
 
 def _build(campaign: Campaign) -> Model:
-    verilog = [*convert(campaign.configuration, campaign.build), *campaign.probes]
-    return build_model(
-        campaign.configuration, campaign.simulator, build=campaign.build, verilog=verilog, flags=campaign.flags
-    )
+    return build_model(campaign.configuration, campaign.simulator, build=campaign.build, flags=campaign.flags)
 
 
 def run_share(share: Campaign) -> tuple[list[dict], str]:

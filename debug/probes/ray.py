@@ -172,6 +172,19 @@ class Description:
     states: Sequence[str] = ()
     """Signals that a viewer shows, although they are neither events nor values."""
 
+    diagrams: Sequence[str] = ()
+    """Signals that only the manual's timing diagrams show."""
+
+    def signals(self, name: str) -> tuple[str, ...]:
+        """Return the full names of the signals of a quantity, or of the control's only signal of this name."""
+        for probe in self.probes:
+            if probe.quantity == name:
+                return probe.signals
+        found = {signal for signal in (*self.controls(), *self.diagrams) if signal.endswith(f".{name}")}
+        if len(found) != 1:
+            raise ValueError(f"{name}: expected a quantity or a signal, got {sorted(found)}")
+        return tuple(found)
+
     def events(self, samples: Samples, ray: Ray) -> list[Event]:
         """List what the hardware did for the pixel."""
         raise NotImplementedError

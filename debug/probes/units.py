@@ -144,6 +144,13 @@ class UnitProbes(Description):
         self.generator = "turned_generator" if config.turn else "ray_generator"
         self.states = [f"{self.sequencer}.{name}" for name in ("state", "bounce")]
         steps = f"{self.sequencer}.steps"
+        names = ("enable", "restart", "reset_delay", "reset_ray_caster", "line_buf_sel", "picture_run")
+        self.diagrams = [
+            *(f"{RENDERER}.{name}" for name in names),
+            *(f"{VIDEO}.scan_{name}" for name in ("start_screen", "start_row")),
+            *(f"{steps}_{name}" for name in ("initial_ray", "reset_colour", "reset_z_buf")),
+            f"{RENDERER}.{unit_name('line_buffer', config, unit)}.write_address",
+        ]
         self.event_names = {
             "start": ("group started", f"{steps}_screen_to_ray"),
             "ray": ("ray kept", f"{steps}_store_ray"),

@@ -11,16 +11,18 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
-
-from raycaster.complaints import refusal
 from raycaster.errors import UserError
 
 HOLES = Path(__file__).with_name("holes.toml")
+EVERY = "every"
 KINDS = {"lines": ("line", "branch"), "conditions": ("expr",), "toggles": ("toggle",)}
 """Kinds of points in reports, with Verilator's types."""
 
 _RECORD = re.compile(r"C '(?P<fields>.*)' (?P<count>\d+)")
+_RULE = re.compile(
+    r"(?P<module>[^:]+): (?:/(?P<code>.+)/|"
+    r"(?P<signal>\S+)(?: \[(?P<bits>[-\d, ]+)\])?(?: (?P<edge>0->1|1->0)| = (?P<constant>\d+))?)"
+)
 _TOGGLE = re.compile(r"(?P<signal>.*?)(?:\[(?P<bit>\d+)\])?:(?P<edge>0->1|1->0)")
 
 
@@ -46,64 +48,64 @@ class Point:
         return match and (match["signal"], None if match["bit"] is None else int(match["bit"]), match["edge"])
 
 
-class Explanation(BaseModel):
-    """Reason why some points cannot be hit: toggles by `signal`, or lines and conditions by `code`."""
+@dataclass(frozen=True)
+class Explanation:
+    """Reason why some points cannot be hit: toggles of signals, or lines and conditions with some code."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    engines: str
+    """Regular expression for the engines that have the hole; `EVERY` if all do that have the module."""
 
-    module: str
-    """Regular expression that matches a whole module name; likewise `signal`."""
-
-    signal: str | None = None
-    bits: str | None = None
-    """Bits such as "9, 19, 29-31"; all bits of the signal by default."""
-
-    edge: str | None = None
-    """0->1 or 1->0; both by default."""
-
-    code: str | None = None
-    """Regular expression that is searched for in `Point.what`."""
-
-    engine: str | None = None
-    """Regular expression for the engine, if not every engine with the module has the hole."""
+    rule: str
+    """`module: signal`, or `module: /code/`, with the points' place and name as regular expressions: those of modules
+    and signals match a whole name; code is searched for in `Point.what`. Bits such as `[9, 19, 29-31]`, an edge
+    `1->0`, or a signal's only value such as `= 100` may follow."""
 
     reason: str
 
-    @model_validator(mode="after")
-    def _one_kind(self) -> Explanation:
-        if (self.signal is None) == (self.code is None):
-            raise ValueError("either signal or code is needed")
-        return self
+    def __post_init__(self):
+        if not _RULE.fullmatch(self.rule):
+            raise UserError(f"expected a rule such as module: signal [9, 29-31] 1->0, got {self.rule}")
 
     @cached_property
-    def wanted_bits(self) -> frozenset[int] | None:
+    def _parts(self) -> Mapping[str, str]:
+        match = _RULE.fullmatch(self.rule)
+        return match.groupdict(default="") if match else {}
+
+    @cached_property
+    def constant(self) -> int | None:
+        """The only value of the signal, if the rule names it."""
+        return int(self._parts["constant"]) if self._parts["constant"] else None
+
+    @cached_property
+    def bits(self) -> frozenset[int] | None:
         """The bits, or None for all."""
-        if self.bits is None:
+        if not self._parts["bits"]:
             return None
-        found: set[int] = set()
-        for part in self.bits.split(","):
-            first, _, last = part.strip().partition("-")
-            found |= set(range(int(first), int(last or first) + 1))
-        return frozenset(found)
+        ends = (part.partition("-") for part in self._parts["bits"].split(","))
+        return frozenset(bit for first, _, last in ends for bit in range(int(first), int(last or first) + 1))
+
+    def is_in(self, modules: Iterable[str]) -> bool:
+        """True if any of the modules may have the hole."""
+        return any(re.fullmatch(self._parts["module"], module) for module in modules)
 
     def covers(self, point: Point) -> bool:
         """True if it explains why a point was not hit."""
-        if not re.fullmatch(self.module, point.module):
+        if not self.is_in([point.module]):
             return False
-        if self.signal is None:
-            return point.kind != "toggle" and bool(re.search(self.code or "", point.what))
+        if self._parts["code"]:
+            return point.kind != "toggle" and bool(re.search(self._parts["code"], point.what))
         if point.toggle is None:
             return False
         signal, bit, edge = point.toggle
-        return (
-            bool(re.fullmatch(self.signal, signal))
-            and (self.wanted_bits is None or bit in self.wanted_bits)
-            and self.edge in (None, edge)
-        )
+        if not re.fullmatch(self._parts["signal"], signal):
+            return False
+        if self.constant is not None:
+            # A bit that is 1 rises once, when the simulation begins.
+            return edge == "1->0" or not self.constant >> (bit or 0) & 1
+        return (self.bits is None or bit in self.bits) and self._parts["edge"] in ("", edge)
 
     def __str__(self) -> str:
-        what = f"{self.signal}[{self.bits}]" if self.bits else self.signal or self.code
-        return f"{self.module}: {what}{f' {self.edge}' if self.edge else ''} ({self.reason})"
+        return f"{self.rule} ({self.reason})"
 
 
 @dataclass(frozen=True)
@@ -153,11 +155,15 @@ def load_explanations(engine: str, path: Path = HOLES) -> list[Explanation]:
         UserError: the file is malformed.
     """
     try:
-        every = [Explanation(**table) for table in tomllib.loads(path.read_text())["hole"]]
-        return [one for one in every if one.engine is None or re.fullmatch(one.engine, engine)]
-    except ValidationError as error:
-        raise UserError(f"{path}: {refusal(error.errors())}") from None
-    except (tomllib.TOMLDecodeError, KeyError) as error:
+        tables = tomllib.loads(path.read_text())
+        every = [
+            Explanation(engines, rule, reason)
+            for engines, reasons in tables.items()
+            for reason, rules in reasons.items()
+            for rule in rules
+        ]
+        return [one for one in every if one.engines == EVERY or re.fullmatch(one.engines, engine)]
+    except (UserError, tomllib.TOMLDecodeError, AttributeError, TypeError) as error:
         raise UserError(f"{path}: {error}") from None
 
 
@@ -167,7 +173,7 @@ def judge(counts: Mapping[Point, int], explanations: Sequence[Explanation]) -> J
     Explanations of modules that the design does not have are ignored.
     """
     modules = {point.module for point in counts}
-    explanations = [one for one in explanations if any(re.fullmatch(one.module, module) for module in modules)]
+    explanations = [one for one in explanations if one.is_in(modules)]
     explained: dict[Point, Explanation] = {}
     unexplained = []
     used: dict[Explanation, set[int | None]] = {explanation: set() for explanation in explanations}
@@ -182,8 +188,11 @@ def judge(counts: Mapping[Point, int], explanations: Sequence[Explanation]) -> J
     for explanation, bits in used.items():
         if not bits:
             stale.append(str(explanation))
-        elif missing := (explanation.wanted_bits or frozenset()) - bits:
+        elif missing := (explanation.bits or frozenset()) - bits:
             stale.append(f"{explanation}: bits {', '.join(map(str, sorted(missing)))}")
+    constants = [explanation for explanation in explanations if explanation.constant is not None]
+    for point in sorted((point for point, count in counts.items() if count and point.toggle), key=_place):
+        stale += [f"{explanation}: {point.what} was hit" for explanation in constants if explanation.covers(point)]
     return Judgement(explained, unexplained, stale)
 
 

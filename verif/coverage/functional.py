@@ -1,34 +1,31 @@
 # SPDX-License-Identifier: MIT
-"""Functional coverage: the kinds of intersection that an engine found, counted in cocotb-coverage's bins.
+"""Functional coverage: kinds of things in scenes, counted in the golden model, in cocotb-coverage's bins.
 
-A probe in each unit counts the rectangles offered to its z buffer, or nearest hit, while the benches run. Rectangles
-that culling ends early are not offered, so they are not counted. The beam engine's probe counts its testers' reports
-for rays that exist.
+The hardware needs no probes: benches compare every pixel of these scenes with the golden model, and `make trace` the
+values that lead to it.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from cocotb_coverage.coverage import CoverCross, CoverPoint, coverage_db, coverage_section
 
-from raycaster.engines import ENGINES, SEED, Engine
-
-HERE = Path(__file__).parent
-COUNTER = HERE / "intersection_counter.v"
-PROBES = {
-    name: (*((COUNTER,) if engine.line_buffered else ()), HERE / f"{name}_probe.v") for name, engine in ENGINES.items()
-}
-"""By engine, Verilog that is added to the design and writes the files that `read_bins` reads."""
-
-PROBE_MODULES = "intersection_counter", "intersection_probe", "pass_probe", "tester_probe"
+from raycaster.configuration import Configuration
+from raycaster.golden.engines import model_of
+from raycaster.golden.model import Trace
+from raycaster.golden.rays import primary_slopes
+from raycaster.golden.world import Rectangles
+from raycaster.scene import Scene
 
 RAYS = "primary", "first", "second"
-HITS = "edge", "hit"
+BLOCK_ROWS = 24
+"""Rows of rays whose intermediate values are in memory at a time."""
+
 Bin = tuple[str, ...]
 Pattern = tuple[str | None, ...]
 """A bin in which None matches every value."""
@@ -56,75 +53,29 @@ class Cross:
         """Return the bins at a place in an array of this shape."""
         return tuple(values[index] for values, index in zip(self.points.values(), place, strict=True))
 
-
-def _points_of(engine: Engine) -> dict[str, tuple[str, ...]]:
-    """Return the axis of a rectangle's plane, the slope of the ray on it, ..."""
-    return {
-        "axis": ("x", "y", "z"),
-        "slope": ("negative", "zero", "positive"),
-        # In order of precedence: parallel to the plane; from a point on it; running away from it; in the seed engine,
-        # a quotient on u or v that is too large; in the exact engine, between the mirrored eye and the mirror, or in
-        # the mirror's plane on an axis that was met there, though within the bounds; outside the bounds; exactly on a
-        # bound; inside.
-        "result": (
-            "parallel", "on plane", "behind", "overflow" if engine.divides else "before mirror", "miss", "edge", "hit",
-        ),
-        # How a hit ranks.
-        "rank": ("none", "first", "nearer", "tie", "farther"),
-        "ray": RAYS,
-    }  # fmt: skip
+    def counted(self, places: Iterable[Sequence[np.ndarray | int]]) -> np.ndarray:
+        """Count arrays of places, given by their index on each axis; int64, with one axis per point."""
+        counts = np.zeros(np.prod(self.shape), dtype=np.int64)
+        for place in places:
+            flat = np.ravel_multi_index(np.broadcast_arrays(*place), self.shape)
+            counts += np.bincount(flat, minlength=counts.size)
+        return counts.reshape(self.shape)
 
 
-def _impossible_in(engine: Engine) -> dict[str, tuple[Pattern, ...]]:
-    points = _points_of(engine)
-    results, ranks = points["result"], points["rank"]
-    return {
-        "a ray without a slope along the axis of a plane never reaches it": tuple(
-            (None, "zero", result, None, None) for result in results if result != "parallel"
-        ),
-        "a ray with a slope along the axis of a plane is not parallel to it": (
-            (None, "negative", "parallel", None, None),
-            (None, "positive", "parallel", None, None),
-        ),
-        "every hit is ranked": tuple((None, None, result, "none", None) for result in HITS),
-        "only hits are ranked": tuple(
-            (None, None, result, rank, None)
-            for result in results
-            if result not in HITS
-            for rank in ranks
-            if rank != "none"
-        ),
-        "the slope along x has magnitude 100, never 0": (("x", "zero", None, None, None),),
-        "primary rays run along positive x": (("x", "negative", None, None, "primary"),),
-        **(_GIVEN_UP if engine.divides else _WITHOUT_MIRROR),
-    }
-
-
-# A control that waits for divisions skips a rectangle that no ray of the group runs towards.
-_GIVEN_UP: dict[str, tuple[Pattern, ...]] = {
-    "a group's primary rays run the same way from one point; a plane that none runs towards is skipped": (
-        (None, None, "on plane", None, "primary"),
-        (None, None, "behind", None, "primary"),
-    ),
-    "all rays of a group have the row's slope along z, so a plane that they are parallel to is skipped": (
-        ("z", None, "parallel", None, None),
-    ),
-}
-_WITHOUT_MIRROR: dict[str, tuple[Pattern, ...]] = {
-    "primary rays have left no mirror": ((None, None, "before mirror", None, "primary"),),
-}
-INTERSECTIONS = {
-    name: Cross("intersections", _points_of(engine), _impossible_in(engine)) for name, engine in ENGINES.items()
-}
-"""By engine, the intersections of a ray with a rectangle. With culling, no ray can hit the impossible bins."""
-
-SHAPE = INTERSECTIONS[SEED.name].shape
+def traces(scene: Scene, config: Configuration, *, keep: bool = False) -> Iterator[tuple[Rectangles, Trace]]:
+    """Trace a scene's picture in the golden model: some whole rows at a time, with the scene's rectangles."""
+    rectangles, camera = Rectangles.of_scene(scene), scene.camera
+    slopes = primary_slopes(config.screen_geometry, camera.basis)
+    for first in range(0, len(slopes), BLOCK_ROWS):
+        rays = slopes[first : first + BLOCK_ROWS].reshape(-1, 3)
+        arguments = rectangles, camera.position, scene.background, rays, scene.reflections
+        yield rectangles, model_of(config).trace(*arguments, light=scene.light, keep=keep)
 
 
 class FunctionalCoverage:
     """Bins, empty at first. cocotb-coverage keeps one set per process, so a new object replaces the last one."""
 
-    def __init__(self, cross: Cross = INTERSECTIONS[SEED.name]):
+    def __init__(self, cross: Cross):
         """Declare the bins."""
         self.cross = cross
         coverage_db.clear()
@@ -203,19 +154,3 @@ class FunctionalCoverage:
             "hits": [[*bins, times] for bins, times in self.bins.items()],
         }
         path.with_suffix(".json").write_text(json.dumps(result, indent=1) + "\n")
-
-
-def read_bins(directory: Path) -> np.ndarray:
-    """Read the counts of all probes of a simulation, summed over its frames.
-
-    Args:
-        directory: the one in which the simulation ran.
-
-    Returns:
-        int64, with one axis per point, in order.
-    """
-    counts = np.zeros(np.prod(SHAPE), dtype=np.int64)
-    for path in directory.glob("bins.*"):
-        place, times = np.array(path.read_text().split(), dtype=np.int64).reshape(-1, 2).T
-        np.add.at(counts, place, times)
-    return counts.reshape(SHAPE)

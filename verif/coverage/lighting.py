@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Functional coverage of shadows: the kinds of hit point in scenes with a light, counted in the golden model.
-
-The hardware needs no probe: benches compare every pixel of these scenes with the golden model.
-"""
+"""Functional coverage of shadows: the kinds of hit point in scenes with a light, counted in the golden model."""
 
 from __future__ import annotations
 
@@ -11,11 +8,10 @@ from typing import SupportsIndex
 import numpy as np
 
 from raycaster.configuration import Configuration
-from raycaster.golden.engines import model_of
-from raycaster.golden.rays import primary_slopes
+from raycaster.golden.shadows import Shading
 from raycaster.golden.world import OTHER_AXES, Rectangles
 from raycaster.scene import Scene
-from raycaster.verif.coverage.functional import RAYS, Cross
+from raycaster.verif.coverage.functional import RAYS, Cross, traces
 
 POINTS = {
     # The axis of the rectangle that was hit.
@@ -46,30 +42,38 @@ HIT_POINTS = Cross(
 
 def count_hit_points(scene: Scene, config: Configuration) -> np.ndarray:
     """Count the hit points of a scene's picture; int64, with one axis per point of `HIT_POINTS`."""
-    counts = np.zeros(np.prod(HIT_POINTS.shape), dtype=np.int64)
     if scene.light is None:
-        return counts.reshape(HIT_POINTS.shape)
-    rectangles, camera = Rectangles.of_scene(scene), scene.camera
-    slopes = primary_slopes(config.screen_geometry, camera.basis).reshape(-1, 3)
-    traced = model_of(config).trace(
-        rectangles, camera.position, scene.background, slopes, scene.reflections, light=scene.light
-    )
+        return HIT_POINTS.counted([])
     light = np.array(scene.light.position, dtype=np.int64)
-    passes = zip(traced.winners, traced.points, traced.denominators, traced.shadings, strict=True)
-    for ray, (winners, points, denominators, shading) in enumerate(passes):
-        hit = np.flatnonzero(winners >= 0)
-        winner, facing = winners[hit], shading.facing[hit]
-        axis = rectangles.axes[winner]
-        in_plane = light[axis] == rectangles.low[winner, axis]
-        result = np.select([in_plane, ~facing, ~shading.lit[hit]], [0, 1, 2], 3)
-        passed = np.zeros_like(winner)
-        for index in np.flatnonzero(rectangles.visible):
-            others = facing & (winner != index)
-            found = _passed(rectangles, index, light, points[hit], denominators[hit])
-            passed = np.where(others, np.maximum(passed, found), passed)
-        places = np.ravel_multi_index((axis, result, passed, ray), HIT_POINTS.shape)
-        counts += np.bincount(places, minlength=counts.size)
-    return counts.reshape(HIT_POINTS.shape)
+    return HIT_POINTS.counted(
+        (*_kinds(rectangles, light, *values), ray)
+        for rectangles, traced in traces(scene, config)
+        for ray, values in enumerate(
+            zip(traced.winners, traced.points, traced.denominators, traced.shadings, strict=True)
+        )
+    )
+
+
+def _kinds(
+    rectangles: Rectangles,
+    light: np.ndarray,
+    winners: np.ndarray,
+    points: np.ndarray,
+    denominators: np.ndarray,
+    shading: Shading,
+) -> tuple[np.ndarray, ...]:
+    """Return the kinds of the hit points of rays, as in a `Trace`, without the last point."""
+    hit = np.flatnonzero(winners >= 0)
+    winner, facing = winners[hit], shading.facing[hit]
+    axis = rectangles.axes[winner]
+    in_plane = light[axis] == rectangles.low[winner, axis]
+    result = np.select([in_plane, ~facing, ~shading.lit[hit]], [0, 1, 2], 3)
+    passed = np.zeros_like(winner)
+    for index in np.flatnonzero(rectangles.visible):
+        others = facing & (winner != index)
+        found = _passed(rectangles, index, light, points[hit], denominators[hit])
+        passed = np.where(others, np.maximum(passed, found), passed)
+    return axis, result, passed
 
 
 def _passed(

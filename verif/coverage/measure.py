@@ -2,8 +2,8 @@
 """Measure what the regression exercises in an engine: `make coverage`.
 
 Code: lines, conditions and toggles of the converted Verilog, in the benches of the whole design. Function: kinds of
-intersection of a ray with a rectangle and of hit points in a light, in all scenes and in random ones. Every hole must
-be closed or explained.
+intersection of a ray with a rectangle and of hit points in a light, in all scenes and in random ones, whose pixels the
+benches compare with the golden model. Every hole must be closed or explained.
 """
 
 from __future__ import annotations
@@ -13,18 +13,19 @@ import json
 import sys
 import time
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
 from pathlib import Path
 
+import numpy as np
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 from rich.text import Text
 
-from raycaster.configuration import configure
+from raycaster.configuration import Configuration, configure
 from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
 from raycaster.jobs import Kept, add_fresh_option, run_jobs
@@ -41,12 +42,12 @@ from raycaster.sim.simulator import (
     Model,
     SimulationError,
     build_model,
-    convert,
     run_bench,
 )
 from raycaster.verif.campaign import Campaign, bench_digest, run_campaign
 from raycaster.verif.coverage.code import KINDS, Judgement, Point, describe, judge, load_explanations, read_counts
-from raycaster.verif.coverage.functional import INTERSECTIONS, PROBE_MODULES, PROBES, FunctionalCoverage, read_bins
+from raycaster.verif.coverage.functional import Cross, FunctionalCoverage
+from raycaster.verif.coverage.intersections import INTERSECTIONS, count_intersections
 from raycaster.verif.coverage.lighting import HIT_POINTS, count_hit_points
 from raycaster.verif.random_scenes import random_scene
 from raycaster.verif.soak.soak import BENCH as SOAK
@@ -117,11 +118,11 @@ EXTRA_SCENES = tuple(sorted(Path(__file__).parent.glob("extra_*.toml")))
 
 def run_all(
     model: Model, runs: Sequence[Run], output: Path, jobs: int, console: Console, *, fresh: bool = False
-) -> tuple[Counter[Point], list[str], list[Path]]:
+) -> tuple[Counter[Point], list[str]]:
     """Run benches, `jobs` at a time, on a model with coverage counters; `fresh` as in `Kept`.
 
     Returns:
-        The sum of all counts, the messages of failed runs, and the directories of all runs.
+        The sum of all counts, and the messages of failed runs.
     """
     counts: Counter[Point] = Counter()
     failures = []
@@ -131,7 +132,7 @@ def run_all(
     for found, failure in run_jobs("benches", runner, runs, partial(ProcessPoolExecutor, jobs), console, kept=kept):
         counts.update(found)
         failures += [failure] if failure else []
-    return counts, failures, list(directories.values())
+    return counts, failures
 
 
 def _digest(run: Run, model: Model) -> str:
@@ -150,7 +151,7 @@ def _run(run: Run, model: Model, directories: Mapping[Run, Path]) -> tuple[Count
         run_bench(model, f"raycaster.{run.bench}", job, directory, plusargs=[f"+verilator+coverage+file+{counts_file}"])
     except SimulationError as error:
         return Counter(), f"{run.name}: {error}"
-    return read_counts(counts_file, leave_out=[*MODULE_BENCH.modules, *PROBE_MODULES]), ""
+    return read_counts(counts_file, leave_out=MODULE_BENCH.modules), ""
 
 
 def show_code(counts: Counter[Point], judgement: Judgement, console: Console) -> None:
@@ -250,6 +251,12 @@ def provenance(arguments: argparse.Namespace) -> Provenance:
     return Provenance(designs, ["golden", "scenes", "verif/coverage", "verif/random_scenes.py"], ["verilator"])
 
 
+def functions_of(design: Configuration) -> list[tuple[Cross, Callable[..., np.ndarray]]]:
+    """List the crosses of a design, each with the function that counts its bins in a scene."""
+    intersections = INTERSECTIONS[design.engine], count_intersections
+    return [intersections, (HIT_POINTS, count_hit_points)] if design.light else [intersections]
+
+
 def _found(kept: Outcome) -> str:
     figures = kept.figures
     (hit, there), shown = figures["bins"], figures["scenes"]
@@ -279,7 +286,7 @@ def main(argv: list[str] | None = None) -> int:
     arguments = command_parser().parse_args(argv)
     if arguments.seeds < 1 or arguments.jobs < 1:
         raise UserError("--seeds and --jobs must be at least 1")
-    design, probes = DESIGNS[arguments.engine], PROBES[arguments.engine]
+    design, soaked_design = DESIGNS[arguments.engine], SOAK_DESIGNS[arguments.engine]
     explanations = load_explanations(arguments.engine)
     extra = [path for path in EXTRA_SCENES if not load_scene(path).lacks(design.looks)]
     scenes = [*packaged_scenes(plain=True).values(), *extra]
@@ -290,40 +297,30 @@ def main(argv: list[str] | None = None) -> int:
     started = time.perf_counter()
 
     with console.waiting(f"building {design.name}", building(design.engine)):
-        verilog = [*convert(design, arguments.build), *probes]
-        counting = build_model(design, build=arguments.build, verilog=verilog, flags=FLAGS)
+        counting = build_model(design, build=arguments.build, flags=FLAGS)
     runs = [*BENCHES, *(Run("sim.frame_bench", scene) for scene in scenes)]
-    counts, failures, directories = run_all(
-        counting, runs, output / "runs", arguments.jobs, console, fresh=arguments.fresh
-    )
+    counts, failures = run_all(counting, runs, output / "runs", arguments.jobs, console, fresh=arguments.fresh)
     judgement = judge(counts, explanations)
 
     export_code(counts, judgement, output / "code.json")
     show_code(counts, judgement, console)
-    soaked_design = SOAK_DESIGNS[arguments.engine]
-    whole = Campaign(
-        SOAK, soaked_design, range(arguments.seeds), output / "soak", arguments.build, probes=probes,
-        fresh=arguments.fresh,
-    )  # fmt: skip
+    seeds = range(arguments.seeds)
+    whole = Campaign(SOAK, soaked_design, seeds, output / "soak", arguments.build, fresh=arguments.fresh)
     soaked = run_campaign(whole, console, partial(ProcessPoolExecutor, arguments.jobs))
     failures += soaked.failures
-    shown = len(scenes) + len(soaked.results)
-    figures: dict[str, object] = {"scenes": shown}
+    room, most = soaked_design.rectangles, soaked_design.reflections
+    drawn = [load_scene(path) for path in scenes]
+    drawn += [random_scene(result["seed"], room, most, soaked_design.looks) for result in soaked.results]
+    figures: dict[str, object] = {"scenes": len(drawn)}
     figures |= {name: _hits(counts, None, types) for name, types in KINDS.items()}
-    found = [(INTERSECTIONS[arguments.engine], [read_bins(one) for one in [*directories, *soaked.directories]])]
-    if design.light:
-        room, most = soaked_design.rectangles, soaked_design.reflections
-        drawn = [load_scene(path) for path in scenes]
-        drawn += [random_scene(result["seed"], room, most, design.looks) for result in soaked.results]
-        count, executor = partial(count_hit_points, config=design), partial(ProcessPoolExecutor, arguments.jobs)
-        found.append((HIT_POINTS, run_jobs("golden pictures", count, drawn, executor, console)))
     holes, bins = 0, 0
-    for cross, parts in found:
+    for cross, count in functions_of(design):
+        counter, executor = partial(count, config=soaked_design), partial(ProcessPoolExecutor, arguments.jobs)
         functional = FunctionalCoverage(cross)
-        for part in parts:
+        for part in run_jobs("golden pictures", counter, drawn, executor, console):
             functional.add(part)
         functional.export(output / cross.name)
-        show_functional(functional, shown, console)
+        show_functional(functional, len(drawn), console)
         figures[cross.name] = sum(functional.bins.values())
         holes, bins = holes + len(functional.holes), bins + len(functional.bins)
     figures["bins"] = bins - holes, bins

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
@@ -14,28 +13,18 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from conftest import BUILD, SMALL_SCENE
-from definition import Vector, follow, is_lit, plane_of
+from definition import Stop, Vector, follow, is_lit, plane_of
 from rich.console import Console
 
-from raycaster.configuration import Configuration, configure
+from raycaster.configuration import configure
 from raycaster.errors import UserError
-from raycaster.golden.engines import model_of
 from raycaster.golden.rays import primary_slopes
-from raycaster.golden.world import OTHER_AXES, Rectangles
-from raycaster.scene import Scene, dump_scene, load_scene
-from raycaster.sim.job import Job
-from raycaster.sim.simulator import build_model, convert, run_bench
-from raycaster.verif.coverage.code import Explanation, Judgement, describe, judge, load_explanations, read_counts
-from raycaster.verif.coverage.functional import (
-    HITS,
-    INTERSECTIONS,
-    PROBES,
-    RAYS,
-    SHAPE,
-    Cross,
-    FunctionalCoverage,
-    read_bins,
-)
+from raycaster.golden.world import Rectangles
+from raycaster.scene import Camera, Rectangle, Scene, dump_scene, load_scene
+from raycaster.sim.simulator import build_model, convert
+from raycaster.verif.coverage.code import EVERY, Explanation, Judgement, describe, judge, load_explanations, read_counts
+from raycaster.verif.coverage.functional import RAYS, Cross, FunctionalCoverage
+from raycaster.verif.coverage.intersections import INTERSECTIONS, count_intersections
 from raycaster.verif.coverage.lighting import HIT_POINTS, count_hit_points
 from raycaster.verif.coverage.measure import (
     DESIGNS,
@@ -56,7 +45,6 @@ always @(posedge clk) begin
         value <= value + 1;
 """
 NOTHING = Judgement({}, [], [])
-(EXTRA_SCENE,) = (path for path in EXTRA_SCENES if path.stem == "extra_scene")
 
 
 def record(directory: Path, count: int, **fields: object) -> str:
@@ -86,16 +74,11 @@ def counts(tmp_path):
     return read_counts(path, ["bench"]) + read_counts(more), read_counts(path, ["bench"])
 
 
-def explanation(**fields: str) -> Explanation:
-    return Explanation(module="count.*", reason="because", **fields)
+def explanation(what: str) -> Explanation:
+    return Explanation(EVERY, f"count.*: {what}", "because")
 
 
-EXPLAINED = [
-    explanation(code="^else: if .on. begin$"),
-    explanation(code="on==0"),
-    explanation(signal="value", bits="0, 14-15"),
-    explanation(signal="on", edge="1->0"),
-]
+EXPLAINED = [*map(explanation, ("/^else: if .on. begin$/", "/on==0/", "value [0, 14-15]", "on 1->0"))]
 
 
 def test_counts_are_read(counts):
@@ -135,19 +118,29 @@ def test_an_unexplained_hole_fails(counts, capsys):
 def test_a_stale_explanation_fails(counts):
     """An explanation is stale if no hole needs it, or if one of its bits is covered or does not exist."""
     _, alone = counts
-    for extra in (explanation(signal="velocity"), explanation(code="never"), explanation(signal="value", edge="0->9")):
-        assert len(judge(alone, [*EXPLAINED, extra]).stale) == 2, "that, and bit 14"
+    for extra in ("velocity", "/never/", "value [0] 0->1"):
+        assert len(judge(alone, [*EXPLAINED, explanation(extra)]).stale) == 2, "that, and bit 14"
     judgement = judge(alone, EXPLAINED)
     assert not judgement.unexplained
-    assert judgement.stale == ["count.*: value[0, 14-15] (because): bits 14"]
+    assert judgement.stale == ["count.*: value [0, 14-15] (because): bits 14"]
     assert verdict(judgement, 0, []) == 1
+
+
+def test_a_constant_explains_its_bits(counts):
+    """Bits that are 0 never change, and those that are 1 never fall; a change of another bit is an error."""
+    _, alone = counts
+    judgement = judge(alone, [*EXPLAINED[:2], explanation("value = 1"), explanation("on = 1")])
+    assert not judgement.unexplained and not judgement.stale
+    judgement = judge(alone, [*EXPLAINED[:2], explanation("value = 32768"), explanation("on = 1")])
+    assert describe(judgement.unexplained) == ["counter.v:1: value: [15] 0->1"]
+    assert judgement.stale == ["count.*: value = 32768 (because): value[0]:0->1 was hit"]
 
 
 def test_runs_add_up(counts, tmp_path):
     """A point that any run covers is no hole; with all others explained, the verdict is good."""
     together = counts[1] + counts[0]
     together.update(dict.fromkeys(counts[1], 0))
-    judgement = judge(together, [*EXPLAINED[:2], explanation(signal="value", bits="15"), EXPLAINED[3]])
+    judgement = judge(together, [*EXPLAINED[:2], explanation("value [15]"), EXPLAINED[3]])
     assert judgement.unexplained == [] and judgement.stale == []
     assert verdict(judgement, 0, []) == 0
     export_code(together, judgement, tmp_path / "code.json")
@@ -157,7 +150,7 @@ def test_runs_add_up(counts, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "text", ["", "[[hole]]\nmodule = 'm'\nreason = 'r'", "[[hole]]\nmodule = 'm'\nsignal = 's'", "hole = ["]
+    "text", ["hole = [", "[seed]\nr = 'm: s'", "[beam]\nr = ['m: ']", "[seed]\nr = ['m: s 0->9']", "seed = 3"]
 )
 def test_bad_explanations_are_refused(tmp_path, text):
     """The error names the file."""
@@ -167,21 +160,16 @@ def test_bad_explanations_are_refused(tmp_path, text):
         load_explanations("seed", path)
 
 
-def test_the_explanations_can_be_read():
-    """Every explanation has a reason."""
-    every = {one for engine in DESIGNS for one in load_explanations(engine)}
-    assert all(len(explanation.reason) > 5 for explanation in every)
-
-
 def test_explanations_name_existing_modules(output):
     """Every explanation needs a design that has its module, as it has no effect elsewhere."""
     every, there = set(), set()
     for engine, design in DESIGNS.items():
         modules, mine = {path.stem for path in convert(design, output)}, set(load_explanations(engine))
-        fitting = {one for one in mine if any(re.fullmatch(one.module, module) for module in modules)}
-        assert {one for one in mine if one.engine is not None} <= fitting
+        fitting = {one for one in mine if one.is_in(modules)}
+        assert {one for one in mine if one.engines != EVERY} <= fitting
         every, there = every | mine, there | fitting
     assert every == there
+    assert all(len(explanation.reason) > 5 for explanation in every)
 
 
 @pytest.mark.slow
@@ -193,7 +181,7 @@ def test_verilator_counts(output):
     one.write_text(dump_scene(small.model_copy(update={"rect": small.rect[1:2]})))
     # Not optimised, as compiling takes longer than running.
     model = build_model(configuration, build=BUILD, flags=(*FLAGS, "-CFLAGS", "-O0"))
-    counts, failures, _ = run_all(model, [Run("sim.frame_bench", one, 0)], output / "runs", 1, Console())
+    counts, failures = run_all(model, [Run("sim.frame_bench", one, 0)], output / "runs", 1, Console())
     assert failures == []
     modules = {point.module for point in counts}
     assert {"ray_caster_module", "divider_step", "scene_word"} <= modules
@@ -207,99 +195,15 @@ def test_verilator_counts(output):
     assert any(module == "z_buffer" and "depth < nearest" in what for module, what in holes)
 
 
-SMALL = {"screen": "tiny", "units": 16, "rectangles": 7, "reflections": 2, "allow_underrun": True}
-
-
-def counted(scene: Scene, config: Configuration) -> np.ndarray:
-    """Count all intersections in the golden model as `read_bins` does, including those that culling would skip."""
-    rectangles = Rectangles.of_scene(scene)
-    slopes = primary_slopes(config.screen_geometry).reshape(-1, 3)
-    position, background = scene.camera.position, scene.background
-    divides = config.facts.divides
-    traced = model_of(config).trace(rectangles, position, background, slopes, scene.reflections, keep=True)
-    counts = np.zeros(np.prod(SHAPE), dtype=np.int64)
-    for number, bounce in enumerate(traced.bounces):
-        # Rays that have missed before are not counted.
-        alive = bounce.alive
-        nearest = np.full(alive.sum(), Fraction(1 << 40), dtype=object)
-        found = np.zeros(alive.sum(), dtype=bool)
-        for index in np.flatnonzero(rectangles.visible):
-            axis = rectangles.axes[index]
-            extent = list(OTHER_AXES[axis])
-            numerator, slope = bounce.numerators[index][alive], bounce.denominators[index][alive]
-            hit, depth, point = (values[index][alive] for values in (bounce.hits, bounce.depths, bounce.points))
-            bounds = np.stack([rectangles.low[index], rectangles.high[index]])[:, extent]
-            if divides:
-                bounds = np.broadcast_to(bounds << config.fraction_bits, (len(slope), *bounds.shape))
-                behind, fourth = np.sign(numerator) != np.sign(slope), ~bounce.valid[index][alive].all(axis=1)
-            else:
-                # Points and depths are fractions over the slope; n already includes its sign.
-                bounds = bounds * slope[:, None, None]
-                within = ((bounds[:, 0] <= point[:, extent]) & (point[:, extent] <= bounds[:, 1])).all(axis=1)
-                behind, fourth = numerator < 0, within & ~hit
-                depth = np.array([Fraction(int(n), int(e) or 1) for n, e in zip(depth, slope, strict=True)])
-            on_bound = (point[:, None, extent] == bounds).any(axis=(1, 2))
-            signs = np.sign(bounce.slopes[alive, axis])
-            result = np.select(
-                [slope == 0, numerator == 0, behind], [0, 1, 2], np.select([fourth, ~hit, on_bound], [3, 4, 5], 6)
-            )
-            rank = np.select([~hit, ~found, depth < nearest, depth == nearest], [0, 1, 2, 3], 4)
-            places = np.ravel_multi_index((axis, signs + 1, result, rank, number), SHAPE)
-            counts += np.bincount(places, minlength=counts.size)
-            nearest = np.where(hit, np.minimum(nearest, depth), nearest)
-            found |= hit
-    return counts.reshape(SHAPE)
-
-
-@pytest.mark.parametrize(
-    "options",
-    [
-        {"divider_bits": 2},
-        pytest.param({"divider_bits": 2, "culling": False}, marks=pytest.mark.slow),
-        pytest.param({"divider_bits": 2, "culling": False, "fraction_bits": 3}, marks=pytest.mark.slow),
-        {"engine": "exact", "culling": True},
-        {"engine": "exact", "culling": False, "light": True},
-        {"engine": "beam", "units": None, "rectangles": 12, "scale": 1, "allow_underrun": False},
-    ],
-)
-def test_the_hardware_counts_its_intersections(output, options):
-    """Without culling, counts are the golden model's own; with it, all hits, fewer misses, and no impossible bin."""
-    config = configure(**SMALL | options)
-    model = build_model(config, build=BUILD, verilog=[*convert(config, BUILD), *PROBES[config.engine]])
-    cross = INTERSECTIONS[config.engine]
-    hits, total = [cross.points["result"].index(name) for name in HITS], 0
-    # Without a line buffer, a row is recomputed for each of its lines.
-    lines = 1 if config.facts.line_buffered else config.screen_geometry.doubling
-    # No random scene has two rectangles at equal depth, which would expose a wrong comparison, so add one that has.
-    scenes = {
-        f"seed {seed}": random_scene(seed, config.rectangles, config.reflections, config.looks) for seed in range(4)
-    }
-    for name, scene in (scenes | {"extra": load_scene(EXTRA_SCENE)}).items():
-        directory = output / f"{config.name}-{name}"
-        directory.mkdir(parents=True)
-        (directory / "scene.toml").write_text(dump_scene(scene))
-        job = Job(config, scene=str(directory / "scene.toml"), output=str(directory))
-        run_bench(model, "raycaster.sim.frame_bench", job, directory)
-        found, expected = read_bins(directory), lines * counted(scene, config)
-        if config.culling:
-            assert np.array_equal(found[:, :, hits], expected[:, :, hits]), name
-            assert (found <= expected).all() and found.sum() < expected.sum(), name
-            FunctionalCoverage(cross).add(found)
-        else:
-            assert np.array_equal(found, expected), name
-        total += found[:, :, hits].sum()
-    assert total > 1000
-
-
 def place_of(bins: Sequence[str], cross: Cross = INTERSECTIONS["seed"]) -> tuple[int, ...]:
     return tuple(values.index(name) for values, name in zip(cross.points.values(), bins, strict=True))
 
 
 def test_bins_that_were_not_hit_are_reported(tmp_path, capsys):
     """Primary rays hit only primary bins; every other possible bin is a hole and makes the command fail."""
-    functional = FunctionalCoverage()
-    counts = np.zeros(SHAPE, np.int64)
-    bins = "z", "negative", "hit", "first", "primary"
+    seed = INTERSECTIONS["seed"]
+    functional, bins = FunctionalCoverage(seed), ("z", "negative", "hit", "first", "primary")
+    counts = np.zeros(seed.shape, np.int64)
     counts[place_of(bins)] = 7
     functional.add(counts)
     functional.add(counts)
@@ -312,74 +216,149 @@ def test_bins_that_were_not_hit_are_reported(tmp_path, capsys):
     functional.export(tmp_path / "functional")
     written = json.loads((tmp_path / "functional.json").read_text())
     assert written["bins"] - written["covered"] == len(holes)
-    assert written["bins"] + sum(written["ignored"].values()) == np.prod(SHAPE)
-    assert all(written["ignored"][reason] > 0 for reason in INTERSECTIONS["seed"].impossible)
+    assert written["bins"] + sum(written["ignored"].values()) == np.prod(seed.shape)
+    assert all(written["ignored"][reason] > 0 for reason in seed.impossible)
     cross = ElementTree.parse(tmp_path / "functional.xml").find("raycaster/intersections")
     assert cross.get("coverage") == str(written["covered"]) == "1"
     points = ElementTree.parse(tmp_path / "functional.xml").find("raycaster/axis")
     assert sum(int(found.get("hits")) for found in points) == sum(hits[-1] for hits in written["hits"]) == 14
 
 
-def test_an_impossible_bin_must_not_be_hit():
-    """A hit in such a bin means that the list is wrong."""
-    for cross, bins in (
+@pytest.mark.parametrize(
+    ("cross", "bins"),
+    [
         (INTERSECTIONS["seed"], ("x", "zero", "parallel", "none", "primary")),
         (HIT_POINTS, ("x", "lit", "inside", "primary")),
         (HIT_POINTS, ("y", "shaded", "beyond point", "first")),
         (HIT_POINTS, ("z", "facing away", "edge", "second")),
-    ):
-        counts = np.zeros(cross.shape, np.int64)
-        counts[place_of(bins, cross)] = 3
-        with pytest.raises(ValueError, match=f"{', '.join(bins)}: declared impossible, but found 3"):
-            FunctionalCoverage(cross).add(counts)
+    ],
+)
+def test_an_impossible_bin_must_not_be_hit(cross, bins):
+    """A hit in such a bin means that the list is wrong."""
+    counts = np.zeros(cross.shape, np.int64)
+    counts[place_of(bins, cross)] = 3
+    with pytest.raises(ValueError, match=f"{', '.join(bins)}: declared impossible, but found 3"):
+        FunctionalCoverage(cross).add(counts)
 
 
-def test_the_extra_scene_hits_its_bin():
-    """The scene has ties on an edge in a second reflection along negative x."""
-    scene = load_scene(EXTRA_SCENE)
-    bins = "x", "negative", "edge", "tie", "second"
-    assert counted(scene, configure(reflections=scene.reflections))[place_of(bins)] >= 10
+@pytest.mark.parametrize(
+    ("engine", "stem", "wanted"),
+    [
+        ("seed", "extra_scene", [("x", "negative", "edge", "tie", "second")]),
+        (
+            "exact",
+            "extra_ties",
+            [("z", "positive", *found, "second") for found in (("hit", "tie"), ("edge", "farther"))],
+        ),
+    ],
+)
+def test_extra_scenes_hit_their_bins(engine, stem, wanted):
+    """The scenes have intersections that random scenes rarely have."""
+    (scene,) = (load_scene(path) for path in EXTRA_SCENES if path.stem == stem)
+    counts = count_intersections(scene, configure(engine=engine, reflections=2))
+    assert all(counts[place_of(bins, INTERSECTIONS[engine])] >= 10 for bins in wanted)
 
 
-def kind_of(table: Rectangles, light: Vector, index: int, point: Vector, slope: Vector) -> tuple[str, str]:
-    """Return the bins of a hit point for `light` and `passes`, by the definition."""
+@pytest.mark.parametrize("engine", INTERSECTIONS)
+def test_a_hit_ranks_against_the_nearest_one(engine):
+    """The third wall is farther than the first, though it is nearer than the second."""
+    walls = tuple(Rectangle(corners=((x, 0, 0), (x, 511, 511)), colour=(0, 0, 0)) for x in (100, 300, 200))
+    scene = Scene(background=(0, 0, 0), camera=Camera(position=(20, 256, 100)), rect=walls)
+    counts = count_intersections(scene, configure(engine=engine, screen="tiny"))
+    ranks = dict(zip(INTERSECTIONS[engine].points["rank"], counts.sum(axis=(0, 1, 2, 4)).tolist(), strict=True))
+    assert ranks["first"] < ranks["farther"]
+    assert ranks["nearer"] == ranks["tie"] == 0
+
+
+def test_the_seed_engine_gives_rectangles_up():
+    """With culling only, no ray is in a bin of a rectangle that its group gives up; hits are the same."""
+    options = {"screen": "tiny", "units": 16, "rectangles": 7, "reflections": 2, "divider_bits": 2}
+    culling, plain = (configure(**options, allow_underrun=True, culling=culling) for culling in (True, False))
+    cross = INTERSECTIONS["seed"]
+    behind = cross.points["result"].index("behind")
+    for seed in (2, 3):
+        scene = random_scene(seed, 7, 2, culling.looks)
+        with_culling, every = count_intersections(scene, culling), count_intersections(scene, plain)
+        FunctionalCoverage(cross).add(with_culling)
+        assert with_culling[:, :, behind, :, 0].sum() == 0 < every[:, :, behind, :, 0].sum()
+        hits = slice(cross.points["result"].index("edge"), None)
+        assert np.array_equal(with_culling[:, :, hits], every[:, :, hits])
+        assert (with_culling <= every).all() and with_culling.sum() > 3000
+
+
+def crossing(table: Rectangles, index: int, origin: Vector, slope: Vector, t: Fraction) -> tuple[bool, bool]:
+    """Say whether a line is within a rectangle's bounds at t, and whether on one of them."""
+    ends = zip(table.low[index].tolist(), origin, slope, table.high[index].tolist(), strict=True)
+    sides = [(low, o + d * t, high) for axis, (low, o, d, high) in enumerate(ends) if axis != plane_of(table, index)]
+    return all(low <= at <= high for low, at, high in sides), any(at in (low, high) for low, at, high in sides)
+
+
+def intersections_of(table: Rectangles, stop: Stop, origin: Vector, slope: Vector, travelled: Fraction):
+    """Yield the bins of a ray and each rectangle, by the definition; the ray's path already is as long as travelled."""
+    nearest = None
+    for index, point in enumerate(stop.points):
+        axis = plane_of(table, index)
+        if axis is None or slope[axis] == 0:
+            if axis is not None:
+                yield "xyz"[axis], "zero", "parallel", "none"
+            continue
+        t = Fraction(table.low[index].tolist()[axis] - origin[axis]) / slope[axis]
+        within, edge = crossing(table, index, origin, slope, t)
+        result, rank = "before mirror" if within else "miss", "none"
+        if t + travelled <= 0:
+            result = "on plane" if t + travelled == 0 else "behind"
+        elif point is not None:
+            ranks = {nearest is None: "first", nearest == t: "tie"}
+            rank = ranks.get(True) or ("nearer" if t < nearest else "farther")
+            result, nearest = "edge" if edge else "hit", t if nearest is None else min(t, nearest)
+        yield "xyz"[axis], "negative" if slope[axis] < 0 else "positive", result, rank
+
+
+def hit_point_of(table: Rectangles, light: Vector, index: int, point: Vector, slope: Vector) -> tuple[str, str, str]:
+    """Return the bins of a hit point, by the definition."""
     plane = plane_of(table, index)
     if light[plane] == point[plane]:
-        return "in plane", "none"
+        return "xyz"[plane], "in plane", "none"
     if (light[plane] - point[plane]) * slope[plane] > 0:
-        return "facing away", "none"
-    passed = ["none"]
+        return "xyz"[plane], "facing away", "none"
+    passed, ray = ["none"], [to - start for start, to in zip(light, point, strict=True)]
     for other in set(range(len(table))) - {index}:
         across = plane_of(table, other)
-        if across is None or point[across] == light[across]:
+        if across is None or ray[across] == 0:
             continue
-        low, high = table.low[other].tolist(), table.high[other].tolist()
-        t = Fraction(low[across] - light[across]) / (point[across] - light[across])
-        sides = [(low[i], light[i] + (point[i] - light[i]) * t, high[i]) for i in range(3) if i != across]
-        if all(first <= at <= last for first, at, last in sides):
-            edge = any(at in (first, last) for first, at, last in sides)
+        t = Fraction(table.low[other].tolist()[across] - light[across]) / ray[across]
+        within, edge = crossing(table, other, light, ray, t)
+        if within:
             where = {t < 0: "behind light", t == 0: "at light", t == 1: "at point", t > 1: "beyond point"}
             passed.append(where.get(True, "edge" if edge else "inside"))
-    kinds = HIT_POINTS.points["passes"]
-    return "lit" if is_lit(table, light, index, point, slope) else "shaded", max(passed, key=kinds.index)
+    light_there = "lit" if is_lit(table, light, index, point, slope) else "shaded"
+    return "xyz"[plane], light_there, max(passed, key=HIT_POINTS.points["passes"].index)
 
 
-def test_hit_points_are_counted_by_the_definition():
+def test_kinds_are_counted_by_the_definition():
     """Counts in the golden model are those of fractions; the scenes have hit points of every kind."""
     config, kinds = configure(screen="tiny", engine="exact", light=True, reflections=2), set()
     for seed in (5, 16, 179):
         scene = random_scene(seed, 7, 2, ["light"])
-        table, expected = Rectangles.of_scene(scene), Counter()
+        table, intersections, hit_points = Rectangles.of_scene(scene), Counter(), Counter()
         for slope in primary_slopes(config.screen_geometry).reshape(-1, 3).tolist():
-            path = follow(table, scene.background, scene.camera.position, slope, scene.reflections, scene.light)
+            origin, travelled = scene.camera.position, Fraction(0)
+            path = follow(table, scene.background, origin, slope, scene.reflections, scene.light)
             for ray, stop in zip(RAYS, path, strict=False):
-                if stop.winner >= 0:
-                    axis, point = plane_of(table, stop.winner), stop.points[stop.winner]
-                    kind = kind_of(table, scene.light.position, stop.winner, point, slope)
-                    expected["xyz"[axis], *kind, ray] += 1
-                    slope[axis] *= -1
-        counts = count_hit_points(scene, config)
-        found = {HIT_POINTS.bins_at(place): int(counts[tuple(place)]) for place in np.argwhere(counts)}
-        assert found == expected, scene.title
-        kinds |= {bins[1:3] for bins in expected}
+                bins = intersections_of(table, stop, origin, slope, travelled)
+                intersections.update((*bin, ray) for bin in bins)
+                if stop.winner < 0:
+                    break
+                point, axis = stop.points[stop.winner], plane_of(table, stop.winner)
+                hit_points[*hit_point_of(table, scene.light.position, stop.winner, point, slope), ray] += 1
+                travelled += (point[0] - origin[0]) / slope[0]
+                origin = point
+                slope[axis] *= -1
+        for cross, expected, counts in (
+            (INTERSECTIONS["exact"], intersections, count_intersections(scene, config)),
+            (HIT_POINTS, hit_points, count_hit_points(scene, config)),
+        ):
+            found = {cross.bins_at(place): int(counts[tuple(place)]) for place in np.argwhere(counts)}
+            assert found == expected, scene.title
+        kinds |= {bins[1:3] for bins in hit_points}
     assert kinds == {bins[1:3] for bins in FunctionalCoverage(HIT_POINTS).bins}

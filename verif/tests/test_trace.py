@@ -4,13 +4,11 @@
 from __future__ import annotations
 
 import io
-import subprocess
-import sys
 from functools import cache
 from pathlib import Path
 
 import pytest
-from conftest import BUILD, ROOT
+from conftest import BUILD, called
 from rich.console import Console
 
 from raycaster.debug.probes.engines import description_of
@@ -180,22 +178,18 @@ def test_names_the_module_of_a_fault(tmp_path, engine, edit):
     assert line in text.replace("\n", "")
 
 
-def _trace(*arguments: object) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "raycaster.cli", "trace", "--simulator", "icarus", *map(str, arguments)]
-    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-
-
 def test_the_command(tmp_path):
     """The exit code is 0 without a difference and 1 with one."""
-    options = (SCENE, "--screen", "tiny", "--units", 8, "--rectangles", 3, "--pixel", "48,2")
-    sound = _trace(*options, "--build", tmp_path)
+    options = ["--simulator", "icarus", "--build", "build", "--pixel", "48,2"]
+    options += ["--screen", "tiny", "--units", "8", "--rectangles", "3"]
+    sound = called(str(SCENE), *options, cwd=tmp_path, program=main)
     assert sound.returncode == 0, sound.stdout + sound.stderr
     assert "The hardware agrees with the golden model." in sound.stdout
     assert "expected colour #" in sound.stdout
     # Files converted before are used as they are.
-    (buffer,) = tmp_path.glob("model/*/verilog/z_buffer.v")
+    (buffer,) = tmp_path.glob("build/model/*/verilog/z_buffer.v")
     buffer.write_text(buffer.read_text().replace("depth < nearest", "depth > nearest"))
-    broken = _trace(*options, "--build", tmp_path)
+    broken = called(str(SCENE), *options, cwd=tmp_path, program=main)
     assert broken.returncode == 1, broken.stdout + broken.stderr
     assert "module z_buffer" in broken.stdout
 

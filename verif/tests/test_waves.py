@@ -7,15 +7,14 @@ import io
 import os
 import re
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from conftest import BUILD, SMALL_SCENE
+from conftest import BUILD, SMALL_SCENE, called
 
 from raycaster.debug.probes.ray import Ray, fields
 from raycaster.debug.recorder import build_and_record
+from raycaster.debug.trace import main as trace
 from raycaster.debug.wave import main, viewer, write_view
 from raycaster.debug.wave_files import View, write_files
 from raycaster.debug.waves import Waves, signed
@@ -288,9 +287,8 @@ def test_headers_that_are_not_there_are_not_found(no_fst_headers):
 
 def test_a_machine_without_headers_gets_vcd(no_fst_headers, tmp_path):
     """There, `make trace` builds a model that records VCD, and traces the recording."""
-    command = [sys.executable, "-m", "raycaster.cli", "trace", "--build", tmp_path / "build", SMALL_SCENE]
-    command += ["--pixel", "48,10", "--screen", "tiny", "--engine", "exact", "--rectangles", "3"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    options = ["--pixel", "48,10", "--screen", "tiny", "--engine", "exact", "--rectangles", "3", "--build", "build"]
+    done = called(str(SMALL_SCENE), *options, cwd=tmp_path, program=trace)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "The hardware agrees with the golden model." in done.stdout
     assert [path.suffix for path in (tmp_path / "build" / "trace").rglob("waves.*")] == [".vcd"]
