@@ -37,7 +37,6 @@ from raycaster.report import beside
 from raycaster.sim import scenes
 from raycaster.verif import everything
 from raycaster.verif.coverage import measure as coverage
-from raycaster.verif.exhaustive import run as exhaustive
 from raycaster.verif.formal import prove
 from raycaster.verif.mutation import mutate
 from raycaster.verif.soak import soak
@@ -46,7 +45,7 @@ from raycaster.web import site
 
 DECIDING = (
     "rtl", "raycaster", "convert", "golden", "fit", "fpga", "sim", "play", "web", "sw", "report", "scenes",
-    *(f"verif/{name}" for name in ("coverage", "exhaustive", "formal", "mutation", "soak", "upsets")),
+    *(f"verif/{name}" for name in ("coverage", "formal", "mutation", "soak", "upsets")),
     "verif/random_scenes.py", "docs/engine_figures.py", "docs/scaling.py",
 )  # fmt: skip
 """Sources on which any digest may depend: digests are only computed again if one of them changes."""
@@ -65,7 +64,7 @@ def _buses(kept: Outcome) -> str:
 
 
 CHECKS: Sequence[Check] = (
-    *scenes.CHECKS, *soak.CHECKS, *game.CHECKS, *exhaustive.CHECKS, *report.CHECKS, *prove.CHECKS, *mutate.CHECKS,
+    *scenes.CHECKS, *soak.CHECKS, *game.CHECKS, *report.CHECKS, *prove.CHECKS, *mutate.CHECKS,
     *upsets.CHECKS, *coverage.CHECKS, *everything.CHECKS,
 )  # fmt: skip
 """Rows of the table of long-running checks."""

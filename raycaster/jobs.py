@@ -27,12 +27,17 @@ J = TypeVar("J")
 R = TypeVar("R")
 
 
-def positive(text: str) -> int:
+def positive(text: str, least: int = 1) -> int:
     """Parse an option's number, 1 or more."""
     value = int(text)
-    if value < 1:
+    if value < least:
         raise ValueError
     return value
+
+
+def natural(text: str) -> int:
+    """Parse an option's number, 0 or more."""
+    return positive(text, 0)
 
 
 def add_job_options(parser: argparse.ArgumentParser, jobs: int = 2) -> None:

@@ -17,9 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.box import SIMPLE
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-from rich.table import Table
 
 from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
@@ -34,7 +32,7 @@ from raycaster.golden.exact import ExactModel
 from raycaster.golden.picture import count_wrong
 from raycaster.golden.world import Rectangles
 from raycaster.outcomes import Outcome, Published, commit_of, table
-from raycaster.output import Console, replaced
+from raycaster.output import Console, Table, replaced
 from raycaster.registers import register_map
 from raycaster.scene import Scene, load_scene, packaged_scenes
 from raycaster.screens import SCREENS, Screen
@@ -260,13 +258,12 @@ def _frame_time(
 
 
 def _show(rows: Sequence[Mapping[str, Any]], console: Console) -> None:
-    shown = Table(title="Comparison with other projects and software", title_justify="left", box=SIMPLE)
-    for heading in ("design", "pixels", "LUT4", "registers", "multipliers", "MHz routed / needed", "s per frame"):
-        shown.add_column(heading, justify="left" if heading == "design" else "right")
+    counted = "pixels", "LUT4", "registers", "multipliers", "MHz routed / needed", "s per frame"
+    shown = Table("design", *counted, title="Comparison with other projects and software")
     for row in rows:
-        counts = [f"{row[name]:,}" if name in row else "" for name in ("luts", "registers", "multipliers")]
+        counts = [row.get(name, "") for name in ("luts", "registers", "multipliers")]
         clock = f"{row['routed_mhz']} / {row['clock_mhz']:g}" if "routed_mhz" in row else ""
-        shown.add_row(row["design"], f"{row['pixels']:,}", *counts, clock, f"{row['frame_s']:.4f}")
+        shown.add_row(row["design"], row["pixels"], *counts, clock, f"{row['frame_s']:.4f}")
     console.print(shown)
 
 

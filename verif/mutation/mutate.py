@@ -26,15 +26,12 @@ import subprocess
 import sys
 import time
 import tomllib
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
-
-from rich.box import SIMPLE
-from rich.table import Table
-from rich.text import Text
 
 import raycaster
 from raycaster import convert, golden, rtl
@@ -46,7 +43,7 @@ from raycaster.errors import UserError
 from raycaster.jobs import Kept, add_fresh_option, add_job_options, executors, positive, run_jobs
 from raycaster.options import CommandParser
 from raycaster.outcomes import Check, Outcome, Published, add_keep_option, keep
-from raycaster.output import Console, emptied
+from raycaster.output import Console, Table, emptied
 from raycaster.sim import ensure_tools
 from raycaster.sim.simulator import build_program
 from raycaster.tools import ToolError, run_yosys
@@ -56,6 +53,7 @@ from raycaster.verif.leaf import RECORD_VARIABLE, recording_name
 
 SOURCES = Path(__file__).parent
 RTL = Path(rtl.__file__).parent
+LEAVES = SOURCES.resolve().parent / "tests" / "leaves"
 MUTANTS = 200
 SEED = 20150
 LEAST_CAUGHT = 0.97
@@ -69,68 +67,52 @@ class MutationError(ToolError):
 
 
 @dataclass(frozen=True)
-class Explanation:
-    """Reason why a mutant may survive; an empty field fits every mutant.
-
-    Attributes:
-        why: the reason.
-        at: Verilog of the cell, as in `Mutant.at`.
-        kind: kind of cell.
-        port: port of the cell, with the bit or without.
-        mode: mode of the fault.
-    """
-
-    why: str
-    at: str = ""
-    kind: str = ""
-    port: str = ""
-    mode: str = ""
-
-    def fits(self, mutant: Mutant) -> bool:
-        """True if it applies to this mutant."""
-        ports = ("", mutant.port, mutant.port.partition("[")[0])
-        return (
-            self.at in ("", mutant.at)
-            and self.kind in ("", mutant.kind)
-            and self.port in ports
-            and self.mode in ("", mutant.mode)
-        )
-
-
-@dataclass(frozen=True)
 class Expectation:
-    """Entry of a module in the data file.
+    """What the data file says about a module.
 
     Attributes:
-        tests: leaf tests whose recordings are used, as `file::test[parameters]`.
+        test: leaf test whose recordings are used; empty for the one with the module's name.
+        sets: its parameter sets; none for its last one.
         assumptions: Verilog expressions of the module's inputs that its contract guarantees, each with its reason.
         invariants: Verilog expressions of its registers, true from reset on; proved.
-        look_into: submodules that are part of what the solver compares.
-        explained: explanations of the other survivors.
+        look_into: submodules that are part of what the solver compares, with `*` for any text.
+        explained: survivors, as `Mutant` prints them, with `*` for any text, each with the reason.
     """
 
-    tests: tuple[str, ...]
+    test: str = ""
+    sets: Sequence[str] = ()
     assumptions: Mapping[str, str] = field(default_factory=dict)
-    invariants: tuple[str, ...] = ()
-    look_into: tuple[str, ...] = ()
-    explained: tuple[Explanation, ...] = ()
+    invariants: Sequence[str] = ()
+    look_into: Sequence[str] = ()
+    explained: Mapping[str, str] = field(default_factory=dict)
+
+
+def blocks() -> list[str]:
+    """List the blocks of the hardware, each in the file with its name."""
+    return sorted(path.stem for path in RTL.rglob("*.py") if f"@block\ndef {path.stem}(" in path.read_text())
 
 
 def expectations(path: Path = SOURCES / "mutation.toml") -> dict[str, Expectation]:
-    """Read the data file.
+    """Return the expectation of each block that is mutated, from the data file.
 
     Raises:
-        MutationError: it has an unknown key.
+        MutationError: it has an unknown key, or names no block.
     """
-    found = {}
-    for module, values in tomllib.loads(path.read_text()).items():
-        try:
-            explained = tuple(Explanation(**entry) for entry in values.pop("explained", []))
-            lists = {name: tuple(values.pop(name, ())) for name in ("tests", "invariants", "look_into")}
-            found[module] = Expectation(**lists, explained=explained, **values)
-        except TypeError as error:
-            raise MutationError(f"{path.name}, {module}: {error}") from None
+    found = {name: Expectation(f"test_{name}") for name in blocks()}
+    for kind, entries in tomllib.loads(path.read_text()).items():
+        for module, value in entries.items():
+            if module not in found or kind not in ("left_out", *Expectation.__dataclass_fields__):
+                raise MutationError(f"{path.name}: {kind}.{module}: there is no such block or key")
+            if kind == "left_out":
+                del found[module]
+            else:
+                found[module] = replace(found[module], **{kind: value})
     return found
+
+
+def fits(pattern: str, text: str) -> bool:
+    """True if the pattern, in which `*` stands for any text, is the whole text."""
+    return re.fullmatch(re.escape(pattern).replace(r"\*", ".*"), text) is not None
 
 
 @dataclass
@@ -145,7 +127,7 @@ class Mutant:
         at: the Verilog that the cell was made from.
         options: options of Yosys's mutate command.
         outcome: one of `OUTCOMES`.
-        detail: the cycle that caught it, or why it may survive.
+        detail: the cycle that caught it, or the reason why it may survive.
     """
 
     selector: int
@@ -171,10 +153,10 @@ class Result:
     seconds: float
     mutants: list[Mutant]
 
-    def explain(self, explanations: Sequence[Explanation]) -> None:
+    def explain(self, explained: Mapping[str, str]) -> None:
         """Mark the survivors that have an explanation."""
         for mutant in self.mutants:
-            reason = next((entry.why for entry in explanations if entry.fits(mutant)), None)
+            reason = next((why for pattern, why in explained.items() if fits(pattern, str(mutant))), None)
             if mutant.outcome == "surviving" and reason:
                 mutant.outcome, mutant.detail = "explained", reason
 
@@ -262,6 +244,7 @@ class Recording:
             look_into: submodules that are part of what the solver compares.
         """
         submodules = self._submodules()
+        ports = [name for name in submodules if not any(fits(pattern, name) for pattern in look_into)]
         lines = self._choose(count, seed)
         mutants = [self._describe(number, line) for number, line in enumerate(lines, 1)]
         cut = [
@@ -269,8 +252,8 @@ class Recording:
             "pmuxtree",
             f"write_verilog -noattr -selected {self.module}_mutants.v",
             "select -clear",
-            *(f"setattr -mod -set keep_hierarchy 1 {name}" for name in submodules if name not in look_into),
-            *(f"proc -norom {name}" for name in submodules if name in look_into),
+            *(f"setattr -mod -set keep_hierarchy 1 {name}" for name in ports),
+            *(f"proc -norom {name}" for name in submodules if name not in ports),
             "flatten",
             # For the solver, other submodules are only ports: equal inputs give equal outputs.
             f"expose -evert -sep _ {self.module}/c:*",  # of its cells only, else all wires would become outputs
@@ -279,7 +262,7 @@ class Recording:
             "async2sync",
             "dffunmap",
             "setundef -zero",
-            *(f"delete {name}" for name in submodules if name not in look_into),
+            *(f"delete {name}" for name in ports),
             f"write_smt2 -stbv -wires {self.module}.smt2",
         ]
         run_yosys(self._work, "plant", [*self._read(), *lines, *cut])
@@ -436,33 +419,61 @@ def _read_masks(netlist: Mapping[str, Any]) -> dict[str, int]:
     }
 
 
+def recordings(known: Mapping[str, Expectation]) -> dict[str, str]:
+    """Return the leaf tests to record, as pytest names them, each with its module.
+
+    Raises:
+        MutationError: there is no such test or parameter set.
+    """
+    done = _pytest("--collect-only", str(LEAVES))
+    sets = defaultdict(list)
+    for line in done.stdout.splitlines():
+        sets[line.partition("[")[0].rpartition("::")[2]].append(line)
+    found = {}
+    for module, expectation in known.items():
+        there = sets[expectation.test]
+        wanted = [one for one in there if one.partition("[")[2][:-1] in expectation.sets]
+        chosen = wanted if expectation.sets else there[-1:]
+        if len(chosen) != max(len(expectation.sets), 1):
+            raise MutationError(f"{module}: expected sets {expectation.sets} of {expectation.test}, got {chosen}")
+        found |= dict.fromkeys(chosen, module)
+    return found
+
+
+def _pytest(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", *arguments], cwd=LEAVES.parents[2], env=os.environ | environment,
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+
+
 def record(tests: Iterable[str], directory: Path, jobs: int) -> None:
     """Run leaf tests with recording switched on.
 
     Args:
-        tests: `file::test[parameters]`.
+        tests: names of the tests.
         directory: gets one recording per test; a recording of the same sources is kept.
         jobs: number of tests at a time.
 
     Raises:
-        MutationError: a test failed or does not exist.
+        MutationError: a test failed.
     """
-    tested = SOURCES.parent / "tests"
     packages = (Path(package.__path__[0]) for package in (raycaster, rtl, golden, convert))
-    made_of = digest(os.environ.get(seeds.VARIABLE), tested, Path(leaf.__file__), *packages)
-    stamps = {test: directory / f"{recording_name(test.partition('::')[2])}.stamp" for test in tests}
+    made_of = digest(os.environ.get(seeds.VARIABLE), LEAVES.parent, Path(leaf.__file__), *packages)
+    stamps = {test: directory / f"{_recording_of(test)}.stamp" for test in tests}
     missing = [test for test, stamp in stamps.items() if not stamp.exists() or stamp.read_text() != made_of]
     if not missing:
         return
-    command = [sys.executable, "-m", "pytest", "-q", "-n", str(jobs), "--dist", "worksteal"]
-    done = subprocess.run(
-        [*command, *missing], cwd=tested, env=os.environ | {RECORD_VARIABLE: str(directory.resolve())},
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
+    options = "-n", str(jobs), "--dist", "worksteal"
+    done = _pytest(*options, *missing, **{RECORD_VARIABLE: str(directory.resolve())})
     if done.returncode:
         raise MutationError(f"the leaf tests could not be recorded:\n{done.stdout[-2000:]}{done.stderr[-1000:]}")
     for test in missing:
         stamps[test].write_text(made_of)
+
+
+def _recording_of(test: str) -> str:
+    return recording_name(test.partition("::")[2])
 
 
 def stale(results: Iterable[Result], known: Mapping[str, Expectation]) -> list[str]:
@@ -470,9 +481,9 @@ def stale(results: Iterable[Result], known: Mapping[str, Expectation]) -> list[s
     found = []
     for module, expectation in known.items():
         mutants = [mutant for result in results if result.module == module for mutant in result.mutants]
-        for entry in expectation.explained:
-            if not any(mutant.outcome == "explained" and entry.fits(mutant) for mutant in mutants):
-                found.append(f"{module}: {entry}")
+        for pattern in expectation.explained:
+            if not any(mutant.outcome == "explained" and fits(pattern, str(mutant)) for mutant in mutants):
+                found.append(f"{module}: {pattern}")
     return found
 
 
@@ -491,18 +502,14 @@ def share_caught(counts: Mapping[str, int]) -> float:
 
 
 def _table(results: list[Result]) -> Table:
-    table = Table(title="Mutants of each module", title_justify="left", box=SIMPLE, padding=0)
-    table.add_column("module", no_wrap=True)
-    for heading in ("mutants", *OUTCOMES, "of all", "of the rest", "seconds"):
-        table.add_column(heading, justify="right", no_wrap=True)
+    table = Table("module", "mutants", *OUTCOMES, "of all", "of the rest", "seconds", title="Mutants of each module")
 
     def add(label: str, chosen: list[Result], style: str = "") -> None:
         counts = _counts(chosen)
         total = sum(counts.values())
-        table.add_row(
-            Text(label, style), str(total), *map(str, counts.values()), f"{counts['caught'] / max(total, 1):.1%}",
-            f"{share_caught(counts):.1%}", f"{sum(result.seconds for result in chosen):.0f}",
-        )  # fmt: skip
+        shares = f"{counts['caught'] / max(total, 1):.1%}", f"{share_caught(counts):.1%}"
+        seconds = f"{sum(result.seconds for result in chosen):.0f}"
+        table.add_row(label, total, *counts.values(), *shares, seconds, style=style)
 
     for module in sorted({result.module for result in results}):
         add(module, [result for result in results if result.module == module])
@@ -549,7 +556,7 @@ class Job:
     @property
     def name(self) -> str:
         """Name of the recording."""
-        return recording_name(self.test.partition("::")[2])
+        return _recording_of(self.test)
 
     @property
     def directory(self) -> Path:
@@ -560,7 +567,7 @@ class Job:
         """Return the file in which the result is kept."""
         files = sorted(path for path in self.directory.iterdir() if path.is_file())
         tools = [SOURCES / "equivalence.py", SOURCES / "replay.cpp"]
-        choice = self.mutants, self.seed, replace(self.expectation, tests=())
+        choice = self.mutants, self.seed, replace(self.expectation, test="", sets=())
         key = digest(inspect.getsource(Recording), choice, [path.name for path in files], *files, *tools)
         return self.build / "results" / f"{self.name}-{key}.pickle"
 
@@ -624,8 +631,7 @@ def _found(kept: Outcome) -> str:
 
 def unmutated(known: Iterable[str]) -> list[str]:
     """List the blocks of the hardware that are not among these modules."""
-    blocks = {path.stem for path in RTL.rglob("*.py") if f"@block\ndef {path.stem}(" in path.read_text()}
-    return sorted(blocks - set(known))
+    return sorted({*blocks()} - {*known})
 
 
 CHECKS = (Check("faults planted in modules", "the modules' leaf tests", ["mutate"], _found),)
@@ -656,14 +662,12 @@ def main(argv: list[str] | None = None) -> int:
         if module not in known:
             raise UserError(f"--module: got {module}, expected one of {', '.join(known)}")
     known = {module: known[module] for module in arguments.module or known}
-    tests = {test: module for module, expectation in known.items() for test in expectation.tests}
-
-    # A table with this many columns is readable in a log as well.
-    console = Console(width=None if sys.stdout.isatty() else 150)
+    console = Console()
     with console.waiting("recording the leaf tests"):
+        tests = recordings(known)
         record(tests, arguments.build / "recordings", arguments.jobs)
     jobs = [
-        Job(test, module, arguments.build, arguments.mutants, arguments.seed, replace(known[module], explained=()))
+        Job(test, module, arguments.build, arguments.mutants, arguments.seed, replace(known[module], explained={}))
         for test, module in tests.items()
     ]
     kept = Kept(Job.place, arguments.fresh, complete=lambda found: isinstance(found, Result))
