@@ -10,12 +10,10 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from fnmatch import fnmatch
-from functools import cache, partial
+from functools import cache
 from importlib.metadata import distributions
-from multiprocessing import get_context
 
 from filelock import FileLock
 
@@ -28,7 +26,7 @@ from raycaster.digests import code_digest
 from raycaster.docs import engine_figures, scaling
 from raycaster.errors import UserError
 from raycaster.fpga import area, bitstream, fit, tiny_tapeout
-from raycaster.jobs import run_jobs
+from raycaster.jobs import processes, run_jobs
 from raycaster.outcomes import RESULTS, Check, Digests, Outcome, Published, kept_outcome, table
 from raycaster.output import Console
 from raycaster.play import game
@@ -142,7 +140,7 @@ def _current(commands: Sequence[str]) -> Mapping[str, Digests | str]:
     """
     store, state, console = ROOT / "build" / "provenance.json", _state(), Console(stderr=True)
     # New processes, because MyHDL searches all loaded modules repeatedly, and a test has loaded many.
-    pool = partial(ProcessPoolExecutor, JOBS, mp_context=get_context("spawn"))
+    pool = processes(JOBS, spawned=True)
     store.parent.mkdir(exist_ok=True)
     with FileLock(store.with_suffix(".lock")):
         stored = json.loads(store.read_text()) if store.exists() else {}

@@ -9,9 +9,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +23,7 @@ from raycaster.fit.fixing import add_fix_option, configuration_of
 from raycaster.fpga import flows
 from raycaster.fpga.cells import DECIDES, FAMILIES, PINS_TOP, TOOLS, Area, Family, measure, measure_modules, synthesise
 from raycaster.fpga.multipliers import register_products
-from raycaster.jobs import run_jobs
+from raycaster.jobs import run_jobs, threads
 from raycaster.options import CommandParser, add_configuration_options, add_scene_argument, given_options
 from raycaster.outcomes import Outcome, Published, add_keep_option, keep, scope_of, table
 from raycaster.output import Console, Table
@@ -427,5 +425,5 @@ def _run(
     def work(key: tuple[str, int]) -> Any:
         return tasks[key](output / f"{key[0]}-{key[1] or 'modules'}")
 
-    results = run_jobs("counting", work, order, partial(ThreadPoolExecutor, JOBS), console)
+    results = run_jobs("counting", work, order, threads(JOBS), console)
     return dict(zip(order, results, strict=True))

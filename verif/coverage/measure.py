@@ -13,7 +13,6 @@ import json
 import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
@@ -24,7 +23,7 @@ from rich.text import Text
 from raycaster.configuration import configure
 from raycaster.convert.provenance import Provenance
 from raycaster.errors import UserError
-from raycaster.jobs import Kept, add_fresh_option, run_jobs
+from raycaster.jobs import Kept, add_fresh_option, processes, run_jobs
 from raycaster.options import CommandParser
 from raycaster.outcomes import Check, Outcome, add_keep_option, keep, scope_of
 from raycaster.output import Console, Table, emptied
@@ -124,7 +123,7 @@ def run_all(
     directories = {run: (output / _digest(run, model) / run.name).resolve() for run in runs}
     kept = Kept(lambda run: directories[run] / "kept.pickle", fresh, complete=lambda found: not found[1])
     runner = partial(_run, model=model, directories=directories)
-    for found, failure in run_jobs("benches", runner, runs, partial(ProcessPoolExecutor, jobs), console, kept=kept):
+    for found, failure in run_jobs("benches", runner, runs, processes(jobs), console, kept=kept):
         counts.update(found)
         failures += [failure] if failure else []
     return counts, failures, list(directories.values())
@@ -295,7 +294,7 @@ def main(argv: list[str] | None = None) -> int:
         SOAK, soaked_design, range(arguments.seeds), output / "soak", arguments.build, probes=probes,
         fresh=arguments.fresh,
     )  # fmt: skip
-    soaked = run_campaign(whole, console, partial(ProcessPoolExecutor, arguments.jobs))
+    soaked = run_campaign(whole, console, processes(arguments.jobs))
     failures += soaked.failures
     shown = len(scenes) + len(soaked.results)
     figures: dict[str, object] = {"scenes": shown}
@@ -305,7 +304,7 @@ def main(argv: list[str] | None = None) -> int:
         room, most = soaked_design.rectangles, soaked_design.reflections
         drawn = [load_scene(path) for path in scenes]
         drawn += [random_scene(result["seed"], room, most, design.looks) for result in soaked.results]
-        count, executor = partial(count_hit_points, config=design), partial(ProcessPoolExecutor, arguments.jobs)
+        count, executor = partial(count_hit_points, config=design), processes(arguments.jobs)
         found.append((HIT_POINTS, run_jobs("golden pictures", count, drawn, executor, console)))
     holes, bins = 0, 0
     for cross, parts in found:

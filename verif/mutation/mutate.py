@@ -26,10 +26,12 @@ import subprocess
 import sys
 import time
 import tomllib
-from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
+from itertools import groupby
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -476,50 +478,35 @@ def _recording_of(test: str) -> str:
     return recording_name(test.partition("::")[2])
 
 
-def stale(results: Iterable[Result], known: Mapping[str, Expectation]) -> list[str]:
-    """List the explanations that no mutant needs."""
-    found = []
-    for module, expectation in known.items():
-        mutants = [mutant for result in results if result.module == module for mutant in result.mutants]
-        for pattern in expectation.explained:
-            if not any(mutant.outcome == "explained" and fits(pattern, str(mutant)) for mutant in mutants):
-                found.append(f"{module}: {pattern}")
-    return found
-
-
-def count_outcomes(mutants: Iterable[Mutant]) -> dict[str, int]:
+def count_outcomes(results: Iterable[Result]) -> dict[str, int]:
     """Count the mutants with each outcome."""
-    counts: dict[str, int] = dict.fromkeys(OUTCOMES, 0)
-    for mutant in mutants:
-        counts[mutant.outcome] += 1
-    return counts
+    counts = Counter(mutant.outcome for result in results for mutant in result.mutants)
+    return {outcome: counts[outcome] for outcome in OUTCOMES}
 
 
-def share_caught(counts: Mapping[str, int]) -> float:
+def share_caught(results: Iterable[Result]) -> float:
     """Return the caught share of the mutants that are not equivalent; explained ones count as not caught."""
+    counts = count_outcomes(results)
     different = counts["caught"] + counts["explained"] + counts["surviving"]
     return counts["caught"] / different if different else 1.0
 
 
+def by_module(results: Iterable[Result]) -> dict[str, list[Result]]:
+    """Return the results of each module."""
+    ordered = sorted(results, key=attrgetter("module"))
+    return {module: list(of_module) for module, of_module in groupby(ordered, attrgetter("module"))}
+
+
 def _table(results: list[Result]) -> Table:
     table = Table("module", "mutants", *OUTCOMES, "of all", "of the rest", "seconds", title="Mutants of each module")
-
-    def add(label: str, chosen: list[Result], style: str = "") -> None:
-        counts = _counts(chosen)
+    for label, chosen in {**by_module(results), "all": results}.items():
+        counts = count_outcomes(chosen)
         total = sum(counts.values())
-        shares = f"{counts['caught'] / max(total, 1):.1%}", f"{share_caught(counts):.1%}"
-        seconds = f"{sum(result.seconds for result in chosen):.0f}"
-        table.add_row(label, total, *counts.values(), *shares, seconds, style=style)
-
-    for module in sorted({result.module for result in results}):
-        add(module, [result for result in results if result.module == module])
-    table.add_section()
-    add("all", results, "bold")
+        table.add_row(
+            label, total, *counts.values(), f"{counts['caught'] / max(total, 1):.1%}", f"{share_caught(chosen):.1%}",
+            f"{sum(result.seconds for result in chosen):.0f}", style="bold" if label == "all" else "",
+        )  # fmt: skip
     return table
-
-
-def _counts(results: list[Result]) -> dict[str, int]:
-    return count_outcomes(mutant for result in results for mutant in result.mutants)
 
 
 def complaints(results: list[Result], known: Mapping[str, Expectation]) -> list[str]:
@@ -527,19 +514,21 @@ def complaints(results: list[Result], known: Mapping[str, Expectation]) -> list[
 
     Args:
         results: results of all recordings.
-        known: entries whose explanations must all be needed.
+        known: modules whose explanations must all be needed.
     """
-    found = [
-        f"{result.module}: survives the vectors of {result.recording}: {mutant}"
-        for result in results
-        for mutant in result.mutants
-        if mutant.outcome == "surviving"
-    ]
-    for module in {result.module: None for result in results}:
-        counts = count_outcomes(mutant for result in results if result.module == module for mutant in result.mutants)
-        if share_caught(counts) < LEAST_CAUGHT:
+    found = []
+    for module, of_module in by_module(results).items():
+        mutants = [(result.recording, mutant) for result in of_module for mutant in result.mutants]
+        for recording, mutant in mutants:
+            if mutant.outcome == "surviving":
+                found.append(f"{module}: survives the vectors of {recording}: {mutant}")
+        if share_caught(of_module) < LEAST_CAUGHT:
             found.append(f"{module}: fewer than {LEAST_CAUGHT:.0%} of the mutants that differ are caught")
-    return found + [f"needed by no mutant: {text}" for text in stale(results, known)]
+        explained = [str(mutant) for _, mutant in mutants if mutant.outcome == "explained"]
+        for pattern in known[module].explained if module in known else ():
+            if not any(fits(pattern, text) for text in explained):
+                found.append(f"{module}: needed by no mutant: {pattern}")
+    return found
 
 
 @dataclass(frozen=True)
@@ -580,18 +569,6 @@ class Job:
             return recording.run(self.mutants, self.seed, self.expectation)
         except UserError as error:
             return f"{self.test}: {error}"
-
-
-def _progress(console: Console) -> Callable[[Job, Result | str], None]:
-    """Return a function that prints a line for each finished recording, for a log without a progress bar."""
-
-    def finished(job: Job, found: Result | str) -> None:
-        said = (
-            found if isinstance(found, str) else f"{found.seconds:.0f} s, {share_caught(_counts([found])):.1%} caught"
-        )
-        console.print(f"{job.name}: {said}", soft_wrap=True)
-
-    return finished
 
 
 def command_parser() -> CommandParser:
@@ -670,28 +647,28 @@ def main(argv: list[str] | None = None) -> int:
         Job(test, module, arguments.build, arguments.mutants, arguments.seed, replace(known[module], explained={}))
         for test, module in tests.items()
     ]
+
+    def finished(job: Job, found: Result | str) -> None:
+        """Print a line for each recording, for a log without a progress bar."""
+        said = found if isinstance(found, str) else f"{found.seconds:.0f} s, {share_caught([found]):.1%} caught"
+        console.print(f"{job.name}: {said}", soft_wrap=True)
+
     kept = Kept(Job.place, arguments.fresh, complete=lambda found: isinstance(found, Result))
     with executors(arguments.scheduler, arguments.jobs) as make_executor:
-        done = run_jobs("recordings", Job.run, jobs, make_executor, console, kept=kept, finished=_progress(console))
+        done = run_jobs("recordings", Job.run, jobs, make_executor, console, kept=kept, finished=finished)
     results = [one for one in done if isinstance(one, Result)]
     failures = [one for one in done if isinstance(one, str)]
     for result in results:
         result.explain(known[result.module].explained)
     (arguments.build / "results.json").write_text(json.dumps([asdict(result) for result in results], indent=2) + "\n")
     console.print(_table(results))
-    by_module = {module: [one for one in results if one.module == module] for module in known}
-    shares = {module: share_caught(_counts(of_module)) for module, of_module in by_module.items()}
-    worst = min(shares, key=shares.__getitem__)
-    figures = {"modules": len({one.module for one in results}), "recordings": len(results), **_counts(results)}
-    figures["not_run"] = len(failures)
-    figures |= {"caught_of_the_rest": share_caught(_counts(results)), "worst": worst, "worst_caught": shares[worst]}
-    keep(
-        arguments,
-        figures,
-        {"mutants_a_recording": arguments.mutants, "seed": arguments.seed},
-        provenance,
-        ", ".join(unmutated(known)),
-    )
+    shares = {module: share_caught(of_module) for module, of_module in by_module(results).items()}
+    worst = min(shares, key=shares.__getitem__, default="")
+    figures = {"modules": len(shares), "recordings": len(results), **count_outcomes(results)}
+    figures |= {"not_run": len(failures), "caught_of_the_rest": share_caught(results)}
+    figures |= {"worst": worst, "worst_caught": shares.get(worst)}
+    scope = {"mutants_a_recording": arguments.mutants, "seed": arguments.seed}
+    keep(arguments, figures, scope, provenance, ", ".join(unmutated(known)))
     # Other choices of faults need not have the survivors that are explained.
     usual = (arguments.mutants, arguments.seed) == (MUTANTS, SEED)
     found = failures + complaints(results, known if usual and not failures else {})

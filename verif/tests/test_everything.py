@@ -143,7 +143,7 @@ def test_all_is_resumed(clone, capsys):
 def test_results_of_an_interrupted_run_are_kept(tmp_path):
     """The state file ends where the machine stopped, possibly in the middle of a line; a fresh run forgets it."""
     state = everything.State(tmp_path / "state")
-    begin = {"sources": "a", "files": {}, "fresh": False}
+    begin = {"sources": "a", "files": {"x": "b", "y": "c"}, "fresh": False}
     state.add(begin)
     state.add({"wanted": ["x", "y"]})
     state.add({"test": "x", "outcome": "passed", "reason": "", "seconds": 2.0, "at": 3.0})

@@ -256,7 +256,8 @@ def test_an_interpreter_ends_without_a_complaint(tmp_path: Path, words: tuple[st
     """Python itself flushes the output once more when it ends."""
     reader, writer = os.pipe()
     os.close(reader)
-    given = {"cwd": tmp_path, "capture_output": False, "stderr": subprocess.PIPE}
+    buffered = os.environ | {"PYTHONUNBUFFERED": ""}
+    given = {"cwd": tmp_path, "env": buffered, "capture_output": False, "stderr": subprocess.PIPE}
     with open("/dev/full", "w") as full:
         done = raycaster(*words, stdout=full, **given)
     assert done.returncode == 2
