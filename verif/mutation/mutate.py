@@ -421,19 +421,27 @@ def _read_masks(netlist: Mapping[str, Any]) -> dict[str, int]:
     }
 
 
-def recordings(known: Mapping[str, Expectation]) -> dict[str, str]:
-    """Return the leaf tests to record, as pytest names them, each with its module.
+def leaf_tests() -> dict[str, list[str]]:
+    """Return the parameter sets of each leaf test, as pytest names them."""
+    sets = defaultdict(list)
+    for line in _pytest("--collect-only", str(LEAVES)).stdout.splitlines():
+        sets[line.partition("[")[0].rpartition("::")[2]].append(line)
+    return sets
+
+
+def recordings(known: Mapping[str, Expectation], sets: Mapping[str, list[str]]) -> dict[str, str]:
+    """Return the leaf tests to record, each with its module.
+
+    Args:
+        known: modules to mutate.
+        sets: all leaf tests.
 
     Raises:
         MutationError: there is no such test or parameter set.
     """
-    done = _pytest("--collect-only", str(LEAVES))
-    sets = defaultdict(list)
-    for line in done.stdout.splitlines():
-        sets[line.partition("[")[0].rpartition("::")[2]].append(line)
     found = {}
     for module, expectation in known.items():
-        there = sets[expectation.test]
+        there = sets.get(expectation.test, [])
         wanted = [one for one in there if one.partition("[")[2][:-1] in expectation.sets]
         chosen = wanted if expectation.sets else there[-1:]
         if len(chosen) != max(len(expectation.sets), 1):
@@ -641,7 +649,7 @@ def main(argv: list[str] | None = None) -> int:
     known = {module: known[module] for module in arguments.module or known}
     console = Console()
     with console.waiting("recording the leaf tests"):
-        tests = recordings(known)
+        tests = recordings(known, leaf_tests())
         record(tests, arguments.build / "recordings", arguments.jobs)
     jobs = [
         Job(test, module, arguments.build, arguments.mutants, arguments.seed, replace(known[module], explained={}))

@@ -25,6 +25,7 @@ from raycaster.verif.mutation.mutate import (
     count_outcomes,
     expectations,
     fits,
+    leaf_tests,
     main,
     recordings,
     share_caught,
@@ -170,11 +171,11 @@ def test_a_pattern_is_of_the_whole_text():
 
 def test_every_block_has_recordings():
     """Each block that is mutated has its test, with the given parameter sets; each survivor has its reason."""
-    known = expectations()
-    assert {*recordings(known).values()} == {*known}
+    known, tests = expectations(), leaf_tests()
+    assert {*recordings(known, tests).values()} == {*known}
     assert all(why for expectation in known.values() for why in expectation.explained.values())
     with pytest.raises(MutationError, match=r"divider: expected sets \['F9'\] of test_divider, got \[\]"):
-        recordings({"divider": Expectation("test_divider", sets=["F9"])})
+        recordings({"divider": Expectation("test_divider", sets=["F9"])}, tests)
 
 
 @pytest.mark.parametrize("text", ["[sets]\nadder = []", "[should_be]\ndivider = 1", '[left_out]\nlamp = "no block"'])
