@@ -179,7 +179,7 @@ class Table(rich.table.Table):
             is_text = place == 0 or heading in texts
             self.add_column(heading, justify="left" if is_text else "right", no_wrap=not is_text)
 
-    def add_row(self, *cells: object, **options: Any) -> None:
+    def add_row(self, *cells: Any, **options: Any) -> None:
         """Add a row; whole numbers get commas, and a renderable is shown as it is."""
         shown = (f"{cell:,}" if isinstance(cell, int) else cell for cell in cells)
         super().add_row(*(cell if is_renderable(cell) else str(cell) for cell in shown), **options)

@@ -70,7 +70,7 @@ class MutationError(ToolError):
 
 @dataclass(frozen=True)
 class Expectation:
-    """What the data file says about a module.
+    """Facts about a module, from the data file.
 
     Attributes:
         test: leaf test whose recordings are used; empty for the one with the module's name.
